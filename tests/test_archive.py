@@ -8,9 +8,9 @@ from unicodedata import normalize
 import pytest
 
 from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.io.archive import Archive, inside, unpack
+from tltlc.io.archive import Archive, entry_path, unpack
 
-ARCHIVE = Archive("the archive", damaged="make it again", elsewhere="unpack it elsewhere")
+ARCHIVE = Archive("the archive", damaged_help="make it again", elsewhere_help="unpack it elsewhere")
 OUTSIDE = ["../x", "a/../../x", "/x", "//x", "a//x", "..", ".", "", "a/..", "a/.", "./x", "a/", "x\0", "/"]
 
 
@@ -29,7 +29,7 @@ def test_a_path_through_a_link_is_rejected(tmp_path: Path) -> None:
     folder.mkdir()
     (folder / "link").symlink_to(tmp_path)
     with pytest.raises(TltlError, match="TLT0009"):
-        inside(folder, "link/x", ARCHIVE)
+        entry_path(folder, "link/x", ARCHIVE)
 
 
 @pytest.mark.parametrize("names", [("a", "a"), ("a", "a/b"), ("a/b", "a")])
@@ -44,12 +44,12 @@ def test_two_entries_for_one_path_are_rejected(names: tuple[str, str], tmp_path:
 def test_a_clash_of_names_on_this_file_system_suggests_another_folder(
     names: tuple[str, str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("tltlc.io.archive.inside", lambda folder, name, _: folder / normalize("NFC", name).lower())
+    monkeypatch.setattr("tltlc.io.archive.entry_path", lambda folder, name, _: folder / normalize("NFC", name).lower())
     with pytest.raises(TltlError) as caught:
         unpack(tmp_path, [("other", b""), *((name, b"") for name in names)], ARCHIVE)
     (diagnostic,) = caught.value.diagnostics
     title = f"the archive holds `{names[0]}` and `{names[1]}`, which the file system here takes for one path"
-    assert (diagnostic.code, diagnostic.title, diagnostic.help) == ("TLT0009", title, ARCHIVE.elsewhere)
+    assert (diagnostic.code, diagnostic.title, diagnostic.help) == ("TLT0009", title, ARCHIVE.elsewhere_help)
 
 
 WINDOWS = ["con", "nul.tltl", "a/Aux/b", "COM1.tar.gz", "lpt9", "com\u00b2", "nul .txt", "a:b", "a\\b", "x.", "x "]
@@ -59,18 +59,18 @@ WINDOWS = ["con", "nul.tltl", "a/Aux/b", "COM1.tar.gz", "lpt9", "com\u00b2", "nu
 def test_names_that_windows_forbids_are_rejected_there(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    assert inside(tmp_path, name, ARCHIVE) == tmp_path.joinpath(*name.split("/"))
+    assert entry_path(tmp_path, name, ARCHIVE) == tmp_path.joinpath(*name.split("/"))
     monkeypatch.setattr("tltlc.io.archive._IS_WINDOWS", True)
     with pytest.raises(TltlError) as caught:
-        inside(tmp_path, name, ARCHIVE)
+        entry_path(tmp_path, name, ARCHIVE)
     (diagnostic,) = caught.value.diagnostics
-    assert (diagnostic.code, diagnostic.help) == ("TLT0009", ARCHIVE.elsewhere)
+    assert (diagnostic.code, diagnostic.help) == ("TLT0009", ARCHIVE.elsewhere_help)
 
 
 @pytest.mark.parametrize("name", ["console", "a.con", "com", "com10", "nu", "a/lpt.txt", ".x"])
 def test_plain_names_are_files_on_windows(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("tltlc.io.archive._IS_WINDOWS", True)
-    assert inside(tmp_path, name, ARCHIVE) == tmp_path.joinpath(*name.split("/"))
+    assert entry_path(tmp_path, name, ARCHIVE) == tmp_path.joinpath(*name.split("/"))
 
 
 def test_a_name_that_the_system_rejects_is_an_error(tmp_path: Path) -> None:

@@ -10,7 +10,7 @@ from typing import NoReturn
 
 import pytest
 
-from tltlc.io.files import exists, is_dir, is_file, note_read, noted, read_source, stamp, walk, was_read
+from tltlc.io.files import access_log, exists, is_dir, is_file, log_read, read_source, stamp, walk, was_read
 
 
 def test_existing_files_and_folders_are_found(tmp_path: Path) -> None:
@@ -40,11 +40,11 @@ def test_a_file_without_permission_is_missing(
     assert not look(tmp_path)
 
 
-def test_a_looked_up_path_is_noted_with_its_first_state(tmp_path: Path) -> None:
+def test_a_looked_up_path_is_logged_with_its_first_state(tmp_path: Path) -> None:
     file, missing = tmp_path / "a", tmp_path / "b"
     file.write_text("1")
     before = stamp(str(file))
-    with noted() as outer, noted() as inner:
+    with access_log() as outer, access_log() as inner:
         assert is_file(file) and not exists(missing) and is_dir(tmp_path)
         file.write_text("22")
         read_source(file)
@@ -60,9 +60,9 @@ def test_the_stamp_of_a_folder_ignores_its_files(tmp_path: Path) -> None:
     assert before is not None and stamp(str(tmp_path)) == before
 
 
-def test_nested_notes(tmp_path: Path) -> None:
-    with noted() as outer:
-        with noted():
+def test_an_inner_access_log_does_not_end_the_outer_one(tmp_path: Path) -> None:
+    with access_log() as outer:
+        with access_log():
             pass
         exists(tmp_path)
     assert [*outer] == [str(tmp_path)]
@@ -71,29 +71,29 @@ def test_nested_notes(tmp_path: Path) -> None:
 def test_only_regular_files_count_as_read(tmp_path: Path) -> None:
     file = tmp_path / "a"
     file.touch()
-    with noted():
-        note_read(file)
-        note_read(os.devnull)
+    with access_log():
+        log_read(file)
+        log_read(os.devnull)
         assert was_read(file)
         assert not was_read(os.devnull)
 
 
-def test_a_new_round_of_notes_forgets_files_of_earlier_rounds(tmp_path: Path) -> None:
+def test_a_new_access_log_forgets_files_that_an_earlier_one_read(tmp_path: Path) -> None:
     source, link = tmp_path / "a", tmp_path / "link"
     source.write_text("1")
     link.hardlink_to(source)
-    with noted():
-        with noted():
+    with access_log():
+        with access_log():
             read_source(source)
             assert was_read(source) and was_read(link)
-        with noted():
+        with access_log():
             assert not was_read(source)
         assert was_read(source)
     assert not was_read(source)
 
 
 @pytest.fixture
-def deep(tmp_path: Path) -> Iterator[Path]:
+def deep_folder(tmp_path: Path) -> Iterator[Path]:
     """A folder with more nested folders than Python's recursion limit."""
     before = Path.cwd()
     os.chdir(tmp_path)
@@ -109,13 +109,13 @@ def deep(tmp_path: Path) -> Iterator[Path]:
         subprocess.run(["rm", "-rf", str(tmp_path / "d")], check=False)
 
 
-def test_folders_of_any_depth_are_walked(deep: Path) -> None:
-    (deep / "b").mkdir()
-    (deep / "b" / "file").touch()
-    (deep / "link").symlink_to(deep)
+def test_folders_of_any_depth_are_walked(deep_folder: Path) -> None:
+    (deep_folder / "b").mkdir()
+    (deep_folder / "b" / "file").touch()
+    (deep_folder / "link").symlink_to(deep_folder)
     errors: list[OSError] = []
-    walked = list(walk(deep, errors.append))
-    assert (str(deep), ["b", "d", "link"], []) == (walked[0][0], sorted(walked[0][1]), walked[0][2])
-    assert (str(deep / "b"), [], ["file"]) in walked
+    walked = list(walk(deep_folder, errors.append))
+    assert (str(deep_folder), ["b", "d", "link"], []) == (walked[0][0], sorted(walked[0][1]), walked[0][2])
+    assert (str(deep_folder / "b"), [], ["file"]) in walked
     # If paths are limited to some thousand characters, the deepest folders give an error.
     assert len(walked) > 1000 or len(errors) == 1

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.io.json_text import JsonLimitError, load, loads, non_finite
+from tltlc.io.json_text import JsonLimitError, first_non_finite, load, loads
 from tltlc.io.limits import Limit
 from tltlc.pipeline import read_artefact
 
@@ -65,15 +65,15 @@ def test_a_value_with_a_number_that_is_not_finite_is_no_json(value: object) -> N
     try:
         json.dumps(value, allow_nan=False)
     except ValueError:
-        assert non_finite(value) in ("Infinity", "-Infinity")
+        assert first_non_finite(value) in ("Infinity", "-Infinity")
     else:
-        assert non_finite(value) is None
+        assert first_non_finite(value) is None
 
 
 def test_the_first_number_that_is_not_finite_is_named() -> None:
     infinity, nan = float("inf"), float("nan")
-    assert non_finite([1.0, {"a": [True, -infinity], "b": nan}, infinity]) == "-Infinity"
-    assert non_finite({"a": {"b": nan}, "c": infinity}) == "NaN"
+    assert first_non_finite([1.0, {"a": [True, -infinity], "b": nan}, infinity]) == "-Infinity"
+    assert first_non_finite({"a": {"b": nan}, "c": infinity}) == "NaN"
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ import pytest
 from tests.waiting import HANG_S
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.io.limits import COMMAND
-from tltlc.io.resources import OutOfTimeError, exhausted
+from tltlc.io.resources import OutOfTimeError, exhaustion_error
 
 if sys.platform == "win32":
     pytest.skip("Windows bounds neither", allow_module_level=True)
@@ -23,13 +23,13 @@ MANY = "".join(f"signal s{i}: bool\nspec q{i} = F (s{i} & X s{i // 2})\n" for i 
 """A source that takes 80 MiB of memory."""
 
 
-def _run(*arguments: str, given: str = "") -> subprocess.CompletedProcess[str]:
+def _run(*arguments: str, stdin: str = "") -> subprocess.CompletedProcess[str]:
     command = [sys.executable, "-m", "tltlc", *arguments]
-    return subprocess.run(command, input=given, capture_output=True, text=True, timeout=HANG_S, check=False)
+    return subprocess.run(command, input=stdin, capture_output=True, text=True, timeout=HANG_S, check=False)
 
 
 def _script(script: str) -> subprocess.CompletedProcess[str]:
-    head = "from tltlc.io.limits import Process\nfrom tltlc.io.resources import *\n"
+    head = "from tltlc.io.limits import ProcessLimit\nfrom tltlc.io.resources import *\n"
     command = [sys.executable, "-c", head + script]
     return subprocess.run(command, capture_output=True, text=True, timeout=HANG_S, check=False)
 
@@ -46,7 +46,7 @@ def test_a_command_stops_at_its_limit_of_processor_time(tmp_path: Path) -> None:
 
 
 def test_a_command_stops_at_its_limit_of_memory() -> None:
-    result = _run("--max-memory", "0.05", "check", "-", given=MANY)
+    result = _run("--max-memory", "0.05", "check", "-", stdin=MANY)
     assert result.returncode == 1
     # Python may print another line first, if it has no memory to call the exception hook.
     assert result.stderr.endswith(
@@ -58,7 +58,7 @@ def test_a_command_stops_at_its_limit_of_memory() -> None:
 
 @pytest.mark.parametrize("bounds", [(), ("--max-cpu", "0", "--max-memory", "0")])
 def test_the_default_limits_are_generous(bounds: tuple[str, ...]) -> None:
-    result = _run(*bounds, "check", "-", given=MANY)
+    result = _run(*bounds, "check", "-", stdin=MANY)
     assert (result.returncode, result.stderr) == (0, "<stdin>: 6000 specs, nothing to report\n")
 
 
@@ -83,7 +83,7 @@ def test_the_help_shows_the_limits() -> None:
 
 
 def test_a_program_that_imports_tltlc_has_no_limits() -> None:
-    script = "import signal, resource\nbefore = resource.getrlimit(resource.RLIMIT_DATA)\nwith bounded():\n"
+    script = "import signal, resource\nbefore = resource.getrlimit(resource.RLIMIT_DATA)\nwith resource_limits():\n"
     script += "    assert signal.getitimer(signal.ITIMER_PROF) == (0.0, 0.0)\n"
     script += "    assert resource.getrlimit(resource.RLIMIT_DATA) == before\n"
     result = _script(script)
@@ -94,9 +94,9 @@ def test_limits_end_with_the_bounded_block() -> None:
     script = (
         "import resource, signal\n"
         "before = resource.getrlimit(resource.RLIMIT_DATA), signal.getsignal(signal.SIGPROF)\n"
-        "permit(Process(memory=1 << 30, work_s=100))\n"
-        "with bounded():\n"
-        "    with bounded():\n"
+        "permit(ProcessLimit(memory=1 << 30, work_s=100))\n"
+        "with resource_limits():\n"
+        "    with resource_limits():\n"
         "        pass\n"
         "    assert 0 < signal.getitimer(signal.ITIMER_PROF)[0] < 101\n"
         "    assert resource.getrlimit(resource.RLIMIT_DATA)[0] == 1 << 30\n"
@@ -109,12 +109,12 @@ def test_limits_end_with_the_bounded_block() -> None:
 
 def test_no_exception_handler_can_ignore_the_time_limit() -> None:
     script = (
-        "permit(Process(memory=0, work_s=1))\n"
+        "permit(ProcessLimit(memory=0, work_s=1))\n"
         "class Dropped:\n"
         "    def __del__(self):\n"
         "        while True: pass\n"
         "try:\n"
-        "    with bounded():\n"
+        "    with resource_limits():\n"
         "        Dropped()\n"
         "        while True:\n"
         "            try: sum(range(1000))\n"
@@ -127,9 +127,9 @@ def test_no_exception_handler_can_ignore_the_time_limit() -> None:
 def test_other_threads_have_no_limits() -> None:
     script = (
         "import threading\n"
-        "permit(Process(memory=1 << 30, work_s=100))\n"
+        "permit(ProcessLimit(memory=1 << 30, work_s=100))\n"
         "def work():\n"
-        "    with bounded(): print('worked')\n"
+        "    with resource_limits(): print('worked')\n"
         "thread = threading.Thread(target=work)\nthread.start()\nthread.join()\n"
     )
     result = _script(script)
@@ -148,13 +148,13 @@ def test_a_limit_of_a_process_cannot_be_raised() -> None:
 
 @pytest.mark.parametrize("error", [OutOfTimeError(), MemoryError(), RecursionError()])
 def test_every_exhausted_resource_has_the_same_code(error: BaseException) -> None:
-    reported = exhausted(error)
+    reported = exhaustion_error(error)
     assert isinstance(reported, TltlError)
     assert [diagnostic.code for diagnostic in reported.diagnostics] == ["TLT0007"]
 
 
 def test_other_errors_are_not_reported_as_exhausted() -> None:
-    assert exhausted(ValueError()) is None
+    assert exhaustion_error(ValueError()) is None
 
 
 def test_exhausted_resources_in_a_destructor_are_not_printed() -> None:
@@ -166,8 +166,8 @@ class Thing:
     def __del__(self):
         raise self.error
 
-permit(Process(memory=0, work_s=100))
-with bounded():
+permit(ProcessLimit(memory=0, work_s=100))
+with resource_limits():
     Thing(MemoryError())
     Thing(OutOfTimeError())
     Thing(ValueError("inside"))

@@ -11,12 +11,12 @@ from tests.time_limit import run_with_time_limit
     "code",
     [
         # A project file of blank lines with one unknown key.
-        "from tltlc.io.project import _place; from tltlc.core.source import SourceFile\n"
-        "_place(SourceFile('tltl.toml', '\\n' * 1_000_000 + 'librarys'), 'kez')",
+        "from tltlc.io.project import _key_labels; from tltlc.core.source import SourceFile\n"
+        "_key_labels(SourceFile('tltl.toml', '\\n' * 1_000_000 + 'librarys'), 'kez')",
         # A project file of many unknown keys.
-        "from tltlc.io.project import _place; from tltlc.core.source import SourceFile\n"
+        "from tltlc.io.project import _key_labels; from tltlc.core.source import SourceFile\n"
         "source = SourceFile('tltl.toml', ''.join(f'k{n}=1\\n' for n in range(100_000)))\n"
-        "for n in range(100_000): assert _place(source, f'k{n}')",
+        "for n in range(100_000): assert _key_labels(source, f'k{n}')",
         # The value of a param with an invalid unit.
         "from tltlc.resolve.constants import override; assert override('1' * 1_000_000 + '!') is None",
         "from tltlc.resolve.constants import override; assert override('1' + ' ' * 1_000_000 + '!') is None",

@@ -24,7 +24,7 @@ pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="needs signals t
 SPECS = "signal a: bool\n" + "".join(f"spec s{number} = F a\n" for number in range(14))
 FILES = 42
 
-STOPPED = """
+WAITING_COMMAND = """
 import sys
 from pathlib import Path
 replace = Path.replace
@@ -41,9 +41,13 @@ main()
 
 
 @contextmanager
-def stopped_before_renaming(folder: Path, *, ignoring: str = "") -> Iterator[subprocess.Popen[str]]:
+def command_waiting_to_rename(folder: Path, *, ignoring: str = "") -> Iterator[subprocess.Popen[str]]:
     (folder / "specs.tltl").write_text(SPECS, encoding="utf-8")
-    program = f"import signal; signal.signal(signal.{ignoring}, signal.SIG_IGN)\n{STOPPED}" if ignoring else STOPPED
+    program = (
+        f"import signal; signal.signal(signal.{ignoring}, signal.SIG_IGN)\n{WAITING_COMMAND}"
+        if ignoring
+        else WAITING_COMMAND
+    )
     command = [sys.executable, "-c", program, "compile", "specs.tltl", "-o", "out"]
     environment = {**os.environ, "PYTHONPATH": str(ROOT), "TLTLC_CACHE_DIR": ""}
     with subprocess.Popen(
@@ -57,14 +61,14 @@ def stopped_before_renaming(folder: Path, *, ignoring: str = "") -> Iterator[sub
             running.kill()
 
 
-def temporary(folder: Path) -> list[str]:
+def temporary_names(folder: Path) -> list[str]:
     return sorted(path.name for path in (folder / "out").iterdir() if path.name.startswith("."))
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_a_command_ended_by_a_signal_leaves_no_file(number: signal.Signals, tmp_path: Path) -> None:
-    with stopped_before_renaming(tmp_path) as running:
-        assert len(temporary(tmp_path)) == FILES + 1
+    with command_waiting_to_rename(tmp_path) as running:
+        assert len(temporary_names(tmp_path)) == FILES + 1
         running.send_signal(number)
         out, _ = running.communicate(timeout=HANG_S)
     assert (running.returncode, out) == (128 + number, "")
@@ -143,34 +147,34 @@ def test_a_temporary_folder_that_cannot_be_created_is_an_error(tmp_path: Path, m
 
 
 def test_an_ignored_signal_stays_ignored(tmp_path: Path) -> None:
-    with stopped_before_renaming(tmp_path, ignoring="SIGHUP") as running:
+    with command_waiting_to_rename(tmp_path, ignoring="SIGHUP") as running:
         running.send_signal(signal.SIGHUP)
         running.communicate("go on\n", timeout=HANG_S)
     assert running.returncode == 0
-    assert (len(list((tmp_path / "out").iterdir())), temporary(tmp_path)) == (FILES, [])
+    assert (len(list((tmp_path / "out").iterdir())), temporary_names(tmp_path)) == (FILES, [])
 
 
 def test_the_next_write_removes_files_of_a_killed_process(tmp_path: Path) -> None:
-    with stopped_before_renaming(tmp_path) as running:
+    with command_waiting_to_rename(tmp_path) as running:
         running.kill()
-    assert len(temporary(tmp_path)) == FILES + 1
+    assert len(temporary_names(tmp_path)) == FILES + 1
     write_files(tmp_path / "out", {"other": "text"})
     assert [path.name for path in (tmp_path / "out").iterdir()] == ["other"]
 
 
 def test_a_running_process_keeps_its_temporary_files(tmp_path: Path) -> None:
-    with stopped_before_renaming(tmp_path) as running:
-        before = temporary(tmp_path)
+    with command_waiting_to_rename(tmp_path) as running:
+        before = temporary_names(tmp_path)
         write_files(tmp_path / "out", {"other": "text"})
-        assert temporary(tmp_path) == before
+        assert temporary_names(tmp_path) == before
         running.communicate("go on\n", timeout=HANG_S)
     assert running.returncode == 0
-    assert (len(list((tmp_path / "out").iterdir())), temporary(tmp_path)) == (FILES + 1, [])
+    assert (len(list((tmp_path / "out").iterdir())), temporary_names(tmp_path)) == (FILES + 1, [])
 
 
 def test_two_writers_in_one_process_keep_their_files(tmp_path: Path) -> None:
-    with temporaries() as one:
-        file = one.path(tmp_path / "a")
+    with temporaries() as owner:
+        file = owner.path(tmp_path / "a")
         file.write_text("one")
         write_files(tmp_path, {"b": "two"})
         assert file.read_text() == "one"
@@ -228,7 +232,7 @@ def test_a_removed_lock_file_is_created_again(tmp_path: Path, monkeypatch: pytes
             path.unlink()
         return path.exists()
 
-    monkeypatch.setattr(module, "_is_there", removed_once)
+    monkeypatch.setattr(module, "_is_still_at", removed_once)
     write_files(tmp_path, {"a": "text"})
     assert len(set(attempts)) == 2
     assert [path.name for path in tmp_path.iterdir()] == ["a"]

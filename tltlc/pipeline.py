@@ -18,7 +18,7 @@ from tltlc.diagnostics.diagnostic import Diagnostic, TltlError, stop_at_errors
 from tltlc.grammar.allow_index import unsilenced
 from tltlc.grammar.parser import parse
 from tltlc.io.files import MAX_ARTEFACT_BYTES, read_source
-from tltlc.io.resources import bounded
+from tltlc.io.resources import resource_limits
 from tltlc.resolve.options import ResolveOptions
 from tltlc.resolve.resolution import Resolution, resolution
 
@@ -139,7 +139,7 @@ class Session:
         stop_at_errors(self.diagnostics)
         return tuple(fspa for fspa, _ in self._built if fspa is not None)
 
-    @bounded()
+    @resource_limits()
     def compiled(self) -> Compiled:
         """Return the result of all stages. Errors: as for :attr:`automata`."""
         automata = self.automata
@@ -236,7 +236,7 @@ def compile_file(path: str | os.PathLike[str], options: CompileOptions | None = 
     return compile_source(read_source(path), options).automata
 
 
-@bounded()
+@resource_limits()
 def load(path: str | os.PathLike[str]) -> Fspa:
     """Return the automaton in an artefact ``NAME.fspa.json``.
 
@@ -254,7 +254,7 @@ def load(path: str | os.PathLike[str]) -> Fspa:
     return read_artefact(read_source(path, max_bytes=MAX_ARTEFACT_BYTES))
 
 
-@bounded()
+@resource_limits()
 def read_artefact(source: SourceFile) -> Fspa:
     """Return the automaton in the text of an artefact. Errors are as for :func:`load`."""
     from tltlc.artefact.decode import read
@@ -262,7 +262,7 @@ def read_artefact(source: SourceFile) -> Fspa:
     return read(source.text, source.name)
 
 
-@bounded()
+@resource_limits()
 def decode_artefact(document: object, name: str) -> Fspa:
     """Return the automaton in the parsed JSON of an artefact, which messages call ``name``.
 

@@ -19,19 +19,18 @@ from tltlc.io.json_text import loads as parse_json
 from tltlc.io.locking import try_lock
 from tltlc.io.project import FILE_NAME as PROJECT_FILE
 from tltlc.io.project import project_for
-from tltlc.io.resources import bounded
+from tltlc.io.resources import resource_limits
 from tltlc.io.spec_file import is_plain_name
 from tltlc.io.spec_file import read as read_spec_file
 from tltlc.io.spec_file import split as split_spec_name
 from tltlc.io.temporary import temporary_folder
 from tltlc.io.toml_text import parse as parse_toml
-from tltlc.io.writing import check_not_read, remove_file, replaced, write_file, write_files
+from tltlc.io.writing import check_not_read, remove_file, replace_file, write_file, write_files
 
 __all__ = [
     "MAX_ARTEFACT_BYTES",
     "PROJECT_FILE",
     "Archive",
-    "bounded",
     "check_not_read",
     "descriptor_of",
     "exists",
@@ -50,7 +49,8 @@ __all__ = [
     "reading_error",
     "reason",
     "remove_file",
-    "replaced",
+    "replace_file",
+    "resource_limits",
     "split_spec_name",
     "temporary_folder",
     "try_lock",

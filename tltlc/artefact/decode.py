@@ -12,7 +12,7 @@ from tltlc.core.names import split_name
 from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
 from tltlc.expression.json import from_json
-from tltlc.io.json_text import JsonLimitError, loads, non_finite
+from tltlc.io.json_text import JsonLimitError, first_non_finite, loads
 from tltlc.io.limits import ARTEFACT
 from tltlc.logic.formula import Formula
 from tltlc.logic.text.parser import FormulaParser
@@ -31,7 +31,7 @@ def decode(document: object, name: str) -> Fspa:
             artefact, or has a number that is not finite; TLT0602 it has another version; TLT0603 it
             does not fit the schema; TLT0604 it is inconsistent.
     """
-    constant = non_finite(document)
+    constant = first_non_finite(document)
     if constant is not None:
         raise _not_finite(name, constant)
     return _decoded(document, Origin(name, lambda: json.dumps(document, ensure_ascii=False)))

@@ -25,17 +25,20 @@ _DEVICES: Final = {
 class Archive:
     """The texts for messages about an archive.
 
-    Messages call the archive ``name``. ``damaged`` is the help for an archive that was damaged or
-    made by hand; ``elsewhere`` is the help for a sound archive whose files this system cannot store.
+    Messages call the archive ``first``. ``damaged_help`` is the help for an archive that was damaged or
+    made by hand; ``elsewhere_help`` is the help for a sound archive whose files this system cannot store.
     """
 
     name: str
-    damaged: str
-    elsewhere: str
+    damaged_help: str
+    elsewhere_help: str
 
 
 def unpack(folder: Path, files: Iterable[tuple[str, bytes]], archive: Archive) -> None:
-    """Write files into a folder that exists; the path of each is relative to it, with ``/`` between its parts.
+    """Write files into a folder that exists.
+
+    ``files`` contains pairs of a path, relative to the folder and with ``/`` between its parts, and
+    the content of the file.
 
     Raises:
         TltlError: TLT0009 if a path leads out of the folder, is too long, or is not valid on this
@@ -43,30 +46,34 @@ def unpack(folder: Path, files: Iterable[tuple[str, bytes]], archive: Archive) -
     """
     written: list[str] = []
     for name, content in files:
-        path = inside(folder, name, archive)
+        path = entry_path(folder, name, archive)
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
             # No archive that tltlc makes has two entries of one name, or a file and a folder of one name.
             with path.open("xb") as file:
                 file.write(content)
         except (FileExistsError, NotADirectoryError, IsADirectoryError):
-            raise _two_entries(name, written, archive) from None
+            raise _clash_error(name, written, archive) from None
         except (OSError, ValueError) as error:
             title = f"cannot write `{name}` of {archive.name}: {reason(error)}"
             raise TltlError([Diagnostic("TLT0005", title, help="check the space and the permissions")]) from None
         written.append(name)
 
 
-def inside(folder: Path, name: str, archive: Archive) -> Path:
-    """Return the path of an archive's entry below a folder; raise TltlError, TLT0009, if there is none."""
+def entry_path(folder: Path, name: str, archive: Archive) -> Path:
+    """Return the path of an archive's entry below a folder; raise TltlError, TLT0009, if no file may have it."""
     check_extent(name, archive)
     parts = name.split("/")
-    if _IS_WINDOWS and any(map(_is_foreign, parts)):
-        raise _refused(f"{archive.name} holds the path `{name}`, which cannot be a file on Windows", archive.elsewhere)
+    if _IS_WINDOWS and any(map(_is_invalid_on_windows, parts)):
+        raise _archive_error(
+            f"{archive.name} holds the path `{name}`, which cannot be a file on Windows", archive.elsewhere_help
+        )
     is_plain = not any(part in ("", ".", "..") or "\0" in part for part in parts)
     path = folder.joinpath(*parts) if is_plain else folder
     if path == folder or not Path(os.path.realpath(path.parent)).is_relative_to(os.path.realpath(folder)):
-        raise _refused(f"{archive.name} holds the path `{name}`, which leads out of its folder", archive.damaged)
+        raise _archive_error(
+            f"{archive.name} holds the path `{name}`, which leads out of its folder", archive.damaged_help
+        )
     return path
 
 
@@ -82,13 +89,13 @@ def check_extent(name: str, archive: Archive) -> None:
         problem = f"which has more than {depth} parts"
     elif any(len(part.encode(errors="surrogatepass")) > UNPACKED_NAME.size for part in name.split("/")):
         title = f"{archive.name} holds the path `{name}`, a part of which is longer than {UNPACKED_NAME.size} bytes"
-        raise _refused(title, "use a version of it in which that part has a shorter name")
+        raise _archive_error(title, "use a version of it in which that part has a shorter name")
     else:
         return
-    raise _refused(f"{archive.name} holds the path `{name}`, {problem}", archive.damaged)
+    raise _archive_error(f"{archive.name} holds the path `{name}`, {problem}", archive.damaged_help)
 
 
-def _is_foreign(part: str) -> bool:
+def _is_invalid_on_windows(part: str) -> bool:
     """Whether Windows does not accept this part of a path as the name of a file or folder."""
     # Windows drops spaces and dots at the end of a name.
     has_odd_end = part not in (".", "..") and part.endswith((".", " "))
@@ -96,24 +103,24 @@ def _is_foreign(part: str) -> bool:
     return has_odd_end or has_reserved_character or part.partition(".")[0].rstrip(" ").lower() in _DEVICES
 
 
-def _two_entries(name: str, written: Sequence[str], archive: Archive) -> TltlError:
-    """Return TLT0009: a path cannot exist beside those that are already written."""
-    other = next((other for other in written if _clash(_folded(name), _folded(other))), name)
-    if _clash(name, other):
-        return _refused(f"{archive.name} holds two entries for `{name}`", archive.damaged)
-    title = f"{archive.name} holds `{other}` and `{name}`, which the file system here takes for one path"
-    return _refused(title, archive.elsewhere)
+def _clash_error(name: str, written: Sequence[str], archive: Archive) -> TltlError:
+    """Return TLT0009 for a path that cannot exist beside the ``written`` paths."""
+    earlier = next((earlier for earlier in written if _clash(_fold_case(name), _fold_case(earlier))), name)
+    if _clash(name, earlier):
+        return _archive_error(f"{archive.name} holds two entries for `{name}`", archive.damaged_help)
+    title = f"{archive.name} holds `{earlier}` and `{name}`, which the file system here takes for one path"
+    return _archive_error(title, archive.elsewhere_help)
 
 
-def _clash(name: str, other: str) -> bool:
+def _clash(first: str, second: str) -> bool:
     """Whether two paths are the same, or one is a folder of the other."""
-    return f"{name}/".startswith(f"{other}/") or f"{other}/".startswith(f"{name}/")
+    return f"{first}/".startswith(f"{second}/") or f"{second}/".startswith(f"{first}/")
 
 
-def _folded(name: str) -> str:
+def _fold_case(name: str) -> str:
     """Return the same text for all names that some file system treats as equal."""
     return normalize("NFC", normalize("NFD", name).casefold())
 
 
-def _refused(title: str, help_: str) -> TltlError:
+def _archive_error(title: str, help_: str) -> TltlError:
     return TltlError([Diagnostic("TLT0009", title, help=help_)])

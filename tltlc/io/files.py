@@ -23,8 +23,8 @@ Stamp = Union[tuple[int, ...], None]
 """Identifies one state of a file. For a folder or a device, it is only the kind; None means that nothing is there."""
 
 
-class Notes(dict[str, Stamp]):
-    """The paths that were looked up or read, each with its state before that.
+class AccessLog(dict[str, Stamp]):
+    """Maps each path that was looked up or read to its state before that.
 
     ``read`` identifies the regular files that were read, by device and inode number.
     """
@@ -34,10 +34,10 @@ class Notes(dict[str, Stamp]):
         self.read: set[tuple[int, int]] = set()
 
 
-_noted: Final[list[Notes]] = []
-"""The active recordings of :func:`noted`, the innermost last."""
+_active_logs: Final[list[AccessLog]] = []
+"""The active access logs, the innermost last."""
 
-_unsaved: Final[ContextVar[Mapping[str, str]]] = ContextVar("unsaved", default=EMPTY)
+_unsaved_texts: Final[ContextVar[Mapping[str, str]]] = ContextVar("unsaved", default=EMPTY)
 """The unsaved texts of an editor, by absolute path."""
 
 _folders: Final[ContextVar[frozenset[str] | None]] = ContextVar("folders", default=None)
@@ -45,8 +45,11 @@ _folders: Final[ContextVar[frozenset[str] | None]] = ContextVar("folders", defau
 
 
 @contextmanager
-def confined(folders: Iterable[str | os.PathLike[str]]) -> Iterator[None]:
-    """Inside, only files in these folders and below can be read; :func:`may_read` describes how links count."""
+def confine_reads(folders: Iterable[str | os.PathLike[str]]) -> Iterator[None]:
+    """Inside the ``with`` block, only files in these folders and their subfolders can be read.
+
+    :func:`may_read` describes how links count.
+    """
     resolvers = (os.path.abspath, os.path.realpath)
     token = _folders.set(frozenset(os.path.normcase(resolve(folder)) for folder in folders for resolve in resolvers))
     try:
@@ -56,7 +59,7 @@ def confined(folders: Iterable[str | os.PathLike[str]]) -> Iterator[None]:
 
 
 def may_read(path: str | os.PathLike[str]) -> bool:
-    """Whether a path is inside the folders of :func:`confined`, both as written and with links resolved."""
+    """Whether a path is inside the folders of :func:`confine_reads`, both as written and with links resolved."""
     folders = _folders.get()
     if folders is None:
         return True
@@ -72,7 +75,7 @@ def _is_inside(path: str, folders: Iterable[str]) -> bool:
     return any(key == folder or key.startswith(os.path.join(folder, "")) for folder in folders)  # noqa: PTH118
 
 
-def outside(name: str, labels: tuple[Label, ...] = ()) -> Diagnostic:
+def outside_diagnostic(name: str, labels: tuple[Label, ...] = ()) -> Diagnostic:
     """Return TLT0777: a file or folder is outside the readable folders."""
     title = f"`{name}` is outside the folder of the playground, so it is not read"
     return Diagnostic(
@@ -81,64 +84,67 @@ def outside(name: str, labels: tuple[Label, ...] = ()) -> Diagnostic:
 
 
 @contextmanager
-def unsaved(texts: Mapping[str, str]) -> Iterator[None]:
-    """Inside, these texts replace the files at their absolute paths, whether or not such a file exists."""
-    token = _unsaved.set(texts)
+def unsaved_texts(texts: Mapping[str, str]) -> Iterator[None]:
+    """Inside the ``with`` block, these texts replace the files at their absolute paths.
+
+    The files need not exist.
+    """
+    token = _unsaved_texts.set(texts)
     try:
         yield
     finally:
-        _unsaved.reset(token)
+        _unsaved_texts.reset(token)
 
 
 def _unsaved_text(path: str | os.PathLike[str]) -> str | None:
-    texts = _unsaved.get()
+    texts = _unsaved_texts.get()
     return texts.get(os.path.abspath(path)) if texts else None  # noqa: PTH100
 
 
 @contextmanager
-def noted() -> Iterator[Notes]:
-    """Inside, record every path that is looked up or read in this module, with its state before that.
+def access_log() -> Iterator[AccessLog]:
+    """Inside the ``with`` block, record every path that this module looks up or reads, with its state before that.
 
     A result depends on these paths: as long as :func:`stamp` returns the same state for each, the
     result does not change.
     """
-    notes = Notes()
-    _noted.append(notes)
+    log = AccessLog()
+    _active_logs.append(log)
     try:
-        yield notes
+        yield log
     finally:
-        _noted.pop()
+        _active_logs.pop()
 
 
-def note(path: str | os.PathLike[str]) -> None:
-    """Record in all active :func:`noted` that this path is about to be looked up."""
-    for notes in _noted:
+def log_lookup(path: str | os.PathLike[str]) -> None:
+    """Record in all active access logs that this path is about to be looked up."""
+    for log in _active_logs:
         name = os.fspath(path)
-        if name not in notes:
-            notes[name] = stamp(name)
+        if name not in log:
+            log[name] = stamp(name)
 
 
-def note_read(path: str | os.PathLike[str]) -> None:
-    """Record in all active :func:`noted` that this file is about to be read."""
-    note(path)
-    _note_identity(path)
+def log_read(path: str | os.PathLike[str]) -> None:
+    """Record in all active access logs that this file is about to be read."""
+    log_lookup(path)
+    _log_identity(path)
 
 
-def note_stream(stream: BinaryIO) -> None:
-    """Record in all active :func:`noted` that a stream is about to be read, if it comes from a file."""
+def log_stream_read(stream: BinaryIO) -> None:
+    """Record in all active access logs that a stream is about to be read, if it comes from a file."""
     with suppress(OSError, ValueError):
-        _note_identity(stream.fileno())
+        _log_identity(stream.fileno())
 
 
 def was_read(path: str | os.PathLike[str]) -> bool:
-    """Whether the file at a path, by this or another name, was read since the innermost :func:`noted` began.
+    """Whether the file at a path, by this or another name, was read since the innermost :func:`access_log` began.
 
-    A command that watches files begins a new :func:`noted` in each round. What earlier rounds read
+    A command that watches files begins a new :func:`access_log` in each round. What earlier rounds read
     does not count: after an editor has replaced a source file, the system may give its inode number
     to an output.
     """
     # Devices and pipes have no identity: writing to them replaces nothing.
-    return bool(_noted) and _identity(path) in _noted[-1].read
+    return bool(_active_logs) and _identity(path) in _active_logs[-1].read
 
 
 def descriptor_of(path: str | os.PathLike[str]) -> int | None:
@@ -149,11 +155,11 @@ def descriptor_of(path: str | os.PathLike[str]) -> int | None:
     )
 
 
-def _note_identity(file: str | os.PathLike[str] | int) -> None:
-    identity = _identity(file) if _noted else None
+def _log_identity(file: str | os.PathLike[str] | int) -> None:
+    identity = _identity(file) if _active_logs else None
     if identity is not None:
-        for notes in _noted:
-            notes.read.add(identity)
+        for log in _active_logs:
+            log.read.add(identity)
 
 
 def _identity(file: str | os.PathLike[str] | int) -> tuple[int, int] | None:
@@ -180,7 +186,7 @@ def exists(path: str | os.PathLike[str]) -> bool:
     """Whether something exists at a path; False if the system rejects the name or denies access."""
     if not may_read(path):
         return False
-    note(path)
+    log_lookup(path)
     # pathlib's method raises an exception in those cases before Python 3.14.
     return os.path.exists(path)  # noqa: PTH110
 
@@ -189,7 +195,7 @@ def is_file(path: str | os.PathLike[str]) -> bool:
     """Whether a regular file exists at a path, or an unsaved text; devices and pipes do not count."""
     if not may_read(path):
         return False
-    note(path)
+    log_lookup(path)
     return os.path.isfile(path) or _unsaved_text(path) is not None  # noqa: PTH113
 
 
@@ -208,7 +214,7 @@ def is_dir(path: str | os.PathLike[str]) -> bool:
     """Whether a folder exists at a path."""
     if not may_read(path):
         return False
-    note(path)
+    log_lookup(path)
     return os.path.isdir(path)  # noqa: PTH112
 
 
@@ -251,19 +257,21 @@ def read_source(
 
     Errors (:class:`TltlError`) are as for :func:`read_bytes` and :func:`decode`.
     """
-    shown = name if name is not None else os.fspath(path)
-    return decode(read_bytes(path, shown, max_bytes), shown, max_bytes=max_bytes)
+    display_name = name if name is not None else os.fspath(path)
+    return decode(read_bytes(path, display_name, max_bytes), display_name, max_bytes=max_bytes)
 
 
 def read_bytes(path: str | os.PathLike[str], name: str, max_bytes: int) -> bytes:
-    """Return the bytes of a file, which messages call ``name``; at most ``max_bytes`` and one more.
+    """Return at most ``max_bytes`` + 1 bytes of a file, which messages call ``name``.
 
-    Errors (:class:`TltlError`): TLT0001 if the system cannot read it, TLT0777 if :func:`confined`
+    The extra byte shows that the file is too large.
+
+    Errors (:class:`TltlError`): TLT0001 if the system cannot read it, TLT0777 if :func:`confine_reads`
     forbids it.
     """
     if not may_read(path):
-        raise TltlError([outside(name)])
-    note_read(path)
+        raise TltlError([outside_diagnostic(name)])
+    log_read(path)
     text = _unsaved_text(path)
     if text is not None:
         return text.encode(errors="replace")[: max_bytes + 1]
@@ -281,8 +289,8 @@ def decode(data: bytes, name: str, *, max_bytes: int = MAX_SOURCE_BYTES) -> Sour
     """
     if len(data) > max_bytes:
         title = f"`{name}` is larger than {max_bytes >> 20} MiB"
-        split = max_bytes == MAX_SOURCE_BYTES
-        advice = "split it: a file may `import` others" if split else "name a smaller file"
+        is_source = max_bytes == MAX_SOURCE_BYTES
+        advice = "split it: a file may `import` others" if is_source else "name a smaller file"
         raise TltlError([Diagnostic("TLT0004", title, help=advice)])
     if data.startswith((b"\xff\xfe", b"\xfe\xff")):
         raise TltlError([Diagnostic("TLT0002", f"`{name}` is UTF-16 text", help="save it as UTF-8")])
@@ -298,7 +306,7 @@ def reading_error(name: str, error: OSError | ValueError) -> TltlError:
     """Return TLT0001 for a file that the system cannot read."""
     suggestion: str | None = "check its name and its permissions"
     if isinstance(error, FileNotFoundError):
-        suggestion = _neighbour(name) or "check its spelling, and the folder that you are in"
+        suggestion = _missing_file_help(name) or "check its spelling, and the folder that you are in"
     elif isinstance(error, IsADirectoryError):
         suggestion = "name a file in it"
     return TltlError([Diagnostic("TLT0001", f"cannot read `{name}`: {reason(error)}", help=suggestion)])
@@ -321,18 +329,18 @@ def reason(error: OSError | ValueError) -> str:
     return "its name is not one that the system allows"
 
 
-def _neighbour(name: str) -> str | None:
-    """Return a suggestion for a missing file, e.g. a file in its folder with a similar name."""
+def _missing_file_help(name: str) -> str | None:
+    """Return a help for a missing file, e.g. a file in its folder with a similar name, or None."""
     from difflib import get_close_matches
 
     folder, file = os.path.split(name)
     try:
-        close = get_close_matches(file, os.listdir(folder or "."), n=1, cutoff=0.85)  # noqa: PTH208
+        close_matches = get_close_matches(file, os.listdir(folder or "."), n=1, cutoff=0.85)  # noqa: PTH208
     except OSError:
         return f"there is no folder `{folder}` either"
-    if close and close[0] == file:
+    if close_matches and close_matches[0] == file:
         return "it is a link: what it leads to is gone"
-    return f"did you mean `{os.path.join(folder, close[0])}`?" if close else None  # noqa: PTH118
+    return f"did you mean `{os.path.join(folder, close_matches[0])}`?" if close_matches else None  # noqa: PTH118
 
 
 def _not_utf8(data: bytes, name: str, start: int) -> TltlError:

@@ -53,21 +53,21 @@ def load(path: Path, limit: Limit) -> Any:
     return loads(data, limit)
 
 
-def non_finite(value: Any) -> str | None:
+def first_non_finite(value: Any) -> str | None:
     """Return the first number in a value that is not finite, as ``NaN`` or ``-Infinity``; None if all are finite.
 
     Does not recurse.
     """
-    waiting = [value]
-    while waiting:
-        part = waiting.pop()
+    pending = [value]
+    while pending:
+        part = pending.pop()
         if isinstance(part, float):
             if not isfinite(part):
                 return json.dumps(part)
         elif isinstance(part, dict):
-            waiting.extend(reversed(part.values()))
+            pending.extend(reversed(part.values()))
         elif isinstance(part, list):
-            waiting.extend(reversed(part))
+            pending.extend(reversed(part))
     return None
 
 

@@ -202,17 +202,17 @@ WORK: Final[Mapping[str, int]] = {
 """The most steps of a checker, by what it counts."""
 
 
-def too_deep(source: SourceFile, limit: Limit, span: Span | None = None) -> TltlError:
+def too_deep_error(source: SourceFile, limit: Limit, span: Span | None = None) -> TltlError:
     """Return TLT0006: a text nests too deep for its reader; ``span`` is the place, if known."""
-    return _structure(source, f"nests deeper than {limit.depth} levels", "flatten it", span)
+    return _structure_error(source, f"nests deeper than {limit.depth} levels", "flatten it", span)
 
 
-def too_many(source: SourceFile, limit: Limit, span: Span | None = None) -> TltlError:
+def too_many_values_error(source: SourceFile, limit: Limit, span: Span | None = None) -> TltlError:
     """Return TLT0006: a text has too many values for its reader; ``span`` is the place, if known."""
     problem = f"holds more than {limit.values:,} values"
-    return _structure(source, problem, "split it, or leave out what nothing reads", span)
+    return _structure_error(source, problem, "split it, or leave out what nothing reads", span)
 
 
-def _structure(source: SourceFile, problem: str, help_: str, span: Span | None) -> TltlError:
+def _structure_error(source: SourceFile, problem: str, help_: str, span: Span | None) -> TltlError:
     labels = (Label(source, span),) if span is not None else ()
     return TltlError([Diagnostic("TLT0006", f"`{source.name}` {problem}", labels, help_)])

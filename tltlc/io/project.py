@@ -24,7 +24,7 @@ from typing import TYPE_CHECKING, Any, Final
 from tltlc.core.record import EMPTY, record, replace
 from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
-from tltlc.io.files import is_dir, is_file, may_be_file, may_read, outside, read_source
+from tltlc.io.files import is_dir, is_file, may_be_file, may_read, outside_diagnostic, read_source
 
 if TYPE_CHECKING:
     from tltlc.automaton.fspa import Notation
@@ -50,7 +50,7 @@ class Project:
     lint: Mapping[str, str] = EMPTY
     formatting: str = "words"
 
-    def levelled(self, diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
+    def with_lint_levels(self, diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
         """Return the diagnostics with the severities that ``lint`` sets, without those that it allows."""
         kept = [diagnostic for diagnostic in diagnostics if self.lint.get(diagnostic.code) != "allow"]
         return tuple(
@@ -58,12 +58,12 @@ class Project:
         )
 
     @contextmanager
-    def levelling(self) -> Iterator[None]:
-        """Apply :meth:`levelled` to the diagnostics of a :class:`TltlError` that is raised inside."""
+    def apply_lint_levels(self) -> Iterator[None]:
+        """Apply :meth:`with_lint_levels` to the diagnostics of a :class:`TltlError` that the ``with`` block raises."""
         try:
             yield
         except TltlError as error:
-            raise TltlError(self.levelled(error.diagnostics)) from None
+            raise TltlError(self.with_lint_levels(error.diagnostics)) from None
 
 
 def project_for(path: str) -> Project:
@@ -81,7 +81,7 @@ def project_for(path: str) -> Project:
     if file is None:
         return Project()
     project = read_project(file)
-    libraries = project.libraries if Path(path).is_absolute() else map(_from_here, project.libraries)
+    libraries = project.libraries if Path(path).is_absolute() else map(_relative_library, project.libraries)
     return replace(project, libraries=tuple(libraries))
 
 
@@ -96,76 +96,80 @@ def read_project(path: Path) -> Project:
     """Return the contents of a project file.
 
     Errors: TLT0701 if it is not TOML; otherwise all of these: TLT0702 for each unknown key, TLT0703
-    for each value of the wrong kind, TLT0777 for each library that :func:`tltlc.io.files.confined`
+    for each value of the wrong kind, TLT0777 for each library that :func:`tltlc.io.files.confine_reads`
     forbids.
     """
     from tltlc.io.toml_text import parse
 
     if not may_be_file(path):
-        title, help_ = f"`{_shown(path)}` is no file", "remove it, or give it another name"
+        title, help_ = f"`{_display_path(path)}` is no file", "remove it, or give it another name"
         raise TltlError([Diagnostic("TLT0001", title, help=help_)])
-    source = read_source(path, _shown(path))
+    source = read_source(path, _display_path(path))
     table = parse(source, "TLT0701", 'values are written as in `targets = ["json", "dot"]`')
     style = table.get("style", {})
-    errors = _unknown(table, _KEYS, source)
+    errors = _unknown_keys(table, _KEYS, source)
     if not isinstance(style, dict):
-        errors.append(_wrong(source, "style", "a table, e.g. `[style]`", style))
+        errors.append(_wrong_value(source, "style", "a table, e.g. `[style]`", style))
         style = {}
-    errors += _unknown(style, _STYLE_KEYS, source)
+    errors += _unknown_keys(style, _STYLE_KEYS, source)
     for key, example in (("libraries", '["predicates"]'), ("targets", '["json", "dot"]')):
         if not _is_list_of_texts(table.get(key, [])):
-            errors.append(_wrong(source, key, f"a list of texts, e.g. `{key} = {example}`", table.pop(key)))
+            errors.append(_wrong_value(source, key, f"a list of texts, e.g. `{key} = {example}`", table.pop(key)))
     notation, formatting = style.get("notation", "unicode"), style.get("formatting", "words")
     for key, value, known in (("notation", notation, NOTATIONS), ("formatting", formatting, FORMATTINGS)):
         if value not in known:
-            errors.append(_wrong(source, key, "one of " + ", ".join(f'"{word}"' for word in known), value))
-    lint = _lint(table.get("lint", {}), source, errors)
+            errors.append(_wrong_value(source, key, "one of " + ", ".join(f'"{word}"' for word in known), value))
+    lint = _lint_levels(table.get("lint", {}), source, errors)
     folders = {library: path.parent / library for library in table.get("libraries", [])}
     for library, folder in folders.items():
         if not may_read(folder):
-            errors.append(outside(library, _place(source, "libraries")))
+            errors.append(outside_diagnostic(library, _key_labels(source, "libraries")))
         elif not is_dir(folder):
-            errors.append(_no_folder(source, library))
+            errors.append(_missing_folder(source, library))
     if errors:
         raise TltlError(errors)
     return Project(tuple(folders.values()), tuple(table.get("targets", [])), notation, lint, formatting)
 
 
-def _unknown(table: dict[str, Any], keys: tuple[str, ...], source: SourceFile) -> list[Diagnostic]:
+def _unknown_keys(table: dict[str, Any], keys: tuple[str, ...], source: SourceFile) -> list[Diagnostic]:
     """Return an error for each key that the table does not allow."""
     from difflib import get_close_matches
 
     errors = []
     for key in table:
         if key not in keys:
-            close = get_close_matches(key, keys, n=1)
-            suggestion = f"did you mean `{close[0]}`?" if close else f"there are: {', '.join(f'`{k}`' for k in keys)}"
-            errors.append(Diagnostic("TLT0702", f"unknown key `{key}`", _place(source, key), suggestion))
+            close_matches = get_close_matches(key, keys, n=1)
+            suggestion = (
+                f"did you mean `{close_matches[0]}`?"
+                if close_matches
+                else f"there are: {', '.join(f'`{k}`' for k in keys)}"
+            )
+            errors.append(Diagnostic("TLT0702", f"unknown key `{key}`", _key_labels(source, key), suggestion))
     return errors
 
 
-def _lint(table: object, source: SourceFile, errors: list[Diagnostic]) -> dict[str, str]:
+def _lint_levels(table: object, source: SourceFile, errors: list[Diagnostic]) -> dict[str, str]:
     """Return the level of each code that the table ``lint`` names; add its errors to ``errors``."""
     if not isinstance(table, dict):
-        errors.append(_wrong(source, "lint", "a table, e.g. `[lint]`", table))
+        errors.append(_wrong_value(source, "lint", "a table, e.g. `[lint]`", table))
         return {}
-    errors += _unknown(table, LINT_LEVELS, source)
+    errors += _unknown_keys(table, LINT_LEVELS, source)
     levels: dict[str, str] = {}
     for level in LINT_LEVELS:
         listed = table.get(level, [])
         if not _is_list_of_texts(listed):
-            errors.append(_wrong(source, level, f'a list of codes, e.g. `{level} = ["TLT0419"]`', listed))
+            errors.append(_wrong_value(source, level, f'a list of codes, e.g. `{level} = ["TLT0419"]`', listed))
             continue
         for code in listed:
-            if not _is_code(code):
-                errors.append(_wrong(source, level, "codes that `tltlc lint` has, TLT04 and two digits", code))
+            if not _is_lint_code(code):
+                errors.append(_wrong_value(source, level, "codes that `tltlc lint` has, TLT04 and two digits", code))
             elif code in levels:
-                errors.append(_wrong(source, level, f"each code once; `{levels[code]}` has it, too", code))
+                errors.append(_wrong_value(source, level, f"each code once; `{levels[code]}` has it, too", code))
             levels[code] = level
     return levels
 
 
-def _is_code(text: str) -> bool:
+def _is_lint_code(text: str) -> bool:
     """Whether the text is the code of a lint diagnostic."""
     from tltlc.diagnostics.codes import codes
 
@@ -176,14 +180,14 @@ def _is_list_of_texts(value: object) -> bool:
     return isinstance(value, list) and all(isinstance(item, str) for item in value)
 
 
-def _wrong(source: SourceFile, key: str, expected: str, value: object) -> Diagnostic:
-    shown = f'"{value}"' if isinstance(value, str) else _KINDS.get(type(value).__name__, "another kind of value")
-    return Diagnostic("TLT0703", f"wrong value for `{key}`: {shown}", _place(source, key), f"expected {expected}")
+def _wrong_value(source: SourceFile, key: str, expected: str, value: object) -> Diagnostic:
+    kind = f'"{value}"' if isinstance(value, str) else _KINDS.get(type(value).__name__, "another kind of value")
+    return Diagnostic("TLT0703", f"wrong value for `{key}`: {kind}", _key_labels(source, key), f"expected {expected}")
 
 
-def _no_folder(source: SourceFile, library: str) -> Diagnostic:
+def _missing_folder(source: SourceFile, library: str) -> Diagnostic:
     title = f"there is no folder `{library}` beside this file"
-    return Diagnostic("TLT0703", title, _place(source, "libraries"), "create it, or name one that is there")
+    return Diagnostic("TLT0703", title, _key_labels(source, "libraries"), "create it, or name one that is there")
 
 
 _KINDS: Final = {
@@ -195,8 +199,8 @@ _KINDS: Final = {
 }
 
 
-def _place(source: SourceFile, key: str) -> tuple[Label, ...]:
-    """Return a label where the key is the first word of a line, if there is such a line."""
+def _key_labels(source: SourceFile, key: str) -> tuple[Label, ...]:
+    """Return a label at the first line that begins with the key; empty if there is no such line."""
     span = _first_words(source.text).get(key)
     return (Label(source, span),) if span else ()
 
@@ -212,11 +216,11 @@ def _first_words(text: str) -> Mapping[str, Span]:
     return spans
 
 
-def _from_here(library: Path) -> Path:
-    return Path(_shown(Path(normpath(library))))
+def _relative_library(library: Path) -> Path:
+    return Path(_display_path(Path(normpath(library))))
 
 
-def _shown(path: Path) -> str:
+def _display_path(path: Path) -> str:
     """Return the path, relative to the current folder if it is inside."""
     try:
         return str(path.relative_to(Path.cwd()))

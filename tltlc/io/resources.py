@@ -23,7 +23,7 @@ _AGAIN_S = 1.0
 next signal ends the command.
 """
 
-_permitted: list[ProcessLimit] = []
+_command_limits: list[ProcessLimit] = []
 """The resources of the command that this process runs; empty if the process runs none."""
 
 _active: list[bool] = []
@@ -35,24 +35,24 @@ class OutOfTimeError(BaseException):
 
 
 def permit(process: ProcessLimit) -> None:
-    """Make this process a command with these resources; 0 means no bound."""
-    _permitted[:] = [process]
+    """Set the resources that :func:`resource_limits` allows in this process; 0 means no bound."""
+    _command_limits[:] = [process]
 
 
 @contextmanager
-def bounded() -> Iterator[None]:
-    """End the work inside with OutOfTimeError or MemoryError when it uses more than :func:`permit` allows.
+def resource_limits() -> Iterator[None]:
+    """End the ``with`` block with OutOfTimeError or MemoryError when it uses more than :func:`permit` allows.
 
     Nested bounds have no effect: the outermost applies. Without a call of :func:`permit`, there are
     no bounds.
     """
-    if not _permitted or _active or current_thread() is not main_thread():
+    if not _command_limits or _active or current_thread() is not main_thread():
         # Only the main thread receives signals.
         yield
         return
     _active.append(True)
     try:
-        with _memory(_permitted[0].memory), _time(_permitted[0].work_s), _quiet_destructors():
+        with _memory_limit(_command_limits[0].memory), _time_limit(_command_limits[0].work_s), _quiet_destructors():
             yield
     finally:
         _active.clear()
@@ -94,11 +94,11 @@ def _quiet_destructors() -> Iterator[None]:
 
 
 @contextmanager
-def _time(seconds: float) -> Iterator[None]:
+def _time_limit(seconds: float) -> Iterator[None]:
     if not seconds or not hasattr(signal, "setitimer"):
         yield
         return
-    previous = signal.signal(signal.SIGPROF, _end)
+    previous = signal.signal(signal.SIGPROF, _raise_out_of_time)
     signal.setitimer(signal.ITIMER_PROF, seconds, _AGAIN_S)
     try:
         yield
@@ -107,12 +107,12 @@ def _time(seconds: float) -> Iterator[None]:
         signal.signal(signal.SIGPROF, previous)
 
 
-def _end(number: int, frame: FrameType | None) -> NoReturn:
+def _raise_out_of_time(number: int, frame: FrameType | None) -> NoReturn:
     raise OutOfTimeError
 
 
 @contextmanager
-def _memory(size: int) -> Iterator[None]:
+def _memory_limit(size: int) -> Iterator[None]:
     """Bound the memory that the process writes to; files that it maps, such as libraries, do not count."""
     try:
         import resource
@@ -134,9 +134,9 @@ def _memory(size: int) -> Iterator[None]:
             resource.setrlimit(resource.RLIMIT_DATA, (previous, hard))
 
 
-def exhausted(error: BaseException) -> TltlError | None:
+def exhaustion_error(error: BaseException) -> TltlError | None:
     """Return TLT0007 for OutOfTimeError, MemoryError and RecursionError, and None for other exceptions."""
-    permitted = _permitted[0] if _permitted else ProcessLimit(memory=0, work_s=0)
+    permitted = _command_limits[0] if _command_limits else ProcessLimit(memory=0, work_s=0)
     if isinstance(error, OutOfTimeError):
         title = f"the command was not done after {permitted.work_s} seconds of processor time"
         help_ = "make its input smaller, or permit more: `tltlc --max-cpu SECONDS COMMAND …`"

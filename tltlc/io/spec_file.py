@@ -14,8 +14,8 @@ from tltlc.io.files import (
     MAX_ARTEFACT_BYTES,
     MAX_SOURCE_BYTES,
     decode,
-    note_read,
-    note_stream,
+    log_read,
+    log_stream_read,
     read_bytes,
     reading_error,
 )
@@ -61,9 +61,9 @@ def read(path: str) -> tuple[SourceFile, bool]:
     try:
         if path == STDIN:
             stream = standard_input()
-            note_stream(stream)
+            log_stream_read(stream)
             return _read_stream(stream, STDIN_NAME)
-        note_read(path)
+        log_read(path)
         with open(path, "rb") as file:  # noqa: PTH123 (pathlib costs the start of a command 5 ms)
             return _read_stream(file, path)
     except (OSError, ValueError) as error:
@@ -81,7 +81,7 @@ def read_data(path: str, max_bytes: int) -> tuple[bytes, str]:
     if path == STDIN:
         try:
             stream = standard_input()
-            note_stream(stream)
+            log_stream_read(stream)
             return stream.read(max_bytes + 1), STDIN_NAME
         except OSError as error:
             raise input_error(STDIN_NAME, error) from None

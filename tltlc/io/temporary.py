@@ -35,59 +35,59 @@ class Temporaries:
     """Temporary files in several folders; :meth:`close` removes those that were not renamed."""
 
     def __init__(self) -> None:
-        self._owned: dict[Path, tuple[str, IO[bytes] | None]] = {}
+        self._locks: dict[Path, tuple[str, IO[bytes] | None]] = {}
         """By folder: the prefix of the names of temporary files there, and the lock file."""
-        self._made: list[Path] = []
-        self._kept: list[tuple[Path, Path | None]] = []
+        self._paths: list[Path] = []
+        self._backups: list[tuple[Path, Path | None]] = []
         """Paths to restore, each with the backup of its file; the backup is None if there was no file."""
 
-    def path(self, place: Path, ending: str = ".tmp") -> Path:
-        """Return a path for a new temporary file in the folder of ``place``.
+    def path(self, target: Path, ending: str = ".tmp") -> Path:
+        """Return a path for a new temporary file in the folder of ``target``.
 
         Raises:
             OSError: the folder is not writable.
         """
-        folder = place.parent
-        if folder not in self._owned:
+        folder = target.parent
+        if folder not in self._locks:
             remove_abandoned(folder)
-            self._owned[folder] = _lock_file(folder)
-        prefix, _ = self._owned[folder]
-        self._made.append(folder / f"{prefix}-{len(self._made)}{ending}")
-        return self._made[-1]
+            self._locks[folder] = _lock_file(folder)
+        prefix, _ = self._locks[folder]
+        self._paths.append(folder / f"{prefix}-{len(self._paths)}{ending}")
+        return self._paths[-1]
 
-    def keep(self, place: Path) -> None:
+    def back_up(self, target: Path) -> None:
         """Back up the file at a path, or note that there is none, so that :meth:`restore` can undo its replacement.
 
         Raises:
             OSError: the system refuses.
         """
-        backup = self.path(place)
+        backup = self.path(target)
         try:
-            backup.hardlink_to(place)
+            backup.hardlink_to(target)
         except FileNotFoundError:
-            self._kept.append((place, None))
+            self._backups.append((target, None))
             return
         except OSError:
             # Some file systems have no hard links, and some files do not allow them.
             import shutil
 
-            shutil.copy2(place, backup)
-        self._kept.append((place, backup))
+            shutil.copy2(target, backup)
+        self._backups.append((target, backup))
 
     def restore(self) -> list[Path]:
         """Put the files back, the last one first; return the paths where the system refuses."""
-        kept, self._kept = self._kept, []
-        return [place for place, backup in reversed(kept) if not _is_restored(place, backup)]
+        backups, self._backups = self._backups, []
+        return [target for target, backup in reversed(backups) if not _restore_file(target, backup)]
 
     def close(self) -> None:
         """Remove what is left; lock files last, since files without a lock file would never be removed."""
-        for path in self._made:
+        for path in self._paths:
             _remove(path)
-        for folder, (prefix, lock) in self._owned.items():
+        for folder, (prefix, lock) in self._locks.items():
             if lock is not None:
                 _remove_lock(folder / f"{prefix}.lock", lock)
-        self._made.clear()
-        self._owned.clear()
+        self._paths.clear()
+        self._locks.clear()
 
 
 @contextmanager
@@ -159,11 +159,11 @@ def temporary_folder() -> Iterator[Path]:
             folder = owner.path(Path(os.path.realpath(tempfile.gettempdir()), "folder"), "")
             folder.mkdir(mode=0o700)
         except OSError as error:
-            raise _no_folder(error) from None
+            raise _no_folder_error(error) from None
         yield folder
 
 
-def _no_folder(error: OSError) -> TltlError:
+def _no_folder_error(error: OSError) -> TltlError:
     title = f"cannot make a temporary folder: {(error.strerror or str(error)).lower()}"
     help_ = "make room, or set TMPDIR to a folder that you may write into"
     return TltlError([Diagnostic("TLT0005", title, help=help_)])
@@ -219,12 +219,13 @@ def _is_own_folder(path: Path) -> bool:
     return stat.S_ISDIR(status.st_mode) and not path.suffix and (os.name == "nt" or status.st_uid == os.getuid())
 
 
-def _is_restored(place: Path, backup: Path | None) -> bool:
+def _restore_file(target: Path, backup: Path | None) -> bool:
+    """Put a backup back, or remove the new file if there is none; return False if the system refuses."""
     try:
         if backup is None:
-            place.unlink(missing_ok=True)
+            target.unlink(missing_ok=True)
         else:
-            backup.replace(place)
+            backup.replace(target)
     except OSError:
         return False
     return True
@@ -258,13 +259,14 @@ def _lock_file(folder: Path) -> tuple[str, IO[bytes] | None]:
             _remove_lock(path, file)
             return prefix, None
         # Before it is locked, another process may take it for an abandoned file and remove it.
-        if locked and _is_there(path, file):
+        if locked and _is_still_at(path, file):
             return prefix, file
         file.close()
     return prefix, None
 
 
-def _is_there(path: Path, file: IO[bytes]) -> bool:
+def _is_still_at(path: Path, file: IO[bytes]) -> bool:
+    """Whether a path still leads to this open file."""
     try:
         return os.path.samestat(path.lstat(), os.fstat(file.fileno()))
     except FileNotFoundError:

@@ -8,7 +8,7 @@ from typing import Any, Final
 
 from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
-from tltlc.io.limits import TOML, too_deep, too_many
+from tltlc.io.limits import TOML, too_deep_error, too_many_values_error
 
 _PART: Final = r"(?:[A-Za-z0-9_-]+|\"(?:\\.|[^\"\\\n])*\"|'[^'\n]*')"
 _DOTTED: Final = rf"{_PART}(?:[ \t]*\.[ \t]*{_PART})*"
@@ -49,22 +49,22 @@ def parse(source: SourceFile, code: str, help_: str) -> dict[str, Any]:
         raise TltlError([_syntax_error(source, message, code, help_)]) from None
     except ValueError:
         # Python refuses to read integers of thousands of digits.
-        raise _too_large(source, code) from None
-    if not _fits(table):
-        raise _too_large(source, code)
+        raise _too_large_error(source, code) from None
+    if not _has_64_bit_integers(table):
+        raise _too_large_error(source, code)
     return table
 
 
-def _fits(value: object) -> bool:
+def _has_64_bit_integers(value: object) -> bool:
     """Whether all integers have at most 64 bits, as TOML requires. Much larger ones cannot become floats."""
     if isinstance(value, dict):
-        return all(map(_fits, value.values()))
+        return all(map(_has_64_bit_integers, value.values()))
     if isinstance(value, list):
-        return all(map(_fits, value))
+        return all(map(_has_64_bit_integers, value))
     return not isinstance(value, int) or value in _WHOLE_NUMBERS
 
 
-def _too_large(source: SourceFile, code: str) -> TltlError:
+def _too_large_error(source: SourceFile, code: str) -> TltlError:
     numbers = [match for match in _MANY_DIGITS.finditer(source.text) if not _is_whole_number(match[0])]
     # A number in a comment or a string matches, too. With several matches, label none.
     label = (Label(source, Span(*numbers[0].span()), "this whole number"),) if len(numbers) == 1 else ()
@@ -101,9 +101,9 @@ def _check_limits(source: SourceFile) -> None:
         # A quoted part may contain dots, so count the parts exactly if there may be too many.
         is_long = kind == "key" and token[0].count(".") >= TOML.depth - depth
         if depth + (len(re.findall(_PART, token[0])) if is_long else 0) > TOML.depth:
-            raise too_deep(source, TOML, Span(token.start(), min(token.end(), token.start() + 40)))
+            raise too_deep_error(source, TOML, Span(token.start(), min(token.end(), token.start() + 40)))
         if values > TOML.values:
-            raise too_many(source, TOML, Span(token.start(), token.end()))
+            raise too_many_values_error(source, TOML, Span(token.start(), token.end()))
 
 
 def _syntax_error(source: SourceFile, message: str, code: str, help_: str) -> Diagnostic:

@@ -49,10 +49,10 @@ def write_files(
     """
     try:
         with new_folders({(folder / name).parent: None for name in files}):
-            placed = {folder / name: content for name, content in files.items()}
-            return _write(placed, advice, durable=durable, over_inputs=over_inputs)
+            contents = {folder / name: content for name, content in files.items()}
+            return _write(contents, advice, durable=durable, over_inputs=over_inputs)
     except (OSError, ValueError) as error:
-        raise _error(folder, error, advice) from None
+        raise _writing_error(folder, error, advice) from None
 
 
 def write_file(
@@ -99,7 +99,7 @@ def remove_file(path: Path, advice: str) -> None:
 
 
 @contextmanager
-def replaced(path: Path, advice: str = _OPTION) -> Iterator[Path]:
+def replace_file(path: Path, advice: str = _OPTION) -> Iterator[Path]:
     """Yield a temporary path beside ``path``, with the same extension, for a program that writes the file itself.
 
     At the end, the temporary file is renamed to ``path``. If an exception is raised, Ctrl-C
@@ -114,12 +114,12 @@ def replaced(path: Path, advice: str = _OPTION) -> Iterator[Path]:
             yield temporary
             temporary.replace(target)
         except (OSError, ValueError) as error:
-            raise _error(path, error, advice) from None
+            raise _writing_error(path, error, advice) from None
 
 
 def _write(files: Mapping[Path, str | bytes], advice: str, *, durable: bool, over_inputs: bool) -> tuple[Path, ...]:
     renames: list[tuple[Path, Path]] = []
-    written: list[Path] = []
+    changed: list[Path] = []
     path = Path()
     with temporaries() as temporary_files:
         try:
@@ -128,11 +128,11 @@ def _write(files: Mapping[Path, str | bytes], advice: str, *, durable: bool, ove
                 mode = _mode(path)
                 descriptor = descriptor_of(path)
                 # The existing file, although equal, may not have reached the disk.
-                if not durable and descriptor is None and mode is not None and _holds(path, mode, data):
+                if not durable and descriptor is None and mode is not None and _has_content(path, mode, data):
                     continue
                 if not over_inputs:
                     check_not_read(path, advice)
-                written.append(path)
+                changed.append(path)
                 if descriptor is not None:
                     # Keep what other processes write there before and after this command.
                     with os.fdopen(descriptor, "wb", closefd=False) as file:
@@ -145,21 +145,21 @@ def _write(files: Mapping[Path, str | bytes], advice: str, *, durable: bool, ove
                     continue
                 target = Path(os.path.realpath(path))
                 temporary = temporary_files.path(target)
-                _fill(temporary, data, mode, durable)
+                _write_temporary(temporary, data, mode, durable)
                 renames.append((temporary, target))
             for temporary, path in renames:
                 # A single file needs no backup: no later rename can fail.
                 if len(renames) > 1:
-                    temporary_files.keep(path)
+                    temporary_files.back_up(path)
                 temporary.replace(path)
             for path in {target.parent for _, target in renames} if durable else ():
                 _sync_folder(path)
         except (OSError, ValueError) as error:
-            raise _error(path, error, advice) from None
-    return tuple(written)
+            raise _writing_error(path, error, advice) from None
+    return tuple(changed)
 
 
-def _fill(temporary: Path, data: bytes, mode: int | None, durable: bool) -> None:
+def _write_temporary(temporary: Path, data: bytes, mode: int | None, durable: bool) -> None:
     """Write a temporary file, with the permissions of the file that it replaces."""
     with temporary.open("wb") as file:
         file.write(data)
@@ -170,7 +170,7 @@ def _fill(temporary: Path, data: bytes, mode: int | None, durable: bool) -> None
         temporary.chmod(stat.S_IMODE(mode))
 
 
-def _holds(path: Path, mode: int, data: bytes) -> bool:
+def _has_content(path: Path, mode: int, data: bytes) -> bool:
     """Whether the path is a regular file with this content."""
     try:
         return stat.S_ISREG(mode) and path.stat().st_size == len(data) and path.read_bytes() == data
@@ -196,7 +196,7 @@ def _mode(path: Path) -> int | None:
         return None
 
 
-def _error(path: Path, error: OSError | ValueError, advice: str) -> TltlError:
+def _writing_error(path: Path, error: OSError | ValueError, advice: str) -> TltlError:
     # The file itself need not exist, so the folder is missing.
     why = "there is no such folder" if isinstance(error, FileNotFoundError) else reason(error)
     title = f"cannot write `{path}`: {why}"

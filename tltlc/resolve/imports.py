@@ -12,7 +12,7 @@ from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError, instead
 from tltlc.grammar.tree import Import, Module
 from tltlc.grammar.typos import likely_name
-from tltlc.io.files import is_file, may_be_file, may_read, outside, read_source
+from tltlc.io.files import is_file, may_be_file, may_read, outside_diagnostic, read_source
 from tltlc.resolve.options import ResolveOptions
 from tltlc.resolve.problem import Log, ResolutionError, problem
 
@@ -198,7 +198,7 @@ def _check_inside(path: Path, declaration: Import, source: SourceFile) -> None:
     names no file on any system, so it cannot leave a folder.
     """
     if "\0" not in declaration.target and not may_read(path):
-        raise ResolutionError(outside(declaration.target, (Label(source, declaration.target_span),)))
+        raise ResolutionError(outside_diagnostic(declaration.target, (Label(source, declaration.target_span),)))
 
 
 def _similar(close: str | None) -> str | None:

@@ -57,7 +57,7 @@ def write_policy(path: str | os.PathLike[str], policy: Policy, advice: str = "na
     fileio.write_file(Path(path), to_bytes(policy), advice, durable=True, over_inputs=True)
 
 
-@fileio.bounded()
+@fileio.resource_limits()
 def read_policy(path: str | os.PathLike[str]) -> Policy:
     """Read a policy from a file.
 

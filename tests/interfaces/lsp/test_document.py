@@ -14,7 +14,7 @@ from tltlc.interfaces.lsp.diagnostics import remark
 from tltlc.interfaces.lsp.edits import applied, difference
 from tltlc.interfaces.lsp.formatting import formatting
 from tltlc.interfaces.lsp.symbols import symbols
-from tltlc.io.files import is_file, read_source, unsaved
+from tltlc.io.files import is_file, read_source, unsaved_texts
 
 
 def test_proofs_of_predicates_are_made_in_the_analysis() -> None:
@@ -96,7 +96,7 @@ def test_examples_have_figures_and_no_errors() -> None:
 def test_unsaved_texts_are_read(tmp_path: Path) -> None:
     saved, fresh = tmp_path / "saved.tltl", tmp_path / "fresh.tltl"
     saved.write_text("entity a\n", encoding="utf-8")
-    with unsaved({str(saved): "entity b\n", str(fresh): "entity c\n"}):
+    with unsaved_texts({str(saved): "entity b\n", str(fresh): "entity c\n"}):
         assert read_source(saved).text == "entity b\n"
         assert read_source(tmp_path / "x" / ".." / "fresh.tltl").text == "entity c\n"
         assert is_file(fresh)

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from tests.interfaces.playground.test_server import JSON, ask, serving
 from tltlc.interfaces.playground import view
 from tltlc.interfaces.playground.child import readable_folders
-from tltlc.io.files import confined, exists, is_dir, is_file, may_read, outside, read_source
+from tltlc.io.files import confine_reads, exists, is_dir, is_file, may_read, outside_diagnostic, read_source
 from tltlc.resolve.imports import standard_library
 
 SECRET = "signal the_secret: bool\n  the_password = 12345\n"
@@ -31,7 +31,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     (own / "below").mkdir(parents=True)
     (own / "below" / "common.tltl").write_text("signal a: bool\n", encoding="utf-8")
     monkeypatch.chdir(own)
-    with confined(readable_folders()):
+    with confine_reads(readable_folders()):
         yield own
 
 
@@ -133,7 +133,7 @@ def test_libraries_are_read_if_the_folder_of_the_server_was_deleted(
     gone.mkdir()
     monkeypatch.chdir(gone)
     gone.rmdir()
-    with confined(readable_folders()):
+    with confine_reads(readable_folders()):
         assert messages("import stealth\nspec x = G alive\n") == []
         assert messages("import none\nspec x = true\n")[0] == ("TLT0010", "there is no library `none`")
         # The system would still resolve the parent of the deleted folder.
@@ -154,7 +154,7 @@ def test_no_reader_sees_a_file_outside(folder: Path) -> None:
     (folder.parent / "own2").mkdir()
     assert not may_read(folder.parent / "own2" / "a.tltl")
     assert not may_read(f"{folder}2")
-    assert outside("a").code == "TLT0777"
+    assert outside_diagnostic("a").code == "TLT0777"
 
 
 def test_without_confinement_everything_may_be_read(tmp_path: Path) -> None:
@@ -179,7 +179,7 @@ def test_every_allowed_path_is_inside(
         (own / "up").symlink_to(root)
         (own / "below" / "loop").symlink_to(own / "below")
     path = "/".join([str(own if absolute else os.path.relpath(own)), *names])
-    with confined([own]):
+    with confine_reads([own]):
         allowed = may_read(path)
     if allowed:
         assert Path(os.path.realpath(path)).is_relative_to(os.path.realpath(own))

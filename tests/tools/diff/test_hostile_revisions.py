@@ -102,7 +102,7 @@ def test_names_that_differ_in_case_have_a_fitting_help(
     """The revision is sound, but the file system ignores case, as on macOS and Windows."""
     blob = stored("blob", b"")
     name = revision("capitals", tree((PLAIN, b"Leave.tltl", blob), (PLAIN, b"leave.tltl", blob)))
-    monkeypatch.setattr("tltlc.io.archive.inside", lambda folder, path, archive: folder / path.lower())
+    monkeypatch.setattr("tltlc.io.archive.entry_path", lambda folder, path, archive: folder / path.lower())
     outcome = tltlc("breaking", "specs/leave.tltl", "--against", name)
     assert outcome.status == 3
     assert outcome.err == (

@@ -113,10 +113,10 @@ class CommandLine(click.Group):
 
         A closed pipe and Ctrl-C get our exit statuses instead of click's.
         """
-        from tltlc.io.files import noted
+        from tltlc.io.files import access_log
 
         try:
-            with noted():
+            with access_log():
                 return super().invoke(ctx)
         except click.UsageError as error:
             if error.ctx is None and ctx.invoked_subcommand is not None:
@@ -240,7 +240,7 @@ def cli(ctx: click.Context, max_cpu: int, max_memory: float) -> None:
     if ctx.obj:
         resources.permit(ProcessLimit(memory=int(max_memory * 2**30), work_s=max_cpu))
     if ctx.invoked_subcommand in BOUNDED:
-        ctx.with_resource(resources.bounded())
+        ctx.with_resource(resources.resource_limits())
 
 
 if os.environ.get("TLTLC_DEBUG") == "1":

@@ -13,7 +13,7 @@ from typing import Final
 import click
 
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.io.resources import OutOfTimeError, exhausted
+from tltlc.io.resources import OutOfTimeError, exhaustion_error
 
 CLEAN: Final = 0
 FINDINGS: Final = 1
@@ -105,7 +105,7 @@ def missing_component(wanted_by: str, module: str, requirement: str) -> TltlErro
 
 def report(error: Exception | OutOfTimeError) -> int:
     """Report an error on standard error and return the exit status."""
-    if spent := exhausted(error):
+    if spent := exhaustion_error(error):
         # The traceback would keep the memory of the interrupted work alive.
         error.__traceback__ = error.__context__ = error.__cause__ = None
         error = spent

@@ -79,9 +79,9 @@ def open_input(argument: str, settings: CompileSettings, specs: Sequence[str] = 
     from tltlc.pipeline import Session
 
     session = Session(source, compile_settings(settings, project, wanted))
-    with project.levelling():
+    with project.apply_lint_levels():
         compiled = session.compiled()
-    diagnostics = project.levelled(compiled.diagnostics)
+    diagnostics = project.with_lint_levels(compiled.diagnostics)
     stop_at_errors(diagnostics)
     return Input(source.name, compiled.automata, session, project, diagnostics)
 

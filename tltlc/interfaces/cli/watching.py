@@ -9,8 +9,8 @@ from typing import Final, NoReturn
 
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.interfaces.cli import exits
-from tltlc.io.files import Stamp, noted, stamp
-from tltlc.io.resources import OutOfTimeError, bounded
+from tltlc.io.files import Stamp, access_log, stamp
+from tltlc.io.resources import OutOfTimeError, resource_limits
 
 PAUSE_S: Final = 0.2
 """Seconds between two looks at the files.
@@ -32,7 +32,7 @@ def repeat(work: Callable[[tuple[str, ...]], None], listed: Callable[[], Iterabl
     changed: tuple[str, ...] = ()
     while True:
         known = frozenset(listed())
-        with noted() as before:
+        with access_log() as before:
             _run_bounded(work, changed)
         changed = _changes(before, known, listed)
 
@@ -43,7 +43,7 @@ def _run_bounded(work: Callable[[tuple[str, ...]], None], changed: tuple[str, ..
     Report the error if it exceeds them, because the next change may fix that.
     """
     try:
-        with bounded():
+        with resource_limits():
             work(changed)
     except (OutOfTimeError, MemoryError, RecursionError) as error:
         exits.report(error)

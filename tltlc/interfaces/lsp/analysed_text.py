@@ -15,7 +15,7 @@ from tltlc.grammar.tree import Module
 from tltlc.interfaces.lsp.follow_up_errors import unread
 from tltlc.interfaces.lsp.names import Occurrence, occurrences
 from tltlc.interfaces.lsp.paths import path_of
-from tltlc.io.files import Stamp, noted, stamp, unsaved
+from tltlc.io.files import Stamp, access_log, stamp, unsaved_texts
 from tltlc.pipeline import CompileOptions, Session
 from tltlc.resolve.resolution import Resolution
 from tltlc.resolve.scope import Scope
@@ -57,7 +57,7 @@ class Document:
     @cached_property
     def resolution(self) -> Resolution:
         """The meaning of the names."""
-        with unsaved(self.texts), noted() as notes:
+        with unsaved_texts(self.texts), access_log() as notes:
             result = self._session.resolution
         self._notes.update(notes)
         return result

@@ -10,7 +10,7 @@ from typing import Final
 from tltlc.core.record import record, replace
 from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.io.files import unsaved
+from tltlc.io.files import unsaved_texts
 from tltlc.monitor.spec_tests import run_tests
 from tltlc.pipeline import CompileOptions
 from tltlc.tools.lint.file_view import View
@@ -67,7 +67,7 @@ class DocumentAnalysis:
 
 def analyse(request: Request) -> DocumentAnalysis:
     """Compile, lint and test a text."""
-    with unsaved(request.texts):
+    with unsaved_texts(request.texts):
         try:
             view = view_of(request.source, CompileOptions(library_dirs=request.libraries))
         except TltlError as error:

@@ -19,7 +19,7 @@ from tltlc.interfaces.lsp.cursor import Cursor, cursor, quoted
 from tltlc.interfaces.lsp.declaration_text import declaration_text
 from tltlc.interfaces.lsp.paths import path_of
 from tltlc.interfaces.lsp.positions import range_of
-from tltlc.io.files import unsaved
+from tltlc.io.files import unsaved_texts
 from tltlc.resolve import units
 from tltlc.resolve.imports import standard_library
 from tltlc.resolve.scope import FUNCTIONS, Binding
@@ -294,7 +294,7 @@ def _paths(document: Document) -> Iterator[types.CompletionItem]:
 
 
 def _sources(folder: Path, document: Document) -> list[Path]:
-    with unsaved(document.texts):
+    with unsaved_texts(document.texts):
         try:
             paths = set(folder.glob("*.tltl"))
         except OSError:

@@ -10,7 +10,7 @@ from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.interfaces.lsp.analysed_text import Document
 from tltlc.interfaces.lsp.paths import is_below, name_of, path_of, uri_of
-from tltlc.io.files import is_file, may_be_file, noted, read_source, unsaved, walk
+from tltlc.io.files import access_log, is_file, may_be_file, read_source, unsaved_texts, walk
 from tltlc.io.limits import WORKSPACE, WORKSPACE_PARSED
 from tltlc.io.project import Project, project_for
 from tltlc.resolve.imports import standard_library
@@ -67,7 +67,7 @@ class Workspace:
         # The editor reports changes of open texts; closed files may change without notice.
         if document is not None and (opened is not None or document.is_current()):
             return document
-        with noted() as notes:
+        with access_log() as notes:
             # Reading a named pipe would block the server until its other end is opened.
             if opened is None and not is_file(name):
                 return None
@@ -113,7 +113,7 @@ class Workspace:
         The project file is the nearest ``tltl.toml``.
         """
         try:
-            with unsaved(self.texts()):
+            with unsaved_texts(self.texts()):
                 return project_for(name if not name.startswith("<") else "-"), ()
         except TltlError as error:
             return Project(), error.diagnostics

@@ -11,7 +11,7 @@ import sys
 from contextlib import suppress
 from typing import Final
 
-from tltlc.io.files import confined
+from tltlc.io.files import confine_reads
 from tltlc.io.limits import ANSWER, PLAYGROUND_CHILD
 from tltlc.io.resources import limit
 
@@ -41,7 +41,7 @@ def _answer_request() -> None:
     if not request:
         return
     try:
-        with confined(readable_folders()):
+        with confine_reads(readable_folders()):
             response = answer(request.decode("utf-8")).encode("utf-8")
     except (RequestError, UnicodeDecodeError):
         sys.exit(NO_REQUEST)

@@ -117,8 +117,8 @@ def write_out(repository: Path, commit: str, revision: str, is_wanted: Callable[
 def _archive(revision: str) -> Archive:
     return Archive(
         f"the revision `{revision}`",
-        damaged="use another revision: `git fsck` names the damaged tree, which `git add` does not make",
-        elsewhere="run this on Linux, or name a revision in which the file has another name",
+        damaged_help="use another revision: `git fsck` names the damaged tree, which `git add` does not make",
+        elsewhere_help="run this on Linux, or name a revision in which the file has another name",
     )
 
 

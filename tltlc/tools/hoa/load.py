@@ -30,7 +30,7 @@ from tltlc.automaton.work import DEFAULT_WORK, OutOfWork, Work
 from tltlc.core.record import EMPTY, record
 from tltlc.core.source import SourceFile
 from tltlc.io.files import MAX_ARTEFACT_BYTES, read_source
-from tltlc.io.resources import bounded
+from tltlc.io.resources import resource_limits
 from tltlc.io.spec_file import STDIN_NAME, is_plain_name
 from tltlc.logic.formula import Formula
 from tltlc.logic.text.printer import ascii_text
@@ -175,7 +175,7 @@ def _too_large(source: SourceFile, reason: Exception, options: ImportOptions) ->
     return Diagnostic("TLT0501", title, help="give one with parity acceptance, e.g. by Spot: `autfilt --parity -D -C`")
 
 
-@bounded()
+@resource_limits()
 def load_hoa(
     path: str | os.PathLike[str], predicates: str | os.PathLike[str], options: ImportOptions | None = None
 ) -> Fspa:

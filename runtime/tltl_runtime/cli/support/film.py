@@ -55,7 +55,7 @@ def write_film(path: Path, episode: Episode, span: tuple[float, float], film: Fi
     pictures = _counted(frames(episode, times, film.view, film.size, film.notation), len(times))
     write: Callable[..., None] = write_gif if path.suffix.lower() == ".gif" else write_mp4
     try:
-        with fileio.replaced(path) as temporary:
+        with fileio.replace_file(path) as temporary:
             write(temporary, pictures, 1 / rate)
     except NoEncoderError as error:
         raise cli.exits.missing_component("an .mp4", "imageio-ffmpeg", "imageio-ffmpeg") from error

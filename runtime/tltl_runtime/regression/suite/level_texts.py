@@ -15,7 +15,9 @@ Texts = tuple[tuple[str, str], ...]
 """Names of files, as in ``files`` of a :class:`~tltl_runtime.game.level.Level`, each with a text or a hash."""
 
 _NAME: Final = re.compile(r"(?:(?:assets|overlays)/)?[^/\\:\0]+\.toml")
-_BASELINE: Final = fileio.Archive("the baseline", damaged="record it anew", elsewhere="record it anew on this system")
+_BASELINE: Final = fileio.Archive(
+    "the baseline", damaged_help="record it anew", elsewhere_help="record it anew on this system"
+)
 _SPEC: Final = re.compile(r"^spec\s*=.*$", re.MULTILINE)
 
 

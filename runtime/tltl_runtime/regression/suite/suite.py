@@ -94,7 +94,7 @@ def baseline_path(suite: Path) -> Path:
     return suite.with_name(f"{suite.stem}.baseline.json")
 
 
-@fileio.bounded()
+@fileio.resource_limits()
 def read_suite(path: Path, baseline: Path | None = None) -> Suite:
     """Read a suite from a file.  Paths in the file are relative to it.
 

@@ -82,7 +82,7 @@ def write_baseline(path: Path, references: tuple[Reference, ...]) -> None:
     )
 
 
-@fileio.bounded()
+@fileio.resource_limits()
 def read_baseline(path: Path) -> tuple[Reference, ...]:
     """Read a baseline from a file.
 

@@ -36,7 +36,7 @@ def level_names() -> tuple[str, ...]:
     return tuple(sorted(path.stem for path in LEVELS.glob("*.toml")))
 
 
-@fileio.bounded()
+@fileio.resource_limits()
 def variants(name_or_path: str) -> tuple[str, ...]:
     """Return the variants of a level, in the order of its file; errors as in :func:`load_level`."""
     loading = _Loading(level_path(name_or_path))
@@ -44,7 +44,7 @@ def variants(name_or_path: str) -> tuple[str, ...]:
     return tuple(loading.variants)
 
 
-@fileio.bounded()
+@fileio.resource_limits()
 def changes(name_or_path: str, variant: str) -> tuple[str, ...]:
     """Return the descriptions of a variant's overlays, in their order.
 
@@ -53,14 +53,14 @@ def changes(name_or_path: str, variant: str) -> tuple[str, ...]:
     return level_and_changes(name_or_path, variant)[1]
 
 
-@fileio.bounded()
+@fileio.resource_limits()
 def level_and_changes(name_or_path: str, variant: str) -> tuple[Level, tuple[str, ...]]:
     """Return a level as :func:`load_level` reads it, and its :func:`changes`."""
     loading = _Loading(level_path(name_or_path))
     return loading.level(variant), tuple(loading.changes)
 
 
-@fileio.bounded()
+@fileio.resource_limits()
 def load_level(name_or_path: str, variant: str = "v0") -> Level:
     """Load a shipped level, by name, or one from a ``.toml`` file, in one of its variants.
 
@@ -82,7 +82,7 @@ def load_level(name_or_path: str, variant: str = "v0") -> Level:
     return _Loading(level_path(name_or_path)).level(variant)
 
 
-@fileio.bounded()
+@fileio.resource_limits()
 def read_level(name_or_path: str, variant: str = "v0") -> tuple[Level, tuple[Diagnostic, ...]]:
     """Return a level as :func:`load_level` does, and warnings.
 

@@ -78,7 +78,7 @@ def write_episode(path: str | os.PathLike[str], episode: Episode) -> None:
     fileio.write_file(Path(path), to_bytes(episode))
 
 
-@fileio.bounded()
+@fileio.resource_limits()
 def read_episode(path: str | os.PathLike[str]) -> Episode:
     """Read an episode from a file.
 

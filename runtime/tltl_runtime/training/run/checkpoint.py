@@ -99,7 +99,7 @@ def write_checkpoint(path: Path, checkpoint: Checkpoint) -> None:
     fileio.write_file(path, data.getvalue(), "make room there, and go on with --resume", durable=True, over_inputs=True)
 
 
-@fileio.bounded()
+@fileio.resource_limits()
 def read_checkpoint(path: Path, run: Mapping[str, str] | None = None) -> Checkpoint | None:
     """Read a checkpoint; return None if there is no such file.  Nothing in the file is executed.
 

@@ -55,10 +55,10 @@ def command(
     """
     from tltlc.interfaces.cli.folders import every_source, in_folders
     from tltlc.interfaces.cli.report import Report
-    from tltlc.io.resources import bounded
+    from tltlc.io.resources import resource_limits
 
     def compile_once(changed: tuple[str, ...] = ()) -> int:
-        with bounded(), Report(format) as report:
+        with resource_limits(), Report(format) as report:
             if changed:
                 report.say(f"\n{time.strftime('%H:%M:%S')} changed: {', '.join(changed)}")
             targets = targets_of(target_lists)

@@ -94,9 +94,9 @@ def command(
         resolve = ResolveOptions((*settings.libraries, *project.libraries), settings.params)
         budget = settings.state_budget or DEFAULT_STATE_BUDGET
         options = ImportOptions(atoms, name, level, limit, judge, resolve, budget)
-        with project.levelling():
+        with project.apply_lint_levels():
             fspa, diagnostics = load(source, library, options)
-        diagnostics = project.levelled(diagnostics)
+        diagnostics = project.with_lint_levels(diagnostics)
         stop_at_errors(diagnostics)
         report.add(diagnostics)
         advice = "name another folder with -o, or another spec with --name"

@@ -86,7 +86,7 @@ def _lint_file(
     check_text(source)
     check_libraries(settings.libraries)
     options = compile_settings(settings, project)
-    with project.levelling():
+    with project.apply_lint_levels():
         if not fixing:
             return _diagnostics(lint(source, options, elsewhere, project.lint))
         fixes = fix(source, options, project.lint, elsewhere)

@@ -62,7 +62,7 @@ def _look(arguments: tuple[str, ...], settings: CompileSettings) -> None:
     """Check, lint and test the files; report everything, and a summary."""
     from tltlc.interfaces.cli.folders import every_source
     from tltlc.interfaces.cli.report import Report, counted, tally
-    from tltlc.io.files import note
+    from tltlc.io.files import log_lookup
     from tltlc.tools.lint.importers import used_elsewhere, words
     from tltlc.tools.lint.neighbours import neighbours
 
@@ -70,7 +70,7 @@ def _look(arguments: tuple[str, ...], settings: CompileSettings) -> None:
     paths = every_source(arguments, report)
     for path in (*paths, *arguments):
         # A change is reported under the first noted name: this one, not the name of a neighbour.
-        note(path)
+        log_lookup(path)
     neighbour_words = [words(str(path), text) for path, text in neighbours(paths).items()]
     passed = 0
     failures: list[Diagnostic] = []
@@ -103,7 +103,7 @@ def _file(
     project = project_for(path)
     source = read_source(path)
     check_text(source)
-    with project.levelling():
+    with project.apply_lint_levels():
         view = view_of(source, compile_settings(settings, project))
     file_findings = findings(replace(view, elsewhere=elsewhere), project.lint)
     return file_findings, run_tests(view.program, (compiled.fspa for compiled in view.specs))
