@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from tests.calls import calls
 from tltlc.core.source import SourceFile, Span
-from tltlc.diagnostics.diagnostic import Diagnostic, Label, instead
+from tltlc.diagnostics.diagnostic import Diagnostic, Label, replacement_fix
 from tltlc.diagnostics.formats.text import columns
 from tltlc.diagnostics.render import FORMATS, render
 
@@ -24,9 +24,9 @@ def diagnostic(text: str, marked: str, message: str = "", **fields: object) -> D
     return Diagnostic("TLT0101", "a title", (label,), **fields)  # type: ignore[arg-type]
 
 
-def test_text() -> None:
-    shown = render([diagnostic("\nkeep a", "a", "a remark", help="one way out\nand another")])
-    assert shown == (
+def test_text_shows_title_place_line_caret_and_help() -> None:
+    output = render([diagnostic("\nkeep a", "a", "a remark", help="one way out\nand another")])
+    assert output == (
         "error[TLT0101]: a title\n"
         "  a.tltl:2:6\n"
         "2 | keep a\n"
@@ -37,8 +37,8 @@ def test_text() -> None:
 
 
 def test_empty_lines_separate_diagnostics_in_text() -> None:
-    one = Diagnostic("TLT0001", "no place", severity="warning")
-    assert render([one, one]) == "warning[TLT0001]: no place\n\nwarning[TLT0001]: no place\n"
+    warning = Diagnostic("TLT0001", "no place", severity="warning")
+    assert render([warning, warning]) == "warning[TLT0001]: no place\n\nwarning[TLT0001]: no place\n"
     assert render([]) == ""
 
 
@@ -54,22 +54,22 @@ def test_empty_lines_separate_diagnostics_in_text() -> None:
         ("keep", "", "keep", "^"),
     ],
 )
-def test_carets(text: str, marked: str, line: str, caret: str) -> None:
-    shown = render([diagnostic(text, marked)]).splitlines()
-    assert shown[2:4] == [f"1 | {line}", f"  | {caret}"]
+def test_the_caret_is_under_the_marked_text(text: str, marked: str, line: str, caret: str) -> None:
+    output = render([diagnostic(text, marked)]).splitlines()
+    assert output[2:4] == [f"1 | {line}", f"  | {caret}"]
 
 
-def test_the_caret_of_a_span_over_several_lines() -> None:
-    shown = render([diagnostic("spec a =\n  b\n  & c\n", "b\n  & c", "here")]).splitlines()
-    assert shown[2:4] == ["2 |   b", "  |   ^ (to line 3) here"]
+def test_the_caret_of_a_long_span_ends_with_its_first_line() -> None:
+    output = render([diagnostic("spec a =\n  b\n  & c\n", "b\n  & c", "here")]).splitlines()
+    assert output[2:4] == ["2 |   b", "  |   ^ (to line 3) here"]
 
 
 def test_long_lines_are_cut_around_the_place() -> None:
     for marked in ("@", "@" * 3000):
-        shown = render([diagnostic("x" * 5000 + marked + "y" * 5000, marked)]).splitlines()
-        assert max(map(len, shown)) < 180
-        caret = shown[3].index("^")
-        assert shown[2][caret] == "@"
+        output = render([diagnostic("x" * 5000 + marked + "y" * 5000, marked)]).splitlines()
+        assert max(map(len, output)) < 180
+        caret = output[3].index("^")
+        assert output[2][caret] == "@"
 
 
 def test_a_line_of_a_megabyte_is_not_read_as_a_whole() -> None:
@@ -82,9 +82,9 @@ def test_a_line_of_a_megabyte_is_not_read_as_a_whole() -> None:
     assert calls(lambda: render(diagnostics)) < 10_000 * len(diagnostics)
 
 
-def test_several_labels() -> None:
-    source, other = SourceFile("a.tltl", "\n" * 9 + "one"), SourceFile("b.tltl", "two")
-    labels = (Label(source, Span(9, 12), "here"), Label(other, Span(0, 3), "first here"))
+def test_several_labels_are_shown_in_order() -> None:
+    source, second_source = SourceFile("a.tltl", "\n" * 9 + "one"), SourceFile("b.tltl", "two")
+    labels = (Label(source, Span(9, 12), "here"), Label(second_source, Span(0, 3), "first here"))
     assert render([Diagnostic("TLT0201", "twice", labels)]).splitlines() == [
         "error[TLT0201]: twice",
         "  a.tltl:10:1",
@@ -96,7 +96,7 @@ def test_several_labels() -> None:
     ]
 
 
-def test_colour_only_adds_codes() -> None:
+def test_colour_adds_only_terminal_codes() -> None:
     plain = render([diagnostic("keep a", "a", "remark", help="help")])
     coloured = render([diagnostic("keep a", "a", "remark", help="help")], color=True)
     assert "\x1b[" not in plain
@@ -110,23 +110,23 @@ def test_colour_only_adds_codes() -> None:
 def test_every_format_accepts_every_text(text: str, start: int, length: int, name: str, format_: str) -> None:
     start = min(start, len(text))
     label = Label(SourceFile(name, text), Span(start, min(len(text), start + length)), text)
-    shown = render([Diagnostic("TLT0101", text, (label,), text)], format_)
-    assert "\x1b" not in shown.replace(text, "") or format_ == "github"
+    output = render([Diagnostic("TLT0101", text, (label,), text)], format_)
+    assert "\x1b" not in output.replace(text, "") or format_ == "github"
     if format_ == "text":
-        lines = shown.splitlines()
+        lines = output.splitlines()
         assert all(line.isprintable() for line in lines)
 
 
 @given(st.text(alphabet=st.characters(categories=["L", "N", "P", "M"])))
-def test_columns_add_up(text: str) -> None:
+def test_the_width_of_a_text_is_the_sum_of_its_characters(text: str) -> None:
     assert columns(text) == sum(columns(sign) for sign in text)
 
 
-def test_json() -> None:
-    fix = instead(SourceFile("a.tltl", "a\nkeep é"), Span(7, 8), "e")
-    shown = json.loads(render([diagnostic("a\nkeep é", "é", "remark", help="help", fixes=(fix,))], "json"))
+def test_json_contains_labels_and_fixes() -> None:
+    fix = replacement_fix(SourceFile("a.tltl", "a\nkeep é"), Span(7, 8), "e")
+    output = json.loads(render([diagnostic("a\nkeep é", "é", "remark", help="help", fixes=(fix,))], "json"))
     place = {"start": {"line": 2, "column": 6, "offset": 7}, "end": {"line": 2, "column": 7, "offset": 8}}
-    assert shown == {
+    assert output == {
         "diagnostics": [
             {
                 "code": "TLT0101",
@@ -253,13 +253,13 @@ SARIF = {
 """The part of the SARIF 2.1.0 schema that covers our output; some rules are stricter than the standard."""
 
 
-def test_sarif(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_sarif_matches_its_schema(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     names = ["level one/ä.tltl", str(tmp_path / "below.tltl"), str(tmp_path.parent / "above.tltl"), "<stdin>"]
     labels = [Label(SourceFile(name, "keep a"), Span(5, 6), "here") for name in names]
     diagnostics = [Diagnostic("TLT0101", "a title", (label,), "help") for label in labels]
     diagnostics.append(Diagnostic("TLT0001", "no place", severity="warning"))
-    fixes = (instead(labels[0].source, labels[0].span, "b"),)
+    fixes = (replacement_fix(labels[0].source, labels[0].span, "b"),)
     diagnostics.append(Diagnostic("TLT0101", "two places", (labels[0], labels[1]), severity="note", fixes=fixes))
     log = json.loads(render(diagnostics, "sarif"))
     jsonschema.validate(log, SARIF)
@@ -285,7 +285,7 @@ def test_sarif(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert change["replacements"] == [{"deletedRegion": region, "insertedContent": {"text": "b"}}]
 
 
-def test_github() -> None:
+def test_github_commands_are_escaped() -> None:
     source = SourceFile("a:b,c.tltl", "one\nkeep é%\nlast")
     diagnostics = [
         Diagnostic("TLT0101", "50% of\r\nit", (Label(source, Span(9, 11), "here"),), "help"),

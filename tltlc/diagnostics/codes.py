@@ -23,13 +23,17 @@ def codes() -> tuple[str, ...]:
     return tuple(sorted(match[1] for name in os.listdir(_PAGES) if (match := _NAME.fullmatch(name))))  # noqa: PTH208
 
 
-def family(beginning: str) -> tuple[str, ...]:
+def codes_with_prefix(prefix: str) -> tuple[str, ...]:
     """Return the codes with this prefix, in order."""
-    return tuple(code for code in codes() if code.startswith(beginning))
+    return tuple(code for code in codes() if code.startswith(prefix))
 
 
-def nearest(code: str, most: int = 3) -> tuple[str, ...]:
-    """Return the codes most like an unknown code, in order: codes that differ by a typo, else the nearest numbers."""
+def nearest_codes(code: str, most: int = 3) -> tuple[str, ...]:
+    """Return at most ``most`` codes that resemble an unknown code, in order.
+
+    These are the codes that differ from it by a typo. If there are none, they are the codes with
+    the nearest numbers.
+    """
     from difflib import get_close_matches
 
     number = int("0" + "".join(character for character in code if character.isdecimal()))

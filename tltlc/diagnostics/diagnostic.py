@@ -55,7 +55,7 @@ class Diagnostic:
     fixes: tuple[Fix, ...] = ()
 
 
-def instead(source: SourceFile, span: Span, text: str, applicability: Applicability = "maybe") -> Fix:
+def replacement_fix(source: SourceFile, span: Span, text: str, applicability: Applicability = "maybe") -> Fix:
     """Return the fix that replaces a span by a text, with spaces where two words would otherwise touch."""
     before, after = source.text[max(0, span.start - 1) : span.start], source.text[span.end : span.end + 1]
     start = " " if _is_word(before) and _is_word(text[:1]) else ""
@@ -63,7 +63,7 @@ def instead(source: SourceFile, span: Span, text: str, applicability: Applicabil
     return Fix(f"Write `{text}`", (Edit(span, f"{start}{text}{end}"),), applicability)
 
 
-def around(span: Span, opening: str = "(", closing: str = ")") -> tuple[Edit, ...]:
+def bracket_edits(span: Span, opening: str = "(", closing: str = ")") -> tuple[Edit, ...]:
     """Return the edits that put brackets around a span."""
     return Edit(Span(span.start, span.start), opening), Edit(Span(span.end, span.end), closing)
 

@@ -7,7 +7,7 @@ from importlib import import_module
 from typing import Final, Protocol, cast
 
 from tltlc.diagnostics.diagnostic import Diagnostic
-from tltlc.diagnostics.shortening import shortened
+from tltlc.diagnostics.shortening import shorten
 
 FORMATS: Final = ("text", "json", "sarif", "github")
 """All formats; each is the name of a module with a function ``render``."""
@@ -28,4 +28,4 @@ def render(diagnostics: Sequence[Diagnostic], format: str = "text", color: bool 
     if format not in FORMATS:
         raise ValueError(f"no format {format!r}: one of {', '.join(FORMATS)}")
     renderer = cast(RenderFunction, import_module(f"tltlc.diagnostics.formats.{format}").render)
-    return renderer([shortened(diagnostic) for diagnostic in diagnostics], color=color)
+    return renderer([shorten(diagnostic) for diagnostic in diagnostics], color=color)

@@ -15,7 +15,7 @@ LONGEST_TEXT: Final = 4000
 """The most characters of a whole title, help or label."""
 
 
-def shortened(diagnostic: Diagnostic) -> Diagnostic:
+def shorten(diagnostic: Diagnostic) -> Diagnostic:
     """Return the diagnostic with texts of at most :data:`LONGEST_TEXT`, and quotes of at most :data:`LONGEST_QUOTE`."""
     labels = tuple(
         label if len(label.message) <= LONGEST_QUOTE else replace(label, message=short_text(label.message))

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 from typing import Final
 
 from tltlc.core.source import SourceFile, Span
-from tltlc.diagnostics.diagnostic import Diagnostic, Label, instead
+from tltlc.diagnostics.diagnostic import Diagnostic, Label, replacement_fix
 from tltlc.grammar import tree
 from tltlc.grammar.keywords import JUDGE, SEMANTICS, VERDICTS, closest
 from tltlc.grammar.then_rule import check_then
@@ -123,5 +123,5 @@ def _first(errors: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
 def _error(
     source: SourceFile, code: str, title: str, span: Span, help_: str, *, write: str | None = None
 ) -> Diagnostic:
-    fixes = (instead(source, span, write),) if write is not None else ()
+    fixes = (replacement_fix(source, span, write),) if write is not None else ()
     return Diagnostic(code, title, (Label(source, span),), help_, fixes=fixes)

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from typing import Final
 
 from tltlc.core.source import SourceFile, Span
-from tltlc.diagnostics.diagnostic import Diagnostic, Fix, Label, around
+from tltlc.diagnostics.diagnostic import Diagnostic, Fix, Label, bracket_edits
 from tltlc.grammar import tree
 from tltlc.grammar.tree import Expr
 from tltlc.grammar.walk import children, operands
@@ -112,13 +112,13 @@ def _fixes(source: SourceFile, sequence: list[Expr], position: int, lenient: boo
     whole = _text(source, operand)
     title = f"Write `({whole})`" if len(whole) <= _SHORT else "Put the operand in brackets"
     title = title if len(bare) == 1 else "Put each operand in brackets"
-    fixes = [Fix(title, tuple(edit for element in bare for edit in around(element.span)))]
+    fixes = [Fix(title, tuple(edit for element in bare for edit in bracket_edits(element.span)))]
     half = _half(operand, last=position == 1)
     if len(sequence) == 2 and bare == [operand] and half and not _lacks_brackets(half, lenient=False):
         first, second = (sequence[0], half) if position else (half, sequence[1])
         text = f"{_text(source, first)} then {_text(source, second)}"
         if len(text) <= _SHORT:
-            fixes.append(Fix(f"Write `({text})`", around(first.span.to(second.span))))
+            fixes.append(Fix(f"Write `({text})`", bracket_edits(first.span.to(second.span))))
     # `(F a) then b` loses the order: `b` before `a` satisfies it.
     loses_order = any(_begins_with_f(element) for element in bare if element is not sequence[-1])
     if any(_is_of_another_step(element) for element in bare if element is not sequence[0]):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tltlc.core.source import Span
-from tltlc.diagnostics.diagnostic import Label, instead
+from tltlc.diagnostics.diagnostic import Label, replacement_fix
 from tltlc.grammar.tree import Argument, CallExpr, Expr, NameExpr, Parameter
 from tltlc.grammar.typos import likely_name
 from tltlc.resolve.problem import problem
@@ -55,7 +55,7 @@ def _parameter_for(
         advice = None if close else f"it takes {listed}" if names else "it takes no arguments"
         title = f"`{binding.name}` has no `{argument.name}`"
         place = Span(argument.span.start, argument.span.start + len(argument.name))
-        fixes = (instead(scope.source, place, close),) if close else ()
+        fixes = (replacement_fix(scope.source, place, close),) if close else ()
         raise problem("TLT0210", title, scope.source, argument.span, hint, advice=advice, fixes=fixes)
     if position >= len(names):
         count = {0: "no arguments", 1: "one argument"}.get(len(names), f"{len(names)} arguments")

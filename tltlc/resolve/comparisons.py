@@ -6,7 +6,7 @@ import sys
 from math import inf
 
 from tltlc.core.source import Span
-from tltlc.diagnostics.diagnostic import Edit, Fix, instead
+from tltlc.diagnostics.diagnostic import Edit, Fix, replacement_fix
 from tltlc.grammar.tree import BinaryExpr, Expr, NameExpr, NumberExpr, ParamDecl, SignalDecl
 from tltlc.grammar.walk import expressions, parts
 from tltlc.logic.formula import Formula, atom, not_
@@ -83,7 +83,7 @@ def _check_truth(left: Quantity, op: str, right: Quantity, negated: bool, expr: 
         message = f"`{x.text}` lies in {range_text(x.low, x.high, x.dimension)}"
         constant = "true" if holds else "false"
         advice = f"compare with a value inside that range, or write `{constant}`"
-        fix = instead(source, expr.span, constant, "safe")
+        fix = replacement_fix(source, expr.span, constant, "safe")
         if x.is_constant:
             message, advice = "both sides are constant", f"compare a signal, or write `{constant}`"
         elif _is_percentage(x, c, op, expr, env):

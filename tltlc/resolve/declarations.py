@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from math import inf
 
 from tltlc.core.record import replace
-from tltlc.diagnostics.diagnostic import Label, instead
+from tltlc.diagnostics.diagnostic import Label, replacement_fix
 from tltlc.grammar.tree import ClockDecl, ParamDecl, SignalDecl
 from tltlc.resolve import units
 from tltlc.resolve.constants import interval, number
@@ -63,7 +63,7 @@ def _signal(declaration: SignalDecl, env: Env) -> None:
         if parameter.type not in (None, "entity"):
             title = f"a signal is of entities, not of {parameter.type}s"
             text = f"{parameter.name}: entity"
-            fixes = (instead(scope.source, parameter.span, text),)
+            fixes = (replacement_fix(scope.source, parameter.span, text),)
             raise problem("TLT0210", title, scope.source, parameter.span, advice=f"write `{text}`", fixes=fixes)
     type_ = _type(declaration, scope)
     low, high = _range(declaration, type_, env)

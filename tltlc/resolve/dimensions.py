@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tltlc.diagnostics.diagnostic import instead
+from tltlc.diagnostics.diagnostic import replacement_fix
 from tltlc.grammar.tree import (
     Declaration,
     Expr,
@@ -92,5 +92,5 @@ def mismatch(expected: Dimension, found: Dimension, at: Expr, env: Env, why: str
     elif expected == units.PLAIN and "divide" not in why:
         advice = f"divide it by {units.described(found)} to get a number"
     title = f"expected {units.described(expected)}, found {units.described(found)}"
-    fixes = (instead(env.scope.source, at.span, replacement),) if replacement else ()
+    fixes = (replacement_fix(env.scope.source, at.span, replacement),) if replacement else ()
     return problem("TLT0305", title, env.scope.source, at.span, why, advice=advice, fixes=fixes)

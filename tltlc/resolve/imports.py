@@ -9,7 +9,7 @@ from typing import Final
 
 from tltlc.core.record import record, replace
 from tltlc.core.source import SourceFile
-from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError, instead
+from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError, replacement_fix
 from tltlc.grammar.tree import Import, Module
 from tltlc.grammar.typos import likely_name
 from tltlc.io.files import is_file, may_be_file, may_read, outside_diagnostic, read_source
@@ -161,7 +161,7 @@ def _find(declaration: Import, source: SourceFile, options: ResolveOptions) -> t
                 source,
                 declaration.target_span,
                 advice=_similar(close) or _unquoted(unquoted) or "a path begins at the folder of this file",
-                fixes=(instead(source, declaration.target_span, replacement),) if replacement else (),
+                fixes=(replacement_fix(source, declaration.target_span, replacement),) if replacement else (),
             )
         return Path(_normal(shown.absolute())), _shown(shown)
     name = target.replace(".", "/") + ".tltl"
@@ -173,7 +173,7 @@ def _find(declaration: Import, source: SourceFile, options: ResolveOptions) -> t
     close = likely_name(target, known)
     advice = _similar(close) or "a library is a file NAME.tltl beside this one or in a --library folder"
     title, place = f"there is no library `{target}`", declaration.target_span
-    fixes = (instead(source, place, close),) if close else ()
+    fixes = (replacement_fix(source, place, close),) if close else ()
     raise problem("TLT0010", title, source, place, advice=advice, fixes=fixes)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Literal
 
-from tltlc.diagnostics.diagnostic import Fix, instead
+from tltlc.diagnostics.diagnostic import Fix, replacement_fix
 from tltlc.grammar import tree
 from tltlc.grammar.keywords import CONDITIONS
 from tltlc.grammar.mistakes.insertion import at_top
@@ -57,20 +57,20 @@ def lookup(use: NameExpr | CallExpr, env: Env, wanted: tuple[Kind, ...], noun: s
     spaced = _in_two_words(use.name, env, wanted) if is_helped and noun == "predicate" else None
     if spaced:
         raise problem(
-            "TLT0201", title, source, span, f"did you mean `{spaced}`?", fixes=(instead(source, span, spaced),)
+            "TLT0201", title, source, span, f"did you mean `{spaced}`?", fixes=(replacement_fix(source, span, spaced),)
         )
     if source.text[: span.start].endswith("-- "):
         raise problem("TLT0201", title, source, span, advice="comments begin with `//`")
     constant = use.name.lower()
     if noun == "predicate" and constant in ("true", "false"):
         hint = f"did you mean `{constant}`?"
-        raise problem("TLT0201", title, source, span, hint, fixes=(instead(source, span, constant),))
+        raise problem("TLT0201", title, source, span, hint, fixes=(replacement_fix(source, span, constant),))
     near = closest_name(use.name, env.scope, wanted, env.local) if is_helped else None
     if near:
         binding = env.scope.names.get(near)
         via = f" (from {binding.via})" if binding and binding.via else ""
         hint = f"did you mean `{near}`{via}?"
-        raise problem("TLT0201", title, source, span, hint, fixes=(instead(source, span, near),))
+        raise problem("TLT0201", title, source, span, hint, fixes=(replacement_fix(source, span, near),))
     library = library_with(use.name)
     line = f"import {library}" if library else _DECLARATIONS[noun].format(name=use.name)
     if library:

@@ -8,7 +8,7 @@ from typing import Final, cast
 from tltlc.core.names import full_name
 from tltlc.core.record import record, replace
 from tltlc.core.source import Span
-from tltlc.diagnostics.diagnostic import Label, instead
+from tltlc.diagnostics.diagnostic import Label, replacement_fix
 from tltlc.expression.tree import Const
 from tltlc.grammar import tree
 from tltlc.grammar.keywords import UNITS_ELSEWHERE
@@ -164,7 +164,7 @@ def unknown_type(name: str, at: Parameter | tree.SignalDecl | tree.ParamDecl, sc
     advice = f"did you mean `{close}`?" if close else f"the types are {', '.join(known)}"
     start = scope.source.text.find(name, at.name_span.end, at.span.end)
     span = Span(start, start + len(name)) if start >= 0 else at.span
-    fixes = (instead(scope.source, span, close),) if close and start >= 0 else ()
+    fixes = (replacement_fix(scope.source, span, close),) if close and start >= 0 else ()
     return problem("TLT0211", f"there is no type `{name}`", scope.source, span, advice=advice, fixes=fixes)
 
 

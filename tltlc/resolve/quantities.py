@@ -6,7 +6,7 @@ from math import isinf
 from typing import cast
 
 from tltlc.core.record import replace
-from tltlc.diagnostics.diagnostic import Fix, around
+from tltlc.diagnostics.diagnostic import Fix, bracket_edits
 from tltlc.expression.tree import Condition, ConditionOp, Const, When
 from tltlc.expression.tree import depth as depth_of
 from tltlc.grammar import tree
@@ -208,7 +208,7 @@ def _check_speed(expr: tree.BinaryExpr, env: Env) -> None:
             span,
             f"write `{text}`",
             advice="signs of one strength are read from the left: `a / 1 m/s` is `(a / 1 m) / s`",
-            fixes=(Fix(f"Write `{text}`", around(span)),),
+            fixes=(Fix(f"Write `{text}`", bracket_edits(span)),),
         )
 
 

@@ -7,7 +7,7 @@ from typing import Literal, Union
 
 from tltlc.core.record import record, replace
 from tltlc.core.source import SourceFile, Span
-from tltlc.diagnostics.diagnostic import Diagnostic, Label, instead
+from tltlc.diagnostics.diagnostic import Diagnostic, Label, replacement_fix
 from tltlc.grammar.tree import EntityDecl, Import, LetDecl, Module, NameExpr, ParamDecl, PredicateDecl, SignalDecl
 from tltlc.grammar.typos import likely_name
 from tltlc.io.limits import IMPORTED
@@ -201,7 +201,7 @@ def _offer(scope: Scope, name: str, binding: Binding, span: Span) -> Diagnostic 
 def _not_offered(scope: Scope, wanted: NameExpr, library: str, offered: Mapping[str, Binding]) -> Diagnostic | None:
     close = likely_name(wanted.name, offered)
     hint = f"did you mean `{close}`?" if close else ""
-    fixes = (instead(scope.source, wanted.span, close),) if close else ()
+    fixes = (replacement_fix(scope.source, wanted.span, close),) if close else ()
     title = f"{library} offers no `{wanted.name}`"
     return problem("TLT0205", title, scope.source, wanted.span, hint, fixes=fixes).diagnostic
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Literal, cast
 
-from tltlc.diagnostics.diagnostic import instead
+from tltlc.diagnostics.diagnostic import replacement_fix
 from tltlc.grammar.tree import Expr, GroupExpr, TestDecl, TestExpect, TestStep, Unary
 from tltlc.grammar.typos import likely_name
 from tltlc.grammar.walk import conjuncts
@@ -28,7 +28,7 @@ def resolved_test(declaration: TestDecl, specs: dict[str, Spec | None], env: Env
         listed = ", ".join(f"`{known}`" for known in specs)
         advice = None if close else f"the specs are {listed}" if specs else f"declare it: `spec {name} {{ … }}`"
         title, place = f"no spec `{name}` here", declaration.spec.span
-        fixes = (instead(source, place, close),) if close else ()
+        fixes = (replacement_fix(source, place, close),) if close else ()
         context.log.add(problem("TLT0208", title, source, place, hint, advice=advice, fixes=fixes).diagnostic)
         return None
     spec = specs[name]

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Sequence
 from typing import Literal, cast
 
 from tltlc.core.record import replace
-from tltlc.diagnostics.diagnostic import Label, instead
+from tltlc.diagnostics.diagnostic import Label, replacement_fix
 from tltlc.expression.tree import Expression, nodes
 from tltlc.expression.tree import ParamValue as ParamNode
 from tltlc.expression.tree import SignalValue as SignalNode
@@ -170,7 +170,7 @@ def _limit(clause: Clause | None, env: Env) -> int | None:
         digits = env.scope.source.slice(clause.value.span)
         advice = f"write `{digits} steps` or, with a clock, `{digits} s`"
         units = ("steps",) if env.context.clock_s is None else ("steps", "s")
-        fixes = tuple(instead(env.scope.source, clause.value.span, f"{digits} {unit}") for unit in units)
+        fixes = tuple(replacement_fix(env.scope.source, clause.value.span, f"{digits} {unit}") for unit in units)
         title, place = "a limit needs a unit", clause.value.span
         raise problem("TLT0312", title, env.scope.source, place, advice=advice, fixes=fixes)
     steps = samples(clause.value, env)

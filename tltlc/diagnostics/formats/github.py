@@ -16,8 +16,8 @@ def render(diagnostics: Sequence[Diagnostic], *, color: bool = False) -> str:
 
 def workflow_command(name: str, text: str, properties: Mapping[str, str | int]) -> str:
     """Return the command ``::NAME PROPERTIES::TEXT`` without a line end, escaped as GitHub requires."""
-    listed = ",".join(f"{key}={_property(str(value))}" for key, value in properties.items())
-    return f"::{name} {listed}::{_data(text)}"
+    property_list = ",".join(f"{key}={_escape_property(str(value))}" for key, value in properties.items())
+    return f"::{name} {property_list}::{_escape_data(text)}"
 
 
 def _command(diagnostic: Diagnostic) -> str:
@@ -37,9 +37,9 @@ def _command(diagnostic: Diagnostic) -> str:
     return workflow_command(_COMMANDS[diagnostic.severity], text, properties)
 
 
-def _data(text: str) -> str:
+def _escape_data(text: str) -> str:
     return text.replace("%", "%25").replace("\r", "%0D").replace("\n", "%0A")
 
 
-def _property(text: str) -> str:
-    return _data(text).replace(":", "%3A").replace(",", "%2C")
+def _escape_property(text: str) -> str:
+    return _escape_data(text).replace(":", "%3A").replace(",", "%2C")

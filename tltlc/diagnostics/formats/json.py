@@ -36,8 +36,8 @@ def _fix(fix: Fix, source: SourceFile) -> dict[str, object]:
 
 
 def _range(source: SourceFile, span: Span) -> dict[str, object]:
-    places = []
+    ends = []
     for offset in (span.start, span.end):
         line, column = source.position(offset)
-        places.append({"line": line, "column": column, "offset": offset})
-    return {"start": places[0], "end": places[1]}
+        ends.append({"line": line, "column": column, "offset": offset})
+    return {"start": ends[0], "end": ends[1]}

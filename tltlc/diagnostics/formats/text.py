@@ -12,46 +12,46 @@ _DIM: Final = "2"
 _COLOURS: Final = {"error": "1;31", "warning": "1;33", "note": "1;36"}
 _TAB: Final = 4
 _WIDTH: Final = 160
-"""The most columns of a source line that are shown; of a longer line, the part around the span."""
+"""The most columns of a source line that are shown. A longer line is cut around the span."""
 
 
 def render(diagnostics: Sequence[Diagnostic], *, color: bool = False) -> str:
     """Return the diagnostics one below the other, with an empty line between them."""
-    return "\n".join(_one(diagnostic, color) for diagnostic in diagnostics)
+    return "\n".join(_diagnostic_text(diagnostic, color) for diagnostic in diagnostics)
 
 
-def _one(diagnostic: Diagnostic, color: bool) -> str:
+def _diagnostic_text(diagnostic: Diagnostic, color: bool) -> str:
     colour = _COLOURS[diagnostic.severity]
     head = _paint(f"{diagnostic.severity}[{diagnostic.code}]", colour, color)
-    lines = [f"{head}: {_paint(visible(diagnostic.title), _BOLD, color)}"]
+    lines = [f"{head}: {_paint(replace_unprintable(diagnostic.title), _BOLD, color)}"]
     numbers = [label.source.position(label.span.start)[0] for label in diagnostic.labels]
     gutter = max((len(str(number)) for number in numbers), default=0)
     for index, label in enumerate(diagnostic.labels):
-        lines += _place(label, gutter, colour if index == 0 else _COLOURS["note"], color)
+        lines += _label_lines(label, gutter, colour if index == 0 else _COLOURS["note"], color)
     if diagnostic.help:
         first, *rest = diagnostic.help.splitlines()
-        lines.append(f"  {_paint('help:', _BOLD, color)} {visible(first)}")
-        lines += [f"        {visible(line)}" for line in rest]
+        lines.append(f"  {_paint('help:', _BOLD, color)} {replace_unprintable(first)}")
+        lines += [f"        {replace_unprintable(line)}" for line in rest]
     return "\n".join(lines) + "\n"
 
 
-def _place(label: Label, gutter: int, colour: str, color: bool) -> list[str]:
+def _label_lines(label: Label, gutter: int, colour: str, color: bool) -> list[str]:
     """Return the lines for a label: file, line and column; the source line; the caret with the label's message."""
     source, span = label.source, label.span
     number, column = source.position(span.start)
     last, _ = source.position(max(span.start, span.end - 1))
     line = source.line(number)
     length = max(1, len(line) - column + 1 if last > number else span.end - span.start)
-    shown, start, width = _window(line, column - 1, length)
+    excerpt, start, width = _window(line, column - 1, length)
     marker = [_paint("^" * width, colour, color)]
     if last > number:
         marker.append(f"(to line {last})")
     if label.message:
-        marker.append(_paint(visible(label.message), colour, color))
+        marker.append(_paint(replace_unprintable(label.message), colour, color))
     bar = _paint("|", _DIM, color)
     return [
-        _paint(f"  {visible(source.name)}:{number}:{column}", _DIM, color),
-        f"{_paint(str(number).rjust(gutter), _DIM, color)} {bar} {shown}".rstrip(),
+        _paint(f"  {replace_unprintable(source.name)}:{number}:{column}", _DIM, color),
+        f"{_paint(str(number).rjust(gutter), _DIM, color)} {bar} {excerpt}".rstrip(),
         f"{' ' * gutter} {bar} {' ' * start}{' '.join(marker)}",
     ]
 
@@ -65,7 +65,7 @@ def _window(line: str, start: int, length: int) -> tuple[str, int, int]:
         line[start : min(end, start + _WIDTH + 1)],
         line[end : end + _WIDTH + 1],
     )
-    before, marked, after = map(_expand, parts)
+    before, marked, after = map(_replace_except_tabs, parts)
     # The width of a tab depends on its column, so measure the part before it first.
     before = _expand_tabs(before, 0)
     marked = _expand_tabs(marked, columns(before))
@@ -78,22 +78,22 @@ def _window(line: str, start: int, length: int) -> tuple[str, int, int]:
     return before + marked + after, columns(before), max(1, columns(marked))
 
 
-def _expand(text: str) -> str:
-    """Return a part of a line with unprintable characters replaced; tabs stay."""
-    return "\t".join(visible(piece) for piece in text.split("\t"))
+def _replace_except_tabs(text: str) -> str:
+    """Return a part of a line with unprintable characters replaced, but with its tabs."""
+    return "\t".join(replace_unprintable(piece) for piece in text.split("\t"))
 
 
 def _expand_tabs(text: str, column: int) -> str:
     """Return a part of a line that begins at a column, with spaces instead of tabs."""
     first, *rest = text.split("\t")
-    shown = first
+    expanded = first
     for piece in rest:
-        shown += " " * (_TAB - (column + columns(shown)) % _TAB) + piece
-    return shown
+        expanded += " " * (_TAB - (column + columns(expanded)) % _TAB) + piece
+    return expanded
 
 
-def visible(text: str) -> str:
-    """Return a text with unprintable characters, which could control the terminal, replaced."""
+def replace_unprintable(text: str) -> str:
+    """Replace the unprintable characters of a text, which could control the terminal, by U+FFFD."""
     return (
         text
         if text.isprintable()

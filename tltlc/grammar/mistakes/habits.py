@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from typing import Final
 
 from tltlc.core.record import replace
-from tltlc.diagnostics.diagnostic import Diagnostic, instead
+from tltlc.diagnostics.diagnostic import Diagnostic, replacement_fix
 from tltlc.grammar.keywords import UNITS_ELSEWHERE
 from tltlc.grammar.lexer import Token
 from tltlc.grammar.mistakes.fragments import is_first_on_line
@@ -65,7 +65,7 @@ def equality(place: Place) -> Diagnostic | None:
         # A predicate can be compared as a number or as a truth value.
         diagnostic = replace(
             diagnostic,
-            fixes=(*diagnostic.fixes, instead(place.source, span_of(place.tokens[start:stop]), boolean_text)),
+            fixes=(*diagnostic.fixes, replacement_fix(place.source, span_of(place.tokens[start:stop]), boolean_text)),
         )
     return diagnostic or place.error("TLT0110", title, general)
 

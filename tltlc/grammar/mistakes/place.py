@@ -9,7 +9,7 @@ from itertools import pairwise
 from typing import Final
 
 from tltlc.core.source import SourceFile, Span
-from tltlc.diagnostics.diagnostic import Diagnostic, Label, instead
+from tltlc.diagnostics.diagnostic import Diagnostic, Label, replacement_fix
 from tltlc.grammar import lalr
 from tltlc.grammar.keywords import CLAUSES, DECLARATIONS, TEST_ITEMS
 from tltlc.grammar.lexer import END, Token
@@ -109,7 +109,9 @@ class Place:
         """
         if span is None:
             span = self.before.span if self.at_end and self.before else self.found.span
-        fixes = (instead(self.source, span, write),) if write is not None and not self._has_comment(span) else ()
+        fixes = (
+            (replacement_fix(self.source, span, write),) if write is not None and not self._has_comment(span) else ()
+        )
         return Diagnostic(code, title, (Label(self.source, span, message),), help_, fixes=fixes)
 
     def _has_comment(self, span: Span) -> bool:

@@ -87,14 +87,14 @@ def show(diagnostics: Iterable[Diagnostic], format: str, stream: TextIO) -> None
     all_diagnostics = tuple(diagnostics)
     if not all_diagnostics and format == "text":
         return
-    from tltlc.diagnostics.formats.text import visible
+    from tltlc.diagnostics.formats.text import replace_unprintable
     from tltlc.diagnostics.render import render
 
     shown, left_out = _first(all_diagnostics) if format == "text" else (all_diagnostics, Counter[_Alike]())
     text = render(shown, format, color=format == "text" and wants_colour(stream))
     stream.write(text if text.endswith("\n") or not text else text + "\n")
     for (severity, code, file), count in left_out.items():
-        place = f" in {visible(file)}" if file else ""
+        place = f" in {replace_unprintable(file)}" if file else ""
         stream.write(f"\n{severity}[{code}]: {count:,} more like the {_MOST_ALIKE} above{place}\n")
     stream.flush()
 

@@ -9,7 +9,7 @@ from lsprotocol import types
 
 from tltlc.core.source import Span
 from tltlc.diagnostics.diagnostic import Diagnostic, Label
-from tltlc.diagnostics.shortening import shortened
+from tltlc.diagnostics.shortening import shorten
 from tltlc.grammar.tree import Import
 from tltlc.interfaces.lsp.analysed_text import Document
 from tltlc.interfaces.lsp.positions import range_of
@@ -28,7 +28,7 @@ def remark(diagnostic: Diagnostic, document: Document, encoding: str, uri_of: Ca
 
     A diagnostic of an imported file appears at the import that leads there.
     """
-    diagnostic = shortened(diagnostic)
+    diagnostic = shorten(diagnostic)
     main = label_in(diagnostic, document)
     place = main.span if main else _import_of(diagnostic, document)
     message = diagnostic.title
@@ -62,7 +62,7 @@ def label_in(diagnostic: Diagnostic, document: Document) -> Label | None:
 
 def remark_on_project(diagnostic: Diagnostic, encoding: str) -> types.Diagnostic:
     """Convert a diagnostic of a project file, for display in that file."""
-    diagnostic = shortened(diagnostic)
+    diagnostic = shorten(diagnostic)
     label = diagnostic.labels[0]
     return types.Diagnostic(
         range_of(label.source, label.span, encoding),

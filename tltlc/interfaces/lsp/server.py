@@ -18,7 +18,7 @@ from pygls.exceptions import JsonRpcException
 from pygls.io_ import StdoutWriter
 
 from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.diagnostics.shortening import shortened
+from tltlc.diagnostics.shortening import shorten
 from tltlc.interfaces.lsp.answers import ANSWERS, FILES_AND_FOLDERS, run_tests
 from tltlc.interfaces.lsp.frames import Frames
 from tltlc.interfaces.lsp.lenses import RUN_TESTS
@@ -144,7 +144,7 @@ def _refusals(server: EditorSession, params: Any) -> Iterator[None]:
     try:
         yield
     except TltlError as error:
-        diagnostic = shortened(error.diagnostics[0])
+        diagnostic = shorten(error.diagnostics[0])
         text = f"{diagnostic.title}; {diagnostic.help}" if diagnostic.help else diagnostic.title
         raise JsonRpcException(f"{text} ({diagnostic.code})", _REFUSED) from None
     finally:

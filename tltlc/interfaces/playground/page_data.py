@@ -10,7 +10,7 @@ from tltlc.automaton.fspa import NOTATIONS, Fspa, Notation
 from tltlc.automaton.text import formula_text, label_text
 from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic, Fix, Label, TltlError
-from tltlc.diagnostics.shortening import shortened
+from tltlc.diagnostics.shortening import shorten
 from tltlc.interfaces.playground.fixes import of_errors
 from tltlc.interfaces.playground.picture import picture
 from tltlc.interfaces.playground.trace import Letter, idle, rows, shortest
@@ -124,7 +124,7 @@ def diagnostic(
     ``source`` is the text in which the page can show places. Of ``offers``, only the fixes of this
     very message are included.
     """
-    short = shortened(message)
+    short = shorten(message)
     return {
         "code": short.code,
         "severity": short.severity,

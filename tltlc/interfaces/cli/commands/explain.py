@@ -97,9 +97,9 @@ def _code(code: str) -> int:
 
     wanted = re.sub(r"(?i)\A(?:tlt)?", "TLT", code.strip(), count=1)
     if wanted not in codes.codes():
-        family = codes.family(wanted)
+        family = codes.codes_with_prefix(wanted)
         if not family:
-            *first, last = (f"`{nearest}`" for nearest in codes.nearest(wanted))
+            *first, last = (f"`{nearest}`" for nearest in codes.nearest_codes(wanted))
             listed = f"{', '.join(first)} or {last}"
             raise click.UsageError(
                 f"there is no error code `{code}`: did you mean {listed}?", click.get_current_context()
