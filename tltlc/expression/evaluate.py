@@ -2,8 +2,9 @@
 
 The order of operations is part of the meaning, since all monitors must agree to the last bit.
 Operands are computed from left to right. ``x ^ 2`` is ``x * x``, ``x ^ 3`` is ``x * x * x``, and any
-other power is the C library's ``pow``. ``clamp(x, low, high)`` is ``min(max(x, low), high)``. Of
-equal operands, ``min`` and ``max`` return the first. A case whose condition is false is not computed.
+other power is the C library's ``pow``. ``clamp(x, low, high)`` is ``min(max(x, low), high)``. If
+operands are equal, ``min`` and ``max`` return the first one. The value of a case is computed only if
+its condition is true.
 """
 
 from __future__ import annotations

@@ -33,44 +33,45 @@ def compile_expressions(
     expression, so that the source grows with the size of the expressions, not with the number of
     expressions times the number of signals.
     """
-    places = {name: index for index, name in enumerate(signals)}
+    positions = {name: index for index, name in enumerate(signals)}
     constants = {name: f"p{index}" for index, name in enumerate(params)}
     namespace: dict[str, object] = {name: getattr(math, name) for name in ("pow", "sqrt", "exp", "tanh")}
     namespace.update(zip(constants.values(), map(float, params.values()), strict=True))
     lines: list[str] = []
     for index, expression in enumerate(expressions):
-        lines += _function(index, expression, places, constants)
+        lines += _function(index, expression, positions, constants)
     exec(compile("\n".join([*lines, ""]), "<expressions>", "exec"), namespace)
     functions = [namespace[f"atom{index}"] for index in range(len(expressions))]
     return tuple(cast("Callable[[Sequence[float]], float]", function) for function in functions)
 
 
 def _function(
-    index: int, expression: Expression, places: Mapping[str, int], constants: Mapping[str, str]
+    index: int, expression: Expression, positions: Mapping[str, int], constants: Mapping[str, str]
 ) -> Iterator[str]:
     """Yield the lines of the function ``atomINDEX`` and of the functions that it calls."""
-    signals = {node.name: f"s{places[node.name]}" for node in nodes(expression) if isinstance(node, SignalValue)}
+    signals = {node.name: f"s{positions[node.name]}" for node in nodes(expression) if isinstance(node, SignalValue)}
     params = {node.name: constants[node.name] for node in nodes(expression) if isinstance(node, ParamValue)}
     writer = PythonWriter(signals, params, f"_{index}_")
     body = writer.assignment("value", expression, INDENT)
-    yield from writer.parts
+    yield from writer.helpers
     yield f"def atom{index}(sample):"
-    yield from (f"{INDENT}{variable} = sample[{places[name]}]" for name, variable in signals.items())
+    yield from (f"{INDENT}{variable} = sample[{positions[name]}]" for name, variable in signals.items())
     yield from body
     yield f"{INDENT}return value"
 
 
 class PythonWriter:
-    """Writes expressions as Python; ``signals`` and ``params`` map names to Python variables in scope.
+    """Writes expressions as Python.
 
-    ``parts`` collects the source of helper functions ``PREFIXpart0``, …, for deep expressions. Local
-    variables are named ``PREFIXbase``, ``PREFIXbase2``, ….
+    ``signals`` and ``params`` map names to Python variables in scope. ``helpers`` collects the source
+    of helper functions ``PREFIXpart0``, …, for deep expressions. Local variables are named
+    ``PREFIXbase``, ``PREFIXbase2``, ….
     """
 
     def __init__(self, signals: Mapping[str, str], params: Mapping[str, str], prefix: str) -> None:
         self._signals, self._params, self._prefix = signals, params, prefix
         self._count = self._powers = 0
-        self.parts: list[str] = []
+        self.helpers: list[str] = []
 
     def assignment(self, name: str, expression: Expression, indent: str) -> list[str]:
         """Return lines that assign the expression's value to a variable; a ``when`` becomes an ``if``."""
@@ -86,20 +87,22 @@ class PythonWriter:
         lines.append(f"{indent}else:")
         return lines + self._assignment(name, expression.otherwise, indent + INDENT, depth + 1)
 
-    def _text(self, node: Expression, room: int, depth: int) -> str:
-        """Return the text of an expression, in brackets if it binds more loosely than ``room``."""
+    def _text(self, node: Expression, min_binding: int, depth: int) -> str:
+        """Return the text of an expression, in brackets if it binds more loosely than ``min_binding``."""
         if isinstance(node, Const):
-            return _bracketed(repr(float(node.value)), _SIGN if math.copysign(1, node.value) < 0 else _UNIT, room)
+            return _with_brackets(
+                repr(float(node.value)), _SIGN if math.copysign(1, node.value) < 0 else _UNIT, min_binding
+            )
         if isinstance(node, SignalValue):
             return self._signals[node.name]
         if isinstance(node, ParamValue):
             return self._params[node.name]
         if depth > _MAX_DEPTH:
-            return self._part(node)
+            return self._helper_call(node)
         if isinstance(node, When):
-            return _bracketed(self._cases(node, depth + 1), _CASES, room)
+            return _with_brackets(self._cases(node, depth + 1), _CASES, min_binding)
         text, binding = self._operation(node, depth + 1)
-        return _bracketed(text, binding, room)
+        return _with_brackets(text, binding, min_binding)
 
     def _operation(self, node: Op, depth: int) -> tuple[str, int]:
         left = node.args[0]
@@ -139,29 +142,29 @@ class PythonWriter:
         ]
         return "".join(cases) + self._text(node.otherwise, _CASES, depth)
 
-    def _condition(self, node: Expression | Condition, room: int, depth: int) -> str:
+    def _condition(self, node: Expression | Condition, min_binding: int, depth: int) -> str:
         assert isinstance(node, Condition), "and, or, not and cases take conditions"
         if depth > _MAX_DEPTH:
-            return self._part(node)
+            return self._helper_call(node)
         if node.op in ("and", "or"):
             binding = _AND if node.op == "and" else _OR
             text = f" {node.op} ".join(self._condition(part, binding + 1, depth + 1) for part in node.args)
-            return _bracketed(text, binding, room)
+            return _with_brackets(text, binding, min_binding)
         if node.op == "not":
-            return _bracketed(f"not {self._condition(node.args[0], _NOT, depth + 1)}", _NOT, room)
+            return _with_brackets(f"not {self._condition(node.args[0], _NOT, depth + 1)}", _NOT, min_binding)
         left, right = (cast("Expression", side) for side in node.args)
         text = f"{self._text(left, _SUM, depth + 1)} {node.op} {self._text(right, _SUM, depth + 1)}"
-        return _bracketed(text, _COMPARISON, room)
+        return _with_brackets(text, _COMPARISON, min_binding)
 
-    def _part(self, node: Expression | Condition) -> str:
+    def _helper_call(self, node: Expression | Condition) -> str:
         """Return a call of a new function that computes the node."""
         name = f"{self._prefix}part{self._count}"
         self._count += 1
         body = self._condition(node, _CASES, 0) if isinstance(node, Condition) else self._text(node, _CASES, 0)
-        part = f"{name}({', '.join([*self._signals.values(), *self._params.values()])})"
-        self.parts.append(f"def {part}:\n{INDENT}return {body}")
-        return part
+        call = f"{name}({', '.join([*self._signals.values(), *self._params.values()])})"
+        self.helpers.append(f"def {call}:\n{INDENT}return {body}")
+        return call
 
 
-def _bracketed(text: str, binding: int, room: int) -> str:
-    return text if binding >= room else f"({text})"
+def _with_brackets(text: str, binding: int, min_binding: int) -> str:
+    return text if binding >= min_binding else f"({text})"

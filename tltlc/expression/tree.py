@@ -15,7 +15,10 @@ ArithmeticOp = Literal["+", "-", "*", "/", "^", "neg", "min", "max", "abs", "cla
 ConditionOp = Literal["<", "<=", ">", ">=", "and", "or", "not"]
 
 LEAST: Final = 1e-30
-"""A comparison whose margin is above this has at least this robustness: tiny, but not 0 as a 32-bit float."""
+"""The least robustness of a comparison whose margin is greater than this number.
+
+It is tiny, but not 0 as a 32-bit float.
+"""
 
 
 @record
