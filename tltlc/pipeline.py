@@ -15,7 +15,7 @@ from tltlc.automaton.verdict_warnings import verdict_warnings
 from tltlc.core.record import EMPTY, record, replace
 from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError, stop_at_errors
-from tltlc.grammar.allow_index import unsilenced
+from tltlc.grammar.allow_index import drop_silenced
 from tltlc.grammar.parser import parse
 from tltlc.io.files import MAX_ARTEFACT_BYTES, read_source
 from tltlc.io.resources import resource_limits
@@ -155,7 +155,7 @@ class Session:
         return tuple(build_spec(spec, self.options) for spec in self.specs)
 
     def _unsilenced(self, diagnostics: tuple[Diagnostic, ...]) -> tuple[Diagnostic, ...]:
-        return unsilenced((loaded.module for loaded in self.resolution.modules), diagnostics)
+        return drop_silenced((loaded.module for loaded in self.resolution.modules), diagnostics)
 
 
 def compile_source(source: SourceFile, options: CompileOptions | None = None) -> Compiled:

@@ -24,8 +24,8 @@ def brackets(expression: tree.Expr) -> str:
         case tree.NameExpr(name=name):
             return name
         case tree.CallExpr(name=name, arguments=arguments):
-            shown = ", ".join((f"{item.name}=" if item.name else "") + brackets(item.value) for item in arguments)
-            return f"{name}({shown})"
+            parts = ", ".join((f"{item.name}=" if item.name else "") + brackets(item.value) for item in arguments)
+            return f"{name}({parts})"
         case tree.Unary(op=op, operand=operand, bound=bound):
             limits = "" if bound is None else f"[{brackets(bound.low) if bound.low else ''},{brackets(bound.high)}]"
             return f"({op}{limits} {brackets(operand)})"
@@ -37,6 +37,6 @@ def brackets(expression: tree.Expr) -> str:
             names = " ".join(entity.name for entity in entities)
             return f"({'all' if all_ else 'any'} {variable} {names}: {brackets(body)})"
         case tree.WhenExpr(cases=cases, otherwise=otherwise):
-            shown = " ".join(f"{brackets(case.condition)}: {brackets(case.value)}" for case in cases)
-            return f"(when {shown} otherwise {brackets(otherwise)})"
+            parts = " ".join(f"{brackets(case.condition)}: {brackets(case.value)}" for case in cases)
+            return f"(when {parts} otherwise {brackets(otherwise)})"
     raise AssertionError(expression)

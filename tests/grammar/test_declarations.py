@@ -14,7 +14,7 @@ def read(text: str) -> tuple[tree.Declaration, ...]:
     return module.declarations
 
 
-def test_every_kind_of_declaration() -> None:
+def test_every_kind_of_declaration_is_parsed() -> None:
     kinds = [type(declaration).__name__ for declaration in read(TEXT)]
     assert kinds == (
         ["Import"] * 4
@@ -33,7 +33,7 @@ def test_newlines_do_not_matter() -> None:
     assert [type(declaration) for declaration in read(spread)] == kinds
 
 
-def test_imports() -> None:
+def test_an_import_has_its_target_names_and_alias() -> None:
     plain, chosen, alias, path = (item for item in read(TEXT) if isinstance(item, tree.Import))
     assert (plain.target, plain.is_path, plain.names, plain.alias) == ("stealth", False, None, None)
     assert chosen.target == "spatial.areas"
@@ -43,7 +43,7 @@ def test_imports() -> None:
     assert (path.target, path.is_path) == ("../common.tltl", True)
 
 
-def test_signals_and_params() -> None:
+def test_signals_and_params_have_types_ranges_and_values() -> None:
     _, distance, speed = (item for item in read(TEXT) if isinstance(item, tree.SignalDecl))
     assert [(item.name, item.type) for item in distance.parameters] == [("target", "entity")]
     assert distance.doc == "How far away."
@@ -66,7 +66,7 @@ def test_infinity_has_a_sign() -> None:
     assert signal.interval.low.operand.value == inf
 
 
-def test_predicate() -> None:
+def test_a_predicate_has_its_documentation_parameters_and_cases() -> None:
     near, _ = (item for item in read(TEXT) if isinstance(item, tree.PredicateDecl))
     assert near.doc == "Closeness to `target`:\n1 at it, -1 far away."
     assert [item.name for item in near.parameters] == ["target", "close", "far"]
@@ -74,7 +74,7 @@ def test_predicate() -> None:
     assert len(near.body.cases) == 2
 
 
-def test_spec() -> None:
+def test_a_spec_has_its_clauses_in_order() -> None:
     block, formula = (item for item in read(TEXT) if isinstance(item, tree.SpecDecl))
     assert block.block
     assert block.doc == "Button 1, then button 2, then the exit."
@@ -91,7 +91,7 @@ def test_spec() -> None:
     assert [clause.kind for clause in formula.clauses] == ["require"]
 
 
-def test_a_test_block() -> None:
+def test_a_test_block_has_steps_and_expectations() -> None:
     (test,) = (item for item in read(TEXT) if isinstance(item, tree.TestDecl))
     assert (test.title, test.spec.name) == ("the exit first does not count", "cover_and_hide")
     steps = [item for item in test.items if isinstance(item, tree.TestStep)]

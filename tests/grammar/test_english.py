@@ -54,60 +54,60 @@ def c(trace: Trace, at: int) -> bool:
     return "c" in trace[at]
 
 
-def both(one: Here, other: Here) -> Here:
-    return lambda trace, at: one(trace, at) and other(trace, at)
+def both(left: Here, right: Here) -> Here:
+    return lambda trace, at: left(trace, at) and right(trace, at)
 
 
-def either(one: Here, other: Here) -> Here:
-    return lambda trace, at: one(trace, at) or other(trace, at)
+def either(left: Here, right: Here) -> Here:
+    return lambda trace, at: left(trace, at) or right(trace, at)
 
 
-def negated(one: Here) -> Here:
-    return lambda trace, at: not one(trace, at)
+def negation(formula: Here) -> Here:
+    return lambda trace, at: not formula(trace, at)
 
 
-def later(one: Here, first: int, last: int | None = None) -> Here:
+def at_some_step(formula: Here, first: int, last: int | None = None) -> Here:
     """The formula holds at some sample from ``first`` to ``last`` steps ahead."""
     return lambda trace, at: any(
-        one(trace, there) for there in range(at + first, len(trace)) if last is None or there <= at + last
+        formula(trace, there) for there in range(at + first, len(trace)) if last is None or there <= at + last
     )
 
 
-def throughout(one: Here, first: int = 0, last: int | None = None) -> Here:
+def at_every_step(formula: Here, first: int = 0, last: int | None = None) -> Here:
     """The formula holds at all samples from ``first`` to ``last`` steps ahead, up to the end of the trace."""
-    return negated(later(negated(one), first, last))
+    return negation(at_some_step(negation(formula), first, last))
 
 
-def stays(one: Here) -> Here:
+def holds_for_steps(formula: Here) -> Here:
     """The formula holds at ``STEPS`` samples in a row, and the trace has all of them."""
-    return lambda trace, at: at + STEPS <= len(trace) and all(one(trace, at + step) for step in range(STEPS))
+    return lambda trace, at: at + STEPS <= len(trace) and all(formula(trace, at + step) for step in range(STEPS))
 
 
-def until(one: Here, other: Here) -> Here:
-    """``one`` holds at each sample before the first one with ``other``, which need not exist (weak until)."""
+def until(left: Here, right: Here) -> Here:
+    """``left`` holds at each sample before the first one with ``right``, which need not exist (weak until)."""
     return lambda trace, at: all(
-        one(trace, there) for there in range(at, len(trace)) if not later(other, 0, there - at)(trace, at)
+        left(trace, there) for there in range(at, len(trace)) if not at_some_step(right, 0, there - at)(trace, at)
     )
 
 
-def whole(clause: str, formula: Here) -> Whole:
+def clause_meaning(clause: str, formula: Here) -> Whole:
     """The meaning of a clause over a whole trace, by its keyword."""
     meanings = {
-        "reach": later(formula, 0),
-        "keep": throughout(formula),
-        "avoid": throughout(negated(formula)),
+        "reach": at_some_step(formula, 0),
+        "keep": at_every_step(formula),
+        "avoid": at_every_step(negation(formula)),
         "require": formula,
     }
     return lambda trace: meanings[clause](trace, 0)
 
 
-def prefixed_by(prefix: str, formula: Here) -> Here:
+def with_prefix(prefix: str, formula: Here) -> Here:
     joined = {
         "c and ": both(c, formula),
         "c or ": either(c, formula),
-        "c implies ": either(negated(c), formula),
-        "c then ": both(c, later(formula, 1)),
-        "not ": negated(formula),
+        "c implies ": either(negation(c), formula),
+        "c then ": both(c, at_some_step(formula, 1)),
+        "not ": negation(formula),
     }
     return joined[prefix] if prefix else formula
 
@@ -115,19 +115,19 @@ def prefixed_by(prefix: str, formula: Here) -> Here:
 # --- the meanings ---------------------------------------------------------------------------------
 
 
-def of_infix(clause: str, prefix: str, word: str) -> Whole | None:
+def infix_meaning(clause: str, prefix: str, word: str) -> Whole | None:
     """The meaning of `CLAUSE PREFIX a WORD b`."""
     if prefix == "c implies " or (prefix == "c then " and clause != "reach") or _is_open(clause, prefix, word):
         return None
     first = prefix if prefix != "c then " else ""
-    left = prefixed_by(first, a)
+    left = with_prefix(first, a)
     if word == "without" and clause in ("reach", "keep"):
-        wanted, never = whole(clause, prefixed_by(prefix, a)), whole("avoid", b)
+        wanted, never = clause_meaning(clause, with_prefix(prefix, a)), clause_meaning("avoid", b)
         return lambda trace: wanted(trace) and never(trace)
-    goal = _joined(clause, word, left, is_alone=first in ("", "not "), is_negated=first == "not ")
+    goal = _joined_meaning(clause, word, left, is_alone=first in ("", "not "), is_negated=first == "not ")
     if goal is None or isinstance(goal, tuple):
-        return whole("require", goal[0]) if goal else None
-    return whole(clause, prefixed_by("c then ", goal) if prefix == "c then " else goal)
+        return clause_meaning("require", goal[0]) if goal else None
+    return clause_meaning(clause, with_prefix("c then ", goal) if prefix == "c then " else goal)
 
 
 def _is_open(clause: str, prefix: str, word: str) -> bool:
@@ -147,95 +147,101 @@ def _is_open(clause: str, prefix: str, word: str) -> bool:
     return prefix in (("c and ", "c or ") if word in ORDER else joined.get(word, ()))
 
 
-def _joined(clause: str, word: str, left: Here, *, is_alone: bool, is_negated: bool) -> Here | tuple[Here] | None:
+def _joined_meaning(
+    clause: str, word: str, left: Here, *, is_alone: bool, is_negated: bool
+) -> Here | tuple[Here] | None:
     """The meaning of two joined operands in a clause; it is in a tuple if it applies only at the first sample."""
     if word in CONDITIONS:
-        return both(left, b) if clause in ("reach", "avoid") else either(left, negated(b))
+        return both(left, b) if clause in ("reach", "avoid") else either(left, negation(b))
     if word in ("before", "after", "followed by"):
-        return _ordered(clause, word, left, is_negated=is_negated)
+        return _order_meaning(clause, word, left, is_negated=is_negated)
     if word == "unless":
-        by_clause = {"reach": either(left, b), "keep": either(left, b), "avoid": both(left, negated(b))}
+        by_clause = {"reach": either(left, b), "keep": either(left, b), "avoid": both(left, negation(b))}
         return by_clause.get(clause, until(left, b))
     if word in ("xor", "xnor", "nor", "nand") and not is_alone:
         return None
-    different = both(either(left, b), negated(both(left, b)))
-    by_word = {"without": both(left, negated(b)), "but": both(left, b), "xor": different, "xnor": negated(different)}
-    return {**by_word, "nor": negated(either(left, b)), "nand": negated(both(left, b))}[word]
+    different = both(either(left, b), negation(both(left, b)))
+    by_word = {"without": both(left, negation(b)), "but": both(left, b), "xor": different, "xnor": negation(different)}
+    return {**by_word, "nor": negation(either(left, b)), "nand": negation(both(left, b))}[word]
 
 
-def _ordered(clause: str, word: str, left: Here, *, is_negated: bool) -> Here | tuple[Here] | None:
+def _order_meaning(clause: str, word: str, left: Here, *, is_negated: bool) -> Here | tuple[Here] | None:
     if word == "before" and clause in ("keep", "avoid"):
-        return (until(left if clause == "keep" else negated(left), b),)
+        return (until(left if clause == "keep" else negation(left), b),)
     if word == "after" and clause in ("keep", "avoid"):
-        wanted = left if clause == "keep" else negated(left)
-        return (throughout(either(negated(b), throughout(wanted))),)
+        wanted = left if clause == "keep" else negation(left)
+        return (at_every_step(either(negation(b), at_every_step(wanted))),)
     if word == "followed by" and clause == "keep":
-        return either(negated(left), later(b, 1))
+        return either(negation(left), at_some_step(b, 1))
     if is_negated:
         return None
-    one, other = (b, left) if word == "after" else (left, b)
-    order = both(one, later(other, 1))
-    return later(order, 0) if clause == "require" else order
+    first, second = (b, left) if word == "after" else (left, b)
+    order = both(first, at_some_step(second, 1))
+    return at_some_step(order, 0) if clause == "require" else order
 
 
-def of_time(clause: str, prefix: str, word: str) -> Whole | None:
+def time_meaning(clause: str, prefix: str, word: str) -> Whole | None:
     """The meaning of `CLAUSE PREFIX a WORD TIME`."""
     if prefix == "c then ":
-        return _next_goal(word) if clause == "reach" else None
+        return _next_goal_meaning(word) if clause == "reach" else None
     if clause == "reach" and prefix == "c implies ":
         return None
     has_form = clause in ("reach", "avoid") or (clause == "keep" and word in ("for", "after"))
     if has_form:
-        return whole("require", _timed(clause, word, prefixed_by(prefix, a))) if prefix != "c implies " else None
+        return (
+            clause_meaning("require", _time_in_clause(clause, word, with_prefix(prefix, a)))
+            if prefix != "c implies "
+            else None
+        )
     if prefix == "c implies ":
-        return whole(clause, prefixed_by(prefix, _timed("", word, a)))
-    return whole(clause, _timed("", word, a)) if clause == "require" and not prefix else None
+        return clause_meaning(clause, with_prefix(prefix, _time_in_clause("", word, a)))
+    return clause_meaning(clause, _time_in_clause("", word, a)) if clause == "require" and not prefix else None
 
 
-def _timed(clause: str, word: str, formula: Here) -> Here:
+def _time_in_clause(clause: str, word: str, formula: Here) -> Here:
     """The meaning of a time in a clause, at the first sample; without a clause, at the current sample."""
-    wanted = negated(formula) if clause == "avoid" else formula
+    wanted = negation(formula) if clause == "avoid" else formula
     if word == "for":
-        return later(stays(formula), 0) if clause == "reach" else throughout(wanted, 0, STEPS - 1)
+        return at_some_step(holds_for_steps(formula), 0) if clause == "reach" else at_every_step(wanted, 0, STEPS - 1)
     if word == "after":
         if clause in ("keep", "avoid"):
-            return throughout(wanted, STEPS)
-        return later(wanted, STEPS, None if clause == "reach" else STEPS)
-    return throughout(wanted, 0, STEPS) if clause == "avoid" else later(wanted, 0, STEPS)
+            return at_every_step(wanted, STEPS)
+        return at_some_step(wanted, STEPS, None if clause == "reach" else STEPS)
+    return at_every_step(wanted, 0, STEPS) if clause == "avoid" else at_some_step(wanted, 0, STEPS)
 
 
-def _next_goal(word: str) -> Whole:
+def _next_goal_meaning(word: str) -> Whole:
     """The meaning of a time after `then`: it starts at the step after the previous goal."""
     if word == "for":
-        return whole("reach", both(c, later(stays(a), 1)))
-    return whole("reach", both(c, later(a, STEPS) if word == "after" else later(a, 1, STEPS)))
+        return clause_meaning("reach", both(c, at_some_step(holds_for_steps(a), 1)))
+    return clause_meaning("reach", both(c, at_some_step(a, STEPS) if word == "after" else at_some_step(a, 1, STEPS)))
 
 
-def before_clause(clause: str, prefix: str, word: str) -> Whole | None:
+def prefix_meaning(clause: str, prefix: str, word: str) -> Whole | None:
     """The meaning of `CLAUSE PREFIX WORD b, a`."""
     allowed = {"reach": ("", "c and ", "c or ", "c then "), "avoid": ("", "c and ", "c or ")}
     if prefix not in allowed.get(clause, ("", "c and ", "c or ", "c implies ")):
         return None
     if clause == "require" and word != "if":
         return None
-    condition = both(a, b) if clause in ("reach", "avoid") else either(a, negated(b))
-    return whole(clause, prefixed_by(prefix, condition))
+    condition = both(a, b) if clause in ("reach", "avoid") else either(a, negation(b))
+    return clause_meaning(clause, with_prefix(prefix, condition))
 
 
-def before_time(clause: str, prefix: str, word: str) -> Whole | None:
+def prefix_time_meaning(clause: str, prefix: str, word: str) -> Whole | None:
     """The meaning of `CLAUSE PREFIX WORD TIME a`."""
     if not prefix or prefix == "c then ":
-        return of_time(clause, prefix, word)
+        return time_meaning(clause, prefix, word)
     if prefix == "c implies " and (clause == "require" or (clause == "keep" and word != "after")):
-        return whole(clause, prefixed_by(prefix, _timed("", word, a)))
+        return clause_meaning(clause, with_prefix(prefix, _time_in_clause("", word, a)))
     return None
 
 
 CASES = {
-    **{f"{k} {p}a {w} b": of_infix(k, p, w) for k in CLAUSES for p in PREFIXES for w in INFIX},
-    **{f"{k} {p}a {w} {TIME}": of_time(k, p, w) for k in CLAUSES for p in PREFIXES for w in TIMES},
-    **{f"{k} {p}{w} b, a": before_clause(k, p, w) for k in CLAUSES for p in PREFIXES for w in CONDITIONS[:-1]},
-    **{f"{k} {p}{w} {TIME} a": before_time(k, p, w) for k in CLAUSES for p in PREFIXES for w in TIMES},
+    **{f"{k} {p}a {w} b": infix_meaning(k, p, w) for k in CLAUSES for p in PREFIXES for w in INFIX},
+    **{f"{k} {p}a {w} {TIME}": time_meaning(k, p, w) for k in CLAUSES for p in PREFIXES for w in TIMES},
+    **{f"{k} {p}{w} b, a": prefix_meaning(k, p, w) for k in CLAUSES for p in PREFIXES for w in CONDITIONS[:-1]},
+    **{f"{k} {p}{w} {TIME} a": prefix_time_meaning(k, p, w) for k in CLAUSES for p in PREFIXES for w in TIMES},
     # Sentences that brackets, a negation or another goal make ambiguous, and some that stay clear.
     "reach (a if b)": None,
     "avoid (a if b)": None,
@@ -255,15 +261,15 @@ CASES = {
     "require a until b within 2 steps": None,
     "require eventually a within 2 steps": None,
     "keep a while b implies c": None,
-    "keep (a implies b within 2 steps)": whole("keep", either(negated(a), later(b, 0, 2))),
-    "require not (a within 2 steps)": whole("require", negated(later(a, 0, 2))),
-    "require (a before b) and c": whole("require", both(later(both(a, later(b, 1)), 0), c)),
-    "require always (a implies b within 2 steps)": whole("keep", either(negated(a), later(b, 0, 2))),
-    "reach a then b within 1 step": whole("reach", both(a, later(b, 1, 1))),
-    "reach a for 1 step": whole("reach", a),
-    "reach if a then b then c": whole("reach", both(both(a, b), later(c, 1))),
-    "reach a before b then c": whole("reach", both(a, later(both(b, later(c, 1)), 1))),
-    "reach a and b within 2 steps": whole("require", later(both(a, b), 0, 2)),
+    "keep (a implies b within 2 steps)": clause_meaning("keep", either(negation(a), at_some_step(b, 0, 2))),
+    "require not (a within 2 steps)": clause_meaning("require", negation(at_some_step(a, 0, 2))),
+    "require (a before b) and c": clause_meaning("require", both(at_some_step(both(a, at_some_step(b, 1)), 0), c)),
+    "require always (a implies b within 2 steps)": clause_meaning("keep", either(negation(a), at_some_step(b, 0, 2))),
+    "reach a then b within 1 step": clause_meaning("reach", both(a, at_some_step(b, 1, 1))),
+    "reach a for 1 step": clause_meaning("reach", a),
+    "reach if a then b then c": clause_meaning("reach", both(both(a, b), at_some_step(c, 1))),
+    "reach a before b then c": clause_meaning("reach", both(a, at_some_step(both(b, at_some_step(c, 1)), 1))),
+    "reach a and b within 2 steps": clause_meaning("require", at_some_step(both(a, b), 0, 2)),
 }
 """The meaning of each sentence, or None if it is unclear."""
 
@@ -279,7 +285,7 @@ def fixed_text(clause: str) -> str | None:
     return after(source, fixes[0].edits).text if fixes else None
 
 
-def compiled(text: str) -> Fspa:
+def compile_spec(text: str) -> Fspa:
     (fspa,) = tltlc.compile_text(f"signal a: bool\nsignal b: bool\nsignal c: bool\n{text}")
     return fspa
 
@@ -305,7 +311,7 @@ def test_an_edit_has_the_meaning_of_the_sentence(clause: str, meaning: Whole | N
         return
     assert meaning is not None, text
     assert set(re.findall(r"\b[abc]\b", clause)) <= set(re.findall(r"\b[abc]\b", text))
-    wrong = [trace for trace, accepted in verdicts(compiled(text)) if accepted != meaning(trace)]
+    wrong = [trace for trace, accepted in verdicts(compile_spec(text)) if accepted != meaning(trace)]
     assert not wrong, f"{text}: {[sorted(letter) for letter in wrong[0]]}"
 
 

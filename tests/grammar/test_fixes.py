@@ -143,7 +143,7 @@ def fixed_text(text: str) -> str:
         ("keep è", "keep e"),
     ],
 )
-def test_fixes_of_clauses(clause: str, meant: str) -> None:
+def test_the_fix_of_a_clause_gives_the_intended_clause(clause: str, meant: str) -> None:
     text = "spec s {{\n    {}\n    keep last\n}}\n"
     assert fixed_text(text.format(clause)) == text.format(meant)
 
@@ -169,5 +169,5 @@ def test_fixes_of_clauses(clause: str, meant: str) -> None:
         ("object a", "entity a"),
     ],
 )
-def test_fixes_of_declarations(text: str, meant: str) -> None:
+def test_the_fix_of_a_declaration_gives_the_intended_declaration(text: str, meant: str) -> None:
     assert fixed_text(f"{text}\nentity last\n") == f"{meant}\nentity last\n"

@@ -36,7 +36,7 @@ WORDS = [
 ]
 
 
-def check(text: str) -> None:
+def check_diagnostics(text: str) -> None:
     source = SourceFile("a.tltl", text)
     for diagnostics in (parse(source)[1], parse_formula(source)[1]):
         for diagnostic in diagnostics:
@@ -51,24 +51,24 @@ def check(text: str) -> None:
 
 
 @given(st.text())
-def test_any_text_is_parsed(text: str) -> None:
-    check(text)
+def test_any_text_is_parsed_without_an_exception(text: str) -> None:
+    check_diagnostics(text)
 
 
 @given(st.lists(st.sampled_from(WORDS), max_size=40), st.sampled_from(["", " ", "\n"]))
-def test_words_of_the_language_in_any_order(words: list[str], between: str) -> None:
-    check(between.join(words))
+def test_words_in_any_order_are_parsed_without_an_exception(words: list[str], between: str) -> None:
+    check_diagnostics(between.join(words))
 
 
 @settings(max_examples=200)
 @given(st.randoms(use_true_random=False), st.integers(1, 5))
-def test_mutated_specs(generator: random.Random, times: int) -> None:
+def test_mutated_specs_are_parsed_without_an_exception(generator: random.Random, times: int) -> None:
     text = TEXT
     for _ in range(times):
         start = generator.randrange(len(text))
         end = min(len(text), start + generator.choice([0, 1, 3, 20]))
         text = text[:start] + generator.choice(["", " ", *WORDS]) + text[end:]
-    check(text)
+    check_diagnostics(text)
 
 
 BIG = MAX_CHARACTERS // 8
@@ -103,12 +103,12 @@ BIG = MAX_CHARACTERS // 8
     ids=lambda text: repr(text[:12]),
 )
 def test_large_texts_take_a_few_calls_for_each_character(text: str) -> None:
-    def parsed() -> None:
+    def parse_and_render() -> None:
         _, diagnostics = parse(SourceFile("a", text))
         render(diagnostics)
 
     # Measured: at most 62 calls for each character.
-    assert calls(parsed) < 200 * len(text)
+    assert calls(parse_and_render) < 200 * len(text)
 
 
 @pytest.mark.parametrize(

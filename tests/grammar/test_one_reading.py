@@ -20,17 +20,17 @@ from tests.grammar.test_english import (
     Trace,
     Whole,
     a,
+    at_every_step,
+    at_some_step,
     b,
     both,
     c,
-    compiled,
+    clause_meaning,
+    compile_spec,
     either,
-    later,
-    negated,
-    throughout,
+    negation,
     until,
     verdicts,
-    whole,
 )
 from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic
@@ -392,7 +392,7 @@ def errors(source: SourceFile) -> tuple[Diagnostic, ...]:
     return tuple(diagnostic for diagnostic in (*diagnostics, *resolve(module)[1]) if diagnostic.severity == "error")
 
 
-def offered(clause: str) -> list[str]:
+def edited_specs(clause: str) -> list[str]:
     """Return the valid specs that the offered edits of a clause lead to, applied repeatedly until no error is left."""
     queue, valid = [f"{HEAD}spec s {{ {clause}\n}}\n"], []
     while queue:
@@ -407,7 +407,7 @@ def offered(clause: str) -> list[str]:
 
 @pytest.mark.parametrize(("clause", "meant"), ROWS, ids=[clause for clause, _ in ROWS])
 def test_an_edit_gives_the_intended_clause(clause: str, meant: str | None) -> None:
-    texts = offered(clause)
+    texts = edited_specs(clause)
     assert bool(texts) == (meant is not None), texts
     for text in texts:
         (expected,) = tltlc.compile_text(f"{HEAD}spec s {{ {meant} }}")
@@ -420,16 +420,16 @@ def test_an_edit_gives_the_intended_clause(clause: str, meant: str | None) -> No
 CLAUSES = ("reach", "keep", "avoid", "require")
 OPERATORS: dict[str, Callable[[Here], Here]] = {
     "": lambda one: one,
-    "not ": negated,
-    "never ": lambda one: throughout(negated(one)),
-    "always ": throughout,
-    "eventually ": lambda one: later(one, 0),
+    "not ": negation,
+    "never ": lambda one: at_every_step(negation(one)),
+    "always ": at_every_step,
+    "eventually ": lambda one: at_some_step(one, 0),
 }
 JOINS: dict[str, Callable[[Here], Here]] = {
     "": lambda one: one,
     "c and ": lambda one: both(c, one),
     "c or ": lambda one: either(c, one),
-    "c implies ": lambda one: either(negated(c), one),
+    "c implies ": lambda one: either(negation(c), one),
 }
 RIGHT: dict[str, tuple[Here, Callable[[Here], Here]]] = {
     "b": (b, lambda one: one),
@@ -440,54 +440,54 @@ RIGHT: dict[str, tuple[Here, Callable[[Here], Here]]] = {
 WORDS = ("if", "while", "before", "after", "followed by", "unless", "without", "but", "xor", "nor", "nand")
 AROUND: dict[str, Callable[[Here], Here] | None] = {
     "{}": None,
-    "not ({})": negated,
-    "always ({})": throughout,
-    "eventually ({})": lambda one: later(one, 0),
+    "not ({})": negation,
+    "always ({})": at_every_step,
+    "eventually ({})": lambda one: at_some_step(one, 0),
     "({}) and c": lambda one: both(one, c),
-    "({}) implies c": lambda one: either(negated(one), c),
+    "({}) implies c": lambda one: either(negation(one), c),
 }
 
 
-def of_word(word: str, one: Here, other: Here, clause: str) -> Here:
+def word_meaning(word: str, left: Here, right: Here, clause: str) -> Here:
     """The meaning of a word between two operands, as a formula in this kind of clause."""
     joined = {
-        "but": both(one, other),
-        "without": both(one, negated(other)),
-        "xor": either(both(one, negated(other)), both(negated(one), other)),
-        "nor": negated(either(one, other)),
-        "nand": negated(both(one, other)),
+        "but": both(left, right),
+        "without": both(left, negation(right)),
+        "xor": either(both(left, negation(right)), both(negation(left), right)),
+        "nor": negation(either(left, right)),
+        "nand": negation(both(left, right)),
     }
     if word in joined:
         return joined[word]
     if word in ("if", "while"):
-        return both(one, other) if clause in ("reach", "avoid") else either(one, negated(other))
+        return both(left, right) if clause in ("reach", "avoid") else either(left, negation(right))
     if word == "unless":
-        of_step = {"reach": either(one, other), "keep": either(one, other), "avoid": both(one, negated(other))}
-        return of_step.get(clause, until(one, other))
-    first, then = (other, one) if word == "after" else (one, other)
-    return later(both(first, later(then, 1)), 0)
+        of_step = {"reach": either(left, right), "keep": either(left, right), "avoid": both(left, negation(right))}
+        return of_step.get(clause, until(left, right))
+    first, then = (right, left) if word == "after" else (left, right)
+    return at_some_step(both(first, at_some_step(then, 1)), 0)
 
 
-def as_clause(word: str, one: Here, other: Here, clause: str) -> Whole:
+def clause_with_word(word: str, left: Here, right: Here, clause: str) -> Whole:
     """The meaning of a clause whose two sides are joined by a word."""
     if word == "without" and clause in ("reach", "keep"):
-        goal, never = whole(clause, one), whole("avoid", other)
+        goal, never = clause_meaning(clause, left), clause_meaning("avoid", right)
         return lambda trace: goal(trace) and never(trace)
-    wanted = negated(one) if clause == "avoid" else one
+    wanted = negation(left) if clause == "avoid" else left
     if word == "before" and clause in ("keep", "avoid"):
-        return whole("require", until(wanted, other))
+        return clause_meaning("require", until(wanted, right))
     if word == "after" and clause in ("keep", "avoid"):
-        return whole("keep", either(negated(other), throughout(wanted)))
+        return clause_meaning("keep", either(negation(right), at_every_step(wanted)))
     if word == "followed by" and clause == "keep":
-        return whole("keep", either(negated(one), later(other, 1)))
-    return whole(clause, of_word(word, one, other, clause))
+        return clause_meaning("keep", either(negation(left), at_some_step(right, 1)))
+    return clause_meaning(clause, word_meaning(word, left, right, clause))
 
 
 Parts = tuple[str, str, str, str, str, str]
 """The parts of a clause: its keyword, what is around it, a joined atom, an operator, a word, and its right side."""
 
 TRACES: list[Trace] = [trace for length in (1, 2, 3, 4) for trace in product(LETTERS, repeat=length)]
-SOME: list[Trace] = TRACES[::7]
+SAMPLE_TRACES: list[Trace] = TRACES[::7]
 
 
 def reading(clause: str, around: str, join: str, operator: str, word: str, right: str) -> Whole | None:
@@ -517,43 +517,43 @@ def reading(clause: str, around: str, join: str, operator: str, word: str, right
     if join:
         lefts.append((OPERATORS[operator](a), JOINS[join]))
     if operator == "not " and word != "but":
-        lefts.append((a, lambda one: JOINS[join](negated(one))))
+        lefts.append((a, lambda one: JOINS[join](negation(one))))
     meanings: list[Whole] = []
     for (left, before), (other, behind) in product(lefts, [(whole_right, None), (b, tail)][: 1 if right == "b" else 2]):
         if outer is None and before is None and behind is None:
-            meanings.append(as_clause(word, left, other, clause))
+            meanings.append(clause_with_word(word, left, other, clause))
             continue
         if outer is None and not join and right == "b":
             meanings.append(_negated_clause(word, left, other, clause))
             continue
         inner = "avoid" if before is not None and operator == "not " and left is a else kind
-        meaning = of_word(word, left, other, inner)
+        meaning = word_meaning(word, left, other, inner)
         meaning = before(meaning) if before else meaning
         meaning = behind(meaning) if behind else meaning
-        meanings.append(whole(clause, outer(meaning) if outer else meaning))
-    if any(one(trace) != meanings[0](trace) for one in meanings[1:] for trace in SOME):
+        meanings.append(clause_meaning(clause, outer(meaning) if outer else meaning))
+    if any(one(trace) != meanings[0](trace) for one in meanings[1:] for trace in SAMPLE_TRACES):
         return None
     return meanings[0]
 
 
-def _negated_clause(word: str, left: Here, other: Here, clause: str) -> Whole:
+def _negated_clause(word: str, left: Here, right: Here, clause: str) -> Whole:
     """The meaning of `not a WORD b` where `not` applies to all of it, if ``left`` is ``a`` alone."""
     if left is not a:
-        return as_clause(word, left, other, clause)
+        return clause_with_word(word, left, right, clause)
     opposite = {"keep": "avoid", "avoid": "keep"}
     if clause in opposite:
-        return as_clause(word, left, other, opposite[clause])
-    return whole(clause, negated(of_word(word, left, other, "avoid")))
+        return clause_with_word(word, left, right, opposite[clause])
+    return clause_meaning(clause, negation(word_meaning(word, left, right, "avoid")))
 
 
 def test_many_random_clauses_are_clear_and_many_are_not() -> None:
     # The random clauses must contain both kinds, or the test of their edits would prove nothing.
-    results = [(bool(offered(text(parts))), reading(*parts) is not None) for parts in drawn(400)]
+    results = [(bool(edited_specs(text(parts))), reading(*parts) is not None) for parts in random_parts(400)]
     assert sum(fixed and clear for fixed, clear in results) > 40
     assert sum(not clear for _, clear in results) > 100
 
 
-def drawn(number: int) -> list[Parts]:
+def random_parts(number: int) -> list[Parts]:
     """Return the parts of random clauses: ``number`` of any kind, and ``number`` of a kind that is often clear."""
     all_parts = list(product(CLAUSES, AROUND, JOINS, OPERATORS, WORDS, RIGHT))
     clear_parts = list(
@@ -569,12 +569,12 @@ def text(parts: Parts) -> str:
     return f"{clause} {around.format(f'{join}{operator}a {word} {right}')}"
 
 
-@pytest.mark.parametrize("parts", drawn(400), ids=text)
+@pytest.mark.parametrize("parts", random_parts(400), ids=text)
 def test_an_edit_of_a_random_clause_has_its_single_reading(parts: Parts) -> None:
-    edited_texts = offered(text(parts))
+    edited_texts = edited_specs(text(parts))
     meaning = reading(*parts) if edited_texts else None
     for edited in edited_texts:
         assert meaning is not None, edited
         body = edited.removeprefix(HEAD)
-        wrong = [trace for trace, accepted in verdicts(compiled(body)) if accepted != meaning(trace)]
+        wrong = [trace for trace, accepted in verdicts(compile_spec(body)) if accepted != meaning(trace)]
         assert not wrong, f"{edited}: {[sorted(letter) for letter in wrong[0]]}"

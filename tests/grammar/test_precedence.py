@@ -53,7 +53,7 @@ TABLE = [
 
 
 @pytest.mark.parametrize(("text", "structure"), TABLE)
-def test_precedence(text: str, structure: str) -> None:
+def test_operators_bind_in_the_documented_order(text: str, structure: str) -> None:
     assert brackets(read(text)) == structure
 
 

@@ -23,30 +23,30 @@ BINARY = {
 CONSTANTS = {"TRUE": ("true", "⊤"), "FALSE": ("false", "⊥")}
 
 
-@pytest.mark.parametrize(("letter", "others"), UNARY.values())
-def test_spellings_of_unary_operators(letter: str, others: str) -> None:
-    for other in others.split():
-        assert brackets(read(f"a & {other} b")) == brackets(read(f"a & {letter} b"))
+@pytest.mark.parametrize(("letter", "spellings"), UNARY.values())
+def test_all_spellings_of_a_unary_operator_are_equal(letter: str, spellings: str) -> None:
+    for spelling in spellings.split():
+        assert brackets(read(f"a & {spelling} b")) == brackets(read(f"a & {letter} b"))
 
 
-@pytest.mark.parametrize(("letter", "others"), BINARY.values())
-def test_spellings_of_binary_operators(letter: str, others: str) -> None:
-    for other in others.split():
-        assert brackets(read(f"a {other} b")) == brackets(read(f"a {letter} b"))
+@pytest.mark.parametrize(("letter", "spellings"), BINARY.values())
+def test_all_spellings_of_a_binary_operator_are_equal(letter: str, spellings: str) -> None:
+    for spelling in spellings.split():
+        assert brackets(read(f"a {spelling} b")) == brackets(read(f"a {letter} b"))
 
 
-@pytest.mark.parametrize(("letter", "others"), CONSTANTS.values())
-def test_spellings_of_constants(letter: str, others: str) -> None:
-    for other in others.split():
-        assert brackets(read(other)) == brackets(read(letter))
+@pytest.mark.parametrize(("letter", "spellings"), CONSTANTS.values())
+def test_all_spellings_of_a_constant_are_equal(letter: str, spellings: str) -> None:
+    for spelling in spellings.split():
+        assert brackets(read(spelling)) == brackets(read(letter))
 
 
 @pytest.mark.parametrize("terminal", [*UNARY, *BINARY, *CONSTANTS])
 def test_every_spelling_is_tested(terminal: str) -> None:
-    letter, others = {**UNARY, **BINARY, **CONSTANTS}[terminal]
+    letter, other_spellings = {**UNARY, **BINARY, **CONSTANTS}[terminal]
     tables = load()
     spellings = {text for text, name in {**tables.words, **tables.signs}.items() if name == terminal}
-    assert spellings == {letter, *others.split()}
+    assert spellings == {letter, *other_spellings.split()}
 
 
 def test_signs_need_no_spaces() -> None:

@@ -9,7 +9,7 @@ from tltlc.grammar import tables
 
 
 @pytest.fixture
-def fresh() -> Iterator[None]:
+def fresh_tables() -> Iterator[None]:
     tables.load.cache_clear()
     yield
     tables.load.cache_clear()
@@ -23,7 +23,7 @@ def test_the_shipped_tables_match_the_grammar() -> None:
 
 @pytest.mark.parametrize("content", [b"", b"{}", b"[]", b'{"checksum": 0}', b"\xff\x00"])
 def test_damaged_tables_are_rebuilt(
-    fresh: None, content: bytes, tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch
+    fresh_tables: None, content: bytes, tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     good = tables.load()
     tables.load.cache_clear()
@@ -44,5 +44,5 @@ def test_parsing_needs_no_lark() -> None:
         "parse(SourceFile('a', 'spec a = F b')); parse(SourceFile('a', 'spec a = F'));"
         "print([name for name in ('lark', 'sympy', 'pathlib') if name in sys.modules])"
     )
-    shown = subprocess.run([sys.executable, "-S", "-c", code], capture_output=True, text=True, check=True)
-    assert shown.stdout == "[]\n"
+    result = subprocess.run([sys.executable, "-S", "-c", code], capture_output=True, text=True, check=True)
+    assert result.stdout == "[]\n"

@@ -22,28 +22,32 @@ _BRACE: Final = re.compile(r"(?:\s|//[^\n]*\n)*\{")
 
 
 @record
-class Allowed:
-    """A code that a comment allows, and its span; ``places`` is as in :func:`spoken_of`."""
+class Allowance:
+    """A code that a comment allows, with the comment and the span of the code in it.
+
+    ``statements`` are the clauses and declarations that the comment applies to; None means the whole
+    file.
+    """
 
     code: str
     source: SourceFile
     span: Span
     comment: Comment
-    places: tuple[Span, ...] | None
+    statements: tuple[Span, ...] | None
 
 
-def allowed(module: Module) -> Iterator[Allowed]:
+def allowances(module: Module) -> Iterator[Allowance]:
     """Yield all codes that comments of the module allow, in order."""
-    for comment, places in commented_spans(module):
-        for match in _codes(comment):
+    for comment, spans in commented_spans(module):
+        for match in _code_matches(comment):
             start = comment.span.start
             span = Span(start + match.start(1), start + match.end(1))
-            yield Allowed(match[1], module.source, span, comment, places)
+            yield Allowance(match[1], module.source, span, comment, spans)
 
 
 def codes(comment: Comment) -> list[str]:
     """Return the codes directly after ``allow``; the text after them is the reason."""
-    return [match[1] for match in _codes(comment)]
+    return [match[1] for match in _code_matches(comment)]
 
 
 def is_allowing(comment: Comment) -> bool:
@@ -52,7 +56,9 @@ def is_allowing(comment: Comment) -> bool:
 
 
 def commented_spans(module: Module) -> list[tuple[Comment, tuple[Span, ...] | None]]:
-    """Return the allowing comments, each with the clauses and declarations that it applies to; None means the file.
+    """Return the comments that allow codes, each with the clauses and declarations that it applies to.
+
+    None means that the comment applies to the whole file.
 
     Comments that apply to the same line share one tuple.
     """
@@ -60,10 +66,10 @@ def commented_spans(module: Module) -> list[tuple[Comment, tuple[Span, ...] | No
     if not comments:
         return []
     first_declaration = module.declarations[0].span.start if module.declarations else len(module.source.text)
-    statements_by_line = _by_line(module)
+    statements_by_line = _statements_by_line(module)
     lines = sorted(statements_by_line)
     spans_of_line: dict[int, tuple[Span, ...]] = {}
-    comments_with_places: list[tuple[Comment, tuple[Span, ...] | None]] = []
+    comments_with_statements: list[tuple[Comment, tuple[Span, ...] | None]] = []
     for comment in comments:
         line, _ = module.source.position(comment.span.start)
         if line not in statements_by_line:
@@ -72,19 +78,21 @@ def commented_spans(module: Module) -> list[tuple[Comment, tuple[Span, ...] | No
             line = lines[below] if below < len(lines) else line
         if line not in spans_of_line:
             spans_of_line[line] = tuple(statements_by_line.get(line, ()))
-        comments_with_places.append((comment, None if comment.span.start < first_declaration else spans_of_line[line]))
-    return comments_with_places
+        comments_with_statements.append(
+            (comment, None if comment.span.start < first_declaration else spans_of_line[line])
+        )
+    return comments_with_statements
 
 
 def statements(module: Module) -> list[Span]:
     """Return the clauses and declarations that comments can apply to, in order."""
-    return list(dict.fromkeys(whole for whole, _ in _parts(module)))
+    return list(dict.fromkeys(whole for whole, _ in _statement_parts(module)))
 
 
-def _by_line(module: Module) -> dict[int, dict[Span, None]]:
-    """Return the clauses and declarations that have a part on each line, in order."""
+def _statements_by_line(module: Module) -> dict[int, dict[Span, None]]:
+    """Map each line number to the clauses and declarations that have a part on the line, in order."""
     statements_by_line: dict[int, dict[Span, None]] = {}
-    for whole, part in _parts(module):
+    for whole, part in _statement_parts(module):
         first, _ = module.source.position(part.start)
         last, _ = module.source.position(part.end)
         for line in range(first, last + 1):
@@ -92,10 +100,11 @@ def _by_line(module: Module) -> dict[int, dict[Span, None]]:
     return statements_by_line
 
 
-def _parts(module: Module) -> Iterator[tuple[Span, Span]]:
+def _statement_parts(module: Module) -> Iterator[tuple[Span, Span]]:
     """Yield each clause and declaration with the part that counts: for a block, its head and its closing brace.
 
-    In a list of entities, the first stands for the whole declaration, and each other one for itself.
+    In a list of entities, the first name stands for the whole declaration, and each further name for
+    itself.
     """
     for declaration in module.declarations:
         span = declaration.span
@@ -113,7 +122,7 @@ def _parts(module: Module) -> Iterator[tuple[Span, Span]]:
         yield span, Span(span.end, span.end)
 
 
-def _codes(comment: Comment) -> Iterator[re.Match[str]]:
+def _code_matches(comment: Comment) -> Iterator[re.Match[str]]:
     head = _COMMENT.match(comment.text)
     place = head.end() if head else len(comment.text)
     while match := _CODES.match(comment.text, place):

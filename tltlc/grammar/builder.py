@@ -127,7 +127,7 @@ class Builder:
         return name.text
 
     def make_interval(self, span: Span, _in: Token, low: Expr, high: Expr) -> tree.Interval:
-        return tree.Interval(_infinite(low), _infinite(high), span)
+        return tree.Interval(_convert_inf(low), _convert_inf(high), span)
 
     # --- specifications and tests ---------------------------------------------------------------
 
@@ -256,10 +256,10 @@ class Builder:
         self.diagnostics.append(Diagnostic(code, title, (Label(self._source, span),), help_))
 
 
-def _infinite(limit: Expr) -> Expr:
+def _convert_inf(limit: Expr) -> Expr:
     """Return the end of a range, with the name ``inf`` converted to a number."""
     if isinstance(limit, tree.NameExpr) and limit.name == "inf":
         return tree.NumberExpr(inf, None, limit.span)
     if isinstance(limit, tree.Unary) and limit.op == "-":
-        return replace(limit, operand=_infinite(limit.operand))
+        return replace(limit, operand=_convert_inf(limit.operand))
     return limit

@@ -8,7 +8,7 @@ from typing import Final
 from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, replacement_fix
 from tltlc.grammar import tree
-from tltlc.grammar.keywords import JUDGE, SEMANTICS, VERDICTS, closest
+from tltlc.grammar.keywords import JUDGE, SEMANTICS, VERDICTS, closest_word
 from tltlc.grammar.then_rule import check_then
 from tltlc.grammar.tree import Declaration, Expr
 from tltlc.grammar.walk import expressions, parts
@@ -41,12 +41,14 @@ def check_clauses(source: SourceFile, declarations: Iterable[Declaration]) -> It
             case tree.TestDecl():
                 yield from _check_test(source, declaration)
             case _:
-                yield from _first(error for part in expressions(declaration) for error in check_formula(source, part))
+                yield from _only_first(
+                    error for part in expressions(declaration) for error in check_formula(source, part)
+                )
 
 
 def check_formula(source: SourceFile, formula: Expr, *, in_reach: bool = False) -> Iterator[Diagnostic]:
     """Yield the first error inside an expression; ``in_reach`` if it is the sequence of a ``reach`` clause."""
-    yield from _first(_expression_errors(source, formula, in_reach))
+    yield from _only_first(_expression_errors(source, formula, in_reach))
 
 
 def _expression_errors(source: SourceFile, formula: Expr, in_reach: bool) -> Iterator[Diagnostic]:
@@ -92,7 +94,7 @@ def check_clause(source: SourceFile, clause: tree.Clause) -> Iterator[Diagnostic
 def _check_test(source: SourceFile, test: tree.TestDecl) -> Iterator[Diagnostic]:
     for item in test.items:
         if isinstance(item, tree.TestStep):
-            yield from _first(error for atom in item.atoms for error in check_formula(source, atom))
+            yield from _only_first(error for atom in item.atoms for error in check_formula(source, atom))
         elif item.kind == "verdict":
             word = str(item.value)
             span = Span(item.span.end - len(word), item.span.end)
@@ -107,14 +109,14 @@ _COMPARED: Final = {
 
 def _check_word(source: SourceFile, word: str, span: Span, words: tuple[str, ...], form: str) -> Iterator[Diagnostic]:
     if word not in words:
-        near = closest(word, words)
+        suggestion = closest_word(word, words)
         listed = ", ".join(f"`{form} {allowed}`" for allowed in words[:-1]) + f" or `{form} {words[-1]}`"
-        help_ = _COMPARED.get(word) or (f"did you mean `{near}`?" if near else listed)
-        replacement = None if word in _COMPARED else near
+        help_ = _COMPARED.get(word) or (f"did you mean `{suggestion}`?" if suggestion else listed)
+        replacement = None if word in _COMPARED else suggestion
         yield _error(source, "TLT0108", f"`{word}` is not known here", span, help_, write=replacement)
 
 
-def _first(errors: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
+def _only_first(errors: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
     for error in errors:
         yield error
         return

@@ -83,7 +83,7 @@ SYNONYMS: Final[dict[str, dict[str, str]]] = {
     },
     "test_item": {"assert": "expect"},
 }
-"""Words that other languages or people use for our keywords, by kind of piece."""
+"""Words that other languages or people use for our keywords, by the kind of statement."""
 
 UNITS_ELSEWHERE: Final = {
     **dict.fromkeys(("meter", "meters", "metre", "metres"), "m"),
@@ -115,7 +115,7 @@ _OTHER_WORDS: Final = frozenset(
 
 
 @lru_cache(maxsize=1000)
-def closest(word: str, known: tuple[str, ...]) -> str | None:
-    """Return the known word that ``word`` is a typo of, if there is one and ``word`` means nothing else."""
+def closest_word(word: str, known: tuple[str, ...]) -> str | None:
+    """Return the known word that ``word`` misspells; None if there is none, or if ``word`` has its own meaning."""
     word = word.lower()
     return None if word in _OTHER_WORDS else likely_name(word, known)

@@ -11,7 +11,7 @@ from tltlc.grammar.tables import ParserTables
 
 
 class UnexpectedTokenError(Exception):
-    """The token at ``index`` fits nowhere; ``states`` is the parser's stack before it."""
+    """The token at ``index`` does not fit the grammar; ``states`` is the parser's stack before the token."""
 
     def __init__(self, index: int, states: list[int]) -> None:
         super().__init__(index)
@@ -20,9 +20,10 @@ class UnexpectedTokenError(Exception):
 
 
 def run(tables: ParserTables, start: str, tokens: Sequence[Token], builder: object) -> Any:
-    """Return what the builder makes of the tokens, parsed as a ``start``; raises UnexpectedTokenError.
+    """Parse the tokens as the nonterminal ``start``, and return the builder's value for it.
 
     A reduction by a rule with the action ``name`` calls ``builder.make_name(span, *kept values)``.
+    Raises UnexpectedTokenError.
     """
     actions, gotos = tables.actions, tables.gotos
     rules = [
@@ -35,7 +36,7 @@ def run(tables: ParserTables, start: str, tokens: Sequence[Token], builder: obje
     begins: list[int] = []
     end = 0
     for index, token in enumerate(tokens):
-        kind = _kind(tables, states[-1], tokens, index)
+        kind = _terminal_of(tables, states[-1], tokens, index)
         while True:
             action = actions[states[-1]].get(kind)
             if action is None:
@@ -53,7 +54,7 @@ def run(tables: ParserTables, start: str, tokens: Sequence[Token], builder: obje
                 popped = values[len(values) - size :]
                 begin = begins[-size] if size else token.start
                 del values[len(values) - size :], begins[len(begins) - size :], states[len(states) - size :]
-                kept = _kept(popped, keep)
+                kept = _kept_values(popped, keep)
                 values.append(kept if make is None else make(Span(begin, max(begin, end)), *kept))
                 begins.append(begin)
                 states.append(gotos[states[-1]][origin])
@@ -62,8 +63,8 @@ def run(tables: ParserTables, start: str, tokens: Sequence[Token], builder: obje
     raise AssertionError("the tokens do not end with $END")
 
 
-def reached(tables: ParserTables, start: str, tokens: Sequence[Token]) -> list[int]:
-    """Return the parser's stack after tokens that can be parsed as the beginning of a ``start``.
+def stack_after(tables: ParserTables, start: str, tokens: Sequence[Token]) -> list[int]:
+    """Return the parser's stack after tokens that begin a text of the nonterminal ``start``.
 
     The next token may still change the stack: some reductions wait for it.
     """
@@ -74,7 +75,7 @@ def reached(tables: ParserTables, start: str, tokens: Sequence[Token]) -> list[i
     raise AssertionError("no text has a token of type BAD")
 
 
-def accepted(tables: ParserTables, states: Sequence[int]) -> set[str]:
+def allowed_terminals(tables: ParserTables, states: Sequence[int]) -> set[str]:
     """Return the terminals that may follow where the parser has this stack of states."""
     return {terminal for terminal in tables.actions[states[-1]] if _accepts(tables, list(states), terminal)}
 
@@ -94,10 +95,10 @@ def _accepts(tables: ParserTables, states: list[int], terminal: str) -> bool:
             return True
 
 
-def _kind(tables: ParserTables, state: int, tokens: Sequence[Token], index: int) -> str:
-    """Return the type of a token in this state: an unreserved word is a name where a name can stand.
+def _terminal_of(tables: ParserTables, state: int, tokens: Sequence[Token], index: int) -> str:
+    """Return the terminal of a token in this state: an unreserved word is a name where a name can stand.
 
-    If both can stand, it is the word if a number follows (``F within 20 steps p``).
+    If the name and the word can both stand, it is the word if a number follows (``F within 20 steps p``).
     """
     token = tokens[index]
     soft = tables.soft.get(token.text)
@@ -108,7 +109,7 @@ def _kind(tables: ParserTables, state: int, tokens: Sequence[Token], index: int)
     return token.type
 
 
-def _kept(values: list[Any], keep: tuple[int, ...]) -> list[Any]:
+def _kept_values(values: list[Any], keep: tuple[int, ...]) -> list[Any]:
     """Return the values that a rule keeps, with absent parts as None and lists spliced in."""
     # Extend a growing list in place: copying it each time would take quadratic time.
     kept: list[Any] = []

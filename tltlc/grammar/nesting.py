@@ -23,8 +23,8 @@ _OPENING = {"LPAR", "LSQB", "LBRACE"}
 _CLOSING = {"RPAR", "RSQB", "RBRACE"}
 
 
-def deep_brackets(source: SourceFile, tokens: Sequence[Token]) -> Diagnostic | None:
-    """Return an error for the first bracket that nests too deep."""
+def bracket_depth_error(source: SourceFile, tokens: Sequence[Token]) -> Diagnostic | None:
+    """Return an error for the first bracket that nests too deep, or None."""
     depth = 0
     for token in tokens:
         if token.type in _OPENING:
@@ -37,8 +37,8 @@ def deep_brackets(source: SourceFile, tokens: Sequence[Token]) -> Diagnostic | N
     return None
 
 
-def deep_expression(source: SourceFile, expression: Expr) -> Diagnostic | None:
-    """Return an error if an expression nests too deep; does not recurse."""
+def expression_depth_error(source: SourceFile, expression: Expr) -> Diagnostic | None:
+    """Return an error if an expression nests too deep, else None; does not recurse."""
     level: list[Expr] = [expression]
     for _ in range(MAX_DEPTH):
         level = [child for parent in level for child in children(parent)]
@@ -49,7 +49,7 @@ def deep_expression(source: SourceFile, expression: Expr) -> Diagnostic | None:
     return _error(source, title, Span(start, start + 1))
 
 
-def drop_deep(
+def drop_deep_declarations(
     source: SourceFile, declarations: Iterable[Declaration]
 ) -> tuple[tuple[Declaration, ...], list[Diagnostic]]:
     """Return the declarations without those, or their clauses, that nest too deep, and an error for each."""
@@ -65,7 +65,7 @@ def drop_deep(
             if clauses:
                 kept.append(replace(declaration, clauses=clauses))
         else:
-            errors = [error for part in expressions(declaration) if (error := deep_expression(source, part))]
+            errors = [error for part in expressions(declaration) if (error := expression_depth_error(source, part))]
             diagnostics += errors[:1]
             if not errors:
                 kept.append(declaration)
@@ -79,7 +79,7 @@ def drop_deep_clauses(
     kept: list[tree.Clause] = []
     diagnostics: list[Diagnostic] = []
     for clause in clauses:
-        error = None if isinstance(clause.value, tuple) else deep_expression(source, clause.value)
+        error = None if isinstance(clause.value, tuple) else expression_depth_error(source, clause.value)
         if error:
             diagnostics.append(error)
         else:

@@ -26,7 +26,7 @@ def parse(source: SourceFile) -> tuple[Module, tuple[Diagnostic, ...]]:
     """Return the declarations that can be read, and all syntax errors; never raises."""
     lexed = _tokens(source)
     if lexed is None:
-        return Module(source, (), ()), (_too_large(source),)
+        return Module(source, (), ()), (_too_large_error(source),)
     declarations, diagnostics = _declarations(source, lexed)
     in_order = sorted(diagnostics, key=lambda diagnostic: diagnostic.labels[0].span.start)
     return Module(source, declarations, tuple(lexed.comments)), tuple(in_order)
@@ -36,20 +36,20 @@ def parse_formula(source: SourceFile) -> tuple[Expr | None, tuple[Diagnostic, ..
     """Return the formula, or None if it cannot be read, and all syntax errors; never raises."""
     lexed = _tokens(source)
     if lexed is None:
-        return None, (_too_large(source),)
-    too_deep = nesting.deep_brackets(source, lexed.tokens)
-    if too_deep:
-        return None, (too_deep,)
+        return None, (_too_large_error(source),)
+    depth_error = nesting.bracket_depth_error(source, lexed.tokens)
+    if depth_error:
+        return None, (depth_error,)
     builder = Builder(source, lexed.docs)
     try:
         formula: Expr = lalr.run(load(), "expression", lexed.tokens, builder)
     except lalr.UnexpectedTokenError as error:
-        from tltlc.grammar.mistakes.messages import unexpected
+        from tltlc.grammar.mistakes.messages import unexpected_token
 
-        return None, (unexpected(source, lexed.tokens, error, "expression"),)
-    too_deep = nesting.deep_expression(source, formula)
-    if too_deep:
-        return None, (too_deep,)
+        return None, (unexpected_token(source, lexed.tokens, error, "expression"),)
+    depth_error = nesting.expression_depth_error(source, formula)
+    if depth_error:
+        return None, (depth_error,)
     return formula, (*builder.diagnostics, *checks.check_formula(source, formula))
 
 
@@ -70,20 +70,20 @@ def _tokens(source: SourceFile) -> Tokens | None:
 
 
 def _declarations(source: SourceFile, lexed: Tokens) -> tuple[tuple[Declaration, ...], tuple[Diagnostic, ...]]:
-    if nesting.deep_brackets(source, lexed.tokens) is None:
+    if nesting.bracket_depth_error(source, lexed.tokens) is None:
         builder = Builder(source, lexed.docs)
         try:
             declarations: tuple[Declaration, ...] = lalr.run(load(), "module", lexed.tokens, builder)
         except lalr.UnexpectedTokenError:
             pass
         else:
-            shallow, errors = nesting.drop_deep(source, declarations)
+            shallow, errors = nesting.drop_deep_declarations(source, declarations)
             return shallow, (*builder.diagnostics, *errors, *checks.check(source, shallow))
     from tltlc.grammar.mistakes.recovery import recover
 
     return recover(source, lexed)
 
 
-def _too_large(source: SourceFile) -> Diagnostic:
+def _too_large_error(source: SourceFile) -> Diagnostic:
     title = f"`{source.name}` is larger than 1 MiB or {MAX_TOKENS} words and signs"
     return Diagnostic("TLT0004", title, (Label(source, Span(0, 0)),), "split it: `import` other files")

@@ -66,7 +66,7 @@ class TltlLexer(Lexer):  # type: ignore[misc]
     def get_tokens_unprocessed(self, text: str) -> Iterator[tuple[int, Class, str]]:
         """Yield the offset, type and text of each piece, without gaps."""
         lexed = tokenize(text)
-        pieces = [*_classified(lexed.tokens)]
+        pieces = [*_classify(lexed.tokens)]
         for comment in lexed.comments:
             kind = pygments.String.Doc if comment.text.startswith("///") else CLASSES["COMMENT"]
             pieces.append((comment.span.start, kind, comment.text))
@@ -81,7 +81,7 @@ class TltlLexer(Lexer):  # type: ignore[misc]
             yield end, pygments.Text, text[end:]
 
 
-def _classified(tokens: Sequence[Token]) -> Iterator[tuple[int, Class, str]]:
+def _classify(tokens: Sequence[Token]) -> Iterator[tuple[int, Class, str]]:
     """Yield the tokens with their Pygments types, which depend on the tokens around them."""
     soft = load().soft
     declaration, depth, in_head = "", 0, False
@@ -95,7 +95,11 @@ def _classified(tokens: Sequence[Token]) -> Iterator[tuple[int, Class, str]]:
         depth += (kind in ("LPAR", "LSQB")) - (kind in ("RPAR", "RSQB"))
         in_head &= not (kind == "EQUAL" and depth == 0)
         is_type = before == "COLON" and in_head and kind in ("NAME", "ENTITY")
-        yield token.start, pygments.Keyword.Type if is_type else _class(token.text, kind, before, following), token.text
+        yield (
+            token.start,
+            pygments.Keyword.Type if is_type else _pygments_type(token.text, kind, before, following),
+            token.text,
+        )
         before = kind
 
 
@@ -105,7 +109,7 @@ def _is_keyword(soft: str, before: str, after: str, declaration: str) -> bool:
     return before in _KEYWORD_AFTER.get(soft, ()) or after in _KEYWORD_BEFORE.get(soft, ())
 
 
-def _class(text: str, kind: str, before: str, following: Token) -> Class:
+def _pygments_type(text: str, kind: str, before: str, following: Token) -> Class:
     type_ = CLASSES[kind]
     if type_ is pygments.Operator and text.isascii() and text[0].isalpha():
         return pygments.Operator.Word

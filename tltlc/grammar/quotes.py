@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 
-def quoted(text: str) -> str | None:
+def quote(text: str) -> str | None:
     """Return a text as a string of the language, in quotes, or None if it cannot be written as one.
 
     A text cannot be written if it contains a quote, a line break or NUL, or if it is not Unicode, as

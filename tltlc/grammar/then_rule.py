@@ -36,19 +36,19 @@ def check_then(source: SourceFile, formula: Expr, *, in_reach: bool) -> Iterator
 
 def _check_operand(source: SourceFile, sequence: list[Expr], position: int, lenient: bool) -> Iterator[Diagnostic]:
     operand = sequence[position]
-    leading = _leading(operand)
+    leading = _leading_operator(operand)
     if not _lacks_brackets(operand, lenient):
         return
     last = position == len(sequence) - 1
     neighbour = sequence[position - 1] if last else sequence[position + 1]
     if leading is None:
         title, span = "this operand of `then` needs brackets", operand.span
-        help_ = _readings(source, operand, neighbour, last)
+        help_ = _readings_help(source, operand, neighbour, last)
     else:
         word = source.slice(leading.op_span)
         span = leading.op_span
         title = f"a bare `{word}` cannot follow `then`" if last else f"`then` cannot follow a bare `{word}`"
-        help_ = _readings(source, operand, neighbour, last)
+        help_ = _readings_help(source, operand, neighbour, last)
         if leading is operand and leading.op == "F" and leading.bound is None:
             before, after = (neighbour, leading.operand) if last else (leading.operand, neighbour)
             first, second = _text(source, before), _text(source, after)
@@ -64,7 +64,7 @@ def _check_operand(source: SourceFile, sequence: list[Expr], position: int, leni
     yield Diagnostic("TLT0102", title, (Label(source, span),), help_, fixes=_fixes(source, sequence, position, lenient))
 
 
-def _leading(operand: Expr) -> tree.Unary | None:
+def _leading_operator(operand: Expr) -> tree.Unary | None:
     """Return the temporal operator that begins an operand, or None; brackets hide it."""
     while isinstance(operand, tree.BinaryExpr):
         operand = operand.left
@@ -82,8 +82,8 @@ def _is_plain(operand: Expr) -> bool:
     return isinstance(operand, (tree.NameExpr, tree.CallExpr, tree.GroupExpr, tree.Constant, tree.NumberExpr))
 
 
-def _readings(source: SourceFile, operand: Expr, neighbour: Expr, last: bool) -> str:
-    """Return a help with both ways to put the brackets."""
+def _readings_help(source: SourceFile, operand: Expr, neighbour: Expr, last: bool) -> str:
+    """Return a help that shows both ways to put the brackets."""
     text, neighbour_text = _text(source, operand), _text(source, neighbour)
     inner: Expr
     if isinstance(operand, tree.Unary):
@@ -106,14 +106,17 @@ def _readings(source: SourceFile, operand: Expr, neighbour: Expr, last: bool) ->
 
 
 def _fixes(source: SourceFile, sequence: list[Expr], position: int, lenient: bool) -> tuple[Fix, ...]:
-    """Return fixes: brackets around the operand, or around its half and the neighbour; none that loses the order."""
+    """Return fixes: brackets around the operand, or around its nearer half and the neighbour.
+
+    Leave out a fix that would lose the order of the operands.
+    """
     operand = sequence[position]
     bare = [element for element in sequence if _lacks_brackets(element, lenient)]
     whole = _text(source, operand)
     title = f"Write `({whole})`" if len(whole) <= _SHORT else "Put the operand in brackets"
     title = title if len(bare) == 1 else "Put each operand in brackets"
     fixes = [Fix(title, tuple(edit for element in bare for edit in bracket_edits(element.span)))]
-    half = _half(operand, last=position == 1)
+    half = _operand_beside_then(operand, last=position == 1)
     if len(sequence) == 2 and bare == [operand] and half and not _lacks_brackets(half, lenient=False):
         first, second = (sequence[0], half) if position else (half, sequence[1])
         text = f"{_text(source, first)} then {_text(source, second)}"
@@ -121,28 +124,28 @@ def _fixes(source: SourceFile, sequence: list[Expr], position: int, lenient: boo
             fixes.append(Fix(f"Write `({text})`", bracket_edits(first.span.to(second.span))))
     # `(F a) then b` loses the order: `b` before `a` satisfies it.
     loses_order = any(_begins_with_f(element) for element in bare if element is not sequence[-1])
-    if any(_is_of_another_step(element) for element in bare if element is not sequence[0]):
+    if any(_names_its_step(element) for element in bare if element is not sequence[0]):
         return ()
     return () if loses_order and len(fixes) == 1 else tuple(fixes)
 
 
-def _is_of_another_step(operand: Expr) -> bool:
+def _names_its_step(operand: Expr) -> bool:
     """Whether an operand after `then`, which means "later", itself says at which step: `next a`, `always a`."""
-    leading = _leading(operand)
+    leading = _leading_operator(operand)
     return leading is not None and (leading.op != "F" or leading is not operand)
 
 
 def _begins_with_f(operand: Expr) -> bool:
-    leading = _leading(operand)
+    leading = _leading_operator(operand)
     return leading is not None and leading.op == "F"
 
 
 def _lacks_brackets(operand: Expr, lenient: bool) -> bool:
-    return _leading(operand) is not None or not (lenient or _is_plain(operand))
+    return _leading_operator(operand) is not None or not (lenient or _is_plain(operand))
 
 
-def _half(operand: Expr, last: bool) -> Expr | None:
-    """Return the operand of a unary or binary operator that stands beside the `then`."""
+def _operand_beside_then(operand: Expr, last: bool) -> Expr | None:
+    """Return the operand of a unary or binary operator that stands beside the `then`, or None."""
     if isinstance(operand, tree.BinaryExpr):
         return operand.left if last else operand.right
     return operand.operand if isinstance(operand, tree.Unary) and not last else None

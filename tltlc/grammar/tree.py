@@ -17,7 +17,7 @@ from tltlc.core.source import SourceFile, Span
 
 @record
 class NumberExpr:
-    """A number with its unit (``m``, ``%``, ``steps``, …) or None; ``inf`` is a number, too."""
+    """A number; ``unit`` is ``m``, ``%``, ``steps``, …, or None. ``inf`` is a number, too."""
 
     value: float
     unit: str | None
@@ -94,7 +94,7 @@ class BinaryExpr:
 
 @record
 class GroupExpr:
-    """An expression in round brackets; it is kept because ``then`` requires them."""
+    """An expression in round brackets. The brackets are kept because ``then`` requires them."""
 
     inner: Expr
     span: Span
@@ -247,8 +247,8 @@ class Clause:
     """A clause of a spec.
 
     ``kind`` is one of ``reach keep avoid require`` (``value`` is an expression), ``level judge
-    semantics`` (``value`` is a Name), ``limit`` (``value`` is a Number), ``tag`` (``value`` is a
-    tuple of Names).
+    semantics`` (``value`` is a NameExpr), ``limit`` (``value`` is a NumberExpr), ``tag`` (``value``
+    is a tuple of NameExpr).
     """
 
     kind: str

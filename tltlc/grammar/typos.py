@@ -1,8 +1,8 @@
-"""Typos: find the word that was meant where another one is written.
+"""Typos: find the known word that a misspelt word stands for.
 
-A word that resembles another one may have its own meaning: `doorB` is not `doorA`, `unlocked` not
-`locked`. So a typo is one letter too many, one too few, two exchanged neighbours, or one wrong letter
-inside a word that is long enough. A word of seven letters or more may have two typos.
+A word that resembles a known word may have its own meaning: `doorB` is not `doorA`, and `unlocked` is
+not `locked`. So only these count as typos: one letter too many, one too few, two exchanged neighbours,
+or one wrong letter inside a word that is long enough. A word of seven letters or more may have two.
 """
 
 from __future__ import annotations
@@ -23,10 +23,10 @@ _NEGATING: Final = ("no", "nt")
 
 
 def likely_name(name: str, known: Iterable[str]) -> str | None:
-    """Return the known name that a name is a typo of, if no other known name is as likely.
+    """Return the known name that a name most likely misspells; None if there is none, or if several are as likely.
 
-    A name that differs only in capital letters and underscores comes first, then a name that has the
-    given name after a dot. Among more than 2,000 names, no other typos are looked for.
+    A name that differs only in capital letters and underscores comes first, then a name that ends with
+    a dot and the given name. Among more than 2,000 names, no other typos are looked for.
     """
     names = tuple(dict.fromkeys(known))
     matches = [candidate for candidate in names if _plain(candidate) == _plain(name)]
@@ -35,15 +35,15 @@ def likely_name(name: str, known: Iterable[str]) -> str | None:
         return matches[0] if matches else None
     by_count: dict[int, list[str]] = {}
     for candidate in names:
-        count = _slips_in_parts(name, candidate)
+        count = _count_typos_in_parts(name, candidate)
         if count is not None:
             by_count.setdefault(count, []).append(candidate)
     closest = by_count[min(by_count)] if by_count else []
     return closest[0] if len(closest) == 1 else None
 
 
-def count_slips(word: str, known: str) -> int | None:
-    """Return how many typos turn the known word into the word; None if it is another word."""
+def count_typos(word: str, known: str) -> int | None:
+    """Return how many typos turn the known word into the word; None if they are different words."""
     most = 0 if len(known) < 2 else 2 if len(known) >= _LONG else 1
     if abs(len(word) - len(known)) > most or not _begin_alike(word, known):
         return None
@@ -59,8 +59,12 @@ def _plain(name: str) -> str:
     return name.replace("_", "").lower()
 
 
-def _slips_in_parts(name: str, known: str) -> int | None:
-    """Return the number of typos in all parts of a name; None unless both have as many parts, and the same numbers."""
+def _count_typos_in_parts(name: str, known: str) -> int | None:
+    """Return the number of typos in all parts of a name.
+
+    None if a part is a different word, or if the two names differ in their numbers or in how many
+    parts they have.
+    """
     if name.count(".") != known.count("."):
         return None
     parts, known_parts = _PARTS.findall(name), _PARTS.findall(known)
@@ -70,7 +74,7 @@ def _slips_in_parts(name: str, known: str) -> int | None:
     for part, known_part in zip(parts, known_parts, strict=True):
         if part.lower() == known_part.lower():
             continue
-        count = None if part.isdigit() or known_part.isdigit() else count_slips(part.lower(), known_part.lower())
+        count = None if part.isdigit() or known_part.isdigit() else count_typos(part.lower(), known_part.lower())
         if count is None:
             return None
         total += count
@@ -88,6 +92,7 @@ def _ends_differ(word: str, known: str) -> bool:
 
 
 def _is_exchanged(word: str, known: str) -> bool:
+    """Whether the words differ by two neighbouring letters in exchanged order."""
     places = [at for at, (a, b) in enumerate(zip(word, known, strict=False)) if a != b]
     if len(word) != len(known) or len(places) != 2 or places[1] != places[0] + 1:
         return False
@@ -96,11 +101,15 @@ def _is_exchanged(word: str, known: str) -> bool:
 
 
 def _is_doubled(word: str, known: str) -> bool:
+    """Whether the word is the known word with one letter doubled."""
     return len(word) == len(known) + 1 and any(word == known[: at + 1] + known[at:] for at in range(len(known)))
 
 
 def _is_negated(word: str, known: str) -> bool:
-    """Whether one word is the other with a negating ending; a word with another beginning is no typo anyway."""
+    """Whether one word is the other one with a negating ending.
+
+    Negating prefixes need no check: a word with another beginning is never a typo.
+    """
     longer, shorter = (word, known) if len(word) > len(known) else (known, word)
     return longer.startswith(shorter) and longer[len(shorter) :] in _NEGATING
 
@@ -114,9 +123,9 @@ def _distance(word: str, known: str) -> int:
     row: list[int] = [*range(len(known) + 1)]
     for i, letter in enumerate(word, 1):
         earlier, before, row = before, row, [i]
-        for j, other in enumerate(known, 1):
-            cost: int = min(before[j] + 1, row[j - 1] + 1, before[j - 1] + (letter != other))
-            if i > 1 and j > 1 and letter == known[j - 2] and word[i - 2] == other:
+        for j, known_letter in enumerate(known, 1):
+            cost: int = min(before[j] + 1, row[j - 1] + 1, before[j - 1] + (letter != known_letter))
+            if i > 1 and j > 1 and letter == known[j - 2] and word[i - 2] == known_letter:
                 cost = min(cost, earlier[j - 2] + 1)
             row.append(cost)
     return row[-1]

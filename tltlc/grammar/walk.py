@@ -12,13 +12,13 @@ def expressions(declaration: Declaration) -> Iterator[Expr]:
     """Yield the expressions of a declaration, in order; for a spec, clause by clause."""
     match declaration:
         case tree.SignalDecl():
-            yield from _interval(declaration.interval)
+            yield from _range_ends(declaration.interval)
         case tree.ParamDecl():
-            yield from _interval(declaration.interval)
+            yield from _range_ends(declaration.interval)
             yield declaration.value
         case tree.PredicateDecl():
             yield from (item.default for item in declaration.parameters if item.default)
-            yield from _interval(declaration.interval)
+            yield from _range_ends(declaration.interval)
             yield declaration.body
         case tree.LetDecl():
             yield from (item.default for item in declaration.parameters if item.default)
@@ -88,7 +88,7 @@ def children(expression: Expr) -> Iterator[Expr]:
             yield expression.otherwise
 
 
-def _interval(interval: tree.Interval | None) -> Iterator[Expr]:
+def _range_ends(interval: tree.Interval | None) -> Iterator[Expr]:
     if interval:
         yield interval.low
         yield interval.high

@@ -7,7 +7,7 @@ from typing import Literal
 from tltlc.diagnostics.diagnostic import Fix, replacement_fix
 from tltlc.grammar import tree
 from tltlc.grammar.keywords import CONDITIONS
-from tltlc.grammar.mistakes.insertion import at_top
+from tltlc.grammar.mistakes.insertion import declaration_edit
 from tltlc.grammar.tree import CallExpr, Expr, GroupExpr, NameExpr, SignalDecl
 from tltlc.grammar.walk import parts
 from tltlc.resolve import units
@@ -80,7 +80,7 @@ def lookup(use: NameExpr | CallExpr, env: Env, wanted: tuple[Kind, ...], noun: s
     fixes: tuple[Fix, ...] = ()
     # A call would need a declaration with parameters, which this fix does not offer.
     if is_helped and (library or isinstance(use, NameExpr)):
-        fixes = (Fix(f"{'Add' if library else 'Declare'} `{line}`", (at_top(env.scope.module, line),)),)
+        fixes = (Fix(f"{'Add' if library else 'Declare'} `{line}`", (declaration_edit(env.scope.module, line),)),)
     raise problem("TLT0201", title, source, span, advice=advice, fixes=fixes)
 
 

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from tltlc.core.record import record, replace
 from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Diagnostic, Label
-from tltlc.grammar.allow_index import unsilenced
+from tltlc.grammar.allow_index import drop_silenced
 from tltlc.grammar.parser import parse_formula
 from tltlc.grammar.tree import ExclusiveDecl, Expr, Module, SpecDecl, TestDecl
 from tltlc.logic.formula import Formula
@@ -115,7 +115,7 @@ def resolve_atoms(
         except ResolutionError as failure:
             context.log.add(failure.diagnostic)
     check_predicates(context)
-    diagnostics = unsilenced((loaded.module for loaded in modules), context.log.all())
+    diagnostics = drop_silenced((loaded.module for loaded in modules), context.log.all())
     return vocabulary(places, groups, context) if len(places) == len(written) else None, formula_of, diagnostics
 
 

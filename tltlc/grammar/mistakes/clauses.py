@@ -14,11 +14,11 @@ from tltlc.grammar.keywords import (
     SYNONYMS,
     TEST_ITEMS,
     UNITS_ELSEWHERE,
-    closest,
+    closest_word,
 )
 from tltlc.grammar.lexer import BAD, END, Token
-from tltlc.grammar.mistakes.english import conditional
-from tltlc.grammar.mistakes.one_reading import QUANTIFIERS, TEMPORAL, UNCLEAR, has, is_of_one_step
+from tltlc.grammar.mistakes.english import condition_line
+from tltlc.grammar.mistakes.one_reading import QUANTIFIERS, TEMPORAL, UNCLEAR, has_token, is_of_one_step
 from tltlc.grammar.mistakes.place import (
     BEFORE_ONE,
     INFIX,
@@ -26,11 +26,18 @@ from tltlc.grammar.mistakes.place import (
     NOUNS,
     OPENING,
     UNTILS,
-    Place,
+    ParseFailure,
     declares_clock,
-    shown,
+    quote_token,
 )
-from tltlc.grammar.mistakes.rephrasing import formula_start, formula_stop, operand, reworded, span_of, written
+from tltlc.grammar.mistakes.rephrasing import (
+    formula_start,
+    formula_stop,
+    operand_text,
+    span_of,
+    suggest_rewrite,
+    text_of,
+)
 from tltlc.grammar.tables import load
 
 _IN_BRACKETS: Final = (
@@ -64,222 +71,234 @@ _OF_OPERATOR: Final = {"EVENTUALLY": "reach", "ALWAYS": "keep", "NOT": "avoid"}
 """The keyword of the clause that an operator at the beginning of a line stands for."""
 
 
-def unknown_keyword(place: Place) -> Diagnostic | None:
+def unknown_keyword(failure: ParseFailure) -> Diagnostic | None:
     """Report a piece that does not begin with a keyword of its kind."""
-    keywords, token = KEYWORDS.get(place.start), place.found
-    if place.stop.index or not keywords or place.at_end or token.type in OPENING.values():
+    keywords, token = KEYWORDS.get(failure.start), failure.token
+    if failure.stop.index or not keywords or failure.is_at_end or token.type in OPENING.values():
         return None
-    title = f"no {NOUNS[place.start]} begins with {shown(token)}"
-    if place.start == "declaration" and token.text in {**CLAUSES, **TEST_ITEMS}:
-        return _outside(place)
-    diagnostic = _no_clause(place, title) if place.start == "clause" else None
+    title = f"no {NOUNS[failure.start]} begins with {quote_token(token)}"
+    if failure.start == "declaration" and token.text in {**CLAUSES, **TEST_ITEMS}:
+        return _outside_error(failure)
+    diagnostic = _line_without_keyword(failure, title) if failure.start == "clause" else None
     if diagnostic:
         return diagnostic
-    near = SYNONYMS[place.start].get(token.text.lower())
-    if near and place.start == "clause" and not _is_clear_keyword(place, near):
-        return place.error("TLT0107", title, _ONCE if near == "require" else _IN_BRACKETS.format(word=token.text))
-    if near is None and token.type == "NAME":
-        near = closest(token.text, tuple(keywords))
-    message = f"did you mean `{near}`?" if near else ""
+    keyword = SYNONYMS[failure.start].get(token.text.lower())
+    if keyword and failure.start == "clause" and not _is_clear_keyword(failure, keyword):
+        return failure.error("TLT0107", title, _ONCE if keyword == "require" else _IN_BRACKETS.format(word=token.text))
+    if keyword is None and token.type == "NAME":
+        keyword = closest_word(token.text, tuple(keywords))
+    message = f"did you mean `{keyword}`?" if keyword else ""
     listed = ", ".join(f"`{word}`" for word in keywords)
-    return place.error("TLT0107", title, None if near else f"one of {listed}", message, write=near)
+    return failure.error("TLT0107", title, None if keyword else f"one of {listed}", message, write=keyword)
 
 
-def _is_clear_keyword(place: Place, near: str) -> bool:
+def _is_clear_keyword(failure: ParseFailure, keyword: str) -> bool:
     """Whether the keyword alone can replace the word, judged by what follows."""
-    stop = len(place.tokens) - 1
-    if near == "require":
-        return not is_of_one_step(place, 1, stop)
-    if place.found.text.lower() == "never":
-        return not has(place, 1, stop, INFIX)
-    allowed = {"keep": {"IMPLIES", "IFF"}, "reach": {"THEN"}}.get(near, set())
-    return not has(place, 1, stop, UNCLEAR - allowed)
+    stop = len(failure.tokens) - 1
+    if keyword == "require":
+        return not is_of_one_step(failure, 1, stop)
+    if failure.token.text.lower() == "never":
+        return not has_token(failure, 1, stop, INFIX)
+    allowed = {"keep": {"IMPLIES", "IFF"}, "reach": {"THEN"}}.get(keyword, set())
+    return not has_token(failure, 1, stop, UNCLEAR - allowed)
 
 
-def clause_outside(place: Place) -> Diagnostic | None:
+def clause_outside_spec(failure: ParseFailure) -> Diagnostic | None:
     """Report a clause after a complete declaration."""
-    whole = place.start == "declaration" and END in place.allowed
-    return _outside(place) if whole and place.found.text in CLAUSES and not place.open_brackets else None
+    whole = failure.start == "declaration" and END in failure.allowed_terminals
+    return _outside_error(failure) if whole and failure.token.text in CLAUSES and not failure.open_brackets else None
 
 
-def clause_inside(place: Place) -> Diagnostic | None:
+def clause_inside_formula(failure: ParseFailure) -> Diagnostic | None:
     """Report ``keep p implies reach q``, ``reach a then avoid b``, ``spec s = keep p``."""
-    word, before, at = place.found.text, place.before, place.stop.index
-    if word not in OPERATORS or before is None or not place.wants_operand or place.found.type == "NAME":
+    word, before, at = failure.token.text, failure.previous_token, failure.stop.index
+    if word not in OPERATORS or before is None or not failure.wants_operand or failure.token.type == "NAME":
         return None
-    title = f"{shown(place.found)} begins a clause, and stands in no formula"
-    start, stop, clause = formula_start(place), formula_stop(place), _clause(place)
+    title = f"{quote_token(failure.token)} begins a clause, and stands in no formula"
+    start, stop, clause = formula_start(failure), formula_stop(failure), _clause_keyword(failure)
     # The operator would apply to all that follows, although the keyword may be meant for the next operand only.
-    diagnostic, is_alone = None, not has(place, at + 1, stop, INFIX - {"THEN"} if word == "reach" else INFIX)
-    if before.type == "THEN" and not _is_next_goal(place, word):
-        return place.error("TLT0107", title, _BEHIND_THEN)
-    if before.type == "EQUAL" and place.tokens[0].type == "SPEC":
-        text = f"{{ {written(place, at, stop)} }}"
-        diagnostic = reworded(place, at - 1, stop, text, title, ": clauses stand in braces", "TLT0107")
+    diagnostic, is_alone = None, not has_token(failure, at + 1, stop, INFIX - {"THEN"} if word == "reach" else INFIX)
+    if before.type == "THEN" and not _is_next_goal(failure, word):
+        return failure.error("TLT0107", title, _BEHIND_THEN)
+    if before.type == "EQUAL" and failure.tokens[0].type == "SPEC":
+        text = f"{{ {text_of(failure, at, stop)} }}"
+        diagnostic = suggest_rewrite(failure, at - 1, stop, text, title, ": clauses stand in braces", "TLT0107")
     elif before.type == "THEN":
-        diagnostic = reworded(place, at - 1, at + 1, before.text, title, ", which says it already", "TLT0107")
-    elif before.type == "OR" and clause in OPERATORS and not place.open_brackets:
+        diagnostic = suggest_rewrite(failure, at - 1, at + 1, before.text, title, ", which says it already", "TLT0107")
+    elif before.type == "OR" and clause in OPERATORS and not failure.open_brackets:
         # Clauses that are joined by `or` each become a formula of their own.
-        left, right = operand(place, start - 1, at - 1), operand(place, at, stop)
+        left, right = operand_text(failure, start - 1, at - 1), operand_text(failure, at, stop)
         text = f"require ({left}) {before.text} ({right})"
-        if is_alone and not has(place, start, at, UNCLEAR | TEMPORAL):
-            diagnostic = reworded(place, 0, stop, text, title, code="TLT0107")
-    elif is_alone and _is_clear_operator(place, start, at, word):
-        diagnostic = reworded(place, at, stop, operand(place, at, stop), title, code="TLT0107")
-    return diagnostic or place.error("TLT0107", title, _inside(word, word))
+        if is_alone and not has_token(failure, start, at, UNCLEAR | TEMPORAL):
+            diagnostic = suggest_rewrite(failure, 0, stop, text, title, code="TLT0107")
+    elif is_alone and _is_clear_operator(failure, start, at, word):
+        diagnostic = suggest_rewrite(failure, at, stop, operand_text(failure, at, stop), title, code="TLT0107")
+    return diagnostic or failure.error("TLT0107", title, _operator_help(word, word))
 
 
-def synonym_inside(place: Place) -> Diagnostic | None:
+def synonym_inside_formula(failure: ParseFailure) -> Diagnostic | None:
     """Report ``keep a implies never b``."""
-    before, at = place.before, place.stop.index - 1
-    keyword = SYNONYMS["clause"].get(before.text) if before and before.type == "NAME" and place.wants_operator else None
+    before, at = failure.previous_token, failure.stop.index - 1
+    keyword = (
+        SYNONYMS["clause"].get(before.text) if before and before.type == "NAME" and failure.wants_operator else None
+    )
     if before is None or keyword is None or at < 1:
         return None
-    start, stop, title = formula_start(place), formula_stop(place), f"{shown(before)} is no operator"
-    if place.tokens[at - 1].type == "THEN" and not _is_next_goal(place, keyword):
-        return place.error("TLT0101", title, _BEHIND_THEN, span=before.span)
+    start, stop, title = formula_start(failure), formula_stop(failure), f"{quote_token(before)} is no operator"
+    if failure.tokens[at - 1].type == "THEN" and not _is_next_goal(failure, keyword):
+        return failure.error("TLT0101", title, _BEHIND_THEN, span=before.span)
     diagnostic = None
-    if not has(place, at + 1, stop, INFIX) and (
-        place.tokens[at - 1].type == "THEN" or _is_clear_operator(place, start, at, keyword)
+    if not has_token(failure, at + 1, stop, INFIX) and (
+        failure.tokens[at - 1].type == "THEN" or _is_clear_operator(failure, start, at, keyword)
     ):
-        operator = "" if place.tokens[at - 1].type == "THEN" else OPERATORS[keyword]
-        text = f"{operator} {operand(place, at + 1, stop)}".strip()
-        diagnostic = reworded(place, at, stop, text, title)
-    return diagnostic or place.error("TLT0101", title, _inside(before.text, keyword), span=before.span)
+        operator = "" if failure.tokens[at - 1].type == "THEN" else OPERATORS[keyword]
+        text = f"{operator} {operand_text(failure, at + 1, stop)}".strip()
+        diagnostic = suggest_rewrite(failure, at, stop, text, title)
+    return diagnostic or failure.error("TLT0101", title, _operator_help(before.text, keyword), span=before.span)
 
 
-def _clause(place: Place) -> str:
+def _clause_keyword(failure: ParseFailure) -> str:
     """Return the keyword of the clause, also inside brackets; empty outside clauses."""
-    return place.tokens[0].text if place.start == "clause" else ""
+    return failure.tokens[0].text if failure.start == "clause" else ""
 
 
-def _is_next_goal(place: Place, word: str) -> bool:
+def _is_next_goal(failure: ParseFailure, word: str) -> bool:
     """Whether a keyword after `then` only repeats that a goal follows."""
-    return word == "reach" and _clause(place) not in ("keep", "avoid")
+    return word == "reach" and _clause_keyword(failure) not in ("keep", "avoid")
 
 
-def _is_clear_operator(place: Place, start: int, at: int, word: str) -> bool:
+def _is_clear_operator(failure: ParseFailure, start: int, at: int, word: str) -> bool:
     """Whether a keyword at this place in a formula can only mean its operator."""
-    before, clause = place.tokens[at - 1].type, _clause(place)
+    before, clause = failure.tokens[at - 1].type, _clause_keyword(failure)
     if before in ("IMPLIES", "IFF", "NOT") and word != "reach":
         # `keep` after a condition may mean only as long as the condition holds.
         return False
-    if clause in ("reach", "avoid") or before in UNTILS or has(place, start, at, TEMPORAL):
+    if clause in ("reach", "avoid") or before in UNTILS or has_token(failure, start, at, TEMPORAL):
         return False
     return clause != "keep" or before != "OR"
 
 
-def _inside(word: str, keyword: str) -> str:
+def _operator_help(word: str, keyword: str) -> str:
     help_ = f"inside a formula, `{word} a` is `{f'{OPERATORS[keyword]} a'.strip()}`"
     if keyword in ("keep", "avoid"):
         help_ += f", from there to the end; of one step, write `{'a' if keyword == 'keep' else 'not a'}`"
     return help_
 
 
-def joined_clauses(place: Place) -> Diagnostic | None:
+def joined_clauses(failure: ParseFailure) -> Diagnostic | None:
     """Report ``keep a and keep b``."""
-    word, before = place.found.text, place.before
-    if place.start != "clause" or word not in CLAUSES or before is None or before.type != "AND" or place.open_brackets:
+    word, before = failure.token.text, failure.previous_token
+    if (
+        failure.start != "clause"
+        or word not in CLAUSES
+        or before is None
+        or before.type != "AND"
+        or failure.open_brackets
+    ):
         return None
-    title, span = f"clauses are not joined by {shown(before)}", span_of([before, place.found])
+    title, span = f"clauses are not joined by {quote_token(before)}", span_of([before, failure.token])
     # `always a and reach b` may mean `always (a and eventually b)`, and a quantifier extends over the `and`.
-    if has(place, 1, place.stop.index, UNCLEAR | BEFORE_ONE | QUANTIFIERS | {"OR"}):
-        return place.error("TLT0101", title, f"let `{word}` begin a line of its own: all clauses count", span=span)
-    return place.error("TLT0101", title, f"write `{word}` alone: all clauses count", span=span, write=word)
+    if has_token(failure, 1, failure.stop.index, UNCLEAR | BEFORE_ONE | QUANTIFIERS | {"OR"}):
+        return failure.error("TLT0101", title, f"let `{word}` begin a line of its own: all clauses count", span=span)
+    return failure.error("TLT0101", title, f"write `{word}` alone: all clauses count", span=span, write=word)
 
 
-def limit_in_other_words(place: Place) -> Diagnostic | None:
+def limit_in_other_words(failure: ParseFailure) -> Diagnostic | None:
     """Report ``limit of 400 steps``, ``limit: 20 seconds``."""
-    return _limit(place, "a limit is a number of steps or a time") if place.tokens[0].type == "LIMIT" else None
+    return (
+        _limit_error(failure, "a limit is a number of steps or a time") if failure.tokens[0].type == "LIMIT" else None
+    )
 
 
-def judge(place: Place) -> Diagnostic | None:
+def judge_without_at(failure: ParseFailure) -> Diagnostic | None:
     """Report ``judge goal``."""
-    if place.before is None or place.before.type != "JUDGE" or place.found.text not in JUDGE:
+    if failure.previous_token is None or failure.previous_token.type != "JUDGE" or failure.token.text not in JUDGE:
         return None
-    text = f"at {place.found.text}"
-    return place.error("TLT0101", place.expectation(), f"write `{text}`", write=text)
+    text = f"at {failure.token.text}"
+    return failure.error("TLT0101", failure.expectation(), f"write `{text}`", write=text)
 
 
-def without_braces(place: Place) -> Diagnostic | None:
+def clauses_without_braces(failure: ParseFailure) -> Diagnostic | None:
     """Report ``spec s: keep a``, ``spec s ( keep a )`` and ``spec s = { keep a }``."""
-    before, token = place.before, place.found
-    if before is None or place.tokens[0].type != "SPEC":
+    before, token = failure.previous_token, failure.token
+    if before is None or failure.tokens[0].type != "SPEC":
         return None
     title = "the clauses of a spec stand in braces"
     if before.type == "EQUAL" and token.type == "LBRACE":
         span = span_of([before, token])
-        return place.error("TLT0101", f"{title}, without `=`", "write `{` alone", span=span, write="{")
-    if "LBRACE" not in place.allowed or not (token.text in CLAUSES or token.text in (":", "(", "[")):
+        return failure.error("TLT0101", f"{title}, without `=`", "write `{` alone", span=span, write="{")
+    if "LBRACE" not in failure.allowed_terminals or not (token.text in CLAUSES or token.text in (":", "(", "[")):
         return None
-    return place.error("TLT0101", title, "put `{` before the first one and `}` behind the last")
+    return failure.error("TLT0101", title, "put `{` before the first one and `}` behind the last")
 
 
-def sign_behind_keyword(place: Place) -> Diagnostic | None:
+def sign_behind_keyword(failure: ParseFailure) -> Diagnostic | None:
     """Report ``reach: a``."""
-    if place.start != "clause" or place.stop.index != 1 or place.found.text not in (":", "="):
+    if failure.start != "clause" or failure.stop.index != 1 or failure.token.text not in (":", "="):
         return None
-    word = place.tokens[0].text
-    title = f"no {shown(place.found)} stands behind `{word}`"
-    return place.error("TLT0104", title, f"write `{word}` alone", span=span_of(place.tokens[:2]), write=word)
+    word = failure.tokens[0].text
+    title = f"no {quote_token(failure.token)} stands behind `{word}`"
+    return failure.error("TLT0104", title, f"write `{word}` alone", span=span_of(failure.tokens[:2]), write=word)
 
 
-def _outside(place: Place) -> Diagnostic:
-    word = place.found.text
+def _outside_error(failure: ParseFailure) -> Diagnostic:
+    word = failure.token.text
     if word in CLAUSES:
         help_ = f"put it into one: `spec NAME {{ {word} … }}`"
-        return place.error("TLT0107", f"`{word}` stands only inside a spec", help_)
-    return place.error("TLT0107", f"`{word}` stands only inside a test", f"put it into one: {DECLARATIONS['test']}")
+        return failure.error("TLT0107", f"`{word}` stands only inside a spec", help_)
+    return failure.error("TLT0107", f"`{word}` stands only inside a test", f"put it into one: {DECLARATIONS['test']}")
 
 
-def _no_clause(place: Place, title: str) -> Diagnostic | None:
+def _line_without_keyword(failure: ParseFailure, title: str) -> Diagnostic | None:
     """Report a line of a spec that begins with no keyword, with a guess at its meaning."""
-    tokens, token = place.tokens, place.found
-    diagnostic = _limit(place, title)
+    tokens, token = failure.tokens, failure.token
+    diagnostic = _limit_error(failure, title)
     if diagnostic:
         return diagnostic
     at = next((index for index in (1, 2) if tokens[index:] and tokens[index].text in CLAUSES), None)
     if at and all(item.type == "NUMBER" or item.text in _MARKS for item in tokens[:at]):
-        word, signs, span = tokens[at].text, written(place, 0, at), span_of(tokens[: at + 1])
+        word, signs, span = tokens[at].text, text_of(failure, 0, at), span_of(tokens[: at + 1])
         title = f"no clause begins with `{signs}`"
-        return place.error("TLT0107", title, f"write `{word}` alone", span=span, write=word)
+        return failure.error("TLT0107", title, f"write `{word}` alone", span=span, write=word)
     if not any(_is_word(item) for item in tokens[:-1]):
-        return place.error("TLT0107", title, "leave it out: a clause begins with its keyword")
-    diagnostic = conditional(place)
+        return failure.error("TLT0107", title, "leave it out: a clause begins with its keyword")
+    diagnostic = condition_line(failure)
     if diagnostic:
         return diagnostic
     if token.type in _OF_OPERATOR and tokens[1].text in CLAUSES:
-        return place.error("TLT0107", title, f"leave it out, and say with `{tokens[1].text}` alone what is meant")
+        return failure.error("TLT0107", title, f"leave it out, and say with `{tokens[1].text}` alone what is meant")
     if token.type in _OF_OPERATOR:
         # A keyword applies to its whole line, an operator only to the next operand; and a clause takes no bound.
         bound = len(tokens) > 2 and tokens[1].text in ("within", "for", "[")
         stop = len(tokens) - 1
-        if has(place, 1, stop, INFIX):
-            return place.error("TLT0107", title, _IN_BRACKETS.format(word=token.text))
+        if has_token(failure, 1, stop, INFIX):
+            return failure.error("TLT0107", title, _IN_BRACKETS.format(word=token.text))
         if bound:
-            text = f"require {written(place, 0, stop)}"
-            diagnostic = reworded(place, 0, stop, text, title, ": the formula as it is written", "TLT0107")
-            return diagnostic or place.error("TLT0107", title, _IN_BRACKETS.format(word=token.text))
+            text = f"require {text_of(failure, 0, stop)}"
+            diagnostic = suggest_rewrite(failure, 0, stop, text, title, ": the formula as it is written", "TLT0107")
+            return diagnostic or failure.error("TLT0107", title, _IN_BRACKETS.format(word=token.text))
         keyword = _OF_OPERATOR[token.type]
-        return place.error("TLT0107", title, None, f"did you mean `{keyword}`?", write=keyword)
+        return failure.error("TLT0107", title, None, f"did you mean `{keyword}`?", write=keyword)
     if token.type in INFIX:
-        return place.error("TLT0107", title, f"it stands between two formulas, and there is none before `{token.text}`")
+        return failure.error(
+            "TLT0107", title, f"it stands between two formulas, and there is none before `{token.text}`"
+        )
     if token.text.lower() in ("allow", "permit", "may", "can"):
-        return place.error("TLT0107", title, "leave it out: whatever no clause forbids is allowed")
-    next_words = place.source.text[tokens[-1].end :].partition("\n")[0].split()
+        return failure.error("TLT0107", title, "leave it out: whatever no clause forbids is allowed")
+    next_words = failure.source.text[tokens[-1].end :].partition("\n")[0].split()
     if len(tokens) == 2 and next_words and next_words[0] in CLAUSES:
-        return place.error("TLT0107", title, f"leave it out: `{next_words[0]}` says by itself that it counts")
+        return failure.error("TLT0107", title, f"leave it out: `{next_words[0]}` says by itself that it counts")
     if token.text.lower() in SYNONYMS["clause"]:
         return None
-    text = written(place, 0, len(tokens) - 1)
-    if not reworded(place, 0, len(tokens) - 1, f"reach {text}", title):
+    text = text_of(failure, 0, len(tokens) - 1)
+    if not suggest_rewrite(failure, 0, len(tokens) - 1, f"reach {text}", title):
         return None
-    return place.error("TLT0107", title, f"write `reach {text}`, or `keep {text}` for every step")
+    return failure.error("TLT0107", title, f"write `reach {text}`, or `keep {text}` for every step")
 
 
-def _limit(place: Place, title: str) -> Diagnostic | None:
-    """Report a piece of a number, its unit and a few words: with a fix if it can only be a limit, else with a help."""
-    tokens = [token for token in place.tokens[:-1] if token.text not in (":", "=", ",")]
+def _limit_error(failure: ParseFailure, title: str) -> Diagnostic | None:
+    """Report a piece of a number, its unit and a few words; offer a fix if it can only be a limit."""
+    tokens = [token for token in failure.tokens[:-1] if token.text not in (":", "=", ",")]
     if len(tokens) > _LONGEST_LIMIT:
         return None
     numbers = [token for token in tokens if token.type == "NUMBER"]
@@ -295,25 +314,25 @@ def _limit(place: Place, title: str) -> Diagnostic | None:
     if unit not in _TIMES:
         return None
     phrase = " ".join(token.text.lower() for token in tokens if token not in units)
-    text, code = f"limit {numbers[0].text} {unit}", "TLT0101" if place.stop.index else "TLT0107"
-    is_clear = bool(units) or not ("time" in phrase or declares_clock(place.source))
+    text, code = f"limit {numbers[0].text} {unit}", "TLT0101" if failure.stop.index else "TLT0107"
+    is_clear = bool(units) or not ("time" in phrase or declares_clock(failure.source))
     if (
         is_clear
         and phrase.replace(numbers[0].text, "N") in _LIMITS
-        and (place.tokens[0].type == "LIMIT" or _is_own_line(place))
+        and (failure.tokens[0].type == "LIMIT" or _is_own_line(failure))
     ):
-        diagnostic = reworded(place, 0, len(place.tokens) - 1, text, title, code=code)
+        diagnostic = suggest_rewrite(failure, 0, len(failure.tokens) - 1, text, title, code=code)
         if diagnostic:
             return diagnostic
     first = tokens[0]
-    if len(tokens) > _FEW or (first.type == "NAME" and closest(first.text, tuple(CLAUSES))):
+    if len(tokens) > _FEW or (first.type == "NAME" and closest_word(first.text, tuple(CLAUSES))):
         return None
-    return place.error(code, title, _IN_TIME.format(limit=text, time=f"{numbers[0].text} {unit}"))
+    return failure.error(code, title, _IN_TIME.format(limit=text, time=f"{numbers[0].text} {unit}"))
 
 
-def _is_own_line(place: Place) -> bool:
+def _is_own_line(failure: ParseFailure) -> bool:
     """Whether the piece stands alone on its lines, apart from braces and comments."""
-    text, tokens = place.source.text, place.tokens
+    text, tokens = failure.source.text, failure.tokens
     before = text[: tokens[0].start].rpartition("\n")[2].rpartition("{")[2]
     after = text[tokens[-1].end :].partition("\n")[0].partition("//")[0].partition("}")[0]
     return not before.strip() and not after.strip()
@@ -323,14 +342,14 @@ def _is_word(token: Token) -> bool:
     return token.text[:1].isalpha() and token.type != BAD
 
 
-CLAUSE_RULES: Final[tuple[Callable[[Place], Diagnostic | None], ...]] = (
+CLAUSE_RULES: Final[tuple[Callable[[ParseFailure], Diagnostic | None], ...]] = (
     unknown_keyword,
-    without_braces,
-    clause_outside,
+    clauses_without_braces,
+    clause_outside_spec,
     joined_clauses,
-    clause_inside,
-    synonym_inside,
+    clause_inside_formula,
+    synonym_inside_formula,
     limit_in_other_words,
     sign_behind_keyword,
-    judge,
+    judge_without_at,
 )

@@ -13,16 +13,23 @@ from tltlc.grammar.mistakes.one_reading import (
     QUANTIFIERS,
     TEMPORAL,
     UNCLEAR,
-    clause_asked,
-    has,
+    effective_clause,
     has_always_before,
+    has_token,
     is_clear_here,
     is_clear_time_here,
     is_clear_word,
     is_of_one_step,
 )
-from tltlc.grammar.mistakes.place import BEFORE_ONE, INFIX, Place, declares_clock, outside, shown
-from tltlc.grammar.mistakes.rephrasing import formula_start, formula_stop, last_of, operand, reworded, span_of
+from tltlc.grammar.mistakes.place import BEFORE_ONE, INFIX, ParseFailure, declares_clock, outer_indices, quote_token
+from tltlc.grammar.mistakes.rephrasing import (
+    formula_start,
+    formula_stop,
+    last_index_of,
+    operand_text,
+    span_of,
+    suggest_rewrite,
+)
 
 _FILLERS: Final = frozenset(("the", "an", "to", "be", "being", "either", "both", "first"))
 _JOINED: Final[dict[str, Collection[str]]] = {"either": {"OR"}, "both": {"AND"}, "first": {"THEN"}, "to": (), "be": ()}
@@ -35,7 +42,10 @@ _COMPARISONS: Final = {
 }
 
 Forms = Mapping[str, str]
-"""The equivalents of an English form, by clause, "" for all others; a form with a keyword replaces the whole clause."""
+"""The equivalents of an English form, by clause; the key "" stands for all other clauses.
+
+An equivalent that begins with a keyword replaces the whole clause.
+"""
 
 _CONDITION: Final = {"reach": "{a} and {b}", "avoid": "{a} and {b}", "": "{b} implies {a}"}
 _SEQUENCE: Final = {"": "{a} then {b}"}
@@ -115,189 +125,205 @@ _WHERE: Final = ": where `{b}` holds, `{a}` must, too"
 _ONCE: Final = "; a clause `keep {b} implies {a}` asks for it at every step"
 
 
-def plain_english(place: Place) -> Diagnostic | None:
+def plain_english(failure: ParseFailure) -> Diagnostic | None:
     """Report ``reach if b then a``, ``keep a while b``, ``reach a within 20 steps``."""
-    if not place.wants_operator or place.before is None:
+    if not failure.wants_operator or failure.previous_token is None:
         return None
-    for at, untimed_forms in ((place.stop.index - 1, _PREFIXES), (place.stop.index, _FORMS)):
-        word, is_timed = place.tokens[at], at + 1 < len(place.tokens) and place.tokens[at + 1].type == "NUMBER"
+    for at, untimed_forms in ((failure.stop.index - 1, _PREFIXES), (failure.stop.index, _FORMS)):
+        word, is_timed = failure.tokens[at], at + 1 < len(failure.tokens) and failure.tokens[at + 1].type == "NUMBER"
         forms = _TIMES.get(word.text) if is_timed else untimed_forms.get(word.text)
         if forms is None or word.type not in ("NAME", "WHEN"):
             continue
-        if place.tokens[0].type == "PREDICATE":
-            return place.error("TLT0101", f"{shown(word)} is no operator", CASES, span=word.span)
-        if word.text == "without" and _kind(place) in ("reach", "keep"):
-            return _without(place)
-        report = _timed if is_timed else _untimed
-        return _prefixed(place, at, forms, timed=is_timed) if at < place.stop.index else report(place, forms)
+        if failure.tokens[0].type == "PREDICATE":
+            return failure.error("TLT0101", f"{quote_token(word)} is no operator", CASES, span=word.span)
+        if word.text == "without" and _clause_keyword(failure) in ("reach", "keep"):
+            return _without_error(failure)
+        report = _time_error if is_timed else _infix_word_error
+        return (
+            _prefix_word_error(failure, at, forms, timed=is_timed)
+            if at < failure.stop.index
+            else report(failure, forms)
+        )
     return None
 
 
-def compared(place: Place) -> Diagnostic | None:
+def comparison_in_words(failure: ParseFailure) -> Diagnostic | None:
     """Report ``coins is more than 3``, ``health above 50%``."""
-    at = place.stop.index
-    if not place.wants_operator or place.found.type != "NAME":
+    at = failure.stop.index
+    if not failure.wants_operator or failure.token.type != "NAME":
         return None
-    words = [token.text for token in place.tokens[at : at + 3]]
+    words = [token.text for token in failure.tokens[at : at + 3]]
     has_verb = words[0] in ("is", "are")
     for phrase, sign in _COMPARISONS.items():
         length = has_verb + len(phrase)
         if tuple(words[has_verb:length]) != phrase:
             continue
-        value = place.tokens[at + length].type
+        value = failure.tokens[at + length].type
         if value == "NUMBER" or (value == "NAME" and phrase[0] != "at"):
-            title, span = f"{shown(place.found)} is no operator", span_of(place.tokens[at : at + length])
-            return place.error("TLT0101", title, f"write `{sign}`", span=span, write=sign)
+            title, span = f"{quote_token(failure.token)} is no operator", span_of(failure.tokens[at : at + length])
+            return failure.error("TLT0101", title, f"write `{sign}`", span=span, write=sign)
     return None
 
 
-def filler(place: Place) -> Diagnostic | None:
+def filler_word(failure: ParseFailure) -> Diagnostic | None:
     """Report ``reach the exit``, ``avoid being seen``."""
-    at = place.stop.index
+    at = failure.stop.index
     for index in (at - 1, at):
-        word = place.tokens[index]
-        if place.wants_operator and index > 0 and word.type == "NAME" and word.text in _FILLERS:
-            title, following = f"{shown(word)} says nothing here", place.tokens[index + 1]
-            if following.type == "NAME" and _is_clear_filler(place, index):
-                return reworded(place, index, index + 2, following.text, title, " alone") or place.error(
+        word = failure.tokens[index]
+        if failure.wants_operator and index > 0 and word.type == "NAME" and word.text in _FILLERS:
+            title, following = f"{quote_token(word)} says nothing here", failure.tokens[index + 1]
+            if following.type == "NAME" and _is_clear_filler(failure, index):
+                return suggest_rewrite(failure, index, index + 2, following.text, title, " alone") or failure.error(
                     "TLT0101", title, "leave it out", span=word.span
                 )
             if following.type == "NAME":
                 help_ = "say it with a predicate, as in `near(a)`"
                 if word.text in ("either", "both"):
                     help_ = "say what it joins by brackets: `not (a or b)`, `c and (a or b)`"
-                return place.error("TLT0101", f"{shown(word)} is no operator", help_, span=word.span)
+                return failure.error("TLT0101", f"{quote_token(word)} is no operator", help_, span=word.span)
     return None
 
 
-def _is_clear_filler(place: Place, at: int) -> bool:
-    """Whether a word can be left out: it has no other meaning, or it begins the formula and fits all its operators."""
-    word, kind = place.tokens[at].text, _kind(place)
+def _is_clear_filler(failure: ParseFailure, at: int) -> bool:
+    """Whether a word can be left out.
+
+    It can if it has no other meaning, or if it begins the formula and fits all operators of the formula.
+    """
+    word, kind = failure.tokens[at].text, _clause_keyword(failure)
     if word not in _JOINED:
         return True
     # `reach both a and b` allows one after the other, and `avoid both` may forbid each of them.
-    if at != formula_start(place) or (word == "both" and kind not in ("keep", "require")):
+    if at != formula_start(failure) or (word == "both" and kind not in ("keep", "require")):
         return False
-    return not has(place, at, formula_stop(place), INFIX - {*_JOINED[word]})
+    return not has_token(failure, at, formula_stop(failure), INFIX - {*_JOINED[word]})
 
 
-def conditional(place: Place) -> Diagnostic | None:
+def condition_line(failure: ParseFailure) -> Diagnostic | None:
     """Report a line of a spec that begins with ``if`` or ``when``."""
     forms = {"": "keep {b} implies {a}"}
-    return _prefixed(place, 0, forms, timed=False) if place.tokens[0].text in _PREFIXES else None
+    return _prefix_word_error(failure, 0, forms, timed=False) if failure.tokens[0].text in _PREFIXES else None
 
 
-def _without(place: Place) -> Diagnostic:
-    """Report ``reach a without b``: `avoid` applies to what follows, which must be one operand."""
+def _without_error(failure: ParseFailure) -> Diagnostic:
+    """Report ``reach a without b``. The fix is an `avoid`, which applies to all that follows it."""
     help_ = "`avoid`, which begins a clause of its own and speaks of every step"
-    at = place.stop.index
-    goals = _goals(place, at)
-    sides = ((goals[-1], at), (at + 1, formula_stop(place)))
-    is_clear = len(goals) == 1 and is_clear_word(place, "without", *sides, _kind(place))
+    at = failure.stop.index
+    goals = _goal_starts(failure, at)
+    sides = ((goals[-1], at), (at + 1, formula_stop(failure)))
+    is_clear = len(goals) == 1 and is_clear_word(failure, "without", *sides, _clause_keyword(failure))
     write = "avoid" if is_clear else None
-    return place.error("TLT0101", "`without` is no operator", f"{'write' if is_clear else 'use'} {help_}", write=write)
+    return failure.error(
+        "TLT0101", "`without` is no operator", f"{'write' if is_clear else 'use'} {help_}", write=write
+    )
 
 
-def _untimed(place: Place, forms: Forms) -> Diagnostic:
+def _infix_word_error(failure: ParseFailure, forms: Forms) -> Diagnostic:
     """Report ``a WORD b``."""
-    at, kind = place.stop.index, _kind(place)
-    begin, stop = _goals(place, at)[-1], formula_stop(place)
-    second = at + 1 + (place.tokens[at + 1].text == "by")
-    end = next((index for index in outside(place.tokens, second, stop) if place.tokens[index].type == "THEN"), stop)
+    at, kind = failure.stop.index, _clause_keyword(failure)
+    begin, stop = _goal_starts(failure, at)[-1], formula_stop(failure)
+    second = at + 1 + (failure.tokens[at + 1].text == "by")
+    end = next(
+        (index for index in outer_indices(failure.tokens, second, stop) if failure.tokens[index].type == "THEN"), stop
+    )
     form = forms.get(kind, forms[""])
-    parts = _Parts(operand(place, begin, at), operand(place, second, end))
-    word = place.found.text
+    parts = _Parts(operand_text(failure, begin, at), operand_text(failure, second, end))
+    word = failure.token.text
     is_clear = (
         (end == stop or (kind == "reach" and word not in _OF_THE_REST))
-        and (begin == formula_start(place) or word != "unless")
+        and (begin == formula_start(failure) or word != "unless")
         and not (" then " in form and kind == "keep")
-        and is_clear_word(place, word, (begin, at), (second, end), kind)
-        and is_clear_here(place, word)
+        and is_clear_word(failure, word, (begin, at), (second, end), kind)
+        and is_clear_here(failure, word)
     )
-    return _rewrite_error(place, at, (begin, end), form, parts if is_clear else None)
+    return _rewrite_error(failure, at, (begin, end), form, parts if is_clear else None)
 
 
-def _timed(place: Place, forms: Forms) -> Diagnostic:
+def _time_error(failure: ParseFailure, forms: Forms) -> Diagnostic:
     """Report ``a WORD TIME``."""
-    at, kind = place.stop.index, _kind(place)
-    goals, stop = _goals(place, at), formula_stop(place)
+    at, kind = failure.stop.index, _clause_keyword(failure)
+    goals, stop = _goal_starts(failure, at), formula_stop(failure)
     begin = goals[-1]
-    time, end, is_clear_unit = _time(place, at + 1)
+    time, end, is_clear_unit = _read_time(failure, at + 1)
     if len(goals) > 1:
-        before = operand(place, goals[-2], begin - 1)
-        is_clear = not has(place, goals[-2], begin - 1, UNCLEAR | TEMPORAL)
+        before = operand_text(failure, goals[-2], begin - 1)
+        is_clear = not has_token(failure, goals[-2], begin - 1, UNCLEAR | TEMPORAL)
         form, start = forms["then"], goals[-2]
     elif kind in forms and kind:
         before, form, start, is_clear = "", forms[kind], begin, True
     else:
         # The time applies to the last operand only.
-        last = last_of(place, INFIX, begin)
+        last = last_index_of(failure, INFIX, begin)
         start = begin = begin if last is None else last + 1
-        before, form, is_clear = "", forms[""], _is_clear_time(place, begin, forms)
-        is_clear = is_clear and place.tokens[begin].type not in _UNARY
-        is_clear = is_clear and not has(place, formula_start(place), at, TEMPORAL | QUANTIFIERS)
+        before, form, is_clear = "", forms[""], _is_clear_time(failure, begin, forms)
+        is_clear = is_clear and failure.tokens[begin].type not in _UNARY
+        is_clear = is_clear and not has_token(failure, formula_start(failure), at, TEMPORAL | QUANTIFIERS)
     if kind != "keep":
-        is_clear = is_clear and place.tokens[begin].type not in _UNARY
-    is_clear = is_clear and is_clear_unit and end == stop and _is_clear_operand(place, begin, at)
-    parts = _Parts(operand(place, begin, at), time.text, before, time)
-    return _rewrite_error(place, at, (start, stop), form, parts if is_clear else None)
+        is_clear = is_clear and failure.tokens[begin].type not in _UNARY
+    is_clear = is_clear and is_clear_unit and end == stop and _is_clear_operand(failure, begin, at)
+    parts = _Parts(operand_text(failure, begin, at), time.text, before, time)
+    return _rewrite_error(failure, at, (start, stop), form, parts if is_clear else None)
 
 
-def _prefixed(place: Place, at: int, forms: Forms, *, timed: bool) -> Diagnostic:
+def _prefix_word_error(failure: ParseFailure, at: int, forms: Forms, *, timed: bool) -> Diagnostic:
     """Report ``WORD b, a`` and ``WORD TIME a``."""
     if timed:
-        return _prefixed_time(place, at, forms)
-    stop, form = formula_stop(place), forms.get(_kind(place), forms[""])
-    split = _split(place, at + 1, stop)
-    second = split + (place.tokens[split].text in _SEPARATORS)
-    if _kind(place) == "reach":
+        return _prefix_time_error(failure, at, forms)
+    stop, form = formula_stop(failure), forms.get(_clause_keyword(failure), forms[""])
+    split = _condition_end(failure, at + 1, stop)
+    second = split + (failure.tokens[split].text in _SEPARATORS)
+    if _clause_keyword(failure) == "reach":
         # Stop before the next goal.
         stop = next(
-            (index for index in outside(place.tokens, second, stop) if place.tokens[index].type == "THEN"), stop
+            (index for index in outer_indices(failure.tokens, second, stop) if failure.tokens[index].type == "THEN"),
+            stop,
         )
-    parts = _Parts(operand(place, second, stop), operand(place, at + 1, split))
-    previous = place.tokens[at - 1].type if at > formula_start(place) else None
-    is_clear = previous in _BEFORE_CONDITIONS.get(_kind(place), (None, "AND", "OR", "IMPLIES"))
-    is_clear = is_clear and is_clear_here(place, place.tokens[at].text)
-    is_clear = is_clear and not has(place, formula_start(place), split, TEMPORAL)
-    is_clear = is_clear and not (_kind(place) in ("reach", "avoid") and has(place, second, stop, TEMPORAL))
+    parts = _Parts(operand_text(failure, second, stop), operand_text(failure, at + 1, split))
+    previous = failure.tokens[at - 1].type if at > formula_start(failure) else None
+    is_clear = previous in _BEFORE_CONDITIONS.get(_clause_keyword(failure), (None, "AND", "OR", "IMPLIES"))
+    is_clear = is_clear and is_clear_here(failure, failure.tokens[at].text)
+    is_clear = is_clear and not has_token(failure, formula_start(failure), split, TEMPORAL)
+    is_clear = is_clear and not (
+        _clause_keyword(failure) in ("reach", "avoid") and has_token(failure, second, stop, TEMPORAL)
+    )
     # `if a then b until c` may be a rule until `c`; and a keyword would apply to the `until` and the `or` after it.
-    is_clear = is_clear and not has(place, second, stop, UNCLEAR)
-    keyword = place.tokens[second].text
+    is_clear = is_clear and not has_token(failure, second, stop, UNCLEAR)
+    keyword = failure.tokens[second].text
     if keyword in _FROM_THEN_ON:
         title = (
-            f"{shown(place.tokens[at])} is no operator" if at else f"no clause begins with {shown(place.tokens[at])}"
+            f"{quote_token(failure.tokens[at])} is no operator"
+            if at
+            else f"no clause begins with {quote_token(failure.tokens[at])}"
         )
         code = "TLT0101" if at else "TLT0107"
-        return place.error(code, title, _FROM_THEN_ON[keyword], span=place.tokens[at].span)
+        return failure.error(code, title, _FROM_THEN_ON[keyword], span=failure.tokens[at].span)
     if keyword in OPERATORS:
-        is_clear = is_clear and keyword == "reach" and place.tokens[at].text != "while"
-        is_clear = is_clear and not has(place, second, stop, INFIX)
+        is_clear = is_clear and keyword == "reach" and failure.tokens[at].text != "while"
+        is_clear = is_clear and not has_token(failure, second, stop, INFIX)
     wrapped = form if previous in (None, "THEN") else f"({form})"
-    return _rewrite_error(place, at, (at, stop), wrapped, parts if is_clear else None)
+    return _rewrite_error(failure, at, (at, stop), wrapped, parts if is_clear else None)
 
 
-def _prefixed_time(place: Place, at: int, forms: Forms) -> Diagnostic:
-    stop, kind, first = formula_stop(place), _kind(place), formula_start(place)
-    time, second, is_clear_unit = _time(place, at + 1)
+def _prefix_time_error(failure: ParseFailure, at: int, forms: Forms) -> Diagnostic:
+    stop, kind, first = formula_stop(failure), _clause_keyword(failure), formula_start(failure)
+    time, second, is_clear_unit = _read_time(failure, at + 1)
     before, start = "", at
-    is_clear = is_clear_unit and _is_clear_operand(place, second, stop)
+    is_clear = is_clear_unit and _is_clear_operand(failure, second, stop)
     if at == first:
         form = forms.get(kind, forms[""])
         has_own_form = form != forms[""]
         is_clear = is_clear and (
-            has_own_form or (_is_clear_time(place, at, forms) and not has(place, second, stop, INFIX))
+            has_own_form or (_is_clear_time(failure, at, forms) and not has_token(failure, second, stop, INFIX))
         )
-    elif kind == "reach" and place.tokens[at - 1].type == "THEN":
-        start = _goals(place, at)[-2]
-        form, before = forms["then"], operand(place, start, at - 1)
-        is_clear = is_clear and not has(place, start, at - 1, UNCLEAR | TEMPORAL)
+    elif kind == "reach" and failure.tokens[at - 1].type == "THEN":
+        start = _goal_starts(failure, at)[-2]
+        form, before = forms["then"], operand_text(failure, start, at - 1)
+        is_clear = is_clear and not has_token(failure, start, at - 1, UNCLEAR | TEMPORAL)
     else:
         form = forms[""]
-        is_clear = is_clear and _is_clear_time(place, at, forms)
-        is_clear = is_clear and not has(place, first, stop, {*TEMPORAL, "AND", "OR"})
-    parts = _Parts(operand(place, second, stop), time.text, before, time)
-    return _rewrite_error(place, at, (start, stop), form, parts if is_clear else None)
+        is_clear = is_clear and _is_clear_time(failure, at, forms)
+        is_clear = is_clear and not has_token(failure, first, stop, {*TEMPORAL, "AND", "OR"})
+    parts = _Parts(operand_text(failure, second, stop), time.text, before, time)
+    return _rewrite_error(failure, at, (start, stop), form, parts if is_clear else None)
 
 
 @record
@@ -329,7 +355,7 @@ class _Parts:
     c: str = ""
     time: _Time | None = None
 
-    def put_in(self, form: str) -> str:
+    def fill(self, form: str) -> str:
         """Return the form with the parts filled in; empty if the form needs a time in steps and there is none."""
         if self.time is None or self.time.steps is None:
             return "" if "{less}" in form else form.format(a=self.a, b=self.b, c=self.c, end=self.b)
@@ -337,41 +363,43 @@ class _Parts:
         return form.format(a=self.a, b=self.b, c=self.c, end=self.time.number, less=less)
 
 
-def _rewrite_error(place: Place, at: int, part: tuple[int, int], form: str, parts: _Parts | None) -> Diagnostic:
+def _rewrite_error(
+    failure: ParseFailure, at: int, part: tuple[int, int], form: str, parts: _Parts | None
+) -> Diagnostic:
     """Return the error at the word ``at``, with a text for the tokens of ``part``, a start and a stop.
 
     ``parts`` is None if the text has more than one reading; then the help describes the form in general.
     """
-    word, kind = place.tokens[at], _kind(place)
-    title = f"{shown(word)} is no operator" if at else f"no clause begins with {shown(word)}"
+    word, kind = failure.tokens[at], _clause_keyword(failure)
+    title = f"{quote_token(word)} is no operator" if at else f"no clause begins with {quote_token(word)}"
     code = "TLT0101" if at else "TLT0107"
     start, stop = part
     is_timed = form in _TIMED
     if _is_clause(form):
         start = 0
     is_zero = is_timed and parts is not None and parts.time is not None and _is_zero(parts.time)
-    text = parts.put_in(form) if parts and parts.a and parts.b and not is_zero else ""
+    text = parts.fill(form) if parts and parts.a and parts.b and not is_zero else ""
     if word.text == "before" and form == _SEQUENCE[""]:
         # `b` may be a later goal, or something that must not happen before `a`.
         text = ""
     if parts and text:
         reason = ((word.text == "for" or not is_timed) and _REASONS.get((word.text, kind))) or (
-            (_WHERE if _is_of_every_step(place, at) else _ONCE) if form == _CONDITION[""] else ""
+            (_WHERE if _is_of_every_step(failure, at) else _ONCE) if form == _CONDITION[""] else ""
         )
-        diagnostic = reworded(place, start, stop, text, title, reason.format(a=parts.a, b=parts.b), code)
+        diagnostic = suggest_rewrite(failure, start, stop, text, title, reason.format(a=parts.a, b=parts.b), code)
         if diagnostic:
             return diagnostic
-    return place.error(code, title, _general_help(place, at, form), span=word.span)
+    return failure.error(code, title, _general_help(failure, at, form), span=word.span)
 
 
-def _general_help(place: Place, at: int, form: str) -> str:
+def _general_help(failure: ParseFailure, at: int, form: str) -> str:
     """Return a help that describes a form, with letters for its parts."""
-    word, is_timed, is_prefix = place.tokens[at].text, form in _TIMED, at == 0 or at < place.stop.index
+    word, is_timed, is_prefix = failure.tokens[at].text, form in _TIMED, at == 0 or at < failure.stop.index
     time = _Time("20", "steps") if is_timed else None
     parts = _Parts("a", time.text if time else "b", "c", time)
     infix = "followed by" if word == "followed" else word
     english = f"{word} {parts.b}, a" if is_prefix else f"a {infix} {parts.b}"
-    if form == _CONDITION[""] and not _is_of_every_step(place, at):
+    if form == _CONDITION[""] and not _is_of_every_step(failure, at):
         return (
             f"`{english}` is `b implies a` where it is about one step, a clause `keep b implies a` where it is about "
             "every one, and `a and b` where both are asked for"
@@ -383,12 +411,12 @@ def _general_help(place: Place, at: int, form: str) -> str:
         )
     if "{c}" in form:
         english = f"c then {english}"
-    kind, text = _kind(place), parts.put_in(form)
-    clause = clause_asked(place, at)
+    kind, text = _clause_keyword(failure), parts.fill(form)
+    clause = effective_clause(failure, at)
     if clause != kind and clause in _FORMS.get(word, {}) and not is_timed:
         # The general form would mean something else where this clause applies.
         form = _FORMS[word][clause]
-        text = parts.put_in(form if _is_clause(form) else f"{clause} {form}")
+        text = parts.fill(form if _is_clause(form) else f"{clause} {form}")
         return f"`{clause} {english}` is written `{text}`"
     if at and _is_clause(form):
         english = f"{kind} {english}"
@@ -405,39 +433,41 @@ _OF_THE_REST: Final = ("after", "unless", "but")
 """Words that may apply to all goals that follow, or only to the next one."""
 
 
-def _is_clear_time(place: Place, begin: int, forms: Forms) -> bool:
+def _is_clear_time(failure: ParseFailure, begin: int, forms: Forms) -> bool:
     """Whether a time can apply only to the operand that begins here."""
-    clause = place.tokens[0].text if place.start == "clause" else ""
-    previous = place.tokens[begin - 1].type if begin > formula_start(place) else None
+    clause = failure.tokens[0].text if failure.start == "clause" else ""
+    previous = failure.tokens[begin - 1].type if begin > formula_start(failure) else None
     if clause in ("reach", "avoid"):
         return False
-    is_kept = clause == "keep" or has_always_before(place)
+    is_kept = clause == "keep" or has_always_before(failure)
     # These forms require a step to exist, which would turn what is kept into a goal.
     if is_kept and (forms is _AFTER_TIME or (previous is None and (clause == "keep" or forms is _FOR_TIME))):
         return False
     may_be_negated = forms is _IN_TIME
-    return previous in (None, "IMPLIES") and is_clear_time_here(place, may_be_negated=may_be_negated, may_be_kept=True)
+    return previous in (None, "IMPLIES") and is_clear_time_here(
+        failure, may_be_negated=may_be_negated, may_be_kept=True
+    )
 
 
-def _is_clear_operand(place: Place, start: int, stop: int) -> bool:
+def _is_clear_operand(failure: ParseFailure, start: int, stop: int) -> bool:
     """Whether a time can apply to all of these tokens."""
-    is_one = is_of_one_step(place, start, stop) and not has(place, start, stop, UNCLEAR)
-    return is_one and place.tokens[start].text not in OPERATORS
+    is_one = is_of_one_step(failure, start, stop) and not has_token(failure, start, stop, UNCLEAR)
+    return is_one and failure.tokens[start].text not in OPERATORS
 
 
-def _goals(place: Place, at: int) -> list[int]:
+def _goal_starts(failure: ParseFailure, at: int) -> list[int]:
     """Return where the goals of a `reach` before ``at`` begin; in other clauses, where the formula begins."""
-    start = formula_start(place)
-    if _kind(place) != "reach":
+    start = formula_start(failure)
+    if _clause_keyword(failure) != "reach":
         return [start]
-    thens = (index for index in outside(place.tokens, start, at) if place.tokens[index].type == "THEN")
+    thens = (index for index in outer_indices(failure.tokens, start, at) if failure.tokens[index].type == "THEN")
     return [start, *(index + 1 for index in thens)]
 
 
-def _is_of_every_step(place: Place, at: int) -> bool:
+def _is_of_every_step(failure: ParseFailure, at: int) -> bool:
     """Whether a condition applies to every step at this place."""
-    is_kept = place.tokens[0].text == "keep" and place.start == "clause"
-    return at == 0 or ((is_kept or has_always_before(place)) and is_clear_here(place, place.tokens[at].text))
+    is_kept = failure.tokens[0].text == "keep" and failure.start == "clause"
+    return at == 0 or ((is_kept or has_always_before(failure)) and is_clear_here(failure, failure.tokens[at].text))
 
 
 def _is_clause(form: str) -> bool:
@@ -448,29 +478,29 @@ def _is_zero(time: _Time) -> bool:
     return not float(time.number)
 
 
-def _kind(place: Place) -> str:
+def _clause_keyword(failure: ParseFailure) -> str:
     """Return the keyword of the clause whose formula is broken; empty inside brackets."""
-    return place.tokens[0].text if place.start == "clause" and not place.open_brackets else ""
+    return failure.tokens[0].text if failure.start == "clause" and not failure.open_brackets else ""
 
 
-def _time(place: Place, at: int) -> tuple[_Time, int, bool]:
+def _read_time(failure: ParseFailure, at: int) -> tuple[_Time, int, bool]:
     """Return a number with its unit in the language's form, the index after it, and whether the unit is certain."""
-    unit = place.tokens[at + 1]
+    unit = failure.tokens[at + 1]
     known = UNITS_ELSEWHERE.get(unit.text.lower(), unit.text if unit.type == "UNIT" else "")
-    is_clear = bool(known) or not declares_clock(place.source)
-    return _Time(place.tokens[at].text, known or "steps"), at + 1 + bool(known), is_clear
+    is_clear = bool(known) or not declares_clock(failure.source)
+    return _Time(failure.tokens[at].text, known or "steps"), at + 1 + bool(known), is_clear
 
 
 _SEPARATORS: Final = ("then", ",", ":")
 
 
-def _split(place: Place, start: int, stop: int) -> int:
+def _condition_end(failure: ParseFailure, start: int, stop: int) -> int:
     """Return where a condition ends: at `then`, a comma or a colon, else after a name with its arguments."""
-    for index in outside(place.tokens, start, stop):
-        if place.tokens[index].text in _SEPARATORS:
+    for index in outer_indices(failure.tokens, start, stop):
+        if failure.tokens[index].text in _SEPARATORS:
             return index
-    name = start + (place.tokens[start].type == "NOT")
-    following: Token | None = place.tokens[name + 1] if name + 1 < stop else None
+    name = start + (failure.tokens[start].type == "NOT")
+    following: Token | None = failure.tokens[name + 1] if name + 1 < stop else None
     if following is None or following.type != "LPAR":
         return min(name + 1, stop)
-    return next((index + 1 for index in outside(place.tokens, name + 1, stop) if index > name + 1), stop)
+    return next((index + 1 for index in outer_indices(failure.tokens, name + 1, stop) if index > name + 1), stop)

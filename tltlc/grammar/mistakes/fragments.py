@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 from typing import Final
 
 from tltlc.core.source import SourceFile
-from tltlc.grammar.keywords import CLAUSES, DECLARATIONS, SYNONYMS, TEST_ITEMS, closest
+from tltlc.grammar.keywords import CLAUSES, DECLARATIONS, SYNONYMS, TEST_ITEMS, closest_word
 from tltlc.grammar.lexer import BAD, Token
 from tltlc.grammar.tables import load
 
@@ -40,7 +40,7 @@ def declarations(source: SourceFile, tokens: Sequence[Token]) -> Iterator[list[T
     piece: list[Token] = []
     depth = 0
     for index, token in enumerate(tokens):
-        if piece and _begins(source, tokens, index, DECLARATIONS, depth == 0):
+        if piece and _begins_piece(source, tokens, index, DECLARATIONS, depth == 0):
             yield piece
             piece, depth = [], 0
         piece.append(token)
@@ -59,7 +59,7 @@ def lines(source: SourceFile, tokens: Sequence[Token], keywords: dict[str, str])
     """Split the body of a block into its lines."""
     piece: list[Token] = []
     for index, token in enumerate(tokens):
-        if piece and _begins(source, tokens, index, keywords, True):
+        if piece and _begins_piece(source, tokens, index, keywords, True):
             yield piece
             piece = []
         piece.append(token)
@@ -67,10 +67,13 @@ def lines(source: SourceFile, tokens: Sequence[Token], keywords: dict[str, str])
         yield piece
 
 
-def block(piece: Sequence[Token]) -> str | None:
-    """Return ``spec`` or ``test`` if the piece is one with braces, even if misspelt; ``spec NAME = …`` is not."""
+def block_kind(piece: Sequence[Token]) -> str | None:
+    """Return ``spec`` or ``test`` if the piece is such a block in braces, even if its keyword is misspelt.
+
+    Return None for any other piece, such as ``spec NAME = …``.
+    """
     head = next((token.type for token in piece if token.type in ("LBRACE", "EQUAL")), None)
-    return closest(piece[0].text, ("spec", "test")) if head == "LBRACE" and piece[0].text not in _OTHERS else None
+    return closest_word(piece[0].text, ("spec", "test")) if head == "LBRACE" and piece[0].text not in _OTHERS else None
 
 
 def is_first_on_line(source: SourceFile, tokens: Sequence[Token], index: int) -> bool:
@@ -78,7 +81,7 @@ def is_first_on_line(source: SourceFile, tokens: Sequence[Token], index: int) ->
     return index == 0 or "\n" in source.text[tokens[index - 1].end : tokens[index].start]
 
 
-def _begins(
+def _begins_piece(
     source: SourceFile, tokens: Sequence[Token], index: int, keywords: dict[str, str], within_lines: bool
 ) -> bool:
     """Whether a piece begins at this token, which is not the first token."""
@@ -102,19 +105,19 @@ def _begins(
     if index + 1 == len(tokens):
         return False
     following = tokens[index + 1]
-    if following.type == "COLON" and _is_like(token.text, keywords):
+    if following.type == "COLON" and _is_like_keyword(token.text, keywords):
         return True
     if following.text in keywords and following.type != "NAME" and before.type in _ENDS:
         return True
     if following.type not in _STARTS or following.text in load().soft or is_first_on_line(source, tokens, index + 1):
         return False
-    return before.type in _ENDS or closest(token.text, tuple(keywords)) is not None
+    return before.type in _ENDS or closest_word(token.text, tuple(keywords)) is not None
 
 
-def _is_like(word: str, keywords: dict[str, str]) -> bool:
+def _is_like_keyword(word: str, keywords: dict[str, str]) -> bool:
     """Whether a word is most likely meant as a keyword."""
     elsewhere = {synonym for words in SYNONYMS.values() for synonym, keyword in words.items() if keyword in keywords}
-    return word.lower() in elsewhere or closest(word, tuple(keywords)) is not None
+    return word.lower() in elsewhere or closest_word(word, tuple(keywords)) is not None
 
 
 def _is_behind_number(source: SourceFile, tokens: Sequence[Token], index: int) -> bool:
@@ -126,9 +129,13 @@ def _is_behind_number(source: SourceFile, tokens: Sequence[Token], index: int) -
 
 def _is_list_mark(source: SourceFile, tokens: Sequence[Token], index: int, keywords: dict[str, str]) -> bool:
     """Whether a line begins like a line of a list, as in ``- reach a`` and ``1. reach a``."""
-    for place in (index, index + 1):
-        following = place + 1
-        if tokens[place].text[0].isalpha() or following == len(tokens) or is_first_on_line(source, tokens, following):
+    for position in (index, index + 1):
+        following = position + 1
+        if (
+            tokens[position].text[0].isalpha()
+            or following == len(tokens)
+            or is_first_on_line(source, tokens, following)
+        ):
             return False
         if tokens[following].text in keywords:
             return True

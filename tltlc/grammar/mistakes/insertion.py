@@ -10,7 +10,7 @@ from tltlc.diagnostics.diagnostic import Edit
 from tltlc.grammar.tree import Comment, Import, Module
 
 
-def at_top(module: Module, line: str) -> Edit:
+def declaration_edit(module: Module, line: str) -> Edit:
     """Return the edit that adds a line after the imports, or before the first declaration and its documentation."""
     source = module.source
     newline = "\r\n" if "\r\n" in source.text else "\n"
@@ -23,13 +23,16 @@ def at_top(module: Module, line: str) -> Edit:
         # Another statement follows on the line; it may be a spec of several lines.
         return Edit(Span(start, start), f"{newline}{line}{newline}")
     first = min((declaration.span.start for declaration in module.declarations), default=len(source.text))
-    _, column = source.position(documented(source, first, module.comments))
-    start = documented(source, first, module.comments) - column + 1
+    _, column = source.position(documentation_start(source, first, module.comments))
+    start = documentation_start(source, first, module.comments) - column + 1
     return Edit(Span(start, start), f"{line}{newline}")
 
 
-def documented(source: SourceFile, start: int, comments: Sequence[Comment]) -> int:
-    """Return where the documentation before a place begins, other comments in between included; else the place."""
+def documentation_start(source: SourceFile, start: int, comments: Sequence[Comment]) -> int:
+    """Return the offset where the documentation comment before ``start`` begins, or ``start`` if there is none.
+
+    Other comments may stand between the two.
+    """
     first = start
     for index in reversed(range(bisect_right(comments, start, key=lambda comment: comment.span.end))):
         comment = comments[index]

@@ -32,10 +32,11 @@ _FEW: Final = 4
 """The most alternatives that a title lists."""
 
 
-class Place:
-    """The place where parsing failed: the token that fits nowhere, the tokens around it, and what could stand there.
+class ParseFailure:
+    """The place where parsing failed: the token that does not fit, the tokens around it, and what could stand there.
 
-    ``tokens`` are the tokens of one piece, parsed as a ``start`` up to ``stop``.
+    ``tokens`` are the tokens of one piece: a declaration, a clause, a line of a test, or a formula.
+    The parser read the piece as the nonterminal ``start``, and ended with the error ``stop``.
     """
 
     def __init__(
@@ -47,35 +48,35 @@ class Place:
         self.start = start
 
     @property
-    def found(self) -> Token:
-        """The token that fits nowhere."""
+    def token(self) -> Token:
+        """The token that does not fit."""
         return self.tokens[self.stop.index]
 
     @property
-    def before(self) -> Token | None:
-        """The token before :attr:`found`, or None."""
+    def previous_token(self) -> Token | None:
+        """The token before :attr:`token`, or None if it is the first."""
         return self.tokens[self.stop.index - 1] if self.stop.index else None
 
     @property
-    def at_end(self) -> bool:
+    def is_at_end(self) -> bool:
         """Whether the piece ends too early."""
-        return self.found.type == END
+        return self.token.type == END
 
     @cached_property
-    def allowed(self) -> set[str]:
+    def allowed_terminals(self) -> set[str]:
         """The terminals that could stand here."""
         tables = load()
-        return lalr.accepted(tables, lalr.reached(tables, self.start, self.tokens[: self.stop.index]))
+        return lalr.allowed_terminals(tables, lalr.stack_after(tables, self.start, self.tokens[: self.stop.index]))
 
     @property
     def wants_operand(self) -> bool:
         """Whether a formula or a number could begin here."""
-        return self.allowed >= OPERAND
+        return self.allowed_terminals >= OPERAND
 
     @property
     def wants_operator(self) -> bool:
         """Whether a formula could end or continue here."""
-        return "AND" in self.allowed
+        return "AND" in self.allowed_terminals
 
     @cached_property
     def open_brackets(self) -> list[Token]:
@@ -89,7 +90,7 @@ class Place:
         return stack
 
     def form(self) -> str | None:
-        """Return a help with the form of the piece, by its keyword, or None."""
+        """Return a help with the form of the piece, by its keyword; None if no form is known."""
         form = KEYWORDS.get(self.start, {}).get(self.tokens[0].text)
         return f"the form is {form}" if form else None
 
@@ -103,12 +104,13 @@ class Place:
         *,
         write: str | None = None,
     ) -> Diagnostic:
-        """Return an error at the token :attr:`found`, or at the last token if the piece ends too early.
+        """Return an error at :attr:`token`, or at the last token if the piece ends too early.
 
-        Its fix replaces the span by ``write``, if that is given and the span contains no comment.
+        ``write`` is the text by which a fix replaces the span. There is no fix if ``write`` is None or
+        if the span contains a comment.
         """
         if span is None:
-            span = self.before.span if self.at_end and self.before else self.found.span
+            span = self.previous_token.span if self.is_at_end and self.previous_token else self.token.span
         fixes = (
             (replacement_fix(self.source, span, write),) if write is not None and not self._has_comment(span) else ()
         )
@@ -121,18 +123,18 @@ class Place:
         return any("//" in text[left.end : right.start] for left, right in pairwise(inside))
 
     def expectation(self) -> str:
-        """Return ``expected … after …, found …``."""
-        before = f" after {shown(self.before)}" if self.before else ""
-        found = "" if self.at_end else f", found {shown(self.found)}"
-        return f"expected {self.wanted()}{before}{found}"
+        """Return the title ``expected … after …, found …``."""
+        before = f" after {quote_token(self.previous_token)}" if self.previous_token else ""
+        actual = "" if self.is_at_end else f", found {quote_token(self.token)}"
+        return f"expected {self.alternatives()}{before}{actual}"
 
-    def wanted(self) -> str:
+    def alternatives(self) -> str:
         """Return what could stand here, in plain words."""
         if self.wants_operand:
-            if self.before and self.before.type in ARITHMETIC:
+            if self.previous_token and self.previous_token.type in ARITHMETIC:
                 return "a value"
             return "an expression" if self.tokens[0].type in ("PREDICATE", "PARAM", "SIGNAL") else "a formula"
-        allowed = set(self.allowed)
+        allowed = set(self.allowed_terminals)
         items = []
         if self.wants_operator:
             items.append("an operator")
@@ -150,7 +152,7 @@ class Place:
         return items[0] if len(items) == 1 else f"{', '.join(items[:-1])} or {items[-1]}"
 
 
-def outside(tokens: Sequence[Token], start: int, stop: int) -> Iterator[int]:
+def outer_indices(tokens: Sequence[Token], start: int, stop: int) -> Iterator[int]:
     """Yield the indices from ``start`` up to ``stop`` of the tokens outside brackets, and of the outermost brackets."""
     depth = 0
     for index in range(start, stop):
@@ -160,13 +162,13 @@ def outside(tokens: Sequence[Token], start: int, stop: int) -> Iterator[int]:
         depth += tokens[index].type in OPENING
 
 
-def touch(left: Token, right: Token) -> bool:
+def are_adjacent(left: Token, right: Token) -> bool:
     """Whether two tokens are adjacent, without a space."""
     return left.end == right.start
 
 
-def shown(token: Token | None) -> str:
-    """Return a token as it stands in the text, shortened for a title."""
+def quote_token(token: Token | None) -> str:
+    """Return the text of a token in backticks, shortened for a title."""
     text = token.text if token else ""
     return f"`{text}`" if len(text) <= 30 else f"`{text[:29]}…`"
 

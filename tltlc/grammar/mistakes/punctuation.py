@@ -10,9 +10,17 @@ from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.grammar.keywords import CLAUSES, TEST_ITEMS
 from tltlc.grammar.lexer import END, tokenize
 from tltlc.grammar.mistakes.fragments import is_first_on_line
-from tltlc.grammar.mistakes.one_reading import QUANTIFIERS, UNCLEAR, has
-from tltlc.grammar.mistakes.place import BEFORE_ONE, INFIX, OPENING, Place, outside, touch
-from tltlc.grammar.mistakes.rephrasing import LOOSE, formula_start, formula_stop, operand, reworded, span_of, written
+from tltlc.grammar.mistakes.one_reading import QUANTIFIERS, UNCLEAR, has_token
+from tltlc.grammar.mistakes.place import BEFORE_ONE, INFIX, OPENING, ParseFailure, are_adjacent, outer_indices
+from tltlc.grammar.mistakes.rephrasing import (
+    LOOSE,
+    formula_start,
+    formula_stop,
+    operand_text,
+    span_of,
+    suggest_rewrite,
+    text_of,
+)
 
 NAME: Final = re.compile("[A-Za-z_][A-Za-z0-9_]*")
 _COMMA: Final = {
@@ -24,46 +32,48 @@ _NUMBER: Final = re.compile(r"[0-9]+\.[0-9]+(?:[eE][+-]?[0-9]+)?")
 _IN_THOUSANDS: Final = re.compile(r"[1-9][0-9]{0,2}(?:,[0-9]{3})+(?:\.[0-9]+)?")
 
 
-def comma(place: Place) -> Diagnostic | None:
+def comma(failure: ParseFailure) -> Diagnostic | None:
     """Report ``reach a, b``, ``keep a,`` and ``3,5 m``."""
-    before, at = place.before, place.stop.index
-    if place.found.type != "COMMA" or before is None or not place.wants_operator or place.open_brackets:
+    before, at = failure.previous_token, failure.stop.index
+    if failure.token.type != "COMMA" or before is None or not failure.wants_operator or failure.open_brackets:
         return None
-    after = place.tokens[at + 1]
-    if before.type == after.type == "NUMBER" and _touch(place, at):
-        return _comma_in_number(place)
+    after = failure.tokens[at + 1]
+    if before.type == after.type == "NUMBER" and _touches_both(failure, at):
+        return _comma_in_number(failure)
     if after.type == END:
-        return place.error("TLT0104", "`,` means nothing here", left_out(place))
-    if place.start == "clause" and after.text in CLAUSES and after.type != "NAME":
-        return _comma_before_clause(place)
-    word, reason = _COMMA.get(place.tokens[0].text, ("and", ""))
+        return failure.error("TLT0104", "`,` means nothing here", leave_out_help(failure))
+    if failure.start == "clause" and after.text in CLAUSES and after.type != "NAME":
+        return _comma_before_clause(failure)
+    word, reason = _COMMA.get(failure.tokens[0].text, ("and", ""))
     title = "`,` joins no formulas"
-    start, stop = formula_start(place), formula_stop(place)
-    if not _is_clear_list(place, start, stop, word):
+    start, stop = formula_start(failure), formula_stop(failure)
+    if not _is_clear_list(failure, start, stop, word):
         help_ = "write `and`, `or` or `then` in its place, with brackets around what belongs together"
-        return place.error("TLT0104", title, help_)
-    diagnostic = reworded(place, start, stop, _joined(place, start, stop, word), title, reason, "TLT0104")
-    return diagnostic or place.error("TLT0104", title, f"in its place, `{word}` is written{reason}")
+        return failure.error("TLT0104", title, help_)
+    diagnostic = suggest_rewrite(
+        failure, start, stop, _joined_text(failure, start, stop, word), title, reason, "TLT0104"
+    )
+    return diagnostic or failure.error("TLT0104", title, f"in its place, `{word}` is written{reason}")
 
 
-def _comma_before_clause(place: Place) -> Diagnostic:
+def _comma_before_clause(failure: ParseFailure) -> Diagnostic:
     """Report ``avoid a, reach b``, which are two clauses."""
-    at, first = place.stop.index, place.tokens[0].text
-    word, title, span = place.tokens[at + 1].text, "`,` joins no clauses", span_of(place.tokens[at : at + 2])
+    at, first = failure.stop.index, failure.tokens[0].text
+    word, title, span = failure.tokens[at + 1].text, "`,` joins no clauses", span_of(failure.tokens[at : at + 2])
     # After a goal, `keep` or `avoid` may apply from there on; and what follows `or` may be an alternative.
-    is_clear = first != "reach" and not has(place, 1, at, UNCLEAR | BEFORE_ONE | QUANTIFIERS | {"OR"})
+    is_clear = first != "reach" and not has_token(failure, 1, at, UNCLEAR | BEFORE_ONE | QUANTIFIERS | {"OR"})
     if not is_clear:
-        return place.error("TLT0104", title, f"let `{word}` begin a line of its own: all clauses count", span=span)
-    return place.error("TLT0104", title, f"write `{word}` alone: all clauses count", span=span, write=word)
+        return failure.error("TLT0104", title, f"let `{word}` begin a line of its own: all clauses count", span=span)
+    return failure.error("TLT0104", title, f"write `{word}` alone: all clauses count", span=span, write=word)
 
 
-def _is_clear_list(place: Place, start: int, stop: int, word: str) -> bool:
+def _is_clear_list(failure: ParseFailure, start: int, stop: int, word: str) -> bool:
     """Whether all commas can mean this word, judged by the operators beside them.
 
     In English, the operator before the last part applies to the whole list: `a, b or c` is `a or b or c`.
     """
-    tokens, operator = place.tokens, word.upper()
-    kinds = [(index, tokens[index].type) for index in outside(tokens, start, stop)]
+    tokens, operator = failure.tokens, word.upper()
+    kinds = [(index, tokens[index].type) for index in outer_indices(tokens, start, stop)]
     commas = [index for index, kind in kinds if kind == "COMMA"]
     if any(token.text in CLAUSES and token.type != "NAME" for token in tokens[start:stop]):
         return False
@@ -76,207 +86,230 @@ def _is_clear_list(place: Place, start: int, stop: int, word: str) -> bool:
         return (
             set(after_last) <= {"THEN"}
             and set(after_commas) <= {"THEN"}
-            and not has(place, start, stop, UNCLEAR - {"THEN"})
+            and not has_token(failure, start, stop, UNCLEAR - {"THEN"})
         )
     # In `not a, b` and `always a, b`, the operator may apply to both.
-    return not has(place, start, stop, INFIX - {operator}) and not has(place, start, commas[-1], BEFORE_ONE)
+    return not has_token(failure, start, stop, INFIX - {operator}) and not has_token(
+        failure, start, commas[-1], BEFORE_ONE
+    )
 
 
-def _comma_in_number(place: Place) -> Diagnostic:
+def _comma_in_number(failure: ParseFailure) -> Diagnostic:
     """Report ``2,5``, and ``1,000``, which some countries read as a thousand and others as one."""
-    at = place.stop.index
+    at = failure.stop.index
     stop = at + 2
-    while place.tokens[stop].type == "COMMA" and place.tokens[stop + 1].type == "NUMBER" and _touch(place, stop):
+    while (
+        failure.tokens[stop].type == "COMMA"
+        and failure.tokens[stop + 1].type == "NUMBER"
+        and _touches_both(failure, stop)
+    ):
         stop += 2
-    text = place.source.slice(span_of(place.tokens[at - 1 : stop]))
-    span, title = span_of(place.tokens[at - 1 : stop]), "a number has a point, no comma"
+    text = failure.source.slice(span_of(failure.tokens[at - 1 : stop]))
+    span, title = span_of(failure.tokens[at - 1 : stop]), "a number has a point, no comma"
     thousands, fraction = text.replace(",", ""), text.replace(",", ".")
     is_fraction, in_thousands = _NUMBER.fullmatch(fraction), _IN_THOUSANDS.fullmatch(text)
     if in_thousands:
         help_ = f"write `{thousands}` where a comma parts the thousands"
         help_ += f", `{fraction}` where it stands for a point" if is_fraction else ""
-        return place.error("TLT0104", title, help_, span=span)
+        return failure.error("TLT0104", title, help_, span=span)
     if is_fraction:
-        return place.error("TLT0104", title, f"write `{fraction}`", span=span, write=fraction)
-    return place.error("TLT0104", title, "write it without commas", span=span)
+        return failure.error("TLT0104", title, f"write `{fraction}`", span=span, write=fraction)
+    return failure.error("TLT0104", title, "write it without commas", span=span)
 
 
-def _touch(place: Place, at: int) -> bool:
+def _touches_both(failure: ParseFailure, at: int) -> bool:
     """Whether a token touches both the token before it and the token after it."""
-    before, token, after = place.tokens[at - 1 : at + 2]
-    return touch(before, token) and touch(token, after)
+    before, token, after = failure.tokens[at - 1 : at + 2]
+    return are_adjacent(before, token) and are_adjacent(token, after)
 
 
-def _joined(place: Place, start: int, stop: int, word: str) -> str:
+def _joined_text(failure: ParseFailure, start: int, stop: int, word: str) -> str:
     """Return tokens with a word in place of each comma outside brackets; a comma before an operator is dropped."""
     text = ""
-    for end in [*(index for index in outside(place.tokens, start, stop) if place.tokens[index].type == "COMMA"), stop]:
-        part = _goal(place, start, end) if word == "then" else operand(place, start, end)
+    for end in [
+        *(index for index in outer_indices(failure.tokens, start, stop) if failure.tokens[index].type == "COMMA"),
+        stop,
+    ]:
+        part = _goal_text(failure, start, end) if word == "then" else operand_text(failure, start, end)
         if start == end:
             continue
-        if text and place.tokens[start].type in INFIX:
-            text += f" {written(place, start, end)}"
+        if text and failure.tokens[start].type in INFIX:
+            text += f" {text_of(failure, start, end)}"
         else:
             text += f" {word} {part}" if text else part
         start = end + 1
     return text
 
 
-def _goal(place: Place, start: int, stop: int) -> str:
+def _goal_text(failure: ParseFailure, start: int, stop: int) -> str:
     """Return tokens before `then`, with a quantifier in brackets, since it would extend over the `then`."""
-    quantifiers = (index for index in outside(place.tokens, start, stop) if place.tokens[index].type in QUANTIFIERS)
+    quantifiers = (
+        index for index in outer_indices(failure.tokens, start, stop) if failure.tokens[index].type in QUANTIFIERS
+    )
     at = next(quantifiers, None)
     if at is None:
-        return written(place, start, stop)
-    return f"{written(place, start, at)} ({written(place, at, stop)})".strip()
+        return text_of(failure, start, stop)
+    return f"{text_of(failure, start, at)} ({text_of(failure, at, stop)})".strip()
 
 
-def missing_comma(place: Place) -> Diagnostic | None:
+def missing_comma(failure: ParseFailure) -> Diagnostic | None:
     """Report ``entity a b``, ``in [0 50]``, ``near(s1 close = 3 m)``."""
-    before, token = place.before, place.found
-    if before is None or "COMMA" not in place.allowed or token.type not in ("NAME", "NUMBER"):
+    before, token = failure.previous_token, failure.token
+    if before is None or "COMMA" not in failure.allowed_terminals or token.type not in ("NAME", "NUMBER"):
         return None
-    if is_first_on_line(place.source, place.tokens, place.stop.index):
+    if is_first_on_line(failure.source, failure.tokens, failure.stop.index):
         return None
-    if before.text in TEST_ITEMS and place.tokens[place.stop.index - 2].type == "COMMA":
-        span = place.tokens[place.stop.index - 2].span
-        return place.error("TLT0104", "`,` means nothing here", left_out(place), span=span)
+    if before.text in TEST_ITEMS and failure.tokens[failure.stop.index - 2].type == "COMMA":
+        span = failure.tokens[failure.stop.index - 2].span
+        return failure.error("TLT0104", "`,` means nothing here", leave_out_help(failure), span=span)
     if before.type not in ("NAME", "NUMBER", "UNIT", "RPAR") or before.text in TEST_ITEMS:
         return None
     has_unit = before.type == "UNIT"
-    text = f"{written(place, place.stop.index - 1 - has_unit, place.stop.index)}, {token.text}"
-    span = span_of(place.tokens[place.stop.index - 1 - has_unit : place.stop.index + 1])
-    return place.error("TLT0101", place.expectation(), f"write `{text}`", span=span, write=text)
+    text = f"{text_of(failure, failure.stop.index - 1 - has_unit, failure.stop.index)}, {token.text}"
+    span = span_of(failure.tokens[failure.stop.index - 1 - has_unit : failure.stop.index + 1])
+    return failure.error("TLT0101", failure.expectation(), f"write `{text}`", span=span, write=text)
 
 
-def argument(place: Place) -> Diagnostic | None:
+def argument_by_name(failure: ParseFailure) -> Diagnostic | None:
     """Report ``near(s1, close: 3 m)`` and ``near(s1, close 3 m)``."""
-    before = place.before
-    if before is None or before.type != "NAME" or "EQUAL" not in place.allowed or not place.open_brackets:
+    before = failure.previous_token
+    if before is None or before.type != "NAME" or "EQUAL" not in failure.allowed_terminals or not failure.open_brackets:
         return None
     title = "an argument by name has `=` before its value"
-    if place.found.type == "COLON":
+    if failure.token.type == "COLON":
         text = f"{before.text} ="
-    elif place.found.type == "NUMBER":
-        text = f"{before.text} = {place.found.text}"
+    elif failure.token.type == "NUMBER":
+        text = f"{before.text} = {failure.token.text}"
     else:
         return None
-    return place.error("TLT0101", title, f"write `{text}`", span=span_of([before, place.found]), write=text)
+    return failure.error("TLT0101", title, f"write `{text}`", span=span_of([before, failure.token]), write=text)
 
 
-def no_arguments(place: Place) -> Diagnostic | None:
+def empty_brackets(failure: ParseFailure) -> Diagnostic | None:
     """Report ``alive()``."""
-    at = place.stop.index
-    kinds = [token.type for token in place.tokens[max(0, at - 2) : at + 1]]
+    at = failure.stop.index
+    kinds = [token.type for token in failure.tokens[max(0, at - 2) : at + 1]]
     if kinds != ["NAME", "LPAR", "RPAR"]:
         return None
-    name = place.tokens[at - 2].text
+    name = failure.tokens[at - 2].text
     title = "there is nothing in these brackets"
     help_ = f"write `{name}` alone, or what it is said of between them"
-    return place.error("TLT0101", title, help_, span=span_of(place.tokens[at - 2 : at + 1]), write=name)
+    return failure.error("TLT0101", title, help_, span=span_of(failure.tokens[at - 2 : at + 1]), write=name)
 
 
-def brackets(place: Place) -> Diagnostic | None:
+def wrong_brackets(failure: ParseFailure) -> Diagnostic | None:
     """Report brackets of the wrong kind: ``near[s1]``, ``keep {seen}`` and ``in (0, 50)``."""
-    at, token = place.stop.index, place.found
-    is_call = place.wants_operator and place.before is not None and touch(place.before, token)
-    kind = "arguments" if is_call else "formulas" if place.wants_operand else "ranges"
+    at, token = failure.stop.index, failure.token
+    is_call = (
+        failure.wants_operator and failure.previous_token is not None and are_adjacent(failure.previous_token, token)
+    )
+    kind = "arguments" if is_call else "formulas" if failure.wants_operand else "ranges"
     opening, closing = "[]" if kind == "ranges" else "()"
-    end = next((index for index in outside(place.tokens, at, len(place.tokens)) if index > at), None)
-    if token.type not in OPENING or end is None or (kind == "ranges" and "LSQB" not in place.allowed):
+    end = next((index for index in outer_indices(failure.tokens, at, len(failure.tokens)) if index > at), None)
+    if token.type not in OPENING or end is None or (kind == "ranges" and "LSQB" not in failure.allowed_terminals):
         return None
-    text = f"{place.tokens[at - 1].text if is_call else ''}{opening}{written(place, at + 1, end)}{closing}"
-    title = f"{kind} stand in `{opening} {closing}`, not in `{token.text} {place.tokens[end].text}`"
-    return reworded(place, at - is_call, end + 1, text, title)
+    text = f"{failure.tokens[at - 1].text if is_call else ''}{opening}{text_of(failure, at + 1, end)}{closing}"
+    title = f"{kind} stand in `{opening} {closing}`, not in `{token.text} {failure.tokens[end].text}`"
+    return suggest_rewrite(failure, at - is_call, end + 1, text, title)
 
 
-def quoted(place: Place) -> Diagnostic | None:
+def quoted_name(failure: ParseFailure) -> Diagnostic | None:
     """Report ``near("door")`` and ``reach "near(door)"``."""
-    text, at = place.found.text.strip('"'), place.stop.index
-    if place.found.type != "STRING" or not ("NAME" in place.allowed or place.wants_operand):
+    text, at = failure.token.text.strip('"'), failure.stop.index
+    if failure.token.type != "STRING" or not ("NAME" in failure.allowed_terminals or failure.wants_operand):
         return None
     name = text if NAME.fullmatch(text) else re.sub("[^A-Za-z0-9_]+", "_", text)
     if not name.strip("_"):
         help_ = "names are ASCII letters, digits and `_`, without quotes"
-        return place.error("TLT0101", place.expectation(), help_)
-    for replacement in dict.fromkeys((unquoted(place, at, at + 1, text), name)):
-        diagnostic = reworded(
-            place, at, at + 1, replacement, place.expectation(), ": no quotes around names and formulas"
+        return failure.error("TLT0101", failure.expectation(), help_)
+    for replacement in dict.fromkeys((text_without_quotes(failure, at, at + 1, text), name)):
+        diagnostic = suggest_rewrite(
+            failure, at, at + 1, replacement, failure.expectation(), ": no quotes around names and formulas"
         )
         if diagnostic:
             return diagnostic
-    return place.error("TLT0101", place.expectation(), f"write `{name}`: no quotes around names and formulas")
+    return failure.error("TLT0101", failure.expectation(), f"write `{name}`: no quotes around names and formulas")
 
 
-def unquoted(place: Place, start: int, stop: int, text: str) -> str:
+def text_without_quotes(failure: ParseFailure, start: int, stop: int, text: str) -> str:
     """Return the text between quotes, in brackets if it is several operands and not the whole formula."""
-    is_whole = (start, stop) == (formula_start(place), formula_stop(place))
+    is_whole = (start, stop) == (formula_start(failure), formula_stop(failure))
     is_compound = any(token.type in LOOSE or token.type == "NOT" for token in tokenize(text).tokens)
     return f"({text})" if is_compound and not is_whole else text
 
 
-def no_name(place: Place) -> Diagnostic | None:
+def invalid_name(failure: ParseFailure) -> Diagnostic | None:
     """Report ``my-door``, where no difference can stand, and ``2nd_door``."""
-    before, token, after = place.before, place.found, place.tokens[place.stop.index + 1 :][:1]
+    before, token, after = failure.previous_token, failure.token, failure.tokens[failure.stop.index + 1 :][:1]
     if before is None or not after:
         return None
-    joined = touch(token, after[0]) and (NAME.fullmatch(after[0].text) or after[0].type == "NUMBER")
+    joined = are_adjacent(token, after[0]) and (NAME.fullmatch(after[0].text) or after[0].type == "NUMBER")
     rule = "names are ASCII letters, digits and `_`"
-    if token.type == "NUMBER" and "NUMBER" not in place.allowed and "NAME" in place.allowed:
+    if token.type == "NUMBER" and "NUMBER" not in failure.allowed_terminals and "NAME" in failure.allowed_terminals:
         text = f"_{token.text}{after[0].text}" if joined else f"{before.text}_{token.text}"
         span, rule = span_of([token, after[0]] if joined else [token]), "a name begins with a letter or `_`"
-    elif token.text == "-" and before.type == "NAME" and touch(before, token) and joined:
+    elif token.text == "-" and before.type == "NAME" and are_adjacent(before, token) and joined:
         span, text = span_of([before, after[0]]), f"{before.text}_{after[0].text}"
     else:
         return None
-    title = f"`{place.source.slice(span)}` is no name"
-    return place.error("TLT0104", title, f"{rule}: write `{text}`", span=span, write=text)
+    title = f"`{failure.source.slice(span)}` is no name"
+    return failure.error("TLT0104", title, f"{rule}: write `{text}`", span=span, write=text)
 
 
-def value_of_signal(place: Place) -> Diagnostic | None:
+def value_of_signal(failure: ParseFailure) -> Diagnostic | None:
     """Report ``signal seen: bool = false``."""
-    if place.tokens[0].type != "SIGNAL" or place.found.type != "EQUAL" or place.open_brackets or place.stop.index < 3:
+    if (
+        failure.tokens[0].type != "SIGNAL"
+        or failure.token.type != "EQUAL"
+        or failure.open_brackets
+        or failure.stop.index < 3
+    ):
         return None
-    return place.error("TLT0101", "a signal has no value here", "leave it out: the game supplies it at each step")
+    return failure.error("TLT0101", "a signal has no value here", "leave it out: the game supplies it at each step")
 
 
-def type_alone(place: Place) -> Diagnostic | None:
+def type_without_name(failure: ParseFailure) -> Diagnostic | None:
     """Report ``signal at(entity): bool``."""
-    if place.found.type != "ENTITY" or "NAME" not in place.allowed or not place.open_brackets:
+    if failure.token.type != "ENTITY" or "NAME" not in failure.allowed_terminals or not failure.open_brackets:
         return None
-    return place.error("TLT0101", "a parameter has a name", "write `x: entity`", write="x: entity")
+    return failure.error("TLT0101", "a parameter has a name", "write `x: entity`", write="x: entity")
 
 
-def several(place: Place) -> Diagnostic | None:
+def several_names(failure: ParseFailure) -> Diagnostic | None:
     """Report ``signal a, b: bool``."""
-    word = place.tokens[0].text
-    if place.found.type != "COMMA" or place.start != "declaration" or place.stop.index != 2:
+    word = failure.tokens[0].text
+    if failure.token.type != "COMMA" or failure.start != "declaration" or failure.stop.index != 2:
         return None
-    return place.error("TLT0101", place.expectation(), f"each one has a `{word}` of its own; {place.form()}")
+    return failure.error("TLT0101", failure.expectation(), f"each one has a `{word}` of its own; {failure.form()}")
 
 
-def range_word(place: Place) -> Diagnostic | None:
+def missing_in(failure: ParseFailure) -> Diagnostic | None:
     """Report ``signal coins [0, 50]``."""
-    if place.found.type != "LSQB" or "IN" not in place.allowed or place.before is None or place.before.text == "in":
+    if (
+        failure.token.type != "LSQB"
+        or "IN" not in failure.allowed_terminals
+        or failure.previous_token is None
+        or failure.previous_token.text == "in"
+    ):
         return None
-    return place.error("TLT0101", place.expectation(), "write `in [`", write="in [")
+    return failure.error("TLT0101", failure.expectation(), "write `in [`", write="in [")
 
 
-def left_out(place: Place) -> str:
+def leave_out_help(failure: ParseFailure) -> str:
     """Return the help for a character that ends statements in other languages."""
-    between = {"clause": "clauses", "declaration": "declarations"}.get(place.start)
+    between = {"clause": "clauses", "declaration": "declarations"}.get(failure.start)
     return "leave it out" + (f": nothing is needed between {between}" if between else "")
 
 
-PUNCTUATION: Final[tuple[Callable[[Place], Diagnostic | None], ...]] = (
+PUNCTUATION: Final[tuple[Callable[[ParseFailure], Diagnostic | None], ...]] = (
     comma,
-    argument,
-    no_arguments,
-    quoted,
-    no_name,
+    argument_by_name,
+    empty_brackets,
+    quoted_name,
+    invalid_name,
     value_of_signal,
-    type_alone,
-    several,
-    range_word,
-    brackets,
+    type_without_name,
+    several_names,
+    missing_in,
+    wrong_brackets,
 )

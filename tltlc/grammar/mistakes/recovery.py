@@ -12,11 +12,11 @@ from tltlc.grammar.builder import Builder
 from tltlc.grammar.keywords import CLAUSES, TEST_ITEMS
 from tltlc.grammar.lexer import END, Token, Tokens
 from tltlc.grammar.mistakes import messages
-from tltlc.grammar.mistakes.fragments import block, declarations, is_first_on_line, lines
+from tltlc.grammar.mistakes.fragments import block_kind, declarations, is_first_on_line, lines
 from tltlc.grammar.tables import load
 
 MAX_ERRORS: Final = 200
-"""The most errors that are reported; a text with more is hardly a specification."""
+"""The most errors that are reported. A text with more is hardly a specification."""
 
 
 def recover(source: SourceFile, lexed: Tokens) -> tuple[tuple[tree.Declaration, ...], tuple[Diagnostic, ...]]:
@@ -41,14 +41,14 @@ class _Reader:
     def read_declaration(self, piece: list[Token]) -> None:
         """Read the tokens of one declaration; a broken block still yields its good clauses."""
         before = len(self.diagnostics)
-        kind = block(piece)
+        kind = block_kind(piece)
         if kind:
             declaration = self._read_block(piece, kind)
         else:
             declaration = None if self._refuse_deep(piece) else self._read("declaration", piece)
         if declaration is None:
             return
-        kept, errors = nesting.drop_deep(self._source, [declaration])
+        kept, errors = nesting.drop_deep_declarations(self._source, [declaration])
         self.diagnostics += errors
         self.declarations += kept
         if len(self.diagnostics) == before:
@@ -62,7 +62,7 @@ class _Reader:
         closed = piece[-1].type == "RBRACE"
         closing = Token("RBRACE", "}", piece[-1].end, piece[-1].end)
         if not closed:
-            self.diagnostics.append(messages.never_closed(self._source, piece[brace]))
+            self.diagnostics.append(messages.unclosed_bracket(self._source, piece[brace]))
         head = self._read("declaration", [*piece[: brace + 1], closing])
         keywords, start = (CLAUSES, "clause") if kind == "spec" else (TEST_ITEMS, "test_item")
         items: list[Any] = []
@@ -88,10 +88,10 @@ class _Reader:
         if not isinstance(result, lalr.UnexpectedTokenError):
             return [result]
         at = result.index
-        is_whole = 0 < at < len(line) and END in lalr.accepted(load(), result.states)
+        is_whole = 0 < at < len(line) and END in lalr.allowed_terminals(load(), result.states)
         if is_whole and line[at].type == "NAME" and is_first_on_line(self._source, line, at):
             whole = self._attempt(start, line[:at])
-            # Its first token is the unexpected one.
+            # The first token of the remainder is the unexpected one.
             self._refuse(line[at:], start, lalr.UnexpectedTokenError(0, [load().starts[start]]))
             return [whole]
         self._refuse(line, start, result)
@@ -109,7 +109,7 @@ class _Reader:
         """Return what the builder makes of a piece, or the UnexpectedTokenError that stopped it."""
         builder = Builder(self._source, self._docs)
         try:
-            node = lalr.run(load(), start, _ended(piece), builder)
+            node = lalr.run(load(), start, _with_end(piece), builder)
         except lalr.UnexpectedTokenError as error:
             return error
         self.diagnostics += builder.diagnostics
@@ -117,16 +117,16 @@ class _Reader:
 
     def _refuse(self, piece: list[Token], start: str, error: lalr.UnexpectedTokenError) -> None:
         """Report a broken piece."""
-        self.diagnostics.append(messages.unexpected(self._source, _ended(piece), error, start))
+        self.diagnostics.append(messages.unexpected_token(self._source, _with_end(piece), error, start))
 
     def _refuse_deep(self, piece: list[Token]) -> bool:
-        """Whether the brackets of a piece nest too deep; if so, report it."""
-        deep = nesting.deep_brackets(self._source, piece)
+        """Report a piece whose brackets nest too deep; return whether they do."""
+        deep = nesting.bracket_depth_error(self._source, piece)
         if deep:
             self.diagnostics.append(deep)
         return deep is not None
 
 
-def _ended(piece: list[Token]) -> list[Token]:
+def _with_end(piece: list[Token]) -> list[Token]:
     end = piece[-1].end
     return [*piece, Token(END, "", end, end)]

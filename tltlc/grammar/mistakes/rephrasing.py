@@ -11,7 +11,7 @@ from tltlc.grammar import checks, lalr
 from tltlc.grammar.builder import Builder
 from tltlc.grammar.keywords import OPERATORS
 from tltlc.grammar.lexer import END, Token, tokenize
-from tltlc.grammar.mistakes.place import CLOSING, INFIX, OPENING, Place, outside
+from tltlc.grammar.mistakes.place import CLOSING, INFIX, OPENING, ParseFailure, outer_indices
 from tltlc.grammar.tables import load
 from tltlc.grammar.tree import Clause
 
@@ -21,17 +21,17 @@ _LONGEST: Final = 90
 """The most characters of a rewrite; longer texts do not help."""
 
 
-def reworded(
-    place: Place, start: int, stop: int, text: str, title: str, reason: str = "", code: str = "TLT0101"
+def suggest_rewrite(
+    failure: ParseFailure, start: int, stop: int, text: str, title: str, reason: str = "", code: str = "TLT0101"
 ) -> Diagnostic | None:
     """Return an error at the tokens from ``start`` up to ``stop`` that suggests ``text`` for them.
 
     Return None if the text is too long, or if the piece cannot be parsed with it.
     """
-    if len(text) > _LONGEST or not _can_be_read(place, start, stop, text):
+    if len(text) > _LONGEST or not _can_be_read(failure, start, stop, text):
         return None
-    span = span_of(place.tokens[start:stop])
-    return place.error(code, title, f"write `{text}`{reason}", span=span, write=text)
+    span = span_of(failure.tokens[start:stop])
+    return failure.error(code, title, f"write `{text}`{reason}", span=span, write=text)
 
 
 def span_of(tokens: Sequence[Token]) -> Span:
@@ -39,54 +39,58 @@ def span_of(tokens: Sequence[Token]) -> Span:
     return tokens[0].span.to(tokens[-1].span)
 
 
-def written(place: Place, start: int, stop: int) -> str:
+def text_of(failure: ParseFailure, start: int, stop: int) -> str:
     """Return some tokens as they stand in the text, on one line, without comments."""
-    tokens = place.tokens[start:stop]
+    tokens = failure.tokens[start:stop]
     # A comment would swallow the rest of the line.
-    lines = place.source.slice(span_of(tokens)).splitlines() if tokens else []
+    lines = failure.source.slice(span_of(tokens)).splitlines() if tokens else []
     return " ".join(" ".join(line.split("//")[0] for line in lines).split())
 
 
-def operand(place: Place, start: int, stop: int) -> str:
+def operand_text(failure: ParseFailure, start: int, stop: int) -> str:
     """Return some tokens as an operand: a clause as its operator, several operands in brackets."""
     operator = ""
-    if start < stop and place.tokens[start].text in OPERATORS:
-        operator = OPERATORS[place.tokens[start].text]
+    if start < stop and failure.tokens[start].text in OPERATORS:
+        operator = OPERATORS[failure.tokens[start].text]
         start += 1
-    text = written(place, start, stop)
-    is_compound = any(place.tokens[index].type in LOOSE for index in outside(place.tokens, start, stop))
+    text = text_of(failure, start, stop)
+    is_compound = any(failure.tokens[index].type in LOOSE for index in outer_indices(failure.tokens, start, stop))
     return f"{operator} {f'({text})' if is_compound else text}".strip()
 
 
-def formula_start(place: Place) -> int:
+def formula_start(failure: ParseFailure) -> int:
     """Return the index where the broken formula begins: after a bracket, a clause's keyword, or `=`."""
-    if place.open_brackets:
-        return next(index for index, token in enumerate(place.tokens) if token is place.open_brackets[-1]) + 1
-    if place.start == "declaration":
-        return next((index + 1 for index, token in enumerate(place.tokens) if token.type == "EQUAL"), 0)
-    return 1 if place.start == "clause" else 0
+    if failure.open_brackets:
+        return next(index for index, token in enumerate(failure.tokens) if token is failure.open_brackets[-1]) + 1
+    if failure.start == "declaration":
+        return next((index + 1 for index, token in enumerate(failure.tokens) if token.type == "EQUAL"), 0)
+    return 1 if failure.start == "clause" else 0
 
 
-def formula_stop(place: Place) -> int:
+def formula_stop(failure: ParseFailure) -> int:
     """Return the index after the last token of the broken formula."""
     depth = 0
-    for index in range(place.stop.index, len(place.tokens)):
-        depth += (place.tokens[index].type in OPENING) - (place.tokens[index].type in CLOSING)
-        if depth < 0 or place.tokens[index].type == END:
+    for index in range(failure.stop.index, len(failure.tokens)):
+        depth += (failure.tokens[index].type in OPENING) - (failure.tokens[index].type in CLOSING)
+        if depth < 0 or failure.tokens[index].type == END:
             return index
-    return len(place.tokens) - 1
+    return len(failure.tokens) - 1
 
 
-def last_of(place: Place, kinds: Collection[str], start: int) -> int | None:
-    """Return the last index of a token of these kinds, outside brackets, between ``start`` and the place, or None."""
-    indices = [index for index in outside(place.tokens, start, place.stop.index) if place.tokens[index].type in kinds]
+def last_index_of(failure: ParseFailure, kinds: Collection[str], start: int) -> int | None:
+    """Return the last index of a token of these kinds, outside brackets, from ``start`` to the failure, or None."""
+    indices = [
+        index
+        for index in outer_indices(failure.tokens, start, failure.stop.index)
+        if failure.tokens[index].type in kinds
+    ]
     return indices[-1] if indices else None
 
 
-def _can_be_read(place: Place, start: int, stop: int, text: str) -> bool:
+def _can_be_read(failure: ParseFailure, start: int, stop: int, text: str) -> bool:
     """Whether the piece has no error with this text in place of some tokens."""
-    tokens = place.tokens
-    source_text = place.source.text
+    tokens = failure.tokens
+    source_text = failure.source.text
     before, after = (
         source_text[tokens[0].start : tokens[start].start],
         source_text[tokens[stop - 1].end : tokens[-1].end],
@@ -95,11 +99,11 @@ def _can_be_read(place: Place, start: int, stop: int, text: str) -> bool:
     lexed = tokenize(source.text)
     builder = Builder(source, lexed.docs)
     try:
-        node: Any = lalr.run(load(), place.start, lexed.tokens, builder)
+        node: Any = lalr.run(load(), failure.start, lexed.tokens, builder)
     except lalr.UnexpectedTokenError:
         return False
     if isinstance(node, Clause):
         return not [*builder.diagnostics, *checks.check_clause(source, node)]
-    if place.start == "declaration":
+    if failure.start == "declaration":
         return not [*builder.diagnostics, *checks.check(source, (node,))]
-    return not builder.diagnostics and (place.start != "expression" or not [*checks.check_formula(source, node)])
+    return not builder.diagnostics and (failure.start != "expression" or not [*checks.check_formula(source, node)])

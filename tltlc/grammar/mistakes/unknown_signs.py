@@ -9,9 +9,9 @@ from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.grammar.keywords import CASES
 from tltlc.grammar.lexer import BAD
 from tltlc.grammar.mistakes.habits import equality
-from tltlc.grammar.mistakes.place import Place, shown
-from tltlc.grammar.mistakes.punctuation import left_out, unquoted
-from tltlc.grammar.mistakes.rephrasing import reworded
+from tltlc.grammar.mistakes.place import ParseFailure, quote_token
+from tltlc.grammar.mistakes.punctuation import leave_out_help, text_without_quotes
+from tltlc.grammar.mistakes.rephrasing import suggest_rewrite
 from tltlc.grammar.tables import load
 
 _QUOTES: Final = frozenset("\"'`´‘’‚“”„«»")
@@ -25,81 +25,81 @@ _HELPS: Final = {
 }
 
 
-def strange(place: Place) -> Diagnostic | None:
+def unknown_sign(failure: ParseFailure) -> Diagnostic | None:
     """Report a character or word that the language does not know."""
-    token = place.found
+    token = failure.token
     if token.type != BAD:
         return None
     text = token.text
     if text in ("==", "!="):
-        return equality(place)
+        return equality(failure)
     if text.startswith('"'):
-        return place.error("TLT0114", "this text in quotes never ends", 'write the missing `"` on the same line')
+        return failure.error("TLT0114", "this text in quotes never ends", 'write the missing `"` on the same line')
     if text.startswith("/*"):
         span = Span(token.start, token.start + 2)
         help_ = "comments begin with `//` and end with the line"
-        return place.error("TLT0104", "`/*` means nothing here", help_, span=span)
+        return failure.error("TLT0104", "`/*` means nothing here", help_, span=span)
     if len(text) > 1 or text.isalnum():
-        return _name(place)
+        return _invalid_word(failure)
     if text in _QUOTES:
-        return _quotes(place)
-    if text == "?" and place.tokens[0].type == "PREDICATE":
-        return place.error("TLT0104", "`?` means nothing here", CASES)
+        return _foreign_quotes(failure)
+    if text == "?" and failure.tokens[0].type == "PREDICATE":
+        return failure.error("TLT0104", "`?` means nothing here", CASES)
     if text == ".":
-        after = place.tokens[place.stop.index + 1]
+        after = failure.tokens[failure.stop.index + 1]
         is_fraction = after.type == "NUMBER" and after.start == token.end
         write = f"0.{after.text}" if is_fraction else None
         span = Span(token.start, after.end) if is_fraction else token.span
-        help_ = f"write `{write}`" if write else left_out(place)
-        return place.error("TLT0104", "`.` means nothing here", help_, span=span, write=write)
+        help_ = f"write `{write}`" if write else leave_out_help(failure)
+        return failure.error("TLT0104", "`.` means nothing here", help_, span=span, write=write)
     if text == ";":
-        after = place.tokens[place.stop.index + 1]
-        is_separator = "COMMA" in place.allowed and after.type == "NAME"
-        help_ = "write `,`" if is_separator else left_out(place)
-        return place.error("TLT0104", "`;` means nothing here", help_, write="," if is_separator else None)
-    title = f"{_sign(text)} means nothing here"
+        after = failure.tokens[failure.stop.index + 1]
+        is_separator = "COMMA" in failure.allowed_terminals and after.type == "NAME"
+        help_ = "write `,`" if is_separator else leave_out_help(failure)
+        return failure.error("TLT0104", "`;` means nothing here", help_, write="," if is_separator else None)
+    title = f"{_quote_sign(text)} means nothing here"
     if text == "~":
-        return place.error("TLT0104", title, "for `not` write `not` or `!`", write="not")
-    equivalent = _like(text)
+        return failure.error("TLT0104", title, "for `not` write `not` or `!`", write="not")
+    equivalent = _equivalent_of(text)
     if text in _HELPS or equivalent is None:
-        return place.error("TLT0104", title, _HELPS.get(text) or _left_out(text))
-    return place.error("TLT0104", title, f"write `{equivalent}`", write=equivalent)
+        return failure.error("TLT0104", title, _HELPS.get(text) or _no_equivalent_help(text))
+    return failure.error("TLT0104", title, f"write `{equivalent}`", write=equivalent)
 
 
-def _name(place: Place) -> Diagnostic:
+def _invalid_word(failure: ParseFailure) -> Diagnostic:
     """Report ``café`` and ``coins²``."""
     from unicodedata import normalize
 
-    text = place.found.text
+    text = failure.token.text
     base = text.rstrip(_SUPERSCRIPTS)
     if base != text and (not base or (base.isascii() and base.isidentifier())):
         power = f"{base}^{normalize('NFKC', text[len(base) :])}"
-        title = f"{shown(place.found)} is no name" if base else f"`{text}` means nothing here"
-        return place.error("TLT0104", title, f"for a power write `{power}`", write=power)
+        title = f"{quote_token(failure.token)} is no name" if base else f"`{text}` means nothing here"
+        return failure.error("TLT0104", title, f"for a power write `{power}`", write=power)
     plain = "".join(character for character in normalize("NFKD", text) if character.isascii())
     write = plain if plain.isidentifier() and len(plain) == len(text) else None
     help_ = "names are ASCII letters, digits and `_`" + (f": write `{write}`" if write else "")
-    return place.error("TLT0104", f"{shown(place.found)} is no name", help_, write=write)
+    return failure.error("TLT0104", f"{quote_token(failure.token)} is no name", help_, write=write)
 
 
-def _quotes(place: Place) -> Diagnostic:
+def _foreign_quotes(failure: ParseFailure) -> Diagnostic:
     """Report ``near('door')`` and typographic quotes."""
-    at, tokens = place.stop.index, place.tokens
+    at, tokens = failure.stop.index, failure.tokens
     last = next((index for index in range(at + 1, len(tokens)) if tokens[index].text in _QUOTES), None)
-    title = f"{_sign(place.found.text)} means nothing here"
+    title = f"{_quote_sign(failure.token.text)} means nothing here"
     if last is not None:
-        inner = place.source.slice(Span(place.found.end, tokens[last].start)).strip()
+        inner = failure.source.slice(Span(failure.token.end, tokens[last].start)).strip()
         for text, reason in (
-            (unquoted(place, at, last + 1, inner), ": no quotes around names and formulas"),
+            (text_without_quotes(failure, at, last + 1, inner), ": no quotes around names and formulas"),
             (f'"{inner}"', ""),
         ):
-            diagnostic = reworded(place, at, last + 1, text, title, reason, "TLT0104") if inner else None
+            diagnostic = suggest_rewrite(failure, at, last + 1, text, title, reason, "TLT0104") if inner else None
             if diagnostic:
                 return diagnostic
-    return place.error("TLT0104", title, 'texts stand in straight double quotes: "…"')
+    return failure.error("TLT0104", title, 'texts stand in straight double quotes: "…"')
 
 
-def _sign(text: str) -> str:
+def _quote_sign(text: str) -> str:
     """Return a character in backticks; if it is invisible, its code point and name."""
     if text.isprintable() and not text.isspace():
         return f"`{text}`"
@@ -109,7 +109,7 @@ def _sign(text: str) -> str:
     return f"`U+{ord(text):04X}`" + (f" ({description})" if description else "")
 
 
-def _like(text: str) -> str | None:
+def _equivalent_of(text: str) -> str | None:
     """Return the equivalent of a character in the language, or None."""
     from unicodedata import normalize
 
@@ -117,7 +117,7 @@ def _like(text: str) -> str | None:
     return normalized if normalized in load().signs or normalized in load().units else None
 
 
-def _left_out(text: str) -> str:
+def _no_equivalent_help(text: str) -> str:
     """Return the help for a character without an equivalent in the language."""
     from unicodedata import category
 

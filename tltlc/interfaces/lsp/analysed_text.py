@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from tltlc.core.record import EMPTY
 from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic
-from tltlc.grammar.allow_index import unsilenced
+from tltlc.grammar.allow_index import drop_silenced
 from tltlc.grammar.lexer import Token, Tokens, tokenize
 from tltlc.grammar.tree import Module
 from tltlc.interfaces.lsp.follow_up_errors import unread
@@ -88,7 +88,7 @@ class Document:
             missing = unread(self.module, self.tokens)
             return (*self.syntax_errors, *(diagnostic for diagnostic in errors if not missing.may_mend(diagnostic)))
         resolved = self.resolution
-        remaining = unsilenced((loaded.module for loaded in resolved.modules), resolved.diagnostics)
+        remaining = drop_silenced((loaded.module for loaded in resolved.modules), resolved.diagnostics)
         kept = levelled(map(LintFinding, remaining), self.project.lint)
         return tuple(finding.diagnostic for finding in kept)
 

@@ -11,7 +11,7 @@ from tltlc.core.source import SourceFile, Span
 from tltlc.grammar import lalr
 from tltlc.grammar.keywords import CLAUSES, TEST_ITEMS
 from tltlc.grammar.lexer import BAD, END, Token, tokenize
-from tltlc.grammar.mistakes.fragments import block, declarations, lines
+from tltlc.grammar.mistakes.fragments import block_kind, declarations, lines
 from tltlc.grammar.tables import load
 
 _BEGINS_WORD: Final = frozenset(f"{string.ascii_letters}_")
@@ -81,7 +81,7 @@ def quoted(source: SourceFile, offset: int) -> tuple[str, Span] | None:
 def _placed(source: SourceFile, tokens: Sequence[Token], word: Span) -> Cursor:
     pieces = list(declarations(source, tokens))
     piece = pieces[-1] if pieces else []
-    kind = block(piece) if piece else None
+    kind = block_kind(piece) if piece else None
     if kind and piece[-1].type != "RBRACE":
         brace = next(index for index, token in enumerate(piece) if token.type == "LBRACE")
         keywords, start = _LINES[kind]
@@ -110,5 +110,5 @@ def _accepted(start: str, tokens: Sequence[Token]) -> set[str] | None:
     try:
         lalr.run(load(), start, [*tokens, Token(BAD, "", end, end), Token(END, "", end, end)], object())
     except lalr.UnexpectedTokenError as error:
-        return lalr.accepted(load(), error.states) if error.index == len(tokens) else None
+        return lalr.allowed_terminals(load(), error.states) if error.index == len(tokens) else None
     return None

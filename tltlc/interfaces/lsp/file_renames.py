@@ -7,7 +7,7 @@ from os.path import dirname, normpath, relpath
 from pathlib import Path, PurePath
 
 from tltlc.diagnostics.diagnostic import Edit
-from tltlc.grammar.quotes import quoted
+from tltlc.grammar.quotes import quote
 from tltlc.grammar.tables import load
 from tltlc.grammar.tree import Import
 from tltlc.interfaces.lsp.analysed_text import Document
@@ -70,4 +70,4 @@ def _target(declaration: Import, there: str, folder: str, libraries: tuple[Path,
                 parts = PurePath(there).relative_to(place).with_suffix("").parts
                 if all(part.isidentifier() and part.isascii() and part not in load().words for part in parts):
                     return ".".join(parts)
-    return quoted(PurePath(relpath(there, folder)).as_posix())
+    return quote(PurePath(relpath(there, folder)).as_posix())

@@ -12,8 +12,8 @@ from typing import Final
 
 from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Diagnostic, Fix, Label, Severity
-from tltlc.grammar.allow_comments import Allowed, codes, is_allowing
-from tltlc.grammar.allow_index import Silencing
+from tltlc.grammar.allow_comments import Allowance, codes, is_allowing
+from tltlc.grammar.allow_index import AllowIndex
 from tltlc.grammar.tree import Comment
 from tltlc.tools.lint.file_view import View
 from tltlc.tools.lint.removal import without
@@ -31,9 +31,9 @@ def silenced(view: View, findings: Iterable[LintFinding]) -> list[LintFinding]:
     a finding, unless the comment also allows TLT0427. Each comment that names no code or is
     misspelt gets a finding, too.
     """
-    comments = Silencing(loaded.module for loaded in view.modules)
+    comments = AllowIndex(loaded.module for loaded in view.modules)
     left = [finding for finding in findings if not comments.silences(finding.diagnostic)]
-    own = comments.allowed(view.source)
+    own = comments.allowances(view.source)
     asked_for = {allowance.comment for allowance in own if allowance.code == CODE}
     undecided = _Undecided(view)
     needless = [
@@ -66,27 +66,27 @@ class _Undecided:
         self._starts = [span.start for span in self._specs]
         self._known: dict[int, bool] = {}
 
-    def touch(self, allowance: Allowed) -> bool:
+    def touch(self, allowance: Allowance) -> bool:
         """Whether a comment applies to any of these specs."""
-        if allowance.places is None:
+        if allowance.statements is None:
             return bool(self._specs)
         # Comments on the same line share one tuple of places.
-        if id(allowance.places) not in self._known:
-            self._known[id(allowance.places)] = any(map(self._covers, allowance.places))
-        return self._known[id(allowance.places)]
+        if id(allowance.statements) not in self._known:
+            self._known[id(allowance.statements)] = any(map(self._covers, allowance.statements))
+        return self._known[id(allowance.statements)]
 
     def _covers(self, place: Span) -> bool:
         index = bisect_right(self._starts, place.start) - 1
         return index >= 0 and self._specs[index].covers(place)
 
 
-def _in_vain(allowance: Allowed, fix: Fix | None) -> LintFinding:
+def _in_vain(allowance: Allowance, fix: Fix | None) -> LintFinding:
     """Return the finding for an allowed code that silences nothing.
 
     ``fix`` removes the comment. It is None if the comment allows other codes with effect; then the
     author has to edit the comment.
     """
-    where = "in this file" if allowance.places is None else "here"
+    where = "in this file" if allowance.statements is None else "here"
     title = f"this allows {allowance.code}, which is not found {where}"
     label = Label(allowance.source, allowance.span)
     return LintFinding(Diagnostic(CODE, title, (label,), "remove it", SEVERITY, (fix,) if fix else ()))

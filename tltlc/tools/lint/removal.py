@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from tltlc.core.source import SourceFile, Span
-from tltlc.grammar.mistakes.insertion import documented
+from tltlc.grammar.mistakes.insertion import documentation_start
 from tltlc.grammar.tree import Comment
 
 
@@ -18,7 +18,7 @@ def without(source: SourceFile, span: Span, comments: Sequence[Comment] = ()) ->
     It includes the documentation above, and the end of the line if nothing else is on the line.
     """
     text = source.text
-    start, end = documented(source, span.start, comments), span.end
+    start, end = documentation_start(source, span.start, comments), span.end
     line = text.rfind("\n", 0, start) + 1
     after = text.find("\n", end)
     after = len(text) if after < 0 else after

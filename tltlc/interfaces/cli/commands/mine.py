@@ -324,7 +324,7 @@ def _import(library: SourceFile, predicates: str, path: Path) -> str:
     """
     import os
 
-    from tltlc.grammar.quotes import quoted
+    from tltlc.grammar.quotes import quote
 
     if library.name != predicates:
         return f"import {predicates}\n"
@@ -333,7 +333,7 @@ def _import(library: SourceFile, predicates: str, path: Path) -> str:
     except ValueError:
         # It is on another Windows drive.
         relative = str(Path(predicates).absolute())
-    target = quoted(Path(relative).as_posix())
+    target = quote(Path(relative).as_posix())
     if target is None:
         raise click.UsageError(f"no file can import `{relative}`, for a quote or a line break in its path: rename it")
     return f"import {target}\n"
