@@ -95,7 +95,7 @@ def _inline() -> Iterator[Question]:
     for test in (
         inline_tests.test_correct_predicates_are_proved,
         inline_tests.test_a_wrong_range_has_a_counterexample,
-        inline_tests.test_continuity_between_cases,
+        inline_tests.test_jumps_between_cases_are_found,
     ):
         for row in vars(test)["pytestmark"][0].args[1]:
             low, high = row[1:] if len(row) == 3 else (-1.0, 1.0)
@@ -168,7 +168,7 @@ def count_decisions(questions: Sequence[Question]) -> Counter[str]:
             patches.enter_context(patch.object(module, "proves_within", proves_within))
         for module, function, name in (
             (continuity, "_same_after_substitution", "agreement of cases by substitution"),
-            (witness, "find_outside", "search for a wrong point"),
+            (witness, "find_wrong_point", "search for a wrong point"),
             (jumps, "find_jump", "search for a jump"),
             (check, "_proves_exactly", "sympy"),
         ):
@@ -182,7 +182,7 @@ def _proving_method(value: Expression, region: ConstrainedBox, low: float, high:
     """The first method that proves a bound, in the order of ``proof.proves_within``."""
     if holds_at_once(value, region, low, high):
         return "intervals"
-    if proof._defined(value, region):
+    if proof._is_defined(value, region):
         region = proof._with_ratios(value, region)
         if holds_at_once(value, region, low, high):
             return "intervals with bounded ratios"
@@ -219,7 +219,7 @@ REPLACEMENTS: Final[Mapping[str, tuple[Any, str, Callable[..., Any]]]] = {
     "signs of exact forms": (proof, "_proves_by_sign", _no),
     "subdivision": (proof, "_holds_in_parts", _no),
     "agreement of cases by substitution": (continuity, "_same_after_substitution", _no),
-    "search for a wrong point": (witness, "find_outside", _nothing),
+    "search for a wrong point": (witness, "find_wrong_point", _nothing),
     "search for a jump": (jumps, "find_jump", _nothing),
     "sympy": (check, "_proves_exactly", _no),
 }

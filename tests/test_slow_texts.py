@@ -18,8 +18,9 @@ from tests.time_limit import run_with_time_limit
         "source = SourceFile('tltl.toml', ''.join(f'k{n}=1\\n' for n in range(100_000)))\n"
         "for n in range(100_000): assert _key_labels(source, f'k{n}')",
         # The value of a param with an invalid unit.
-        "from tltlc.resolve.constants import override; assert override('1' * 1_000_000 + '!') is None",
-        "from tltlc.resolve.constants import override; assert override('1' + ' ' * 1_000_000 + '!') is None",
+        "from tltlc.resolve.constants import parse_override\nassert parse_override('1' * 1_000_000 + '!') is None",
+        "from tltlc.resolve.constants import parse_override\n"
+        "assert parse_override('1' + ' ' * 1_000_000 + '!') is None",
         # An automaton of another tool with an unterminated string.
         "from tltlc.tools.hoa.reader import _without_comments; from tltlc.core.source import SourceFile\n"
         "_without_comments(SourceFile('a.hoa', '\"' + '\\\\\"' * 2_000_000))",

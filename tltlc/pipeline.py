@@ -281,8 +281,8 @@ def with_params(fspa: Fspa, values: Mapping[str, str]) -> Fspa:
     """
     if not values:
         return fspa
-    from tltlc.resolve.overrides import overridden
+    from tltlc.resolve.overrides import apply_overrides
 
-    params, errors = overridden({param.name: param for param in fspa.params}, values)
+    params, errors = apply_overrides({param.name: param for param in fspa.params}, values)
     stop_at_errors(errors)
     return replace(fspa, params=tuple(params.values()))

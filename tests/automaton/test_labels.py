@@ -7,18 +7,18 @@ from collections.abc import Callable
 import pytest
 
 from tests.calls import calls
-from tests.resolve.helpers import only
+from tests.resolve.helpers import only_spec
 from tltlc.automaton.finite.build import build
 from tltlc.resolve.spec import Spec
 
 
 def chain(length: int) -> Spec:
     declared = "".join(f"signal a{number}: bool\n" for number in range(length))
-    return only(f"{declared}spec s {{ reach {' then '.join(f'a{number}' for number in range(length))} }}")
+    return only_spec(f"{declared}spec s {{ reach {' then '.join(f'a{number}' for number in range(length))} }}")
 
 
 def equal_parts(count: int) -> Spec:
-    return only(f"signal a: bool\nsignal b: bool\nspec s = {' <-> '.join(['(a U b)'] * count)}")
+    return only_spec(f"signal a: bool\nsignal b: bool\nspec s = {' <-> '.join(['(a U b)'] * count)}")
 
 
 @pytest.mark.parametrize("spec", [chain, equal_parts])

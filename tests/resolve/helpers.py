@@ -13,37 +13,37 @@ from tltlc.resolve.resolution import resolve
 from tltlc.resolve.spec import ResolvedFile, Spec
 
 
-def resolved(text: str, name: str = "<test>", **options: object) -> tuple[ResolvedFile, tuple[Diagnostic, ...]]:
+def resolve_text(text: str, name: str = "<test>", **options: object) -> tuple[ResolvedFile, tuple[Diagnostic, ...]]:
     """Resolve a text that parses, and return the program and all diagnostics of the resolution."""
     module, errors = parse(SourceFile(name, text))
     assert errors == ()
     return resolve(module, ResolveOptions(**options))  # type: ignore[arg-type]
 
 
-def good(text: str, name: str = "<test>", **options: object) -> ResolvedFile:
+def valid_program(text: str, name: str = "<test>", **options: object) -> ResolvedFile:
     """Return the program of a text without diagnostics."""
-    program, diagnostics = resolved(text, name, **options)
+    program, diagnostics = resolve_text(text, name, **options)
     assert diagnostics == ()
     return program
 
 
-def only(text: str, name: str = "<test>", **options: object) -> Spec:
+def only_spec(text: str, name: str = "<test>", **options: object) -> Spec:
     """Return the only spec of a text without diagnostics."""
-    (spec,) = good(text, name, **options).specs
+    (spec,) = valid_program(text, name, **options).specs
     return spec
 
 
 def formula(text: str) -> str:
     """Return the formula of the only spec of a text without diagnostics, in ASCII."""
-    return str(only(text).formula)
+    return str(only_spec(text).formula)
 
 
 def codes(text: str, name: str = "<test>", **options: object) -> list[str]:
     """Return the codes of all diagnostics of a text."""
-    return [diagnostic.code for diagnostic in resolved(text, name, **options)[1]]
+    return [diagnostic.code for diagnostic in resolve_text(text, name, **options)[1]]
 
 
-def value(spec: Spec, atom: str, **signals: float) -> float:
+def robustness_of(spec: Spec, atom: str, **signals: float) -> float:
     """Return the robustness of an atom of a spec, with the declared values of its params."""
     params = {param.name: param.value for param in spec.params}
     expression = next(candidate.expression for candidate in spec.atoms if candidate.name == atom)

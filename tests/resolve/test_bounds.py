@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.logic.strategies import traces
-from tests.resolve.helpers import codes, formula, only
+from tests.resolve.helpers import codes, formula, only_spec
 from tltlc.logic.oracle import holds
 
 DECLARED = "clock 20 Hz signal a: bool spec s = "
@@ -18,16 +18,16 @@ def test_past_the_end_eventually_is_false_and_always_is_true(
     trace: tuple[frozenset[str], ...], low: int, extra: int
 ) -> None:
     window = trace[low : low + extra + 1]
-    eventually = only(f"{DECLARED} F[{low},{low + extra}] a").formula
-    always = only(f"{DECLARED} G[{low},{low + extra}] a").formula
+    eventually = only_spec(f"{DECLARED} F[{low},{low + extra}] a").formula
+    always = only_spec(f"{DECLARED} G[{low},{low + extra}] a").formula
     assert holds(eventually, trace) == any("a" in sample for sample in window)
     assert holds(always, trace) == all("a" in sample for sample in window)
 
 
 @given(trace=traces(("a",), max_length=8), n=st.integers(0, 8))
-def test_next_after(trace: tuple[frozenset[str], ...], n: int) -> None:
-    strong = only(f"{DECLARED} next after {n} steps a").formula
-    weak = only(f"{DECLARED} weak_next after {n} steps a").formula
+def test_next_after_looks_that_many_steps_ahead(trace: tuple[frozenset[str], ...], n: int) -> None:
+    strong = only_spec(f"{DECLARED} next after {n} steps a").formula
+    weak = only_spec(f"{DECLARED} weak_next after {n} steps a").formula
     assert holds(strong, trace) == (n < len(trace) and "a" in trace[n])
     assert holds(weak, trace) == (n >= len(trace) or "a" in trace[n])
 
@@ -47,7 +47,7 @@ def test_next_after(trace: tuple[frozenset[str], ...], n: int) -> None:
         ("next after 1 step a", "X a"),
     ],
 )
-def test_bounds_in_words_and_seconds(words: str, brackets: str) -> None:
+def test_bounds_in_words_and_seconds_equal_bounds_in_brackets(words: str, brackets: str) -> None:
     assert formula(DECLARED + words) == formula(DECLARED + brackets)
 
 
@@ -55,7 +55,7 @@ def test_bounds_in_words_and_seconds(words: str, brackets: str) -> None:
 @given(n=st.integers(0, 200))
 def test_whole_multiples_of_the_period_are_not_rounded_up(period: float, n: int) -> None:
     text = f"clock {period:.17f} s signal a: bool spec s {{ limit {(n + 1) * period:.17f} s keep a }}"
-    assert only(text).limit_steps == n + 1
+    assert only_spec(text).limit_steps == n + 1
 
 
 def test_a_bound_that_is_too_long_is_an_error() -> None:
@@ -65,6 +65,6 @@ def test_a_bound_that_is_too_long_is_an_error() -> None:
 
 def test_step_and_steps_are_the_same_unit() -> None:
     text = 'signal a: bool spec s = {} test "t" for s {{ step a expect progress >= 0.5 step a expect satisfied }}'
-    for one, many in (("F[0,1 step] a", "F[0,1 steps] a"), ("F within 1 step a", "F within 1 steps a")):
-        assert only(text.format(one)).formula == only(text.format(many)).formula
-    assert only("signal a: bool spec s { limit 1 step keep a }").limit_steps == 1
+    for singular, plural in (("F[0,1 step] a", "F[0,1 steps] a"), ("F within 1 step a", "F within 1 steps a")):
+        assert only_spec(text.format(singular)).formula == only_spec(text.format(plural)).formula
+    assert only_spec("signal a: bool spec s { limit 1 step keep a }").limit_steps == 1

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from tests.interfaces.cli.conftest import ROOT
-from tests.resolve.helpers import codes, resolved
+from tests.resolve.helpers import codes, resolve_text
 from tltlc.core.source import SourceFile
 from tltlc.grammar.parser import parse
 from tltlc.io.limits import WORK
@@ -18,7 +18,7 @@ from tltlc.resolve.resolution import resolve
 
 
 def test_a_wrong_range_is_an_error_with_a_witness() -> None:
-    _, (diagnostic,) = resolved("signal x in [0, 1] predicate p in [0, 1] = 2 * x spec s = F p")
+    _, (diagnostic,) = resolve_text("signal x in [0, 1] predicate p in [0, 1] = 2 * x spec s = F p")
     assert (diagnostic.code, diagnostic.severity) == ("TLT0306", "error")
     assert "x = 1" in diagnostic.labels[0].message
     assert diagnostic.labels[0].source.slice(diagnostic.labels[0].span) == "in [0, 1]"
@@ -26,14 +26,16 @@ def test_a_wrong_range_is_an_error_with_a_witness() -> None:
 
 def test_a_range_that_only_fails_below_zero_is_a_warning() -> None:
     text = "predicate p(e: entity) in [-1, 1] = clamp(1 - sqrt(d(e) / 3 m), -1, 1) entity a spec s = F p(a)"
-    _, (diagnostic,) = resolved("signal d(e: entity): length " + text)
+    _, (diagnostic,) = resolve_text("signal d(e: entity): length " + text)
     assert (diagnostic.code, diagnostic.severity) == ("TLT0401", "warning")
     assert diagnostic.help == "declare its range, e.g. `in [0 m, inf]`"
     assert codes("signal d(e: entity): length in [0 m, inf] " + text) == []
 
 
 def test_a_jump_is_a_warning() -> None:
-    _, (diagnostic,) = resolved("signal x in [0, 1] predicate p in [0, 1] = when x < 0.5: 0 otherwise: 1 spec s = F p")
+    _, (diagnostic,) = resolve_text(
+        "signal x in [0, 1] predicate p in [0, 1] = when x < 0.5: 0 otherwise: 1 spec s = F p"
+    )
     assert (diagnostic.code, diagnostic.severity) == ("TLT0402", "warning")
 
 
@@ -102,7 +104,7 @@ def chain(count: int) -> str:
 
 
 @pytest.mark.parametrize(
-    ("body", "codes_of_it", "why"),
+    ("body", "expected_codes", "reason"),
     [
         (nested(8), ["TLT0503"], "the check takes too many steps: 600,000 are allowed"),
         (nested(16), ["TLT0503"], "the check takes too many steps: 600,000 are allowed"),
@@ -131,14 +133,14 @@ def chain(count: int) -> str:
     ],
 )
 def test_a_check_stays_within_its_step_limit(
-    body: str, codes_of_it: list[str], why: str | None, monkeypatch: pytest.MonkeyPatch
+    body: str, expected_codes: list[str], reason: str | None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("TLTLC_CACHE_DIR", "")
-    with work.limited(10**9) as spent:
-        _, diagnostics = resolved(f"{SIGNALS} predicate p in [-1, 1] = {body} spec s = F p")
+    with work.step_limit(10**9) as spent:
+        _, diagnostics = resolve_text(f"{SIGNALS} predicate p in [-1, 1] = {body} spec s = F p")
     assert 10**9 - spent.left <= WORK["check of a predicate"]
-    assert [diagnostic.code for diagnostic in diagnostics] == codes_of_it
-    assert why is None or diagnostics[0].labels[0].message == why
+    assert [diagnostic.code for diagnostic in diagnostics] == expected_codes
+    assert reason is None or diagnostics[0].labels[0].message == reason
 
 
 def test_the_checks_of_all_predicates_stay_within_their_step_limit(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -146,8 +148,8 @@ def test_the_checks_of_all_predicates_stay_within_their_step_limit(monkeypatch: 
     monkeypatch.setitem(WORK, "check of a predicate", 50_000)  # type: ignore[attr-defined]
     monkeypatch.setitem(WORK, "checks of all predicates", 150_000)  # type: ignore[attr-defined]
     predicates = " ".join(f"predicate p{n} in [-1, 1] = {nested(8, n)}" for n in range(6))
-    with work.limited(10**9) as spent:
-        _, diagnostics = resolved(f"{SIGNALS} {predicates} spec s = F (p0 & p1 & p2 & p3 & p4 & p5)")
+    with work.step_limit(10**9) as spent:
+        _, diagnostics = resolve_text(f"{SIGNALS} {predicates} spec s = F (p0 & p1 & p2 & p3 & p4 & p5)")
     assert 10**9 - spent.left <= 150_000
     assert [diagnostic.code for diagnostic in diagnostics] == ["TLT0503"] * 4
     assert diagnostics[3].title == "the predicate `p3` and 2 more predicates were not checked"
@@ -159,7 +161,7 @@ def test_cached_answers_count_the_same_steps(monkeypatch: pytest.MonkeyPatch, tm
     text = f"{SIGNALS} predicate p in [-1, 1] = {nested(3)} spec s = F p"
     counted = []
     for _ in range(2):
-        with work.limited(10**9) as spent:
+        with work.step_limit(10**9) as spent:
             codes(text)
         counted.append(10**9 - spent.left)
     assert counted[0] == counted[1]
@@ -199,7 +201,7 @@ def test_libraries_and_examples_need_less_than_a_hundredth_of_the_steps(
     monkeypatch.setenv("TLTLC_CACHE_DIR", "")
     for path in sorted(folder.glob("*.tltl")):
         module, _ = parse(SourceFile(str(path), path.read_text("utf-8")))
-        with work.limited(10**9) as spent:
+        with work.step_limit(10**9) as spent:
             _, diagnostics = resolve(module, ResolveOptions())
         assert 10**9 - spent.left < WORK["check of a predicate"] / 100
         assert not {"TLT0401", "TLT0402", "TLT0503"} & {diagnostic.code for diagnostic in diagnostics}

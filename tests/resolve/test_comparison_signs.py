@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tests.resolve.helpers import codes, only, resolved, value
+from tests.resolve.helpers import codes, only_spec, resolve_text, robustness_of
 from tltlc.expression.evaluate import evaluate
 from tltlc.expression.python import compile_expressions
 from tltlc.expression.tree import LEAST, Const, Expression, SignalValue, nodes
@@ -24,11 +24,11 @@ FINITE = st.floats(allow_nan=False, allow_infinity=False)
 THREE = st.tuples(FINITE, FINITE, FINITE).map(sorted).filter(lambda ends: ends[0] < ends[2])
 
 
-def varying(name: str, low: float, high: float) -> Quantity:
+def signal_quantity(name: str, low: float, high: float) -> Quantity:
     return Quantity(SignalValue(name), units.PLAIN, low, high, name)
 
 
-def around(number: float, low: float, high: float) -> list[float]:
+def nearby_numbers(number: float, low: float, high: float) -> list[float]:
     """Return a number, its neighbours, the ends, 0 and ``LEAST``, if they are in the range."""
     near = (number, nextafter(number, -inf), nextafter(number, inf), low, high, 0.0, LEAST)
     return [x for x in near if low <= x <= high]
@@ -46,8 +46,8 @@ def holds(expression: Expression, x: float, y: float = 0.0) -> bool:
 @given(THREE, FINITE)
 def test_a_threshold_agrees_with_the_exact_comparison(ends: Sequence[float], x: float) -> None:
     low, threshold, high = ends
-    side, fixed = varying("x", low, high), constant(threshold, units.PLAIN)
-    for number in [*around(threshold, low, high), min(max(x, low), high)]:
+    side, fixed = signal_quantity("x", low, high), constant(threshold, units.PLAIN)
+    for number in [*nearby_numbers(threshold, low, high), min(max(x, low), high)]:
         if threshold < high:
             assert holds(robustness(side, fixed), number) == (Fraction(number) > Fraction(threshold))
         if low < threshold:
@@ -62,10 +62,10 @@ def test_two_sides_agree_with_the_exact_comparison(
     (low, _, high), (least, _, most) = of_x, of_y
     if not low <= most or not high > least:
         return  # the comparison is constant, which is an error
-    expression = robustness(varying("x", low, high), varying("y", least, most))
+    expression = robustness(signal_quantity("x", low, high), signal_quantity("y", least, most))
     y = min(max(y, least), most)
     for other in {y, *(end for end in (low, high, 0.0) if least <= end <= most)}:
-        for number in [*around(other, low, high), min(max(x, low), high)]:
+        for number in [*nearby_numbers(other, low, high), min(max(x, low), high)]:
             assert holds(expression, number, other) == (Fraction(number) > Fraction(other))
 
 
@@ -73,7 +73,7 @@ def test_two_sides_agree_with_the_exact_comparison(
 def test_the_robustness_at_the_ends_is_one_and_minus_one(ends: Sequence[float]) -> None:
     low, threshold, high = ends
     if low < threshold < high:
-        expression = robustness(varying("x", low, high), constant(threshold, units.PLAIN))
+        expression = robustness(signal_quantity("x", low, high), constant(threshold, units.PLAIN))
         assert evaluate(expression, {"x": high}, {}) == 1.0
         assert evaluate(expression, {"x": low}, {}) == -1.0
         assert evaluate(expression, {"x": threshold}, {}) == 0.0
@@ -98,22 +98,24 @@ def test_the_robustness_at_the_ends_is_one_and_minus_one(ends: Sequence[float]) 
         ("signal x in [0, 1e300] predicate p in [0, 1] = x / 1e300", "p > 0", {"x": 1e-20}, True),
     ],
 )
-def test_extreme_ranges(declared: str, comparison: str, sample: dict[str, float], truth: bool) -> None:
-    spec = only(f"{declared} spec s = F {comparison}")
+def test_the_sign_is_right_in_extreme_ranges(
+    declared: str, comparison: str, sample: dict[str, float], truth: bool
+) -> None:
+    spec = only_spec(f"{declared} spec s = F {comparison}")
     (atom,) = spec.atoms
-    assert (value(spec, atom.name, **sample) > 0.0) == truth
+    assert (robustness_of(spec, atom.name, **sample) > 0.0) == truth
     numbers = [node.value for node in nodes(atom.expression) if isinstance(node, Const)]
     assert all(map(math.isfinite, numbers))
 
 
 def test_robustness_is_scaled_for_a_threshold_at_the_end_of_a_large_range() -> None:
-    spec = only("signal x in [-1e308, 1e308] spec s = F x > -1e308")
-    assert value(spec, "x > -1e+308", x=0.0) == 0.5
-    assert value(spec, "x > -1e+308", x=1e308) == 1.0
+    spec = only_spec("signal x in [-1e308, 1e308] spec s = F x > -1e308")
+    assert robustness_of(spec, "x > -1e+308", x=0.0) == 0.5
+    assert robustness_of(spec, "x > -1e+308", x=1e308) == 1.0
 
 
 def test_usual_comparisons_are_scaled_by_a_division_only() -> None:
-    spec = only("signal x in [0, 100] spec s = F x > 30 & F x < 100 & F x > 99.9")
+    spec = only_spec("signal x in [0, 100] spec s = F x > 30 & F x < 100 & F x > 99.9")
     assert all(LEAST not in [n.value for n in nodes(a.expression) if isinstance(n, Const)] for a in spec.atoms)
 
 
@@ -156,6 +158,6 @@ def test_other_ranges_and_numbers_keep_their_codes(written: str, code: str) -> N
     assert codes(written) == [code]
 
 
-def test_the_help_says_what_to_change() -> None:
-    _, (diagnostic,) = resolved("signal x in [0, 1e200] spec s = F x * x > 1")
+def test_the_help_suggests_smaller_ranges() -> None:
+    _, (diagnostic,) = resolve_text("signal x in [0, 1e200] spec s = F x * x > 1")
     assert diagnostic.help == "declare smaller ranges for the signals and params that it is computed from"

@@ -25,12 +25,12 @@ def test_depth_inside_conditions_counts() -> None:
     assert code(f"predicate p0 in [-1, 1] = x\n{chain}spec last = F p{ARITHMETIC.depth} > 0\n") == "TLT0317"
 
 
-def test_cases_are_limited() -> None:
+def test_the_number_of_cases_is_limited() -> None:
     cases = "".join(f"    when x < {place} / 1000: 1\n" for place in range(ARITHMETIC.parts + 1))
     assert code(f"predicate p in [-1, 1] =\n{cases}    otherwise: -1\nspec s = F p\n") == "TLT0317"
 
 
-def test_arguments_are_limited() -> None:
+def test_the_number_of_arguments_is_limited() -> None:
     assert (
         code(f"predicate p in [0, 1] = min({', '.join(['x'] * (ARITHMETIC.parts + 1))})\nspec s = F p\n") == "TLT0317"
     )

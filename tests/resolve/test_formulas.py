@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.resolve.helpers import codes, formula, good, only, resolved
+from tests.resolve.helpers import codes, formula, only_spec, resolve_text, valid_program
 from tltlc.resolve.declared_values import signal
 from tltlc.resolve.kinds import entity
 
@@ -34,7 +34,7 @@ AT = "entity e1, e2, e3 signal at(x: entity): bool signal a: bool signal b: bool
         ("spec s = true & !false", "true & !false"),
     ],
 )
-def test_meanings_of_lets_and_quantifiers(written: str, meant: str) -> None:
+def test_lets_and_quantifiers_expand_to_their_meaning(written: str, meant: str) -> None:
     assert formula(AT + written) == meant
 
 
@@ -59,18 +59,18 @@ def test_names_of_atoms_are_canonical(use: str, name: str) -> None:
     predicate p(x: entity, close: length = 1 m, far: length = size, share: ratio = 50 %) in [-1, 1] =
         clamp((close - d(x)) / far + share, -1, 1)
     """
-    (atom,) = only(f"{declared} spec s = F {use}").atoms
+    (atom,) = only_spec(f"{declared} spec s = F {use}").atoms
     assert atom.name == name
 
 
-def test_entities_as_arguments_and_defaults_of_a_predicate() -> None:
+def test_a_predicate_takes_entities_as_arguments_and_defaults() -> None:
     text = """
     entity a, b
     signal d(x: entity, y: entity): length in [0 m, 90 m]
     predicate apart(x: entity, y: entity = b) in [0, 1] = d(x, y) / 90 m
     spec s = F apart(b, a) & F apart(a)
     """
-    spec = only(text)
+    spec = only_spec(text)
     assert [atom.name for atom in spec.atoms] == ["apart(b, y=a)", "apart(a)"]
     assert [signal.name for signal in spec.signals] == ["d(b, a)", "d(a, b)"]
 
@@ -82,12 +82,12 @@ def test_predicates_may_use_predicates() -> None:
     predicate both in [-1, 1] = min(low, low(20 %))
     spec s = F both
     """
-    assert [signal.name for signal in only(text).signals] == ["x"]
+    assert [signal.name for signal in only_spec(text).signals] == ["x"]
 
 
 def test_a_numeric_argument_may_be_a_signal() -> None:
     text = "import core signal fuel: ratio spec s = F above(fuel, 0.5, 0.1)"
-    assert [atom.name for atom in only(text).atoms] == ["above(fuel, 0.5, 0.1)"]
+    assert [atom.name for atom in only_spec(text).atoms] == ["above(fuel, 0.5, 0.1)"]
 
 
 def test_unused_declarations_are_checked_once() -> None:
@@ -99,7 +99,7 @@ def test_unused_declarations_are_checked_once() -> None:
 
 
 def test_a_cycle_is_reported_once_and_named() -> None:
-    _, diagnostics = resolved("signal a: bool let x = a & y let y = X z let z = F x spec s = y & x spec t = z")
+    _, diagnostics = resolve_text("signal a: bool let x = a & y let y = X z let z = F x spec s = y & x spec t = z")
     assert [(d.code, d.title) for d in diagnostics] == [("TLT0207", "`y` is defined by itself: y -> z -> x -> y")]
 
 
@@ -110,28 +110,28 @@ def test_two_predicates_with_the_same_name_are_an_error(tmp_path: object) -> Non
     for name, sign in (("one", ""), ("two", "-")):
         (folder / f"{name}.tltl").write_text(f"signal x in [-1, 1] predicate p in [-1, 1] = {sign}x")
     text = "import one as a import two as b spec s = F a.p & G b.p"
-    assert [d.code for d in resolved(text, str(folder / "main.tltl"))[1]] == ["TLT0216"]
+    assert [d.code for d in resolve_text(text, str(folder / "main.tltl"))[1]] == ["TLT0216"]
 
 
-def test_a_long_chain() -> None:
-    spec = only("signal a: bool signal b: bool spec s = " + " & ".join(["a", "X b"] * 450))
+def test_a_long_chain_of_operators_resolves() -> None:
+    spec = only_spec("signal a: bool signal b: bool spec s = " + " & ".join(["a", "X b"] * 450))
     assert len(spec.parts) == 900
-    mixed = only("signal a: bool spec s = F (" + " | ".join(["a & !a"] * 900) + ")")
+    mixed = only_spec("signal a: bool spec s = F (" + " | ".join(["a & !a"] * 900) + ")")
     assert len(mixed.formula.args[0].args) == 900
 
 
-def test_a_long_chain_to_the_right_and_of_prefixes() -> None:
+def test_long_chains_of_implications_and_prefixes_resolve() -> None:
     text = "signal a: bool spec s = " + " -> ".join(["a"] * 900) + " spec t = " + "X " * 900 + "a"
-    first, second = good(text).specs
+    first, second = valid_program(text).specs
     assert (first.formula.op, second.formula.op) == ("implies", "X")
 
 
-def test_a_long_chain_of_lets() -> None:
+def test_a_long_chain_of_lets_resolves() -> None:
     lets = " ".join(f"let l{i} = X l{i + 1}" for i in range(3_000))
-    assert only(f"signal a: bool {lets} let l3000 = a spec s = l0").formula.op == "X"
+    assert only_spec(f"signal a: bool {lets} let l3000 = a spec s = l0").formula.op == "X"
 
 
-def test_deep_brackets() -> None:
+def test_deep_brackets_resolve() -> None:
     assert formula("signal a: bool spec s = " + "(" * 150 + "a" + ")" * 150) == "a"
     assert codes("signal x in [0, 1] spec s = F " + "(" * 150 + "x" + ")" * 150 + " > 0.5") == []
 
@@ -173,7 +173,7 @@ def test_signals_inside_quantifiers_are_resolved_once_for_each_entity(monkeypatc
     names = ", ".join(f"g{i}" for i in range(10))
     text = f"entity {names} signal at(x: entity): bool spec s = "
     quantifiers = " ".join(f"all {v} in ({names}):" for v in "xyz")
-    spec = only(f"{text}{quantifiers} F (at(x) | at(y))")
+    spec = only_spec(f"{text}{quantifiers} F (at(x) | at(y))")
     assert spec.formula.op == "and"
     assert len(spec.formula.args) == 1000
     assert len(calls) == 20
@@ -186,7 +186,7 @@ def test_a_quantifier_stops_as_soon_as_it_is_too_large(monkeypatch: pytest.Monke
     monkeypatch.setattr(formulas, "entity", lambda *arguments: calls.append(arguments) or entity(*arguments))
     names = ", ".join(f"g{i}" for i in range(300))
     text = f"entity {names} signal at(x: entity): bool spec s = all x in ({names}): all y in ({names}): "
-    _, (diagnostic,) = resolved(f"{text} F (at(x) & at(y))")
+    _, (diagnostic,) = resolve_text(f"{text} F (at(x) & at(y))")
     assert (diagnostic.code, diagnostic.title) == ("TLT0315", "`all x` expands to more than 100,000 parts")
     assert len(calls) < 30_000
 
@@ -194,7 +194,7 @@ def test_a_quantifier_stops_as_soon_as_it_is_too_large(monkeypatch: pytest.Monke
 def test_an_error_in_a_definition_labels_its_first_uses() -> None:
     lets = " ".join(f"let f{i}(x) = f{i - 1}(x)" for i in range(1, 9))
     text = f"signal d: length in [0 m, 9 m] let f0(x) = d < x {lets} spec s = F f8(3)"
-    _, (diagnostic,) = resolved(text)
+    _, (diagnostic,) = resolve_text(text)
     assert diagnostic.code == "TLT0305"
     assert [label.source.slice(label.span) for label in diagnostic.labels] == ["x", "f0(x)", "f1(x)", "f2(x)"]
     assert {label.message for label in diagnostic.labels[1:]} == {"used here"}
@@ -202,7 +202,7 @@ def test_an_error_in_a_definition_labels_its_first_uses() -> None:
 
 @pytest.mark.parametrize("parameter", ["", "(x: entity)"])
 def test_an_error_that_no_argument_causes_labels_only_the_definition(parameter: str) -> None:
-    _, (diagnostic,) = resolved(
+    _, (diagnostic,) = resolve_text(
         f"{AT} signal d in [0, 1] let f{parameter} = d < 3 m spec s = F f{parameter and '(e1)'}"
     )
     assert (diagnostic.code, len(diagnostic.labels)) == ("TLT0305", 1)

@@ -65,7 +65,7 @@ def test_mutated_programs_raise_no_exception(number: int, seed: int, edits: int)
 
 
 def test_suggestions_for_misspelt_names_take_linear_work() -> None:
-    def resolved(names: int) -> None:
+    def resolve_misspelt_names(names: int) -> None:
         declared = "".join(f"signal player_near_{number}: bool\n" for number in range(names))
         used = "".join(f"spec s{number} = G player_naer_{number}\n" for number in range(names))
         module, _ = parse(SourceFile("<many>", declared + used))
@@ -74,4 +74,4 @@ def test_suggestions_for_misspelt_names_take_linear_work() -> None:
         assert "did you mean `player_near_" in diagnostics[0].labels[0].message
 
     # If each name were compared with all others, twice as many names would take four times the work.
-    assert calls(lambda: resolved(1000)) < 3 * calls(lambda: resolved(500))
+    assert calls(lambda: resolve_misspelt_names(1000)) < 3 * calls(lambda: resolve_misspelt_names(500))

@@ -7,18 +7,18 @@ from pathlib import Path
 import pytest
 
 from tests.calls import calls
-from tests.resolve.helpers import good, only, resolved, write
+from tests.resolve.helpers import only_spec, resolve_text, valid_program, write
 from tltlc.io.limits import IMPORTED
 from tltlc.resolve.imports import library_with
 from tltlc.resolve.spec import Spec
 
 
-def _in(folder: Path, text: str, **options: object) -> list[str]:
-    return [d.code for d in resolved(text, str(folder / "main.tltl"), **options)[1]]
+def _codes(folder: Path, text: str, **options: object) -> list[str]:
+    return [d.code for d in resolve_text(text, str(folder / "main.tltl"), **options)[1]]
 
 
 def _spec(folder: Path, text: str, **options: object) -> Spec:
-    return only(text, str(folder / "main.tltl"), **options)
+    return only_spec(text, str(folder / "main.tltl"), **options)
 
 
 def test_imports_search_the_own_folder_then_libraries_then_the_standard_library(tmp_path: Path) -> None:
@@ -57,11 +57,11 @@ def test_an_alias_is_not_part_of_the_names_of_atoms(tmp_path: Path) -> None:
     spec = _spec(tmp_path, "import stealth as st entity e spec s = F st.near(e, close = 3 m) & F st.seen")
     assert [atom.name for atom in spec.atoms] == ["near(e, close=3)", "seen"]
     assert [signal.name for signal in spec.signals] == ["distance(e)", "seen"]
-    assert _in(tmp_path, "import stealth as st entity e spec s = F near(e)") == ["TLT0201"]
+    assert _codes(tmp_path, "import stealth as st entity e spec s = F near(e)") == ["TLT0201"]
 
 
 def test_the_origin_in_a_suggestion_is_the_import_of_this_file() -> None:
-    _, (diagnostic,) = resolved("import stealth entity e spec s = F neer(e)")
+    _, (diagnostic,) = resolve_text("import stealth entity e spec s = F neer(e)")
     assert diagnostic.labels[0].message == "did you mean `near` (from stealth)?"
 
 
@@ -86,19 +86,19 @@ def test_identical_declarations_merge_whichever_comes_first(tmp_path: Path) -> N
     ],
 )
 def test_different_declarations_are_an_error_that_shows_both(text: str) -> None:
-    _, (diagnostic,) = resolved(f"import stealth {text} spec s = true")
+    _, (diagnostic,) = resolve_text(f"import stealth {text} spec s = true")
     assert diagnostic.code == "TLT0204"
     assert [label.source.name.split("/")[0] for label in diagnostic.labels] == ["<test>", "<standard library>"]
 
 
-def test_a_cycle_is_named(tmp_path: Path) -> None:
+def test_a_cycle_of_imports_is_named(tmp_path: Path) -> None:
     write(tmp_path, a="import b", b="import c", c="import a")
-    _, (diagnostic,) = resolved("import a spec s = true", str(tmp_path / "main.tltl"))
+    _, (diagnostic,) = resolve_text("import a spec s = true", str(tmp_path / "main.tltl"))
     assert (diagnostic.code, diagnostic.title) == ("TLT0011", "imports form a cycle: a -> b -> c -> a")
     assert len(diagnostic.labels) == 3
 
 
-def test_a_long_chain_of_imports(tmp_path: Path) -> None:
+def test_a_long_chain_of_imports_is_followed(tmp_path: Path) -> None:
     write(tmp_path, **{f"m{i}": f"import m{i + 1}" for i in range(1500)}, m1500="signal x: bool")
     assert str(_spec(tmp_path, "import m0 spec s = F x").formula) == "F x"
 
@@ -106,29 +106,29 @@ def test_a_long_chain_of_imports(tmp_path: Path) -> None:
 def test_a_failed_import_is_the_only_error(tmp_path: Path) -> None:
     (tmp_path / "latin.tltl").write_bytes("signal caf\xe9: bool".encode("latin-1"))
     write(tmp_path, broken="signal : bool", outer="import broken")
-    assert _in(tmp_path, "import nowhere spec s = F nothing(x) > 3 m") == ["TLT0010"]
-    assert _in(tmp_path, 'import "nowhere.tltl" spec s = F nothing') == ["TLT0010"]
-    assert _in(tmp_path, "import latin spec s = F nothing") == ["TLT0002"]
-    assert len(_in(tmp_path, "import outer spec s = F nothing")) == 1
-    _, (diagnostic,) = resolved("import latin spec s = true", str(tmp_path / "main.tltl"))
+    assert _codes(tmp_path, "import nowhere spec s = F nothing(x) > 3 m") == ["TLT0010"]
+    assert _codes(tmp_path, 'import "nowhere.tltl" spec s = F nothing') == ["TLT0010"]
+    assert _codes(tmp_path, "import latin spec s = F nothing") == ["TLT0002"]
+    assert len(_codes(tmp_path, "import outer spec s = F nothing")) == 1
+    _, (diagnostic,) = resolve_text("import latin spec s = true", str(tmp_path / "main.tltl"))
     assert [label.source.name.endswith("main.tltl") for label in diagnostic.labels] == [False, True]
 
 
 def test_odd_targets_are_not_found(tmp_path: Path) -> None:
     for target in ("..", "/", "a" * 5000, "", "nul\0"):
-        assert _in(tmp_path, f'import "{target}" spec s = true')[0] in ("TLT0010", "TLT0001")
+        assert _codes(tmp_path, f'import "{target}" spec s = true')[0] in ("TLT0010", "TLT0001")
 
 
 @pytest.mark.parametrize("target", ["man", '"man.tltl"'])
 def test_a_file_is_not_suggested_as_its_own_import(tmp_path: Path, target: str) -> None:
     write(tmp_path, main="")
-    (diagnostic,) = resolved(f"import {target}", str(tmp_path / "main.tltl"))[1]
+    (diagnostic,) = resolve_text(f"import {target}", str(tmp_path / "main.tltl"))[1]
     assert (diagnostic.code, "did you mean" in (diagnostic.help or "")) == ("TLT0010", False)
 
 
 def test_specs_and_tests_of_an_import_are_not_imported(tmp_path: Path) -> None:
     write(tmp_path, lib='signal a: bool spec there = F a test "t" for there { step a expect satisfied }')
-    program = good("import lib spec here = F a", str(tmp_path / "main.tltl"))
+    program = valid_program("import lib spec here = F a", str(tmp_path / "main.tltl"))
     assert [spec.name for spec in program.specs] == ["here"]
     assert program.tests == ()
 
@@ -137,9 +137,9 @@ def test_the_suggested_prefix_resolves_a_clash_of_names(tmp_path: Path) -> None:
     write(tmp_path, orbit="signal a: bool let goal = F a")
     clash = "signal b: bool let goal = G b"
     for target, proposed in ((' "./orbit.tltl"', 'import "./orbit.tltl" as lib'), (" orbit", "import orbit as lib")):
-        (error,) = resolved(f"import{target} {clash}", str(tmp_path / "main.tltl"))[1]
+        (error,) = resolve_text(f"import{target} {clash}", str(tmp_path / "main.tltl"))[1]
         assert proposed in (error.help or "")
-        assert _in(tmp_path, f"{proposed} {clash} spec s = goal & lib.goal") == []
+        assert _codes(tmp_path, f"{proposed} {clash} spec s = goal & lib.goal") == []
 
 
 def test_a_library_is_suggested_for_a_name_that_it_declares() -> None:
@@ -154,15 +154,15 @@ def test_the_standard_library_is_read_once_for_all_unknown_names() -> None:
     assert work < 20_000
 
 
-def _doubled(folder: Path, files: int) -> None:
+def _write_doubling_chain(folder: Path, files: int) -> None:
     """Write a chain of files, each of which imports the next one under two aliases; the last declares names."""
     both = {f"m{i}": f"import m{i + 1} as x import m{i + 1} as y" for i in range(files)}
     write(folder, **both, **{f"m{files}": "signal a: bool let goal = F a"})
 
 
 def test_exponentially_many_imported_names_are_one_error(tmp_path: Path) -> None:
-    _doubled(tmp_path, 40)
-    _, (diagnostic,) = resolved("import m0 spec s = F nothing", str(tmp_path / "main.tltl"))
+    _write_doubling_chain(tmp_path, 40)
+    _, (diagnostic,) = resolve_text("import m0 spec s = F nothing", str(tmp_path / "main.tltl"))
     assert (diagnostic.code, diagnostic.title) == (
         "TLT0012",
         f"the imports of all files offer more than {IMPORTED.values:,} names",
@@ -172,12 +172,12 @@ def test_exponentially_many_imported_names_are_one_error(tmp_path: Path) -> None
 
 
 def test_imported_names_are_counted_before_they_are_created(tmp_path: Path) -> None:
-    _doubled(tmp_path, 40)
-    assert calls(lambda: resolved("import m0", str(tmp_path / "main.tltl"))) < 40 * (IMPORTED.values or 0)
+    _write_doubling_chain(tmp_path, 40)
+    assert calls(lambda: resolve_text("import m0", str(tmp_path / "main.tltl"))) < 40 * (IMPORTED.values or 0)
 
 
 def test_files_within_the_limit_keep_all_their_names(tmp_path: Path) -> None:
-    _doubled(tmp_path, 10)
+    _write_doubling_chain(tmp_path, 10)
     name = "x.y.x.y.x.y.x.y.x.y.goal"
     assert str(_spec(tmp_path, f"import m0 spec s = {name}").formula) == "F a"
 
@@ -187,12 +187,12 @@ def test_every_import_of_a_file_counts_its_names(tmp_path: Path) -> None:
     many = (IMPORTED.values or 0) // 100
     write(tmp_path, many=f"entity {', '.join(f'e{i}' for i in range(many))}")
     hundred = "\n".join(f"import many as m{i}" for i in range(100))
-    assert _in(tmp_path, hundred) == []
-    assert _in(tmp_path, f"{hundred}\nimport many (e0)") == ["TLT0012"]
+    assert _codes(tmp_path, hundred) == []
+    assert _codes(tmp_path, f"{hundred}\nimport many (e0)") == ["TLT0012"]
 
 
 def test_long_aliases_are_rejected(tmp_path: Path) -> None:
     many = 1_000
     write(tmp_path, many=f"entity {', '.join(f'e{i}' for i in range(many))}")
-    assert _in(tmp_path, f"import many as {'x' * (IMPORTED.size // many - 10)}") == []
-    assert _in(tmp_path, f"import many as {'x' * (IMPORTED.size // many)}") == ["TLT0012"]
+    assert _codes(tmp_path, f"import many as {'x' * (IMPORTED.size // many - 10)}") == []
+    assert _codes(tmp_path, f"import many as {'x' * (IMPORTED.size // many)}") == ["TLT0012"]

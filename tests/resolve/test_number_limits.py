@@ -34,6 +34,6 @@ def test_an_extreme_override_of_a_param_is_an_error(value: str) -> None:
     assert codes(text, params={"p": value}) == ["TLT0308"]
 
 
-def test_the_largest_allowed_numbers() -> None:
+def test_the_largest_allowed_numbers_are_accepted() -> None:
     assert codes(BOOL + "spec s { limit 1000000000 steps keep a }") == []
     assert codes("signal d in [-1e308, 1e308] spec s = F d > 0.5") == []

@@ -37,7 +37,7 @@ PARAMS = {
 
 
 @pytest.fixture(autouse=True)
-def no_memory(monkeypatch: pytest.MonkeyPatch) -> None:
+def no_cache(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("TLTLC_CACHE_DIR", "")
 
 
@@ -159,7 +159,7 @@ def test_a_range_without_a_proof_is_reported_as_unproved() -> None:
         (When(((cond(X, ">", 0), op("clamp", op("/", 1, X), 0, 1)),), Const(0.5)), ["discontinuous"]),
     ],
 )
-def test_continuity_between_cases(when: Expression, expected: list[str]) -> None:
+def test_jumps_between_cases_are_found(when: Expression, expected: list[str]) -> None:
     assert kinds(when) == expected
 
 
@@ -274,7 +274,7 @@ def test_values_agree_across_borders_unless_a_jump_is_found(
 
 
 @pytest.mark.parametrize("side", [(-1e308, 1e308), (-1.7e308, 1.7e308), (1e200, 1.7e308), (-1e308, -1e200)])
-def test_ranges_whose_width_overflows(side: tuple[float, float]) -> None:
+def test_a_range_whose_width_overflows_is_still_checked(side: tuple[float, float]) -> None:
     signals = {"x": spec.Signal("x", "number", *side)}
     border = side[0] / 2 + side[1] / 2
     jumping = When(((cond(X, ">", border), Const(1.0)),), Const(-1.0))

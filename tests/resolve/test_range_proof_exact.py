@@ -28,7 +28,7 @@ BOX: dict[Variable, tuple[float, float]] = {
 
 
 def proves(value: Expression, low: float, high: float, *constraints: Constraint) -> bool:
-    region = ConstrainedBox(BOX, {}).where(constraints)
+    region = ConstrainedBox(BOX, {}).constrain(constraints)
     assert region is not None
     return proves_within_exactly(value, constraints, region, low, high)
 
@@ -102,7 +102,7 @@ def test_a_proof_holds_at_every_sample(
     value: Expression, limit: Expression | None, low: int, width: int, seed: int
 ) -> None:
     constraints = () if limit is None else (Constraint(limit, False),)
-    region = ConstrainedBox(BOX, {}).where(constraints)
+    region = ConstrainedBox(BOX, {}).constrain(constraints)
     if region is None or not proves_within_exactly(value, constraints, region, low, low + width):
         return
     random_ = random.Random(seed)

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from tests.resolve.helpers import codes, only, resolved
+from tests.resolve.helpers import codes, only_spec, resolve_text
 from tltlc.expression.evaluate import evaluate
 from tltlc.expression.tree import Const, Op
 from tltlc.resolve.ranges import range_of
@@ -32,7 +32,7 @@ from tltlc.resolve.units import in_si
         (4, None, 4),
     ],
 )
-def test_conversion_to_si_units(value: float, unit: str | None, si: float) -> None:
+def test_a_number_is_converted_to_si_units(value: float, unit: str | None, si: float) -> None:
     converted = in_si(value, unit)
     assert converted is not None
     assert converted[0] == si
@@ -81,7 +81,7 @@ signal n in [0, 4]
         "r > 20 %",
     ],
 )
-def test_units_that_fit(comparison: str) -> None:
+def test_comparisons_with_fitting_units_are_accepted(comparison: str) -> None:
     assert codes(f"{DECLARED} spec s = F {comparison}") == []
 
 
@@ -106,27 +106,27 @@ def test_units_that_fit(comparison: str) -> None:
         "r > 20 Hz",
     ],
 )
-def test_units_that_do_not_fit(comparison: str) -> None:
+def test_comparisons_with_other_units_are_rejected(comparison: str) -> None:
     assert codes(f"{DECLARED} spec s = F {comparison}") == ["TLT0305"]
 
 
 def test_a_signal_named_like_a_unit_shadows_it_except_in_constants() -> None:
     text = "signal h: time in [1 s, 2 s] signal v: speed in [0 km/h, 90 km/h] spec s = F v > 10 m/h"
-    spec = only(text)
+    spec = only_spec(text)
     (v, h) = spec.signals
     assert (v.high, h.name) == (25.0, "h")
     assert spec.atoms[0].name == "v > 10 / h"
 
 
 def test_the_message_of_a_wrong_unit_suggests_the_right_one() -> None:
-    _, (diagnostic,) = resolved("import spatial entity s1 spec s { keep near(s1, close = 3 s) }")
+    _, (diagnostic,) = resolve_text("import spatial entity s1 spec s { keep near(s1, close = 3 s) }")
     assert (diagnostic.code, diagnostic.title) == ("TLT0305", "expected a length, found a time")
     assert diagnostic.labels[0].message == "`close` is a length; write `3 m`"
     assert diagnostic.labels[0].source.slice(diagnostic.labels[0].span) == "3 s"
 
 
 def test_a_signal_may_have_the_name_of_a_unit() -> None:
-    spec = only("signal s in [1, 2] signal m in [0, 1] spec t = F m / s > 0.2 & F 3 m / s > 2 m")
+    spec = only_spec("signal s in [1, 2] signal m in [0, 1] spec t = F m / s > 0.2 & F 3 m / s > 2 m")
     assert [signal.name for signal in spec.signals] == ["m", "s"]
 
 
@@ -154,14 +154,14 @@ def test_a_range_contains_every_value(op: str, ends: list[tuple[float, float]], 
 
 def test_constants_are_folded_and_params_are_kept() -> None:
     text = "signal x in [0, 9] param p in [1, 2] = 1 predicate q in [0, 1] = x / (3 * (1 + 2)) + 0 * p spec s = F q"
-    (atom,) = only(text).atoms
+    (atom,) = only_spec(text).atoms
     assert "Const(value=9.0)" in repr(atom.expression)
-    assert "Param(name='p')" in repr(atom.expression)
+    assert "ParamValue(name='p')" in repr(atom.expression)
 
 
 @given(value=st.floats(0.001, 1000))
 def test_literals_keep_their_value(value: float) -> None:
-    spec = only(f"signal d: length in [0 m, 1000 m] param p: length = {value:.6f} m spec s = F d > 1 m")
+    spec = only_spec(f"signal d: length in [0 m, 1000 m] param p: length = {value:.6f} m spec s = F d > 1 m")
     assert spec.params == ()
     text = f"signal x in [0, 2] param p in [0, 2000] = {value:.6f} predicate q in [-1, 1] = tanh(x - p) spec s = F q"
-    assert isclose(only(text).params[0].value, round(value, 6))
+    assert isclose(only_spec(text).params[0].value, round(value, 6))

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.resolve.helpers import good
+from tests.resolve.helpers import valid_program
 from tltlc.automaton.infinite.lasso import holds_on_lasso
 from tltlc.core.source import SourceFile
 from tltlc.expression.evaluate import evaluate
@@ -25,7 +25,7 @@ EXAMPLES = sorted((ROOT / "examples").glob("*.tltl"))
 
 
 def _program(path: Path) -> ResolvedFile:
-    return good(path.read_text(encoding="utf-8"), str(path))
+    return valid_program(path.read_text(encoding="utf-8"), str(path))
 
 
 @pytest.mark.parametrize("path", LIBRARIES, ids=lambda path: path.stem)

@@ -6,7 +6,7 @@ from math import isclose, pi, tanh
 
 import pytest
 
-from tests.resolve.helpers import only, value
+from tests.resolve.helpers import only_spec, robustness_of
 
 
 @pytest.mark.parametrize(
@@ -37,8 +37,8 @@ from tests.resolve.helpers import only, value
     ],
 )
 def test_values_of_core(use: str, signals: dict[str, float], expected: float) -> None:
-    spec = only(f"import core signal x in [0, 100] spec s = F {use}")
-    assert isclose(value(spec, use, **signals), expected, abs_tol=1e-12)
+    spec = only_spec(f"import core signal x in [0, 100] spec s = F {use}")
+    assert isclose(robustness_of(spec, use, **signals), expected, abs_tol=1e-12)
 
 
 BOX = "inside_box(0 m, 10 m, -2 m, 2 m, 0 m, 4 m)"
@@ -78,22 +78,22 @@ BOX = "inside_box(0 m, 10 m, -2 m, 2 m, 0 m, 4 m)"
     ],
 )
 def test_values_of_spatial(use: str, signals: dict[str, float], expected: float) -> None:
-    spec = only(f"import spatial entity e spec s = F {use}")
-    assert isclose(value(spec, spec.atoms[0].name, **signals), expected, abs_tol=1e-12)
+    spec = only_spec(f"import spatial entity e spec s = F {use}")
+    assert isclose(robustness_of(spec, spec.atoms[0].name, **signals), expected, abs_tol=1e-12)
 
 
 @pytest.mark.parametrize("close", [0.5, 1.0, 1.5])
 def test_near_is_minus_three_quarters_halfway(close: float) -> None:
-    spec = only(f"import spatial entity e spec s = F near(e, close = {close} m)")
-    assert isclose(value(spec, spec.atoms[0].name, **{"distance(e)": (close + 20) / 2}), -0.75)
+    spec = only_spec(f"import spatial entity e spec s = F near(e, close = {close} m)")
+    assert isclose(robustness_of(spec, spec.atoms[0].name, **{"distance(e)": (close + 20) / 2}), -0.75)
 
 
 @pytest.mark.parametrize("distance", [1.0, 1.5, 3.0, 5.0, 8.25, 10.0])
 def test_near_agrees_with_the_second_case_of_equation_2(distance: float) -> None:
     b, big = 1.0, 10.0
     printed = (distance**2 - 2 * big * distance + 2 * b * big - b**2) / (b - big) ** 2
-    spec = only("import spatial entity e spec s = F near(e, far = 10 m)")
-    assert isclose(value(spec, "near(e, far=10)", **{"distance(e)": distance}), printed, abs_tol=1e-12)
+    spec = only_spec("import spatial entity e spec s = F near(e, far = 10 m)")
+    assert isclose(robustness_of(spec, "near(e, far=10)", **{"distance(e)": distance}), printed, abs_tol=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -121,5 +121,5 @@ def test_near_agrees_with_the_second_case_of_equation_2(distance: float) -> None
     ],
 )
 def test_values_of_stealth(use: str, signals: dict[str, float], expected: float) -> None:
-    spec = only(f"import stealth entity e spec s = F {use}")
-    assert isclose(value(spec, spec.atoms[0].name, **signals), expected, abs_tol=1e-12)
+    spec = only_spec(f"import stealth entity e spec s = F {use}")
+    assert isclose(robustness_of(spec, spec.atoms[0].name, **signals), expected, abs_tol=1e-12)

@@ -18,23 +18,23 @@ def match(
     Raises ResolutionError (TLT0210) for missing, surplus, repeated and unknown arguments.
     """
     arguments = use.arguments if isinstance(use, CallExpr) else ()
-    given: dict[str, Expr] = {}
+    values: dict[str, Expr] = {}
     for position, argument in enumerate(arguments):
         name = _parameter_for(argument, position, use, binding, parameters, scope)
-        if name in given:
+        if name in values:
             raise problem("TLT0210", f"`{name}` is given twice", scope.source, argument.span, advice="leave one out")
-        given[name] = argument.value
+        values[name] = argument.value
     for parameter in parameters:
-        if parameter.name not in given and parameter.default is None:
+        if parameter.name not in values and parameter.default is None:
             raise problem(
                 "TLT0210",
-                f"`{binding.name}` needs {_article(parameter)}: `{parameter.name}`",
+                f"`{binding.name}` needs {_with_article(parameter)}: `{parameter.name}`",
                 scope.source,
                 use.span,
                 f"write `{use.name}({', '.join(_placeholders(parameters))})`",
-                other=(Label(binding.scope.source, binding.span, "declared here"),),
+                related=(Label(binding.scope.source, binding.span, "declared here"),),
             )
-    return tuple((parameter, given.get(parameter.name)) for parameter in parameters)
+    return tuple((parameter, values.get(parameter.name)) for parameter in parameters)
 
 
 def _parameter_for(
@@ -49,13 +49,13 @@ def _parameter_for(
     if argument.name is not None:
         if argument.name in names:
             return argument.name
-        close = likely_name(argument.name, names)
-        hint = f"did you mean `{close}`?" if close else ""
+        suggestion = likely_name(argument.name, names)
+        hint = f"did you mean `{suggestion}`?" if suggestion else ""
         listed = ", ".join(f"`{name}`" for name in names)
-        advice = None if close else f"it takes {listed}" if names else "it takes no arguments"
+        advice = None if suggestion else f"it takes {listed}" if names else "it takes no arguments"
         title = f"`{binding.name}` has no `{argument.name}`"
         place = Span(argument.span.start, argument.span.start + len(argument.name))
-        fixes = (replacement_fix(scope.source, place, close),) if close else ()
+        fixes = (replacement_fix(scope.source, place, suggestion),) if suggestion else ()
         raise problem("TLT0210", title, scope.source, argument.span, hint, advice=advice, fixes=fixes)
     if position >= len(names):
         count = {0: "no arguments", 1: "one argument"}.get(len(names), f"{len(names)} arguments")
@@ -66,12 +66,12 @@ def _parameter_for(
             argument.span,
             "one too many",
             advice=f"write `{use.name}({', '.join(names)})`" if names else f"write `{use.name}`",
-            other=(Label(binding.scope.source, binding.span, "declared here"),),
+            related=(Label(binding.scope.source, binding.span, "declared here"),),
         )
     return names[position]
 
 
-def _article(parameter: Parameter) -> str:
+def _with_article(parameter: Parameter) -> str:
     if parameter.type is None:
         return "an argument"
     return f"{'an' if parameter.type[0] in 'aeiou' else 'a'} {parameter.type}"

@@ -5,13 +5,13 @@ from __future__ import annotations
 from tltlc.grammar.tree import Unary
 from tltlc.logic.formula import Formula, always, and_, eventually, next_, or_, weak_next
 from tltlc.resolve.constants import samples
-from tltlc.resolve.context import LARGEST_EXPANSION, too_large
+from tltlc.resolve.context import LARGEST_EXPANSION, expansion_error
 from tltlc.resolve.problem import problem
 from tltlc.resolve.spec import Bound
 from tltlc.resolve.values import Env
 
 
-def bounded(expr: Unary, operand: Formula, env: Env) -> Formula:
+def expand_bound(expr: Unary, operand: Formula, env: Env) -> Formula:
     """Apply the bounded operator of ``expr`` to an operand; raise ResolutionError for a bad bound.
 
     ``F[a,b] p`` is false past the end of the trace (strong next). ``G[a,b] p`` requires nothing
@@ -21,7 +21,7 @@ def bounded(expr: Unary, operand: Formula, env: Env) -> Formula:
     bound = expr.bound
     assert bound is not None
     if env.unbounded:
-        return _unbounded(expr.op, samples(bound.high, env), operand)
+        return _drop_bound(expr.op, samples(bound.high, env), operand)
     source = env.scope.source
     high = samples(bound.high, env)
     low = samples(bound.low, env) if bound.low is not None else 0
@@ -37,7 +37,7 @@ def bounded(expr: Unary, operand: Formula, env: Env) -> Formula:
         raise problem("TLT0312", "this bound ends before it begins", source, bound.span, advice=advice)
     subject = f"the bound of `{source.slice(expr.op_span)}`"
     if 2 * high + (high - low + 1) * env.context.tree_size(operand) > 2 * LARGEST_EXPANSION:
-        raise too_large(subject, source, bound.span, is_bound=True)
+        raise expansion_error(subject, source, bound.span, is_bound=True)
     env.context.bounds.append(Bound(high, source, bound.span))
     result = operand
     join, step = (and_, weak_next) if expr.op == "G" else (or_, weak_next if expr.op == "N" else next_)
@@ -45,11 +45,11 @@ def bounded(expr: Unary, operand: Formula, env: Env) -> Formula:
         result = join(operand, step(result))
     for _ in range(low):
         result = step(result)
-    return env.context.checked_size(result, subject, source, bound.span, is_bound=True)
+    return env.context.check_size(result, subject, source, bound.span, is_bound=True)
 
 
-def _unbounded(op: str, steps: int, operand: Formula) -> Formula:
-    """Return ``F`` or ``G`` without its bound. ``X`` and ``N`` keep their ``steps`` nexts."""
+def _drop_bound(op: str, steps: int, operand: Formula) -> Formula:
+    """Apply ``F`` or ``G`` without its bound. ``X`` and ``N`` keep their ``steps`` nexts."""
     if op in ("F", "G"):
         return eventually(operand) if op == "F" else always(operand)
     for _ in range(steps):

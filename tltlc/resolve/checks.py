@@ -1,4 +1,4 @@
-"""Run the symbolic check on predicates and turn its findings into diagnostics."""
+"""Check the range and continuity of predicates, and turn the findings into diagnostics."""
 
 from __future__ import annotations
 
@@ -27,24 +27,24 @@ _NEVER_NEGATIVE = ("length", "time", "speed")
 def check_predicates(context: Context) -> None:
     """Check the range and continuity of every predicate in use, each once, and log the findings.
 
-    A range must hold for all values of the params. A jump counts only at the params' present
-    values: `near(exit, close = 3 m)` would jump in a level of 2 m, but the level has another size.
+    A range must hold for all values of the params. A jump counts only at the current values of the
+    params: `near(exit, close = 3 m)` would jump in a level of 2 m, but the level has another size.
 
     All checks together have a limited number of steps. One warning (TLT0503) names the predicates
     that were not checked.
     """
-    from tltlc.resolve.range_proof.work import limited
+    from tltlc.resolve.range_proof.work import step_limit
 
     unchecked: list[Instance] = []
-    with limited(WORK["checks of all predicates"]) as work:
+    with step_limit(WORK["checks of all predicates"]) as work:
         for instance in context.instances.values():
             if work.left < WORK["check of a predicate"]:
                 unchecked.append(instance)
                 continue
-            with limited(WORK["check of a predicate"]):
+            with step_limit(WORK["check of a predicate"]):
                 _check(instance, context)
     if unchecked:
-        context.log.add(_not_checked(unchecked))
+        context.log.add(_unchecked_warning(unchecked))
 
 
 def _check(instance: Instance, context: Context) -> None:
@@ -54,7 +54,7 @@ def _check(instance: Instance, context: Context) -> None:
     for finding in findings:
         if finding.kind == "range_wrong" and _holds_without_negatives(instance, context):
             context.log.add(_diagnostic(instance, finding, negative=True))
-        elif finding.kind not in _CONTINUITY or _jumps_at_present(instance, context):
+        elif finding.kind not in _CONTINUITY or _jumps_at_param_values(instance, context):
             context.log.add(_diagnostic(instance, finding))
 
 
@@ -69,29 +69,29 @@ def _holds_without_negatives(instance: Instance, context: Context) -> bool:
         name: replace(signal, low=0.0) if signal.type in _NEVER_NEGATIVE and signal.low is None else signal
         for name, signal in context.signals.items()
     }
-    if all(signals[node.name] is context.signals[node.name] for node in _read(instance, SignalNode)):
+    if all(signals[node.name] is context.signals[node.name] for node in _variables_read(instance, SignalNode)):
         return False
     findings = check_predicate(instance.expression, signals, context.params, instance.low, instance.high)
     return all(finding.kind not in ("range_wrong", "range_unchecked") for finding in findings)
 
 
-def _jumps_at_present(instance: Instance, context: Context) -> bool:
+def _jumps_at_param_values(instance: Instance, context: Context) -> bool:
     """Whether the continuity check reports anything with every param fixed at its value."""
     from tltlc.resolve.range_proof import check_predicate
 
-    if not _read(instance, ParamNode):
+    if not _variables_read(instance, ParamNode):
         return True
     params = {name: replace(param, low=param.value, high=param.value) for name, param in context.params.items()}
     findings = check_predicate(instance.expression, context.signals, params, instance.low, instance.high)
     return any(finding.kind in (*_CONTINUITY, "range_unchecked") for finding in findings)
 
 
-def _read(instance: Instance, kind: type[N]) -> list[N]:
+def _variables_read(instance: Instance, kind: type[N]) -> list[N]:
     """Return the signals or params that a predicate reads."""
     return [node for node in nodes(instance.expression) if isinstance(node, kind)]
 
 
-def _not_checked(unchecked: Sequence[Instance]) -> Diagnostic:
+def _unchecked_warning(unchecked: Sequence[Instance]) -> Diagnostic:
     """Return the warning for predicates that were not checked because the step limit ran out."""
     first, remaining = unchecked[0], len(unchecked) - 1
     rest = f" and {remaining} more {'predicate was' if remaining == 1 else 'predicates were'}" if remaining else " was"

@@ -43,7 +43,7 @@ def comparison(expr: BinaryExpr, env: Env) -> Formula:
     strict = _NEGATED.get(op, op)
     if not right.is_constant and strict == "<":
         strict, left, right = ">", right, left
-    name = f"{left.bracketed(PRODUCT - 1)} {strict} {right.bracketed(PRODUCT - 1)}"
+    name = f"{left.operand_text(PRODUCT - 1)} {strict} {right.operand_text(PRODUCT - 1)}"
     if env.symbolic:
         return atom(name)
     _check_size(left, expr, env)
@@ -69,7 +69,7 @@ def _check_size(side: Quantity, expr: BinaryExpr, env: Env) -> None:
 
 
 def _check_truth(left: Quantity, op: str, right: Quantity, negated: bool, expr: BinaryExpr, env: Env) -> None:
-    """Raise ResolutionError if the truth is constant (TLT0310) or a needed bound is missing (TLT0311)."""
+    """Raise ResolutionError if a comparison is constant (TLT0310) or a bound to scale it is missing (TLT0311)."""
     source = env.scope.source
     x, c = left, right.low
     if not right.is_constant:
@@ -96,9 +96,9 @@ def _check_truth(left: Quantity, op: str, right: Quantity, negated: bool, expr: 
             fixes, advice = (), f"{advice}; an implication is written `b implies a`"
         title = f"this comparison {'always' if holds else 'never'} holds"
         raise problem("TLT0310", title, source, expr.span, message, advice=advice, fixes=fixes)
-    needed = [inf in (left.high, -right.low), inf in (-left.low, right.high)]
-    if any(needed):
-        raise _unbounded(x, needed, expr, env)
+    missing_ends = [inf in (left.high, -right.low), inf in (-left.low, right.high)]
+    if any(missing_ends):
+        raise _missing_range_error(x, missing_ends, expr, env)
 
 
 def _is_percentage(x: Quantity, c: float, op: str, expr: BinaryExpr, env: Env) -> bool:
@@ -114,15 +114,13 @@ def _is_ratio(expr: Expr, env: Env) -> bool:
     declaration = binding.declaration if binding else None
     if not isinstance(declaration, (SignalDecl, ParamDecl)):
         return False
-    written_parts = (part for expression in expressions(declaration) for part in parts(expression))
-    return declaration.type == "ratio" or any(
-        isinstance(part, NumberExpr) and part.unit == "%" for part in written_parts
-    )
+    range_parts = (part for expression in expressions(declaration) for part in parts(expression))
+    return declaration.type == "ratio" or any(isinstance(part, NumberExpr) and part.unit == "%" for part in range_parts)
 
 
-def _unbounded(x: Quantity, needed: list[bool], expr: BinaryExpr, env: Env) -> ResolutionError:
+def _missing_range_error(x: Quantity, missing_ends: list[bool], expr: BinaryExpr, env: Env) -> ResolutionError:
     unit = f" {units.si_unit(x.dimension)}" if x.dimension and units.si_unit(x.dimension) else ""
-    ends = " and ".join(word for word, missing in zip(("upper", "lower"), needed, strict=True) if missing)
+    ends = " and ".join(word for word, missing in zip(("upper", "lower"), missing_ends, strict=True) if missing)
     return problem(
         "TLT0311",
         f"`{x.text}` has no {ends} bound to scale this comparison by",

@@ -27,24 +27,24 @@ def number(expr: Expr, dimension: Dimension, env: Env, subject: str) -> float:
     """
     value = quantity(expr, replace(env, constant=True, local={}))
     if value.dimension not in (None, dimension):
-        raise mismatch(dimension, value.dimension, expr, env, f"{subject} is {units.described(dimension)}")
+        raise mismatch(dimension, value.dimension, expr, env, f"{subject} is {units.dimension_text(dimension)}")
     assert isinstance(value.expression, Const), "constants fold"
     return value.expression.value
 
 
-def interval(written: Interval, dimension: Dimension, env: Env) -> tuple[float | None, float | None]:
+def interval(declared: Interval, dimension: Dimension, env: Env) -> tuple[float | None, float | None]:
     """Return the ends of a range in SI units; raise ResolutionError if it is empty.
 
     An end is None where the range is open (``inf``).
     """
-    low = _end(written.low, dimension, env)
-    high = _end(written.high, dimension, env)
+    low = _range_end(declared.low, dimension, env)
+    high = _range_end(declared.high, dimension, env)
     if low == inf or high == -inf or low > high:
         raise problem(
             "TLT0303",
             "this range is empty",
             env.scope.source,
-            written.span,
+            declared.span,
             advice="write the smaller end first, e.g. `in [0, 1]`",
         )
     return (None if low == -inf else low), (None if high == inf else high)
@@ -62,10 +62,10 @@ def samples(value: NumberExpr, env: Env) -> int:
             whole = f"{value.value // 1 + 1:.0f}" + (f" {value.unit}" if value.unit else "")
             advice = f"write e.g. `{whole}`"
             raise problem("TLT0312", "expected a whole number of steps", source, value.span, advice=advice)
-        return _counted(value.value, value, env)
+        return _sample_count(value.value, value, env)
     in_si = units.in_si(value.value, value.unit)
     if in_si is None or in_si[1] != units.TYPES["time"]:
-        described = units.described(in_si[1]) if in_si else f"`{value.unit}`"
+        described = units.dimension_text(in_si[1]) if in_si else f"`{value.unit}`"
         title = f"expected a number of steps or a time, found {described}"
         raise problem("TLT0312", title, source, value.span, advice="write e.g. `20 steps` or `2 s`")
     period = env.context.clock_s
@@ -81,10 +81,10 @@ def samples(value: NumberExpr, env: Env) -> int:
             "or write the bound in steps",
         )
     # The tolerance keeps 0.15 s at 20 Hz at 3 samples.
-    return _counted(in_si[0] / period - 1e-9, value, env)
+    return _sample_count(in_si[0] / period - 1e-9, value, env)
 
 
-def _counted(steps: float, value: NumberExpr, env: Env) -> int:
+def _sample_count(steps: float, value: NumberExpr, env: Env) -> int:
     """Return the number rounded up; raise ResolutionError (TLT0312) above MOST_SAMPLES."""
     if steps > MOST_SAMPLES:
         title = f"this is more than {MOST_SAMPLES:,} steps"
@@ -95,7 +95,7 @@ def _counted(steps: float, value: NumberExpr, env: Env) -> int:
 _OVERRIDE = re.compile(r"([-+]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]+)?)\s*([A-Za-z%/]*)")
 
 
-def override(text: str) -> tuple[float, Dimension | None] | None:
+def parse_override(text: str) -> tuple[float, Dimension | None] | None:
     """Return the value of ``--param NAME=25 m`` in SI units and its dimension.
 
     The dimension is None without a unit. The result is None if the text is not a value.
@@ -116,7 +116,7 @@ def override(text: str) -> tuple[float, Dimension | None] | None:
     return numerator[0] / denominator[0], units.product(numerator[1], denominator[1], -1.0)
 
 
-def _end(expr: Expr, dimension: Dimension, env: Env) -> float:
+def _range_end(expr: Expr, dimension: Dimension, env: Env) -> float:
     sign, inner = 1.0, expr
     while isinstance(inner, GroupExpr) or (isinstance(inner, tree.Unary) and inner.op == "-"):
         if isinstance(inner, tree.Unary):

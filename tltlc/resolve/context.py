@@ -37,7 +37,7 @@ class SignalInfo:
     """Whether the range is written in the declaration, not taken from the type."""
     place: Label
 
-    def of(self, entities: tuple[str, ...]) -> Signal:
+    def signal_of(self, entities: tuple[str, ...]) -> Signal:
         """Return the signal of these entities."""
         return Signal(self.name, self.type, self.low, self.high, self.doc, entities)
 
@@ -56,7 +56,7 @@ class Instance:
     source: SourceFile
     span: Span
     use: Label | None = None
-    """The use that passes numbers to the predicate, if any. The findings depend on these numbers."""
+    """The use that passes numbers to the predicate, or None. The findings depend on these numbers."""
 
 
 class Context:
@@ -109,7 +109,7 @@ class Context:
 
     def signal(self, info: SignalInfo, entities: tuple[str, ...]) -> Signal:
         """Return the signal of these entities and record that it is used."""
-        signal = info.of(entities)
+        signal = info.signal_of(entities)
         return self.signals.setdefault(signal.name, signal)
 
     def atom(
@@ -128,7 +128,7 @@ class Context:
         """
         name = full_name(base, arguments)
         if name not in self.atoms:
-            self._arithmetic += self.arithmetic_of(expression, source, span, self._arithmetic)
+            self._arithmetic += self.count_arithmetic(expression, source, span, self._arithmetic)
         known = self.atoms.setdefault(name, Atom(base, expression, doc, arguments))
         if known.expression != expression:
             raise problem(
@@ -140,13 +140,13 @@ class Context:
             )
         return atom(name)
 
-    def arithmetic_of(self, expression: Expression, source: SourceFile, span: Span, counted: int = 0) -> int:
+    def count_arithmetic(self, expression: Expression, source: SourceFile, span: Span, counted_before: int = 0) -> int:
         """Return the number of nodes of an expression.
 
-        Raises ResolutionError (TLT0315) if the limit is exceeded together with the ``counted``
+        Raises ResolutionError (TLT0315) if the limit is exceeded together with the ``counted_before``
         nodes.
         """
-        left = WORK["arithmetic of all atoms"] - counted
+        left = WORK["arithmetic of all atoms"] - counted_before
         size = sum(1 for _ in islice(nodes(expression), left + 1))
         if size > left:
             raise problem(
@@ -159,8 +159,11 @@ class Context:
             )
         return size
 
-    def recursion(self, declaration: int, source: SourceFile, span: Span) -> ResolutionError:
-        """Return the problem of a let or predicate that uses itself; each cycle is reported once."""
+    def recursion_error(self, declaration: int, source: SourceFile, span: Span) -> ResolutionError:
+        """Return the problem of a let or predicate that uses itself.
+
+        Its diagnostic is None if the cycle has already been reported.
+        """
         active = list(self.expanding)
         cycle = active[active.index(declaration) :]
         names = [self.expanding[key] for key in (*cycle, declaration)]
@@ -198,12 +201,12 @@ class Context:
                 stack.pop()
         return self._sizes[formula]
 
-    def checked_size(
+    def check_size(
         self, formula: Formula, subject: str, source: SourceFile, span: Span, *, is_bound: bool = False
     ) -> Formula:
         """Return the formula; raise ResolutionError if an expansion has made it too large."""
         if self.tree_size(formula) > LARGEST_EXPANSION:
-            raise too_large(subject, source, span, is_bound=is_bound)
+            raise expansion_error(subject, source, span, is_bound=is_bound)
         return formula
 
 
@@ -211,7 +214,7 @@ _SMALLER_BOUND: Final = "choose a smaller bound or a slower clock, or let a sign
 _FEWER_USES: Final = "it multiplies with each use inside another: say the same with fewer of them"
 
 
-def too_large(subject: str, source: SourceFile, span: Span, *, is_bound: bool = False) -> ResolutionError:
+def expansion_error(subject: str, source: SourceFile, span: Span, *, is_bound: bool = False) -> ResolutionError:
     """Return the problem of an expansion past the limit.
 
     ``subject`` names the bound, let, quantifier or parameter.

@@ -12,7 +12,7 @@ from tltlc.resolve import units
 from tltlc.resolve.constants import interval, number
 from tltlc.resolve.context import Context, SignalInfo
 from tltlc.resolve.options import ResolveOptions
-from tltlc.resolve.predicates import unknown_type
+from tltlc.resolve.predicates import unknown_type_error
 from tltlc.resolve.problem import ResolutionError, problem
 from tltlc.resolve.scope import Scope
 from tltlc.resolve.spec import Param, ValueType
@@ -37,13 +37,13 @@ def declare(scopes: Iterable[Scope], options: ResolveOptions, context: Context) 
             except ResolutionError as failure:
                 context.log.add(failure.diagnostic)
                 context.clock_failed = context.clock_failed or isinstance(declaration, ClockDecl)
-    _override(options, context)
+    _apply_overrides(options, context)
 
 
 def _type(declaration: SignalDecl | ParamDecl, scope: Scope) -> ValueType:
     type_ = units.value_type(declaration.type or "number")
     if type_ is None:
-        raise unknown_type(str(declaration.type), declaration, scope)
+        raise unknown_type_error(str(declaration.type), declaration, scope)
     return type_
 
 
@@ -82,7 +82,7 @@ def _signal(declaration: SignalDecl, env: Env) -> None:
         if not old.has_range:
             table[new.name] = replace(new, doc=new.doc or old.doc)
             return
-    raise _conflict("signal", new.name, place, old.place)
+    raise _conflict_error("signal", new.name, place, old.place)
 
 
 def _param(declaration: ParamDecl, env: Env, places: dict[str, Label], ranged: set[str]) -> None:
@@ -117,10 +117,10 @@ def _param(declaration: ParamDecl, env: Env, places: dict[str, Label], ranged: s
             env.context.params[new.name] = new
             places[new.name] = place
             return
-    raise _conflict("param", new.name, place, places[new.name])
+    raise _conflict_error("param", new.name, place, places[new.name])
 
 
-def _conflict(kind: str, name: str, new: Label, old: Label) -> ResolutionError:
+def _conflict_error(kind: str, name: str, new: Label, old: Label) -> ResolutionError:
     return problem(
         "TLT0204",
         f"the {kind} `{name}` is declared in two different ways",
@@ -128,23 +128,23 @@ def _conflict(kind: str, name: str, new: Label, old: Label) -> ResolutionError:
         new.span,
         "differs from the other declaration",
         advice="make the two declarations the same, or rename one",
-        other=(Label(old.source, old.span, "the other declaration"),),
+        related=(Label(old.source, old.span, "the other declaration"),),
     )
 
 
 def _clock(declaration: ClockDecl, env: Env, old: Label | None) -> Label:
-    source, written = env.scope.source, declaration.value
-    in_si = units.in_si(written.value, written.unit)
-    if in_si is not None and written.unit == "Hz" and written.value > 0:
+    source, value = env.scope.source, declaration.value
+    in_si = units.in_si(value.value, value.unit)
+    if in_si is not None and value.unit == "Hz" and value.value > 0:
         period = 1.0 / in_si[0]
-    elif in_si is not None and in_si[1] == units.TYPES["time"] and written.value > 0:
+    elif in_si is not None and in_si[1] == units.TYPES["time"] and value.value > 0:
         period = in_si[0]
     else:
         title = "a clock is a frequency or a period, above zero"
-        raise problem("TLT0314", title, source, written.span, advice="write e.g. `clock 20 Hz` or `clock 0.05 s`")
+        raise problem("TLT0314", title, source, value.span, advice="write e.g. `clock 20 Hz` or `clock 0.05 s`")
     if not 1e-9 <= period <= 1e9:
         title = "a clock has between 1e-9 and 1e9 seconds from step to step"
-        raise problem("TLT0314", title, source, written.span, advice="write e.g. `clock 20 Hz` or `clock 0.05 s`")
+        raise problem("TLT0314", title, source, value.span, advice="write e.g. `clock 20 Hz` or `clock 0.05 s`")
     here = Label(source, declaration.span)
     if old is not None and period != env.context.clock_s:
         raise problem(
@@ -153,18 +153,18 @@ def _clock(declaration: ClockDecl, env: Env, old: Label | None) -> Label:
             source,
             declaration.span,
             advice="a program has one clock: keep one of the two",
-            other=(Label(old.source, old.span, "the other clock"),),
+            related=(Label(old.source, old.span, "the other clock"),),
         )
     env.context.clock_s = period
     return old or here
 
 
-def _override(options: ResolveOptions, context: Context) -> None:
+def _apply_overrides(options: ResolveOptions, context: Context) -> None:
     """Apply the param values given outside the source text."""
     if options.params:
-        from tltlc.resolve.overrides import overridden
+        from tltlc.resolve.overrides import apply_overrides
 
-        params, diagnostics = overridden(context.params, options.params)
+        params, diagnostics = apply_overrides(context.params, options.params)
         context.params.update(params)
         for diagnostic in diagnostics:
             context.log.add(diagnostic)

@@ -39,12 +39,12 @@ def signal(expr: NameExpr | CallExpr, binding: Binding, env: Env) -> Quantity:
         info = env.context.signal_infos.get(declaration.name)
         if info is None:
             raise ResolutionError(None)
-        env.context.values[memo] = of_signal(env.context.signal(info, entities))
+        env.context.values[memo] = signal_value(env.context.signal(info, entities))
     value: Quantity = env.context.values[memo]
     return value
 
 
-def of_signal(signal: Signal) -> Quantity:
+def signal_value(signal: Signal) -> Quantity:
     """Return the value of a signal."""
     low = -inf if signal.low is None else signal.low
     high = inf if signal.high is None else signal.high

@@ -28,18 +28,18 @@ def same_dimension(left: Quantity, right: Quantity, at: Expr, env: Env) -> Dimen
     """
     if left.dimension is None or right.dimension is None or left.dimension == right.dimension:
         return left.dimension if left.dimension is not None else right.dimension
-    raise mismatch(left.dimension, right.dimension, at, env, f"the left side is {units.described(left.dimension)}")
+    raise mismatch(left.dimension, right.dimension, at, env, f"the left side is {units.dimension_text(left.dimension)}")
 
 
-def _keeps_value(written: str | None, wanted: str | None, found: Dimension) -> bool:
+def _keeps_value(written_unit: str | None, expected_unit: str | None, actual: Dimension) -> bool:
     """Whether a fix may keep the written number and write the wanted unit after it.
 
     This holds if no unit was written, or if the wanted unit continues it (``m`` in ``m/s``). If no
     unit is wanted, the written unit must be the SI unit.
     """
-    if wanted is None:
-        return written == units.si_unit(found)
-    return written is None or wanted.startswith(f"{written}/")
+    if expected_unit is None:
+        return written_unit == units.si_unit(actual)
+    return written_unit is None or expected_unit.startswith(f"{written_unit}/")
 
 
 def _has_other_units(dimension: Dimension, unit: str, env: Env) -> bool:
@@ -50,19 +50,19 @@ def _has_other_units(dimension: Dimension, unit: str, env: Env) -> bool:
     usual = {unit, *unit.split("/")}
     for binding in env.scope.names.values():
         declaration = binding.declaration
-        if not isinstance(declaration, NameExpr) and _is_of(dimension, declaration):
-            written = [part for expression in expressions(declaration) for part in parts(expression)]
-            number_units = {part.unit for part in written if isinstance(part, NumberExpr) and part.unit}
+        if not isinstance(declaration, NameExpr) and _has_dimension(dimension, declaration):
+            range_parts = [part for expression in expressions(declaration) for part in parts(expression)]
+            number_units = {part.unit for part in range_parts if isinstance(part, NumberExpr) and part.unit}
             if number_units and not number_units & usual:
                 return True
             # The unit of time after the `/` of a speed is parsed as a name.
-            names = {part.name for part in written if isinstance(part, NameExpr)}
+            names = {part.name for part in range_parts if isinstance(part, NameExpr)}
             if any(units.in_si(1.0, name) for name in names - usual):
                 return True
     return False
 
 
-def _is_of(dimension: Dimension, declaration: Declaration) -> bool:
+def _has_dimension(dimension: Dimension, declaration: Declaration) -> bool:
     """Whether a declaration is a signal or param of this dimension, or has such a parameter."""
     if isinstance(declaration, (SignalDecl, ParamDecl)):
         return units.TYPES.get(declaration.type or "") == dimension
@@ -71,7 +71,7 @@ def _is_of(dimension: Dimension, declaration: Declaration) -> bool:
     return False
 
 
-def mismatch(expected: Dimension, found: Dimension, at: Expr, env: Env, why: str) -> ResolutionError:
+def mismatch(expected: Dimension, actual: Dimension, at: Expr, env: Env, why: str) -> ResolutionError:
     """Return the problem of a quantity of the wrong dimension at ``at``."""
     while isinstance(at, GroupExpr):
         at = at.inner
@@ -85,12 +85,12 @@ def mismatch(expected: Dimension, found: Dimension, at: Expr, env: Env, why: str
         why += f"; write `{replacement}`" if replacement else ""
         if expected == units.TYPES["angle"]:
             why, replacement = f"{why} or `{digits} deg`", ""
-        elif not _keeps_value(at.unit, unit, found) or (unit and _has_other_units(expected, unit, env)):
+        elif not _keeps_value(at.unit, unit, actual) or (unit and _has_other_units(expected, unit, env)):
             replacement = ""
     elif unit:
-        advice = f"give {units.described(expected)} there, e.g. `3 {unit}`"
+        advice = f"give {units.dimension_text(expected)} there, e.g. `3 {unit}`"
     elif expected == units.PLAIN and "divide" not in why:
-        advice = f"divide it by {units.described(found)} to get a number"
-    title = f"expected {units.described(expected)}, found {units.described(found)}"
+        advice = f"divide it by {units.dimension_text(actual)} to get a number"
+    title = f"expected {units.dimension_text(expected)}, found {units.dimension_text(actual)}"
     fixes = (replacement_fix(env.scope.source, at.span, replacement),) if replacement else ()
     return problem("TLT0305", title, env.scope.source, at.span, why, advice=advice, fixes=fixes)

@@ -1,7 +1,7 @@
 """Resolve formulas: replace predicates, comparisons, lets, quantifiers and bounds by logic.
 
-The functions that walk the tree are generators (:mod:`tltlc.resolve.trampoline`). Neither a long chain
-of operators nor deeply nested lets can exhaust Python's stack.
+The functions that walk the tree are generators (:mod:`tltlc.resolve.trampoline`), so that neither a
+long chain of operators nor deeply nested lets can exhaust Python's stack.
 """
 
 from __future__ import annotations
@@ -27,15 +27,15 @@ from tltlc.grammar.walk import operands
 from tltlc.logic import formula as logic
 from tltlc.logic.formula import Formula
 from tltlc.resolve.arguments import match
-from tltlc.resolve.bounds import bounded
+from tltlc.resolve.bounds import expand_bound
 from tltlc.resolve.comparisons import comparison
-from tltlc.resolve.context import LARGEST_EXPANSION, MOST_EXPANSIONS, too_large
+from tltlc.resolve.context import LARGEST_EXPANSION, MOST_EXPANSIONS, expansion_error
 from tltlc.resolve.declared_values import signal
-from tltlc.resolve.kinds import entity, kind_of, lookup, not_a_formula
+from tltlc.resolve.kinds import entity, kind_of, lookup, not_a_formula_error
 from tltlc.resolve.predicates import argument_value, predicate
 from tltlc.resolve.problem import ResolutionError
 from tltlc.resolve.scope import Binding
-from tltlc.resolve.trampoline import Steps, run
+from tltlc.resolve.trampoline import FormulaGenerator, run_to_result
 from tltlc.resolve.units import value_type
 from tltlc.resolve.values import Entity, Env, Quantity, Unknown, Value
 
@@ -61,7 +61,7 @@ _NARY: dict[str, Callable[..., Formula]] = {"and": logic.and_, "or": logic.or_}
 
 def formula(expr: Expr, env: Env) -> Formula:
     """Return the formula of an expression; raise ResolutionError if it is not a formula."""
-    return run(_formula(expr, env))
+    return run_to_result(_formula(expr, env))
 
 
 def check_unused(binding: Binding, env: Env) -> None:
@@ -72,47 +72,47 @@ def check_unused(binding: Binding, env: Env) -> None:
     for parameter in declaration.parameters:
         values[parameter.name] = Entity(parameter.name) if parameter.type == "entity" else Unknown(parameter.name)
     inside = Env(env.context, binding.scope, values, symbolic=bool(declaration.parameters))
-    run(_expand(declaration, binding, inside, declaration.name_span, env))
+    run_to_result(_expand_let(declaration, binding, inside, declaration.name_span, env))
 
 
-def _formula(expr: Expr, env: Env) -> Steps:
+def _formula(expr: Expr, env: Env) -> FormulaGenerator:
     while isinstance(expr, GroupExpr):
         expr = expr.inner
     if isinstance(expr, Constant):
         return logic.TRUE if expr.value else logic.FALSE
     if isinstance(expr, NameExpr):
-        return (yield _named(expr, env))
+        return (yield _resolve_name(expr, env))
     if isinstance(expr, CallExpr) or (isinstance(expr, BinaryExpr) and expr.op in _COMPARISONS):
-        return (yield _shared(expr, env))
+        return (yield _resolve_once(expr, env))
     if isinstance(expr, Unary) and expr.op in _UNARY:
         operand = yield _formula(expr.operand, env)
-        return bounded(expr, operand, env) if expr.bound else _UNARY[expr.op](operand)
+        return expand_bound(expr, operand, env) if expr.bound else _UNARY[expr.op](operand)
     if isinstance(expr, Quantified):
-        return (yield _quantified(expr, env))
+        return (yield _expand_quantifier(expr, env))
     if isinstance(expr, BinaryExpr):
         if expr.op in _NARY:
             joined: list[Formula] = []
-            for written in operands(expr, expr.op):
-                operand = yield _formula(written, env)
+            for operand_expr in operands(expr, expr.op):
+                operand = yield _formula(operand_expr, env)
                 joined.append(operand)
             return _NARY[expr.op](*joined)
         if expr.op in _BINARY:
             left = yield _formula(expr.left, env)
             right = yield _formula(expr.right, env)
             return _BINARY[expr.op](left, right)
-    raise not_a_formula(expr, env)
+    raise not_a_formula_error(expr, env)
 
 
-def _shared(expr: CallExpr | BinaryExpr, env: Env) -> Steps:
+def _resolve_once(expr: CallExpr | BinaryExpr, env: Env) -> FormulaGenerator:
     """Resolve a call or comparison once for each choice of the local names in it."""
     values, names = env.context.values, env.context.names_in(expr)
     memo = (id(expr), env.symbolic, env.unbounded, tuple([env.local.get(name) for name in names]))
     if memo not in values:
-        values[memo] = comparison(expr, env) if isinstance(expr, BinaryExpr) else (yield _named(expr, env))
+        values[memo] = comparison(expr, env) if isinstance(expr, BinaryExpr) else (yield _resolve_name(expr, env))
     return values[memo]
 
 
-def _named(expr: NameExpr | CallExpr, env: Env) -> Steps:
+def _resolve_name(expr: NameExpr | CallExpr, env: Env) -> FormulaGenerator:
     local = env.local.get(expr.name)
     if local is not None:
         if isinstance(local, Formula) and isinstance(expr, NameExpr):
@@ -121,7 +121,7 @@ def _named(expr: NameExpr | CallExpr, env: Env) -> Steps:
             return logic.atom(local.name)
         if isinstance(local, Quantity) and local.is_bool:
             return _bool_atom(local, "", expr, env)
-        raise not_a_formula(expr, env)
+        raise not_a_formula_error(expr, env)
     binding = lookup(expr, env, ("predicate", "let", "signal"), "predicate")
     if binding.kind == "predicate":
         use = predicate(expr, binding, env)
@@ -129,14 +129,14 @@ def _named(expr: NameExpr | CallExpr, env: Env) -> Steps:
             return logic.atom(use.value.text)
         return _atom(use.value, use.value.expression, use.doc, expr, env)
     if binding.kind == "let":
-        return (yield _let(expr, binding, env))
+        return (yield _use_let(expr, binding, env))
     declaration = binding.declaration
     if isinstance(declaration, SignalDecl) and declaration.type == "bool":
         return _bool_atom(signal(expr, binding, env), declaration.doc, expr, env)
     if isinstance(declaration, SignalDecl) and declaration.type is not None and value_type(declaration.type) is None:
         # The declaration has already been reported for its unknown type.
         raise ResolutionError(None)
-    raise not_a_formula(expr, env)
+    raise not_a_formula_error(expr, env)
 
 
 def _bool_atom(value: Quantity, doc: str, expr: NameExpr | CallExpr, env: Env) -> Formula:
@@ -150,17 +150,17 @@ def _bool_atom(value: Quantity, doc: str, expr: NameExpr | CallExpr, env: Env) -
 
 
 def _atom(value: Quantity, robustness: Expression, doc: str, expr: NameExpr | CallExpr, env: Env) -> Formula:
-    """Return the atom that is called like a value."""
+    """Return the atom that has the name of a value."""
     base, arguments = value.call or (value.text, ())
     return env.context.atom(base, robustness, doc, env.scope.source, expr.span, arguments)
 
 
-def _let(expr: NameExpr | CallExpr, binding: Binding, env: Env) -> Steps:
+def _use_let(expr: NameExpr | CallExpr, binding: Binding, env: Env) -> FormulaGenerator:
     declaration = binding.declaration
     assert isinstance(declaration, LetDecl)
     values: dict[str, Value] = {}
     for parameter, argument in match(expr, binding, declaration.parameters, env.scope):
-        argument_env = env if argument is not None else env.within(binding.scope, dict(values))
+        argument_env = env if argument is not None else env.inside(binding.scope, dict(values))
         expression = argument if argument is not None else parameter.default
         assert expression is not None
         local = argument_env.local.get(expression.name) if isinstance(expression, NameExpr) else None
@@ -171,29 +171,29 @@ def _let(expr: NameExpr | CallExpr, binding: Binding, env: Env) -> Steps:
             if not env.unbounded:
                 # A default may use earlier parameters, so its size may double with each of them.
                 subject = f"`{parameter.name}` of `{declaration.name}`"
-                env.context.checked_size(formula, subject, argument_env.scope.source, expression.span)
+                env.context.check_size(formula, subject, argument_env.scope.source, expression.span)
             values[parameter.name] = formula
         else:
             values[parameter.name] = argument_value(parameter, expression, argument_env, binding, 0)
     try:
-        return (yield _expand(declaration, binding, env.within(binding.scope, values), expr.span, env))
+        return (yield _expand_let(declaration, binding, env.inside(binding.scope, values), expr.span, env))
     except ResolutionError as failure:
         if not all(isinstance(value, Entity) for value in values.values()):
-            failure.used_at(Label(env.scope.source, expr.span), binding.scope.source, declaration.body.span)
+            failure.add_use(Label(env.scope.source, expr.span), binding.scope.source, declaration.body.span)
         raise
 
 
-def _expand(declaration: LetDecl, binding: Binding, inside: Env, span: Span, user: Env) -> Steps:
+def _expand_let(declaration: LetDecl, binding: Binding, inside: Env, span: Span, user: Env) -> FormulaGenerator:
     """Expand the body of a let with the values of its parameters, once per combination of values."""
     context, source = inside.context, user.scope.source
     key = id(declaration)
     if key in context.broken:
         raise ResolutionError(None)
     if key in context.expanding:
-        raise context.recursion(key, binding.scope.source, declaration.name_span)
+        raise context.recursion_error(key, binding.scope.source, declaration.name_span)
     memo = (key, inside.symbolic, inside.unbounded, tuple(inside.local.values()))
     if memo not in context.values:
-        _count(f"the let `{declaration.name}`", span, user)
+        _count_expansion(f"the let `{declaration.name}`", span, user)
         context.expanding[key] = declaration.name
         try:
             body = yield _formula(declaration.body, inside)
@@ -203,7 +203,7 @@ def _expand(declaration: LetDecl, binding: Binding, inside: Env, span: Span, use
             context.values[memo] = body
             return body
         try:
-            context.values[memo] = context.checked_size(body, f"the let `{declaration.name}`", source, span)
+            context.values[memo] = context.check_size(body, f"the let `{declaration.name}`", source, span)
         except ResolutionError:
             context.broken.add(key)
             raise
@@ -211,25 +211,25 @@ def _expand(declaration: LetDecl, binding: Binding, inside: Env, span: Span, use
     return expansion
 
 
-def _quantified(expr: Quantified, env: Env) -> Steps:
+def _expand_quantifier(expr: Quantified, env: Env) -> FormulaGenerator:
     subject = f"`{'all' if expr.all else 'any'} {expr.variable}`"
     parts: list[Formula] = []
     size = 0
     for name in expr.entities:
-        _count(subject, expr.span, env)
-        part = yield _formula(expr.body, env.also(expr.variable, entity(name, env)))
+        _count_expansion(subject, expr.span, env)
+        part = yield _formula(expr.body, env.with_local(expr.variable, entity(name, env)))
         parts.append(part)
         size += env.context.tree_size(part)
         if size > LARGEST_EXPANSION and not env.unbounded:
-            raise too_large(subject, env.scope.source, expr.span)
+            raise expansion_error(subject, env.scope.source, expr.span)
     return logic.and_(*parts) if expr.all else logic.or_(*parts)
 
 
-def _count(subject: str, span: Span, env: Env) -> None:
+def _count_expansion(subject: str, span: Span, env: Env) -> None:
     if env.unbounded:
         return
     env.context.expansions += 1
     if env.context.expansions > MOST_EXPANSIONS:
         env.context.broken.update(env.context.expanding)
         first = env.context.expansions == MOST_EXPANSIONS + 1
-        raise too_large(subject, env.scope.source, span) if first else ResolutionError(None)
+        raise expansion_error(subject, env.scope.source, span) if first else ResolutionError(None)

@@ -21,44 +21,44 @@ _NO_FILE: Final = "there is no file `{}` beside this one"
 
 
 @record
-class Loaded:
+class LoadedModule:
     """A parsed module, its name in messages, and the module that each of its imports leads to."""
 
     module: Module
     title: str
-    imports: tuple[tuple[Import, Loaded], ...]
+    imports: tuple[tuple[Import, LoadedModule], ...]
     complete: bool
     """Whether the file and everything it imports could be read without error."""
 
 
-def load(module: Module, options: ResolveOptions, log: Log) -> tuple[Loaded, ...]:
+def load(module: Module, options: ResolveOptions, log: Log) -> tuple[LoadedModule, ...]:
     """Return every module reachable from ``module``, once each, imported modules first.
 
     The last one is ``module`` itself. Imports that fail are logged and left out.
     """
-    done: dict[Path, Loaded] = {}
+    done: dict[Path, LoadedModule] = {}
     stack = [_Visit(module, _path_of(module.source), Path(module.source.name).stem)]
-    order: list[Loaded] = []
+    order: list[LoadedModule] = []
     while stack:
         visit = stack[-1]
         declaration = next(visit.pending, None)
         if declaration is None:
             stack.pop()
-            loaded = Loaded(visit.module, visit.title, tuple(visit.found), visit.complete)
+            loaded = LoadedModule(visit.module, visit.title, tuple(visit.imports), visit.complete)
             order.append(loaded)
             done[visit.path] = loaded
-            if stack and visit.reason:
-                stack[-1].add(visit.reason, loaded)
+            if stack and visit.declaration:
+                stack[-1].add(visit.declaration, loaded)
             continue
         source = visit.module.source
         try:
-            path, shown = _find(declaration, source, options)
+            path, display_name = _find(declaration, source, options)
             if path in done:
                 visit.add(declaration, done[path])
-            elif any(path == other.path for other in stack):
-                raise _cycle(declaration, source, path, stack)
+            elif any(path == ancestor.path for ancestor in stack):
+                raise _cycle_error(declaration, source, path, stack)
             else:
-                stack.append(_parse(path, shown, declaration, source, log))
+                stack.append(_parse(path, display_name, declaration, source, log))
         except ResolutionError as failure:
             log.add(failure.diagnostic)
             visit.complete = False
@@ -92,7 +92,7 @@ def _names_of_libraries() -> Mapping[str, str]:
     libraries: dict[str, str] = {}
     for path in _files(standard_library()):
         if not path.stem.endswith("_tests"):
-            for match in declared.finditer(read_source(path, _shown(path)).text):
+            for match in declared.finditer(read_source(path, _display_name(path)).text):
                 libraries.setdefault(match[1], path.stem)
     return libraries
 
@@ -101,19 +101,19 @@ class _Visit:
     """A module whose imports are being followed."""
 
     def __init__(
-        self, module: Module, path: Path, title: str, reason: Import | None = None, complete: bool = True
+        self, module: Module, path: Path, title: str, declaration: Import | None = None, complete: bool = True
     ) -> None:
         self.module = module
         self.path = path
         self.title = title
-        self.reason = reason
+        self.declaration = declaration
         self.complete = complete
-        self.found: list[tuple[Import, Loaded]] = []
+        self.imports: list[tuple[Import, LoadedModule]] = []
         self.pending = iter([d for d in module.declarations if isinstance(d, Import)])
 
-    def add(self, declaration: Import, loaded: Loaded) -> None:
+    def add(self, declaration: Import, loaded: LoadedModule) -> None:
         """Record the module that an import leads to."""
-        self.found.append((declaration, loaded))
+        self.imports.append((declaration, loaded))
         self.complete = self.complete and loaded.complete
 
 
@@ -141,47 +141,48 @@ def _find(declaration: Import, source: SourceFile, options: ResolveOptions) -> t
     """Return the absolute path of an imported file and the name to show for it."""
     target = declaration.target
     here = _folder(source)
-    folders = tuple(folder for folder in (here, *options.library_dirs, standard_library()) if not _is_gone(folder))
+    folders = tuple(
+        folder for folder in (here, *options.library_dirs, standard_library()) if not _is_in_deleted_folder(folder)
+    )
     itself = Path(source.name).name
     if declaration.is_path:
-        shown = here / target
-        if _is_gone(shown):
+        file = here / target
+        if _is_in_deleted_folder(file):
             advice = "the current folder has been deleted: start tltlc in another one"
             raise problem("TLT0010", _NO_FILE.format(target), source, declaration.target_span, advice=advice)
-        _check_inside(shown, declaration, source)
-        if not is_file(shown):
-            file_name = f"{shown.name.removesuffix('.tltl')}.tltl"
-            close = likely_name(file_name, [path.name for path in _files(shown.parent) if path.name != itself])
-            unquoted = None if close else _library(target, folders)
+        _check_inside(file, declaration, source)
+        if not is_file(file):
+            file_name = f"{file.name.removesuffix('.tltl')}.tltl"
+            suggestion = likely_name(file_name, [path.name for path in _files(file.parent) if path.name != itself])
+            unquoted = None if suggestion else _quoted_library(target, folders)
             beginning = target[: target.rfind("/") + 1]
-            replacement = f'"{beginning}{close}"' if close else unquoted
+            replacement = f'"{beginning}{suggestion}"' if suggestion else unquoted
             raise problem(
                 "TLT0010",
                 _NO_FILE.format(target),
                 source,
                 declaration.target_span,
-                advice=_similar(close) or _unquoted(unquoted) or "a path begins at the folder of this file",
+                advice=_similar_help(suggestion)
+                or _quotes_help(unquoted)
+                or "a path begins at the folder of this file",
                 fixes=(replacement_fix(source, declaration.target_span, replacement),) if replacement else (),
             )
-        return Path(_normal(shown.absolute())), _shown(shown)
+        return Path(_normalise(file.absolute())), _display_name(file)
     name = target.replace(".", "/") + ".tltl"
     for folder in folders:
         _check_inside(folder / name, declaration, source)
         if is_file(folder / name):
-            return Path(_normal((folder / name).absolute())), _shown(folder / name)
+            return Path(_normalise((folder / name).absolute())), _display_name(folder / name)
     known = sorted({path.stem for folder in folders for path in _files(folder) if path.name != itself})
-    close = likely_name(target, known)
-    advice = _similar(close) or "a library is a file NAME.tltl beside this one or in a --library folder"
+    suggestion = likely_name(target, known)
+    advice = _similar_help(suggestion) or "a library is a file NAME.tltl beside this one or in a --library folder"
     title, place = f"there is no library `{target}`", declaration.target_span
-    fixes = (replacement_fix(source, place, close),) if close else ()
+    fixes = (replacement_fix(source, place, suggestion),) if suggestion else ()
     raise problem("TLT0010", title, source, place, advice=advice, fixes=fixes)
 
 
-def _is_gone(path: Path) -> bool:
-    """Whether a path is relative to a current folder that has been deleted.
-
-    Nothing can be read through such a path.
-    """
+def _is_in_deleted_folder(path: Path) -> bool:
+    """Whether a path is relative to a current folder that has been deleted, so that nothing can be read through it."""
     if path.is_absolute():
         return False
     try:
@@ -201,17 +202,17 @@ def _check_inside(path: Path, declaration: Import, source: SourceFile) -> None:
         raise ResolutionError(outside_diagnostic(declaration.target, (Label(source, declaration.target_span),)))
 
 
-def _similar(close: str | None) -> str | None:
-    return f"did you mean `{close}`?" if close else None
+def _similar_help(suggestion: str | None) -> str | None:
+    return f"did you mean `{suggestion}`?" if suggestion else None
 
 
-def _library(target: str, folders: tuple[Path, ...]) -> str | None:
-    """Return the library that a quoted path names, or None."""
+def _quoted_library(target: str, folders: tuple[Path, ...]) -> str | None:
+    """Return the name of the library that a path in quotes means, or None."""
     name = target.removesuffix(".tltl")
     return name if any(is_file(folder / f"{name}.tltl") for folder in folders) and "/" not in name else None
 
 
-def _unquoted(library: str | None) -> str | None:
+def _quotes_help(library: str | None) -> str | None:
     return f"a library is imported by its name, without quotes: `import {library}`" if library else None
 
 
@@ -224,34 +225,34 @@ def _files(folder: Path) -> list[Path]:
         return []
 
 
-def _normal(path: Path) -> str:
+def _normalise(path: Path) -> str:
     from os.path import normpath
 
     return normpath(path)
 
 
-def _shown(path: Path) -> str:
+def _display_name(path: Path) -> str:
     """Return the path to show for a file.
 
     Library files have the same path wherever the package is installed.
     """
     try:
-        inside = Path(_normal(path.absolute())).relative_to(standard_library().absolute())
+        inside = Path(_normalise(path.absolute())).relative_to(standard_library().absolute())
     except ValueError:
         return str(path)
     return f"{STANDARD_LIBRARY_NAME}/{inside.as_posix()}"
 
 
-def _parse(path: Path, shown: str, declaration: Import, source: SourceFile, log: Log) -> _Visit:
+def _parse(path: Path, display_name: str, declaration: Import, source: SourceFile, log: Log) -> _Visit:
     try:
-        text = read_source(path, shown)
+        text = read_source(path, display_name)
     except TltlError as failure:
         here = Label(source, declaration.target_span, "imported here")
         cause = failure.diagnostics[0]
         # TLT0001 is reserved for files named on the command line.
         code = "TLT0010" if cause.code == "TLT0001" else cause.code
         raise ResolutionError(replace(cause, code=code, labels=(*cause.labels, here))) from None
-    module, diagnostics = _parsed(text)
+    module, diagnostics = _parse_once(text)
     for diagnostic in diagnostics:
         log.add(diagnostic)
     complete = all(diagnostic.severity != "error" for diagnostic in diagnostics)
@@ -259,20 +260,20 @@ def _parse(path: Path, shown: str, declaration: Import, source: SourceFile, log:
 
 
 @lru_cache(maxsize=64)
-def _parsed(text: SourceFile) -> tuple[Module, tuple[Diagnostic, ...]]:
-    """Parse an imported file, once no matter how many files import it."""
+def _parse_once(text: SourceFile) -> tuple[Module, tuple[Diagnostic, ...]]:
+    """Parse an imported file; the result is cached, since several files may import it."""
     from tltlc.grammar.parser import parse
 
     return parse(text)
 
 
-def _cycle(declaration: Import, source: SourceFile, path: Path, stack: list[_Visit]) -> ResolutionError:
+def _cycle_error(declaration: Import, source: SourceFile, path: Path, stack: list[_Visit]) -> ResolutionError:
     start = next(i for i, visit in enumerate(stack) if visit.path == path)
     names = [visit.title for visit in stack[start:]] + [stack[start].title]
     labels = tuple(
-        Label(stack[i - 1].module.source, visit.reason.target_span, f"`{visit.title}` is imported here")
+        Label(stack[i - 1].module.source, visit.declaration.target_span, f"`{visit.title}` is imported here")
         for i, visit in enumerate(stack)
-        if i > start and visit.reason
+        if i > start and visit.declaration
     )
     return problem(
         "TLT0011",
@@ -280,5 +281,5 @@ def _cycle(declaration: Import, source: SourceFile, path: Path, stack: list[_Vis
         source,
         declaration.target_span,
         advice="move what both need into a third file",
-        other=labels,
+        related=labels,
     )

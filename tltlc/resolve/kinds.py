@@ -32,7 +32,7 @@ _DECLARATIONS = {
 """The declaration to suggest for an unknown name without a similar known one, by its kind."""
 
 
-def lookup(use: NameExpr | CallExpr, env: Env, wanted: tuple[Kind, ...], noun: str) -> Binding:
+def lookup(use: NameExpr | CallExpr, env: Env, kinds: tuple[Kind, ...], noun: str) -> Binding:
     """Return the binding of a name.
 
     Raises ResolutionError (TLT0201) with a suggestion if the name is unknown. Reports nothing if a
@@ -53,8 +53,8 @@ def lookup(use: NameExpr | CallExpr, env: Env, wanted: tuple[Kind, ...], noun: s
             advice="`if a, then b` is written `a implies b`; where both are to hold at one step, `a and b`",
         )
     title, source = f"no {noun} `{use.name}` here", env.scope.source
-    is_helped = len(env.context.log) < _MOST_HINTS
-    spaced = _in_two_words(use.name, env, wanted) if is_helped and noun == "predicate" else None
+    gets_help = len(env.context.log) < _MOST_HINTS
+    spaced = _split_operator_letters(use.name, env, kinds) if gets_help and noun == "predicate" else None
     if spaced:
         raise problem(
             "TLT0201", title, source, span, f"did you mean `{spaced}`?", fixes=(replacement_fix(source, span, spaced),)
@@ -65,12 +65,12 @@ def lookup(use: NameExpr | CallExpr, env: Env, wanted: tuple[Kind, ...], noun: s
     if noun == "predicate" and constant in ("true", "false"):
         hint = f"did you mean `{constant}`?"
         raise problem("TLT0201", title, source, span, hint, fixes=(replacement_fix(source, span, constant),))
-    near = closest_name(use.name, env.scope, wanted, env.local) if is_helped else None
-    if near:
-        binding = env.scope.names.get(near)
+    suggestion = closest_name(use.name, env.scope, kinds, env.local) if gets_help else None
+    if suggestion:
+        binding = env.scope.names.get(suggestion)
         via = f" (from {binding.via})" if binding and binding.via else ""
-        hint = f"did you mean `{near}`{via}?"
-        raise problem("TLT0201", title, source, span, hint, fixes=(replacement_fix(source, span, near),))
+        hint = f"did you mean `{suggestion}`{via}?"
+        raise problem("TLT0201", title, source, span, hint, fixes=(replacement_fix(source, span, suggestion),))
     library = library_with(use.name)
     line = f"import {library}" if library else _DECLARATIONS[noun].format(name=use.name)
     if library:
@@ -79,7 +79,7 @@ def lookup(use: NameExpr | CallExpr, env: Env, wanted: tuple[Kind, ...], noun: s
         advice = f"declare it: `{line}`" if noun == "entity" else _OTHERWISE.format(line)
     fixes: tuple[Fix, ...] = ()
     # A call would need a declaration with parameters, which this fix does not offer.
-    if is_helped and (library or isinstance(use, NameExpr)):
+    if gets_help and (library or isinstance(use, NameExpr)):
         fixes = (Fix(f"{'Add' if library else 'Declare'} `{line}`", (declaration_edit(env.scope.module, line),)),)
     raise problem("TLT0201", title, source, span, advice=advice, fixes=fixes)
 
@@ -87,17 +87,14 @@ def lookup(use: NameExpr | CallExpr, env: Env, wanted: tuple[Kind, ...], noun: s
 _OTHERWISE = "declare it, e.g. `{}`, or import the library that has it"
 
 
-def _in_two_words(name: str, env: Env, wanted: tuple[Kind, ...]) -> str | None:
-    """Return ``F a`` for ``Fa`` if `a` is a visible name of one of these kinds.
-
-    Returns None otherwise.
-    """
+def _split_operator_letters(name: str, env: Env, kinds: tuple[Kind, ...]) -> str | None:
+    """Return ``F a`` for ``Fa`` if `a` is a visible name of one of these kinds, else None."""
     for letters in range(1, min(len(name), _MOST_LETTERS + 1)):
         if name[letters - 1] not in "FGXN":
             break
         rest = name[letters:]
         binding = env.scope.names.get(rest)
-        if rest in env.local or (binding is not None and binding.kind in wanted):
+        if rest in env.local or (binding is not None and binding.kind in kinds):
             return " ".join((*name[:letters], rest))
     return None
 
@@ -118,24 +115,24 @@ def entity(expr: Expr, env: Env) -> Entity:
                 return Entity(binding.name)
     raise problem(
         "TLT0302",
-        f"expected an entity, found {described_kind(expr, env)}",
+        f"expected an entity, found {kind_in_words(expr, env)}",
         env.scope.source,
         expr.span,
-        advice=_entities(env) if not isinstance(expr, tree.BinaryExpr) else _ONE_ENTITY,
+        advice=_entities_help(env) if not isinstance(expr, tree.BinaryExpr) else _ONE_ENTITY,
     )
 
 
 _ONE_ENTITY = "name one entity, and join what is said of each by `and`, `or` or `then`"
 
 
-def _entities(env: Env) -> str:
+def _entities_help(env: Env) -> str:
     """Return a help that lists the visible entities."""
     known = [f"`{name}`" for name, binding in env.scope.names.items() if binding.kind == "entity"]
     listed = ", ".join(known[:_MOST_NAMES]) + (", …" if len(known) > _MOST_NAMES else "")
     return f"the entities are {listed}" if known else "declare one with `entity NAME`"
 
 
-def said_of(entity: str, env: Env, *, number: bool) -> str:
+def entity_help(entity: str, env: Env, *, number: bool) -> str:
     """Return a help that shows how to use an entity as a condition, or as a number."""
     # Sorting by kind puts predicates before signals: predicates are declared to be used this way.
     for name, binding in sorted(env.scope.names.items(), key=lambda item: item[1].kind):
@@ -151,7 +148,7 @@ def said_of(entity: str, env: Env, *, number: bool) -> str:
 
 
 def kind_of(expr: Expr, env: Env) -> Literal["entity", "number", "formula"]:
-    """Return the kind of an argument from its outermost part; unknown names count as formulas."""
+    """Return the kind of an argument, judged by its outermost operator or name; unknown names count as formulas."""
     while isinstance(expr, GroupExpr):
         expr = expr.inner
     if isinstance(expr, (tree.NumberExpr, tree.WhenExpr)):
@@ -174,7 +171,7 @@ def kind_of(expr: Expr, env: Env) -> Literal["entity", "number", "formula"]:
     return "formula"
 
 
-def described_kind(expr: Expr, env: Env) -> str:
+def kind_in_words(expr: Expr, env: Env) -> str:
     """Return the kind of an expression in words, for ``expected a number, found …``."""
     while isinstance(expr, GroupExpr):
         expr = expr.inner
@@ -186,18 +183,18 @@ def described_kind(expr: Expr, env: Env) -> str:
     return {"entity": "an entity", "number": "a number", "formula": "a formula"}[kind]
 
 
-def not_a_formula(expr: Expr, env: Env) -> ResolutionError:
+def not_a_formula_error(expr: Expr, env: Env) -> ResolutionError:
     """Return the problem of a number or an entity in place of a formula."""
     advice = None
     if kind_of(expr, env) == "number":
-        advice = _how_to_compare(expr, env)
+        advice = _comparison_help(expr, env)
     elif kind_of(expr, env) == "entity":
-        advice = said_of(env.scope.source.slice(expr.span), env, number=False)
-    kind = described_kind(expr, env)
+        advice = entity_help(env.scope.source.slice(expr.span), env, number=False)
+    kind = kind_in_words(expr, env)
     return problem("TLT0301", f"expected a formula, found {kind}", env.scope.source, expr.span, advice=advice)
 
 
-def _how_to_compare(expr: Expr, env: Env) -> str:
+def _comparison_help(expr: Expr, env: Env) -> str:
     """Return a help that shows how to turn a number into a condition."""
     text = env.scope.source.slice(expr.span)
     is_short = len(text) <= 40 and not isinstance(expr, tree.WhenExpr)

@@ -26,50 +26,51 @@ def robustness(left: Quantity, right: Quantity) -> Expression:
     It is 1 at the greatest margin and -1 at the least. The sides must have finite ranges, and some
     of their values must make the comparison true.
     """
-    holding, failing = _Width(left.high, right.low), _Width(right.high, left.low)
+    holding, failing = _MarginRange(left.high, right.low), _MarginRange(right.high, left.low)
     share = _share(left, right, holding)
-    is_lost = _gap(left, right) / holding.full < _NEVER_LOST
-    floor = (Op("min", (_margin(left, right), Const(LEAST))),) if is_lost and holding.full > 1 else ()
-    if failing.full == 0 or failing.order == holding.order:
-        return _greatest(share, *floor)
+    is_lost = _gap(left, right) / holding.width < _NEVER_LOST
+    floor = (Op("min", (_margin(left, right), Const(LEAST))),) if is_lost and holding.width > 1 else ()
+    if failing.width == 0 or failing.order == holding.order:
+        return _max_of(share, *floor)
     # The quotient with the smaller divisor is the greater of the two above 0 and the smaller one below 0.
-    other = _share(left, right, failing)
+    failing_share = _share(left, right, failing)
     if holding.order < failing.order:
-        return _greatest(share, *floor, other)
-    if failing.full > 1:
-        return _greatest(Op("min", (share, other)), *floor)
-    return Op("min", (_greatest(share, *floor), other))
+        return _max_of(share, *floor, failing_share)
+    if failing.width > 1:
+        return _max_of(Op("min", (share, failing_share)), *floor)
+    return Op("min", (_max_of(share, *floor), failing_share))
 
 
 @record
-class _Width:
-    """The greatest margin on one side: the distance from ``least`` to ``most``."""
+class _MarginRange:
+    """The margins on one side of the threshold; ``width`` is the greatest of them."""
 
     most: float
     least: float
 
     @property
-    def full(self) -> float:
-        """The width, infinite if it overflows."""
+    def width(self) -> float:
+        """The distance from ``least`` to ``most``; infinite if it overflows."""
         return self.most - self.least
 
     @property
-    def half(self) -> float:
+    def half_width(self) -> float:
+        """Half the width; finite even if the width overflows."""
         return self.most / 2 - self.least / 2
 
     @property
     def order(self) -> tuple[float, float]:
-        """The key by which widths are compared."""
-        return self.full, self.half
+        """The key by which two ranges are compared."""
+        return self.width, self.half_width
 
 
-def _share(left: Quantity, right: Quantity, width: _Width) -> Expression:
+def _share(left: Quantity, right: Quantity, margin_range: _MarginRange) -> Expression:
     """Return the margin divided by its greatest value."""
-    if isinf(width.full):
+    if isinf(margin_range.width):
         halves = Op("-", (_half(left.expression), _half(right.expression)))
-        return Op("/", (halves, Const(width.half)))
+        return Op("/", (halves, Const(margin_range.half_width)))
     margin = _margin(left, right)
-    return margin if width.full == 1 else Op("/", (margin, Const(width.full)))
+    return margin if margin_range.width == 1 else Op("/", (margin, Const(margin_range.width)))
 
 
 def _half(side: Expression) -> Expression:
@@ -96,5 +97,5 @@ def _spacing(side: Quantity) -> float:
     return ulp(min(abs(side.low), abs(side.high))) / 2
 
 
-def _greatest(*args: Expression) -> Expression:
+def _max_of(*args: Expression) -> Expression:
     return args[0] if len(args) == 1 else Op("max", args)

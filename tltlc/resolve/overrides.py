@@ -8,12 +8,14 @@ from math import inf
 from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.resolve import units
-from tltlc.resolve.constants import override
+from tltlc.resolve.constants import parse_override
 from tltlc.resolve.spec import Param
 from tltlc.resolve.values import number_text, range_text
 
 
-def overridden(params: Mapping[str, Param], values: Mapping[str, str]) -> tuple[dict[str, Param], list[Diagnostic]]:
+def apply_overrides(
+    params: Mapping[str, Param], values: Mapping[str, str]
+) -> tuple[dict[str, Param], list[Diagnostic]]:
     """Return the params with the given values (``{"level_size": "25 m"}``) and the problems found.
 
     Diagnostics: TLT0308 for a name that is not a param and for a text that is not a value for it,
@@ -23,7 +25,7 @@ def overridden(params: Mapping[str, Param], values: Mapping[str, str]) -> tuple[
     diagnostics = []
     for name, text in values.items():
         old = params.get(name)
-        changed = _unknown(name, params) if old is None else _override(old, text)
+        changed = _unknown_param(name, params) if old is None else _override_param(old, text)
         if isinstance(changed, Diagnostic):
             diagnostics.append(changed)
         else:
@@ -31,19 +33,23 @@ def overridden(params: Mapping[str, Param], values: Mapping[str, str]) -> tuple[
     return result, diagnostics
 
 
-def _unknown(name: str, params: Mapping[str, Param]) -> Diagnostic:
+def _unknown_param(name: str, params: Mapping[str, Param]) -> Diagnostic:
     from difflib import get_close_matches
 
-    close = get_close_matches(name, list(params), n=1)
+    close_matches = get_close_matches(name, list(params), n=1)
     listed = ", ".join(f"`{known}`" for known in params)
     advice = (
-        f"did you mean `{close[0]}`?" if close else f"there are: {listed}" if params else "there is none: leave it out"
+        f"did you mean `{close_matches[0]}`?"
+        if close_matches
+        else f"there are: {listed}"
+        if params
+        else "there is none: leave it out"
     )
     return Diagnostic("TLT0308", f"there is no param `{name}` to set", (), advice)
 
 
-def _override(old: Param, text: str) -> Param | Diagnostic:
-    parsed = override(text)
+def _override_param(old: Param, text: str) -> Param | Diagnostic:
+    parsed = parse_override(text)
     dimension = units.TYPES[old.type]
     if parsed is None or parsed[1] not in (None, dimension):
         unit = units.si_unit(dimension)

@@ -18,7 +18,7 @@ from tltlc.resolve import units
 from tltlc.resolve.arguments import match
 from tltlc.resolve.constants import interval
 from tltlc.resolve.context import Instance
-from tltlc.resolve.declared_values import of_signal
+from tltlc.resolve.declared_values import signal_value
 from tltlc.resolve.dimensions import mismatch
 from tltlc.resolve.kinds import entity, kind_of
 from tltlc.resolve.problem import ResolutionError, problem
@@ -42,35 +42,35 @@ class PredicateUse:
 def predicate(use: NameExpr | CallExpr, binding: Binding, env: Env, depth: int = 0) -> PredicateUse:
     """Return the value of a predicate where it is used.
 
-    The name of the value is the name of the atom, e.g. ``near(s1, close=3)``.
+    The name of the value is the name of the atom, e.g. ``near(s1, suggestion=3)``.
     """
     declaration = binding.declaration
     assert isinstance(declaration, PredicateDecl)
     values: dict[str, Value] = {}
-    shown: list[str] = []
+    argument_texts: list[str] = []
     place = None
-    settled = True
+    is_settled = True
     for parameter, argument in match(use, binding, declaration.parameters, env.scope):
-        inside = env.within(binding.scope, dict(values))
+        inside = env.inside(binding.scope, dict(values))
         default = argument_value(parameter, parameter.default, inside, binding, depth) if parameter.default else None
         value = default if argument is None else argument_value(parameter, argument, env, binding, depth)
         assert value is not None
         values[parameter.name] = value
         if default is None:
-            shown.append(_text(value))
+            argument_texts.append(_text(value))
         elif _text(value) != _text(default):
-            shown.append(f"{parameter.name}={_text(value)}")
+            argument_texts.append(f"{parameter.name}={_text(value)}")
         else:
             continue
         if isinstance(value, Quantity):
             place = Label(env.scope.source, use.span)
             # A symbolic number gets its value where the enclosing definition is used; the range is checked there.
-            settled = settled and (value.is_constant or not env.symbolic)
+            is_settled = is_settled and (value.is_constant or not env.symbolic)
     try:
-        value = _instantiate(tuple(shown), declaration, binding.scope, values, env, depth, place, settled)
+        value = _instantiate(tuple(argument_texts), declaration, binding.scope, values, env, depth, place, is_settled)
     except ResolutionError as failure:
         if place:
-            failure.used_at(place, binding.scope.source, declaration.body.span)
+            failure.add_use(place, binding.scope.source, declaration.body.span)
         raise
     return PredicateUse(value, declaration.doc)
 
@@ -88,10 +88,10 @@ def check_unused(binding: Binding, env: Env) -> None:
     needs_numbers = False
     for parameter in declaration.parameters:
         if parameter.default is not None:
-            inside = env.within(binding.scope, dict(values))
+            inside = env.inside(binding.scope, dict(values))
             values[parameter.name] = argument_value(parameter, parameter.default, inside, binding, 0)
         else:
-            values[parameter.name] = _symbolic(parameter, binding, env)
+            values[parameter.name] = _symbolic_value(parameter, binding, env)
             needs_numbers = needs_numbers or parameter.type != "entity"
     if needs_numbers:
         declared_range(declaration, binding.scope, env)
@@ -118,7 +118,7 @@ def argument_value(parameter: Parameter, argument: Expr, env: Env, binding: Bind
     if type_ == "bool" and isinstance(argument, tree.Constant):
         return constant(float(argument.value), units.PLAIN)
     value = quantity(argument, env, depth)
-    env.context.arithmetic_of(value.expression, env.scope.source, argument.span)
+    env.context.count_arithmetic(value.expression, env.scope.source, argument.span)
     if type_ is None or value.dimension is None:
         return value
     dimension = units.TYPES[type_]
@@ -143,7 +143,7 @@ def parameter_type(parameter: Parameter, binding: Binding) -> str | None:
     """
     if parameter.type is None or parameter.type in units.TYPES:
         return parameter.type
-    raise unknown_type(parameter.type, parameter, binding.scope)
+    raise unknown_type_error(parameter.type, parameter, binding.scope)
 
 
 _TYPES_ELSEWHERE: Final = {
@@ -156,19 +156,19 @@ _TYPES_ELSEWHERE: Final = {
 """Names of types in other languages, apart from units."""
 
 
-def unknown_type(name: str, at: Parameter | tree.SignalDecl | tree.ParamDecl, scope: Scope) -> ResolutionError:
-    """Return the problem of a type that the language does not have."""
+def unknown_type_error(name: str, at: Parameter | tree.SignalDecl | tree.ParamDecl, scope: Scope) -> ResolutionError:
+    """Return the problem (TLT0211) of a type that the language does not have."""
     known = [*units.TYPES, "entity"]
     elsewhere = units.type_of_unit(UNITS_ELSEWHERE.get(name.lower(), name)) or _TYPES_ELSEWHERE.get(name.lower())
-    close = elsewhere or likely_name(name, known)
-    advice = f"did you mean `{close}`?" if close else f"the types are {', '.join(known)}"
+    suggestion = elsewhere or likely_name(name, known)
+    advice = f"did you mean `{suggestion}`?" if suggestion else f"the types are {', '.join(known)}"
     start = scope.source.text.find(name, at.name_span.end, at.span.end)
     span = Span(start, start + len(name)) if start >= 0 else at.span
-    fixes = (replacement_fix(scope.source, span, close),) if close and start >= 0 else ()
+    fixes = (replacement_fix(scope.source, span, suggestion),) if suggestion and start >= 0 else ()
     return problem("TLT0211", f"there is no type `{name}`", scope.source, span, advice=advice, fixes=fixes)
 
 
-def _symbolic(parameter: Parameter, binding: Binding, env: Env) -> Value:
+def _symbolic_value(parameter: Parameter, binding: Binding, env: Env) -> Value:
     """Return a symbolic value for a parameter: a number becomes a signal of its own."""
     if parameter.type == "entity":
         return Entity(parameter.name)
@@ -178,7 +178,7 @@ def _symbolic(parameter: Parameter, binding: Binding, env: Env) -> Value:
     low, high = (0.0, 1.0) if type_ in ("ratio", "bool") else (None, None)
     signal = Signal(parameter.name, cast(ValueType, type_), low, high)
     env.context.signals.setdefault(signal.name, signal)
-    return of_signal(signal)
+    return signal_value(signal)
 
 
 def _text(value: Value) -> str:
@@ -193,7 +193,7 @@ def _instantiate(
     env: Env,
     depth: int,
     place: Label | None = None,
-    settled: bool = True,
+    is_settled: bool = True,
 ) -> Quantity:
     context = env.context
     memo = (id(declaration), tuple(values.values()))
@@ -202,14 +202,14 @@ def _instantiate(
         return known
     if id(declaration) in context.broken:
         raise ResolutionError(None)
-    settled = settled and not any(isinstance(value, Unknown) for value in values.values())
+    is_settled = is_settled and not any(isinstance(value, Unknown) for value in values.values())
     low, high = declared_range(declaration, scope, env)
-    env = replace(env, symbolic=not settled)
+    env = replace(env, symbolic=not is_settled)
     body = _body(declaration, scope, values, env, depth)
     name = full_name(declaration.name, arguments)
     call = (declaration.name, arguments)
     result = Quantity(body.expression, units.PLAIN, low, high, name, depth=body.depth, call=call)
-    if settled:
+    if is_settled:
         _note_instance(declaration, scope, values, (low, high), env, depth, place)
         context.values[memo] = result
     return result
@@ -222,7 +222,7 @@ def declared_range(declaration: PredicateDecl, scope: Scope, env: Env) -> tuple[
     """
     if declaration.interval is None:
         return -1.0, 1.0
-    low, high = interval(declaration.interval, units.PLAIN, env.within(scope, {}))
+    low, high = interval(declaration.interval, units.PLAIN, env.inside(scope, {}))
     if low is None or high is None or not -1 <= low <= high <= 1:
         raise problem(
             "TLT0303",
@@ -237,15 +237,15 @@ def declared_range(declaration: PredicateDecl, scope: Scope, env: Env) -> tuple[
 def _body(declaration: PredicateDecl, scope: Scope, values: Mapping[str, Value], env: Env, depth: int) -> Quantity:
     context = env.context
     if id(declaration) in context.expanding:
-        raise context.recursion(id(declaration), scope.source, declaration.name_span)
+        raise context.recursion_error(id(declaration), scope.source, declaration.name_span)
     context.expanding[id(declaration)] = declaration.name
     try:
-        body = quantity(declaration.body, env.within(scope, values), depth)
+        body = quantity(declaration.body, env.inside(scope, values), depth)
     finally:
         context.expanding.pop(id(declaration), None)
     if body.dimension not in (None, units.PLAIN):
         why = "divide it by a quantity of the same kind: a predicate is a number in [-1, 1]"
-        raise mismatch(units.PLAIN, body.dimension, declaration.body, env.within(scope, values), why)
+        raise mismatch(units.PLAIN, body.dimension, declaration.body, env.inside(scope, values), why)
     return body
 
 

@@ -10,16 +10,19 @@ from tltlc.diagnostics.diagnostic import Diagnostic, Fix, Label
 
 
 class ResolutionError(Exception):
-    """Carries a diagnostic, or None if the cause has already been reported."""
+    """Raised where a clause or declaration cannot be resolved.
+
+    ``diagnostic`` is None if the cause has already been reported.
+    """
 
     def __init__(self, diagnostic: Diagnostic | None) -> None:
         self.diagnostic = diagnostic
         super().__init__(diagnostic.title if diagnostic else "reported before")
 
-    def used_at(self, use: Label, source: SourceFile, body: Span) -> None:
-        """Add the place of a use to a problem in the body of a definition.
+    def add_use(self, use: Label, source: SourceFile, body: Span) -> None:
+        """Add the place where a definition is used to a problem in the body of the definition.
 
-        Only for problems that the arguments may have caused.
+        Do nothing if the arguments of the use cannot have caused the problem.
         """
         diagnostic = self.diagnostic
         if diagnostic is None or diagnostic.code not in _OF_ARGUMENTS or len(diagnostic.labels) >= _MOST_PLACES:
@@ -36,7 +39,7 @@ _OF_ARGUMENTS: Final = {"TLT0301", "TLT0302", "TLT0305", "TLT0307", "TLT0309", "
 """The codes of problems that a definition may have with some arguments and not with others."""
 
 _MOST_PLACES: Final = 4
-"""The most places that one problem shows, its own included, where definitions use each other."""
+"""The most places that one problem shows, including its own."""
 
 
 def problem(
@@ -47,22 +50,25 @@ def problem(
     message: str = "",
     *,
     advice: str | None = None,
-    other: tuple[Label, ...] = (),
+    related: tuple[Label, ...] = (),
     fixes: tuple[Fix, ...] = (),
 ) -> ResolutionError:
-    """Return a problem at ``span``, with a short message under the caret and optional further labels."""
-    labels = (Label(source, span, message), *other)
+    """Return a problem at ``span``, with a short message under the caret.
+
+    ``advice`` becomes the help of the diagnostic, and ``related`` its further labels.
+    """
+    labels = (Label(source, span, message), *related)
     return ResolutionError(Diagnostic(code, title, labels, advice, fixes=fixes))
 
 
 class Log:
-    """The diagnostics so far; one per code and place."""
+    """The diagnostics of a run of resolution; at most one per code and place."""
 
     def __init__(self) -> None:
-        self._found: dict[object, Diagnostic] = {}
+        self._diagnostics: dict[object, Diagnostic] = {}
 
     def __len__(self) -> int:
-        return len(self._found)
+        return len(self._diagnostics)
 
     def add(self, diagnostic: Diagnostic | None) -> None:
         """Store a diagnostic; ignore None and repetitions."""
@@ -70,9 +76,9 @@ class Log:
             return
         main = diagnostic.labels[0] if diagnostic.labels else None
         place = (main.source.name, main.span) if main else diagnostic.title
-        self._found.setdefault((diagnostic.code, place), diagnostic)
+        self._diagnostics.setdefault((diagnostic.code, place), diagnostic)
 
-    def all(self) -> tuple[Diagnostic, ...]:
+    def diagnostics(self) -> tuple[Diagnostic, ...]:
         """Return every diagnostic, by file in order of first report, and within a file by position."""
         files: dict[str, int] = {}
 
@@ -81,4 +87,4 @@ class Log:
             name, start = (main.source.name, main.span.start) if main else ("", 0)
             return files.setdefault(name, len(files)), start
 
-        return tuple(sorted(self._found.values(), key=place))
+        return tuple(sorted(self._diagnostics.values(), key=place))

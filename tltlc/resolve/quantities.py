@@ -14,9 +14,9 @@ from tltlc.grammar.tree import CallExpr, Expr, GroupExpr, NameExpr, NumberExpr
 from tltlc.io.limits import ARITHMETIC
 from tltlc.resolve import functions, units
 from tltlc.resolve.arguments import match
-from tltlc.resolve.declared_values import of_signal, param, signal
+from tltlc.resolve.declared_values import param, signal, signal_value
 from tltlc.resolve.dimensions import mismatch, same_dimension
-from tltlc.resolve.kinds import described_kind, kind_of, lookup, said_of
+from tltlc.resolve.kinds import entity_help, kind_in_words, kind_of, lookup
 from tltlc.resolve.problem import ResolutionError, problem
 from tltlc.resolve.ranges import hull
 from tltlc.resolve.scope import FUNCTIONS
@@ -36,10 +36,10 @@ def quantity(expr: Expr, env: Env, depth: int = 0) -> Quantity:
     while isinstance(expr, GroupExpr):
         expr = expr.inner
     if depth > ARITHMETIC.depth:
-        raise _too_deep(expr, env)
+        raise _too_deep_error(expr, env)
     result = _quantity(expr, env, depth + 1)
     if result.depth > ARITHMETIC.depth:
-        raise _too_deep(expr, env)
+        raise _too_deep_error(expr, env)
     return result
 
 
@@ -48,7 +48,7 @@ def condition(expr: Expr, env: Env, depth: int = 0) -> tuple[Condition, str]:
     while isinstance(expr, GroupExpr):
         expr = expr.inner
     if depth > ARITHMETIC.depth:
-        raise _too_deep(expr, env)
+        raise _too_deep_error(expr, env)
     if isinstance(expr, tree.Unary) and expr.op == "not" and expr.bound is None:
         inner, text = condition(expr.operand, env, depth + 1)
         return Condition("not", (inner,)), f"not ({text})"
@@ -79,23 +79,23 @@ def _quantity(expr: Expr, env: Env, depth: int) -> Quantity:
     if isinstance(expr, NumberExpr):
         return _number(expr, env)
     if isinstance(expr, NameExpr):
-        return _named(expr, env, depth)
+        return _resolve_name(expr, env, depth)
     if isinstance(expr, CallExpr):
         if expr.name in FUNCTIONS and expr.name not in env.local:
             functions.check_arguments(expr, env)
             if len(expr.arguments) > ARITHMETIC.parts:
-                raise _too_wide(f"`{expr.name}` has more than {ARITHMETIC.parts} arguments here", expr, env)
+                raise _too_wide_error(f"`{expr.name}` has more than {ARITHMETIC.parts} arguments here", expr, env)
             values = tuple(quantity(argument.value, env, depth) for argument in expr.arguments)
-            return _applied(expr.name, values, functions.dimension(expr, values, env), expr, env)
-        return _named(expr, env, depth)
+            return _apply_operator(expr.name, values, functions.dimension(expr, values, env), expr, env)
+        return _resolve_name(expr, env, depth)
     if isinstance(expr, tree.Unary) and expr.op == "-":
         operand = quantity(expr.operand, env, depth)
-        return _applied("neg", (operand,), operand.dimension, expr, env)
+        return _apply_operator("neg", (operand,), operand.dimension, expr, env)
     if isinstance(expr, tree.BinaryExpr) and expr.op in _ARITHMETIC:
         return _infix(expr, env, depth)
     if isinstance(expr, tree.WhenExpr):
         return _when(expr, env, depth)
-    raise _not_a_number(expr, env)
+    raise _not_a_number_error(expr, env)
 
 
 def _number(expr: NumberExpr, env: Env) -> Quantity:
@@ -115,7 +115,7 @@ def _number(expr: NumberExpr, env: Env) -> Quantity:
     return constant(value, None if value == 0 and expr.unit is None else dimension)
 
 
-def _named(expr: NameExpr | CallExpr, env: Env, depth: int) -> Quantity:
+def _resolve_name(expr: NameExpr | CallExpr, env: Env, depth: int) -> Quantity:
     local = env.local.get(expr.name)
     if local is not None:
         if isinstance(local, Quantity) and isinstance(expr, NameExpr):
@@ -123,8 +123,8 @@ def _named(expr: NameExpr | CallExpr, env: Env, depth: int) -> Quantity:
         if isinstance(local, Unknown):
             placeholder = Signal(local.name, "number", None, None)
             env.context.signals.setdefault(placeholder.name, placeholder)
-            return replace(of_signal(placeholder), dimension=None)
-        raise _not_a_number(expr, env)
+            return replace(signal_value(placeholder), dimension=None)
+        raise _not_a_number_error(expr, env)
     if env.constant:
         raise problem(
             "TLT0302",
@@ -147,7 +147,7 @@ def _named(expr: NameExpr | CallExpr, env: Env, depth: int) -> Quantity:
         from tltlc.resolve.predicates import predicate
 
         return predicate(expr, binding, env, depth).value
-    raise _not_a_number(expr, env)
+    raise _not_a_number_error(expr, env)
 
 
 def _infix(expr: tree.BinaryExpr, env: Env, depth: int) -> Quantity:
@@ -156,15 +156,15 @@ def _infix(expr: tree.BinaryExpr, env: Env, depth: int) -> Quantity:
         assert isinstance(expr.right, NameExpr)
         scale, dimension = units.in_si(1.0, expr.right.name) or (1.0, units.PLAIN)
         per = constant(scale, dimension)
-        return _applied("/", (left, per), units.product(left.dimension, dimension, -1.0), expr, env)
+        return _apply_operator("/", (left, per), units.product(left.dimension, dimension, -1.0), expr, env)
     _check_speed(expr, env)
     right = quantity(expr.right, env, depth)
     if expr.op in ("+", "-"):
-        return _applied(expr.op, (left, right), same_dimension(left, right, expr.right, env), expr, env)
+        return _apply_operator(expr.op, (left, right), same_dimension(left, right, expr.right, env), expr, env)
     if expr.op == "^":
         return _power(expr, left, right, env)
     dimension_ = units.product(left.dimension, right.dimension, 1.0 if expr.op == "*" else -1.0)
-    return _applied(expr.op, (left, right), dimension_, expr, env)
+    return _apply_operator(expr.op, (left, right), dimension_, expr, env)
 
 
 def _is_per_time(expr: tree.BinaryExpr, env: Env) -> bool:
@@ -216,21 +216,21 @@ def _power(expr: tree.BinaryExpr, base: Quantity, exponent: Quantity, env: Env) 
     if exponent.dimension not in (None, units.PLAIN):
         raise mismatch(units.PLAIN, exponent.dimension, expr.right, env, "an exponent is a number")
     if base.dimension in (None, units.PLAIN):
-        return _applied("^", (base, exponent), units.PLAIN, expr, env)
+        return _apply_operator("^", (base, exponent), units.PLAIN, expr, env)
     if not isinstance(exponent.expression, Const):
         raise problem(
             "TLT0305",
-            f"{units.described(base.dimension)} needs a constant exponent",
+            f"{units.dimension_text(base.dimension)} needs a constant exponent",
             env.scope.source,
             expr.right.span,
             advice="write a number there, or divide by a quantity of the same kind before",
         )
-    return _applied("^", (base, exponent), units.power(base.dimension, exponent.expression.value), expr, env)
+    return _apply_operator("^", (base, exponent), units.power(base.dimension, exponent.expression.value), expr, env)
 
 
 def _when(expr: tree.WhenExpr, env: Env, depth: int) -> Quantity:
     if len(expr.cases) > ARITHMETIC.parts:
-        raise _too_wide(f"this `when` has more than {ARITHMETIC.parts} cases", expr, env)
+        raise _too_wide_error(f"this `when` has more than {ARITHMETIC.parts} cases", expr, env)
     tests: list[tuple[Condition, str]] = []
     values: list[Quantity] = []
     for case in expr.cases:
@@ -257,7 +257,7 @@ def _when(expr: tree.WhenExpr, env: Env, depth: int) -> Quantity:
     )
 
 
-def _applied(op: str, args: tuple[Quantity, ...], dimension: Dimension | None, expr: Expr, env: Env) -> Quantity:
+def _apply_operator(op: str, args: tuple[Quantity, ...], dimension: Dimension | None, expr: Expr, env: Env) -> Quantity:
     result = apply(op, args, dimension)
     if result is None:
         text = f"{args[0].text} {op} {args[1].text}" if op in _ARITHMETIC else f"{op}({args[0].text})"
@@ -266,17 +266,17 @@ def _applied(op: str, args: tuple[Quantity, ...], dimension: Dimension | None, e
     return result
 
 
-def _not_a_number(expr: Expr, env: Env) -> ResolutionError:
+def _not_a_number_error(expr: Expr, env: Env) -> ResolutionError:
     advice = "arithmetic takes numbers: signals, params and predicates"
     if isinstance(expr, tree.BinaryExpr) and expr.op in _COMPARISONS:
         advice = "a comparison is a formula: `let rich = coins > 30` names one, and `and` joins two"
     elif kind_of(expr, env) == "entity":
-        advice = said_of(env.scope.source.slice(expr.span), env, number=True)
-    title = f"expected a number, found {described_kind(expr, env)}"
+        advice = entity_help(env.scope.source.slice(expr.span), env, number=True)
+    title = f"expected a number, found {kind_in_words(expr, env)}"
     return problem("TLT0302", title, env.scope.source, expr.span, advice=advice)
 
 
-def _too_deep(expr: Expr, env: Env) -> ResolutionError:
+def _too_deep_error(expr: Expr, env: Env) -> ResolutionError:
     # Report this once for all predicates being expanded. Otherwise a chain of n predicates is followed n times.
     env.context.broken.update(env.context.expanding)
     return problem(
@@ -288,6 +288,6 @@ def _too_deep(expr: Expr, env: Env) -> ResolutionError:
     )
 
 
-def _too_wide(title: str, expr: Expr, env: Env) -> ResolutionError:
+def _too_wide_error(title: str, expr: Expr, env: Env) -> ResolutionError:
     advice = "let the game compute the value and offer it as a signal"
     return problem("TLT0317", title, env.scope.source, expr.span, advice=advice)

@@ -15,13 +15,13 @@ from tltlc.resolve import formulas, predicates
 from tltlc.resolve.checks import check_predicates
 from tltlc.resolve.context import Context
 from tltlc.resolve.declarations import declare
-from tltlc.resolve.imports import Loaded, load
+from tltlc.resolve.imports import LoadedModule, load
 from tltlc.resolve.options import ResolveOptions
 from tltlc.resolve.problem import Log, ResolutionError, problem
 from tltlc.resolve.scope import Scope, build_scopes
 from tltlc.resolve.spec import ResolvedFile, Spec, Vocabulary
-from tltlc.resolve.spec_tests import resolved_test
-from tltlc.resolve.specs import spec, vocabulary
+from tltlc.resolve.spec_tests import resolve_test
+from tltlc.resolve.specs import resolve_spec, vocabulary
 from tltlc.resolve.values import Env
 
 FormulaOf = Callable[[Expr], "Formula | None"]
@@ -38,7 +38,7 @@ class Resolution:
 
     program: ResolvedFile
     env: Env
-    modules: tuple[Loaded, ...]
+    modules: tuple[LoadedModule, ...]
     diagnostics: tuple[Diagnostic, ...]
 
 
@@ -53,16 +53,16 @@ def resolve(module: Module, options: ResolveOptions | None = None) -> tuple[Reso
 
 
 def resolution(module: Module, options: ResolveOptions | None = None) -> Resolution:
-    """Like :func:`resolve`, but also returns the scope and the modules.
+    """Like :func:`resolve`, but also return the environment and the modules.
 
-    For tools that look at expressions and names themselves.
+    Tools that look at expressions and names themselves need these.
     """
     options = options or ResolveOptions()
-    env, groups, modules = _declared(module, options)
+    env, groups, modules = _declare_names(module, options)
     context, scope = env.context, env.scope
     specs = _specs(scope, groups, env)
     tests = [
-        resolved_test(declaration, specs, env)
+        resolve_test(declaration, specs, env)
         for declaration in scope.module.declarations
         if isinstance(declaration, TestDecl)
     ]
@@ -74,20 +74,20 @@ def resolution(module: Module, options: ResolveOptions | None = None) -> Resolut
         tuple(test for test in tests if test is not None),
         vocabulary([name for group in groups for name in group], groups, context),
     )
-    return Resolution(program, env, modules, context.log.all())
+    return Resolution(program, env, modules, context.log.diagnostics())
 
 
 def resolve_atoms(
-    module: Module, written: Sequence[SourceFile], options: ResolveOptions | None = None
+    module: Module, texts: Sequence[SourceFile], options: ResolveOptions | None = None
 ) -> tuple[Vocabulary | None, FormulaOf, tuple[Diagnostic, ...]]:
     """Resolve texts from elsewhere to atoms in the vocabulary of a module.
 
-    A text is a formula that is an atom, or the name of an atom of the module's own specs, written
-    without units. Returns the vocabulary, a function that resolves further formulas without
-    reporting anything, and the diagnostics that no ``allow`` silences. The vocabulary is None if
-    the module or a text is in error, or if two texts name the same atom.
+    Each of the ``texts`` is a formula that is an atom, or the name of an atom of the module's own
+    specs, written without units. Returns the vocabulary, a function that resolves further formulas
+    without reporting anything, and the diagnostics that no ``allow`` comment silences. The vocabulary
+    is None if the module or a text is in error, or if two texts name the same atom.
     """
-    env, groups, modules = _declared(module, options or ResolveOptions())
+    env, groups, modules = _declare_names(module, options or ResolveOptions())
     context = env.context
     expressions: list[Expr] = []
 
@@ -99,24 +99,24 @@ def resolve_atoms(
         except ResolutionError:
             return None
 
-    if context.log.all():
-        return None, formula_of, context.log.all()
-    own, context.log = context.log, Log()
+    if context.log.diagnostics():
+        return None, formula_of, context.log.diagnostics()
+    own_log, context.log = context.log, Log()
     _specs(env.scope, groups, env)
-    context.log = own
+    context.log = own_log
     places: dict[str, Label] = {}
-    for source in written:
+    for source in texts:
         try:
             name, here = _atom(source, env, expressions)
             if name in places:
                 title, advice = f"`{name}` stands here twice", "give each atom a predicate of its own"
-                raise problem("TLT0655", title, source, here.span, advice=advice, other=(places[name],))
+                raise problem("TLT0655", title, source, here.span, advice=advice, related=(places[name],))
             places[name] = here
         except ResolutionError as failure:
             context.log.add(failure.diagnostic)
     check_predicates(context)
-    diagnostics = drop_silenced((loaded.module for loaded in modules), context.log.all())
-    return vocabulary(places, groups, context) if len(places) == len(written) else None, formula_of, diagnostics
+    diagnostics = drop_silenced((loaded.module for loaded in modules), context.log.diagnostics())
+    return vocabulary(places, groups, context) if len(places) == len(texts) else None, formula_of, diagnostics
 
 
 def _atom(source: SourceFile, env: Env, expressions: list[Expr]) -> tuple[str, Label]:
@@ -141,7 +141,9 @@ def _atom(source: SourceFile, env: Env, expressions: list[Expr]) -> tuple[str, L
     return atom.name, here
 
 
-def _declared(module: Module, options: ResolveOptions) -> tuple[Env, tuple[tuple[str, ...], ...], tuple[Loaded, ...]]:
+def _declare_names(
+    module: Module, options: ResolveOptions
+) -> tuple[Env, tuple[tuple[str, ...], ...], tuple[LoadedModule, ...]]:
     """Return the environment of a module, the ``exclusive`` groups, and all modules.
 
     The groups come from the module and from its imports.
@@ -168,12 +170,12 @@ def _exclusive(scope: Scope, context: Context) -> list[tuple[str, ...]]:
 
 def _group(declaration: ExclusiveDecl, env: Env) -> tuple[str, ...]:
     names: dict[str, None] = {}
-    for written in declaration.atoms:
-        atom = formulas.formula(written, env)
+    for atom_expr in declaration.atoms:
+        atom = formulas.formula(atom_expr, env)
         if atom.op != "atom":
             title = "`exclusive` lists atoms"
             advice = "name predicates, `bool` signals or comparisons with `<` or `>`"
-            raise problem("TLT0316", title, env.scope.source, written.span, advice=advice)
+            raise problem("TLT0316", title, env.scope.source, atom_expr.span, advice=advice)
         names[atom.name] = None
     if len(names) < 2:
         title = "`exclusive` needs at least two different atoms"
@@ -188,7 +190,7 @@ def _specs(scope: Scope, groups: tuple[tuple[str, ...], ...], env: Env) -> dict[
         if not isinstance(declaration, SpecDecl):
             continue
         name = declaration.name
-        resolved = spec(declaration, groups, env)
+        resolved = resolve_spec(declaration, groups, env)
         # Spec names become file names, and some file systems ignore case.
         earlier = places.setdefault(name.lower(), declaration)
         if earlier is declaration:
@@ -199,16 +201,16 @@ def _specs(scope: Scope, groups: tuple[tuple[str, ...], ...], env: Env) -> dict[
         if earlier.name == name:
             title = f"the spec `{name}` is declared twice"
             remarks = ("declared again here", "first declared here")
-        twice = problem(
+        error = problem(
             "TLT0202",
             title,
             scope.source,
             declaration.name_span,
             remarks[0],
             advice="rename one of the two",
-            other=(Label(scope.source, earlier.name_span, remarks[1]),),
+            related=(Label(scope.source, earlier.name_span, remarks[1]),),
         )
-        env.context.log.add(twice.diagnostic)
+        env.context.log.add(error.diagnostic)
     return specs
 
 

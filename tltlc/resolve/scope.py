@@ -11,11 +11,11 @@ from tltlc.diagnostics.diagnostic import Diagnostic, Label, replacement_fix
 from tltlc.grammar.tree import EntityDecl, Import, LetDecl, Module, NameExpr, ParamDecl, PredicateDecl, SignalDecl
 from tltlc.grammar.typos import likely_name
 from tltlc.io.limits import IMPORTED
-from tltlc.resolve.imports import Loaded
+from tltlc.resolve.imports import LoadedModule
 from tltlc.resolve.problem import Log, problem
 
 Kind = Literal["signal", "param", "predicate", "let", "entity"]
-Declared = Union[SignalDecl, ParamDecl, PredicateDecl, LetDecl, NameExpr]
+NamedDeclaration = Union[SignalDecl, ParamDecl, PredicateDecl, LetDecl, NameExpr]
 FUNCTIONS = ("min", "max", "abs", "clamp", "sqrt", "exp", "tanh")
 _MERGED = ("signal", "param", "entity")
 
@@ -25,7 +25,7 @@ class Binding:
     """The declaration of a name, its scope, and the import that brought it, if any."""
 
     kind: Kind
-    declaration: Declared
+    declaration: NamedDeclaration
     scope: Scope
     via: str | None = None
 
@@ -56,23 +56,25 @@ class Scope:
         return self.module.source
 
 
-def build_scopes(modules: Iterable[Loaded], log: Log) -> tuple[Scope, ...]:
+def build_scopes(modules: Iterable[LoadedModule], log: Log) -> tuple[Scope, ...]:
     """Return one scope per module, in the given order (imported modules first).
 
     The import that exceeds the limit of names (TLT0012) brings no names, and neither does any later
     import.
     """
     scopes: dict[int, Scope] = {}
-    room = _Room()
+    budget = _NameBudget()
     for loaded in modules:
         imports = [(declaration, scopes[id(target)]) for declaration, target in loaded.imports]
-        taken = [pair for pair in imports if room.has_for(*pair, loaded.module.source, log)]
-        incomplete = not loaded.complete or len(taken) < len(imports) or any(target.incomplete for _, target in taken)
+        covered = [pair for pair in imports if budget.covers(*pair, loaded.module.source, log)]
+        incomplete = (
+            not loaded.complete or len(covered) < len(imports) or any(target.incomplete for _, target in covered)
+        )
         scope = Scope(loaded.module, loaded.title, incomplete, {})
         scopes[id(loaded)] = scope
-        for binding in _own(scope):
+        for binding in _own_bindings(scope):
             log.add(_declare(scope, binding))
-        for declaration, target in taken:
+        for declaration, target in covered:
             _import(declaration, target.names, scope, log)
     return tuple(scopes.values())
 
@@ -82,23 +84,23 @@ def closest_name(name: str, scope: Scope, kinds: Iterable[Kind], local: Iterable
 
     Returns None if no name is close.
     """
-    wanted = set(kinds)
-    return likely_name(name, [*local, *(n for n, binding in scope.names.items() if binding.kind in wanted)])
+    allowed_kinds = set(kinds)
+    return likely_name(name, [*local, *(n for n, binding in scope.names.items() if binding.kind in allowed_kinds)])
 
 
-class _Room:
-    """The number of names, and of their letters, that the imports of a program may still offer."""
+class _NameBudget:
+    """How many names, and how many letters in them, the imports of a program may still offer."""
 
     def __init__(self) -> None:
         self._names: int = IMPORTED.values or 0
         self._letters = IMPORTED.size
         self._is_over = False
 
-    def has_for(self, declaration: Import, target: Scope, source: SourceFile, log: Log) -> bool:
-        """Whether there is room for the names of an import; counts them before the import is done."""
+    def covers(self, declaration: Import, target: Scope, source: SourceFile, log: Log) -> bool:
+        """Whether the budget covers the names of an import; the names are counted before they are imported."""
         if self._is_over:
             return False
-        chosen = target.names if declaration.names is None else [wanted.name for wanted in declaration.names]
+        chosen = target.names if declaration.names is None else [name_expr.name for name_expr in declaration.names]
         self._names -= len(chosen)
         if declaration.alias and self._names >= 0:
             self._letters -= (len(declaration.alias) + 1) * len(chosen) + sum(map(len, chosen))
@@ -117,17 +119,17 @@ class _Room:
 def _import(declaration: Import, offered: Mapping[str, Binding], scope: Scope, log: Log) -> None:
     """Make the chosen names of an imported module visible."""
     chosen = dict(offered) if declaration.names is None else {}
-    for wanted in declaration.names or ():
-        if wanted.name in offered:
-            chosen[wanted.name] = offered[wanted.name]
+    for imported_name in declaration.names or ():
+        if imported_name.name in offered:
+            chosen[imported_name.name] = offered[imported_name.name]
         else:
-            log.add(_not_offered(scope, wanted, declaration.target, offered))
+            log.add(_not_offered_error(scope, imported_name, declaration.target, offered))
     prefix = f"{declaration.alias}." if declaration.alias else ""
     for name, binding in chosen.items():
-        log.add(_offer(scope, prefix + name, replace(binding, via=declaration.target), declaration.span))
+        log.add(_add_imported_name(scope, prefix + name, replace(binding, via=declaration.target), declaration.span))
 
 
-def _own(scope: Scope) -> Iterator[Binding]:
+def _own_bindings(scope: Scope) -> Iterator[Binding]:
     for declaration in scope.module.declarations:
         if isinstance(declaration, SignalDecl):
             yield Binding("signal", declaration, scope)
@@ -165,13 +167,13 @@ def _declare(scope: Scope, binding: Binding) -> Diagnostic | None:
             binding.span,
             "declared again here",
             advice="remove one of the two, or rename it",
-            other=(Label(scope.source, known.span, "first declared here"),),
+            related=(Label(scope.source, known.span, "first declared here"),),
         ).diagnostic
     scope.names.setdefault(name, binding)
     return None
 
 
-def _offer(scope: Scope, name: str, binding: Binding, span: Span) -> Diagnostic | None:
+def _add_imported_name(scope: Scope, name: str, binding: Binding, span: Span) -> Diagnostic | None:
     known = scope.names.setdefault(name, binding)
     if known.declaration is binding.declaration or (known.kind == binding.kind and binding.kind in _MERGED):
         return None
@@ -182,34 +184,36 @@ def _offer(scope: Scope, name: str, binding: Binding, span: Span) -> Diagnostic 
             scope.source,
             known.span,
             "declared here",
-            advice=f"rename it, or give the other one a prefix: `{_prefixed(binding.via)}`",
-            other=(Label(binding.scope.source, binding.span, f"and in {binding.via}"),),
+            advice=f"rename it, or give the other one a prefix: `{_aliased_import(binding.via)}`",
+            related=(Label(binding.scope.source, binding.span, f"and in {binding.via}"),),
         ).diagnostic
     return problem(
         "TLT0203",
         f"both {known.via} and {binding.via} offer `{name}`",
         scope.source,
         span,
-        advice=f"give one of them another name in front, e.g. `{_prefixed(binding.via)}`",
-        other=(
+        advice=f"give one of them another name in front, e.g. `{_aliased_import(binding.via)}`",
+        related=(
             Label(known.scope.source, known.span, f"the one of {known.via}"),
             Label(binding.scope.source, binding.span, f"the one of {binding.via}"),
         ),
     ).diagnostic
 
 
-def _not_offered(scope: Scope, wanted: NameExpr, library: str, offered: Mapping[str, Binding]) -> Diagnostic | None:
-    close = likely_name(wanted.name, offered)
-    hint = f"did you mean `{close}`?" if close else ""
-    fixes = (replacement_fix(scope.source, wanted.span, close),) if close else ()
-    title = f"{library} offers no `{wanted.name}`"
-    return problem("TLT0205", title, scope.source, wanted.span, hint, fixes=fixes).diagnostic
+def _not_offered_error(
+    scope: Scope, imported_name: NameExpr, library: str, offered: Mapping[str, Binding]
+) -> Diagnostic | None:
+    suggestion = likely_name(imported_name.name, offered)
+    hint = f"did you mean `{suggestion}`?" if suggestion else ""
+    fixes = (replacement_fix(scope.source, imported_name.span, suggestion),) if suggestion else ()
+    title = f"{library} offers no `{imported_name.name}`"
+    return problem("TLT0205", title, scope.source, imported_name.span, hint, fixes=fixes).diagnostic
 
 
-def _prefixed(target: str | None) -> str:
-    """Return the import of a library or file with a short alias."""
+def _aliased_import(target: str | None) -> str:
+    """Return an import statement for a library or file, with a short alias."""
     target = target or ""
     letters = "".join(c for c in target.rsplit("/", 1)[-1] if c.isascii() and c.isalpha())[:2].lower()
-    written = f'"{target}"' if "/" in target or target.endswith(".tltl") else target
+    target_text = f'"{target}"' if "/" in target or target.endswith(".tltl") else target
     # `or` is the only reserved word of two letters.
-    return f"import {written} as {letters if len(letters) == 2 and letters != 'or' else 'lib'}"
+    return f"import {target_text} as {letters if len(letters) == 2 and letters != 'or' else 'lib'}"

@@ -53,8 +53,8 @@ class Param:
 class Atom:
     """An atom: it holds iff its expression, with values in [-1, 1], is > 0.
 
-    ``arguments`` are those of a predicate or a signal as they are written. An atom that is a comparison, such
-    as ``x > 3``, has none, and its text as its base.
+    ``base`` and ``arguments`` are those of the predicate or signal, as they are written. An atom that
+    is a comparison, such as ``x > 3``, has its text as its base and no arguments.
     """
 
     base: str
@@ -70,7 +70,7 @@ class Atom:
 
 @record
 class Bound:
-    """A bound of a temporal operator: its largest number of samples, and its place."""
+    """A bound of a temporal operator: its greatest number of samples, and its place in the text."""
 
     samples: int
     source: SourceFile

@@ -15,7 +15,7 @@ from tltlc.resolve.spec import Expect, Spec, Test, TestSample
 from tltlc.resolve.values import Env
 
 
-def resolved_test(declaration: TestDecl, specs: dict[str, Spec | None], env: Env) -> Test | None:
+def resolve_test(declaration: TestDecl, specs: dict[str, Spec | None], env: Env) -> Test | None:
     """Return the resolved test, or None if anything in it or its spec is in error.
 
     ``specs`` holds every spec of the file, None for a spec in error. Problems go to the log.
@@ -23,12 +23,12 @@ def resolved_test(declaration: TestDecl, specs: dict[str, Spec | None], env: Env
     context, source = env.context, env.scope.source
     name = declaration.spec.name
     if name not in specs:
-        close = likely_name(name, specs)
-        hint = f"did you mean `{close}`?" if close else ""
+        suggestion = likely_name(name, specs)
+        hint = f"did you mean `{suggestion}`?" if suggestion else ""
         listed = ", ".join(f"`{known}`" for known in specs)
-        advice = None if close else f"the specs are {listed}" if specs else f"declare it: `spec {name} {{ … }}`"
+        advice = None if suggestion else f"the specs are {listed}" if specs else f"declare it: `spec {name} {{ … }}`"
         title, place = f"no spec `{name}` here", declaration.spec.span
-        fixes = (replacement_fix(source, place, close),) if close else ()
+        fixes = (replacement_fix(source, place, suggestion),) if suggestion else ()
         context.log.add(problem("TLT0208", title, source, place, hint, advice=advice, fixes=fixes).diagnostic)
         return None
     spec = specs[name]
@@ -52,34 +52,34 @@ def resolved_test(declaration: TestDecl, specs: dict[str, Spec | None], env: Env
 
 def _step(item: TestStep, spec: Spec, env: Env) -> TestSample:
     source = env.scope.source
-    names = {_squeezed(atom.name): atom.name for atom in spec.atoms}
+    names = {_without_spaces(atom.name): atom.name for atom in spec.atoms}
     values: dict[str, bool] = {}
-    for written in (part for atom in item.atoms for part in conjuncts(atom)):
-        name, holds = _literal(written, names, env)
-        if _squeezed(name) not in names:
+    for literal_expr in (part for atom in item.atoms for part in conjuncts(atom)):
+        name, holds = _literal(literal_expr, names, env)
+        if _without_spaces(name) not in names:
             known = ", ".join(f"`{atom.name}`" for atom in spec.atoms)
             title = f"`{name}` is no atom of the spec `{spec.name}`"
-            raise problem("TLT0209", title, source, written.span, advice=f"its atoms are {known}")
+            raise problem("TLT0209", title, source, literal_expr.span, advice=f"its atoms are {known}")
         if values.setdefault(name, holds) != holds:
             raise problem(
                 "TLT0217",
                 f"`{name}` cannot hold and not hold in one step",
                 source,
-                written.span,
+                literal_expr.span,
                 advice="leave one out",
             )
     return TestSample(item.times, frozenset(name for name, holds in values.items() if holds))
 
 
-def _literal(written: Expr, names: Mapping[str, str], env: Env) -> tuple[str, bool]:
-    """Return the name of an atom and its polarity.
+def _literal(literal_expr: Expr, names: Mapping[str, str], env: Env) -> tuple[str, bool]:
+    """Return the name of an atom, and whether the literal says that the atom holds.
 
     The atom is written as a formula, or as the name of the atom, which has no units.
     """
-    holds, inner = True, written
+    holds, inner = True, literal_expr
     while isinstance(inner, GroupExpr) or (isinstance(inner, Unary) and inner.op == "not"):
         inner, holds = (inner.inner, holds) if isinstance(inner, GroupExpr) else (inner.operand, not holds)
-    name = names.get(_squeezed(env.scope.source.text[inner.span.start : inner.span.end]))
+    name = names.get(_without_spaces(env.scope.source.text[inner.span.start : inner.span.end]))
     if name is not None:
         return name, holds
     literal = formula(inner, env)
@@ -87,11 +87,11 @@ def _literal(written: Expr, names: Mapping[str, str], env: Env) -> tuple[str, bo
         literal, holds = literal.args[0], not holds
     if literal.op != "atom":
         advice = "name predicates, `bool` signals or comparisons, each with `not` or without"
-        raise problem("TLT0316", "a step consists of atoms", env.scope.source, written.span, advice=advice)
+        raise problem("TLT0316", "a step consists of atoms", env.scope.source, literal_expr.span, advice=advice)
     return literal.name, holds
 
 
-def _squeezed(text: str) -> str:
+def _without_spaces(text: str) -> str:
     return "".join(text.split())
 
 

@@ -1,4 +1,4 @@
-"""Resolve specs: their clauses, the conjunction of these, and their metadata."""
+"""Resolve specs: their clauses, the conjunction of the clauses, and their metadata."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from tltlc.resolve.values import Env
 _ONCE = ("level", "limit", "judge", "semantics")
 
 
-def spec(declaration: SpecDecl, groups: tuple[tuple[str, ...], ...], env: Env) -> Spec | None:
+def resolve_spec(declaration: SpecDecl, groups: tuple[tuple[str, ...], ...], env: Env) -> Spec | None:
     """Return the resolved spec, or None if a clause is in error or no clause asks for anything.
 
     Every clause in error is reported to the log.
@@ -39,11 +39,11 @@ def spec(declaration: SpecDecl, groups: tuple[tuple[str, ...], ...], env: Env) -
     for clause in declaration.clauses:
         try:
             if clause.kind in _READERS:
-                parts.extend(_parts(clause, env))
+                parts.extend(_conjuncts(clause, env))
             elif clause.kind == "tag":
                 tags.update(dict.fromkeys(tag.name for tag in cast("tuple[NameExpr, ...]", clause.value)))
             else:
-                _remember(clause, metadata, env)
+                _store_metadata(clause, metadata, env)
         except ResolutionError as failure:
             log.add(failure.diagnostic)
             complete = False
@@ -93,7 +93,7 @@ def vocabulary(used: Iterable[str], groups: Iterable[Sequence[str]], context: Co
     )
 
 
-def _parts(clause: Clause, env: Env) -> list[Conjunct]:
+def _conjuncts(clause: Clause, env: Env) -> list[Conjunct]:
     """Return the formulas of a clause, with their bounds and their unbounded form if there are bounds."""
     read = _READERS[clause.kind]
     before = len(env.context.bounds)
@@ -103,8 +103,8 @@ def _parts(clause: Clause, env: Env) -> list[Conjunct]:
     bounds = tuple(env.context.bounds[before:])
     unbounded = [part.formula for part in read(clause, replace(env, unbounded=True))]
     return [
-        replace(part, bounds=bounds, unbounded=other if other is not part.formula else None)
-        for part, other in zip(parts, unbounded, strict=True)
+        replace(part, bounds=bounds, unbounded=unbounded_formula if unbounded_formula is not part.formula else None)
+        for part, unbounded_formula in zip(parts, unbounded, strict=True)
     ]
 
 
@@ -115,15 +115,15 @@ def _reach(clause: Clause, env: Env) -> list[Conjunct]:
         result = eventually(result)
     for goal in reversed(before):
         result = then(goal, result)
-    return [_part(result, clause, env)]
+    return [_conjunct(result, clause, env)]
 
 
 def _keep(clause: Clause, env: Env) -> list[Conjunct]:
-    return [_part(always(formula(_expression(clause), env)), clause, env)]
+    return [_conjunct(always(formula(_expression(clause), env)), clause, env)]
 
 
 def _avoid(clause: Clause, env: Env) -> list[Conjunct]:
-    return [_part(always(not_(formula(_expression(clause), env))), clause, env)]
+    return [_conjunct(always(not_(formula(_expression(clause), env))), clause, env)]
 
 
 def _require(clause: Clause, env: Env) -> list[Conjunct]:
@@ -143,11 +143,11 @@ def _expression(clause: Clause) -> Expr:
     return clause.value
 
 
-def _part(conjunct: Formula, clause: Clause, env: Env) -> Conjunct:
+def _conjunct(conjunct: Formula, clause: Clause, env: Env) -> Conjunct:
     return Conjunct(conjunct, env.scope.source, clause.span)
 
 
-def _remember(clause: Clause, metadata: dict[str, Clause], env: Env) -> None:
+def _store_metadata(clause: Clause, metadata: dict[str, Clause], env: Env) -> None:
     """Store a metadata clause; raise ResolutionError (TLT0214) if it is repeated."""
     source = env.scope.source
     if clause.kind in metadata:
@@ -157,7 +157,7 @@ def _remember(clause: Clause, metadata: dict[str, Clause], env: Env) -> None:
             source,
             clause.span,
             advice="keep one of the two",
-            other=(Label(source, metadata[clause.kind].span, "the first one"),),
+            related=(Label(source, metadata[clause.kind].span, "the first one"),),
         )
     metadata[clause.kind] = clause
 

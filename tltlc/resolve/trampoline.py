@@ -1,4 +1,8 @@
-"""Recursion without Python's stack: generators that yield the generators they wait for."""
+"""A trampoline: run recursive generators without growing Python's stack.
+
+A recursive function is written as a generator. Instead of calling itself, it yields a new generator,
+and :func:`run_to_result` sends it the result of that generator.
+"""
 
 from __future__ import annotations
 
@@ -8,24 +12,27 @@ from typing import Any
 from tltlc.logic.formula import Formula
 from tltlc.resolve.problem import ResolutionError
 
-Steps = Generator[Any, Any, Any]
-"""Yields the generators it waits for and is sent their results; returns a formula."""
+FormulaGenerator = Generator[Any, Any, Any]
+"""A recursive function as a generator: it yields the generator of each recursive call, receives the call's
+result, and returns a formula.
+"""
 
 
-def run(steps: Steps) -> Formula:
-    """Return the result of a generator.
+def run_to_result(generator: FormulaGenerator) -> Formula:
+    """Run a generator and all generators that it yields, and return the formula that it returns.
 
-    A ResolutionError passes through all generators that wait for the one that raises it.
+    A ResolutionError is raised in each waiting generator in turn, as in a call stack. If none of them
+    handles it, it is raised to the caller.
     """
-    stack = [steps]
+    stack = [generator]
     result: Formula | None = None
     failure: ResolutionError | None = None
     while stack:
         try:
             child = stack[-1].throw(failure) if failure else stack[-1].send(result)
-        except StopIteration as finished:
+        except StopIteration as stop:
             stack.pop()
-            result, failure = finished.value, None
+            result, failure = stop.value, None
         except ResolutionError as error:
             stack.pop()
             failure = error

@@ -65,7 +65,7 @@ def type_of_unit(unit: str) -> str | None:
     if unit == "%":
         return "ratio"
     dimension = _UNITS[unit][2] if unit in _UNITS else None
-    return next((name for name, other in TYPES.items() if other == dimension), None)
+    return next((name for name, candidate in TYPES.items() if candidate == dimension), None)
 
 
 def in_si(value: float, unit: str | None) -> tuple[float, Dimension] | None:
@@ -92,7 +92,7 @@ def si_unit(dimension: Dimension) -> str | None:
     return _SI.get(dimension)
 
 
-def described(dimension: Dimension) -> str:
+def dimension_text(dimension: Dimension) -> str:
     """Return the dimension in words, e.g. ``a length``."""
     if dimension in _NAMES:
         return _NAMES[dimension]

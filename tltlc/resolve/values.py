@@ -29,11 +29,12 @@ class Entity:
 class Quantity:
     """A number that depends on signals and params.
 
-    ``dimension`` None fits any (0, inf). ``low`` and ``high`` bound the value, in SI units.
-    ``text`` is its unique spelling in the names of atoms, and ``binding`` how tightly that spelling
-    binds. ``depth`` is the depth of the expression. ``is_bool`` marks a value that is 0 or 1 by
-    type. ``overflows`` marks a value whose arithmetic may overflow although all its inputs have
-    finite ranges. ``call`` is the base and the arguments of a signal or a predicate.
+    A ``dimension`` of None fits any dimension, as for 0 and inf. ``low`` and ``high`` bound the value,
+    in SI units. ``text`` is its unique spelling in the names of atoms, and ``binding`` tells how
+    tightly that spelling binds. ``depth`` is the depth of the expression. ``is_bool`` marks a value
+    that is 0 or 1 by type. ``overflows`` marks a value whose arithmetic may overflow although all its
+    inputs have finite ranges. ``call`` is the base and the arguments of a signal or a predicate, or
+    None.
     """
 
     expression: Expression
@@ -49,10 +50,10 @@ class Quantity:
 
     @property
     def is_constant(self) -> bool:
-        """Whether it is a plain number."""
+        """Whether the quantity is a plain number."""
         return isinstance(self.expression, Const)
 
-    def bracketed(self, binding: int) -> str:
+    def operand_text(self, binding: int) -> str:
         """Return the text, in brackets if it binds more loosely than ``binding``."""
         return self.text if self.binding >= binding else f"({self.text})"
 
@@ -72,9 +73,9 @@ class Env:
     """The environment of an expression: the scope of its text and the values of its parameters.
 
     ``symbolic`` marks the check of a definition whose parameters have no values yet. ``constant``
-    allows numbers only. ``unbounded`` reads ``F[0,3] p`` as ``F p`` and ``G[0,3] p`` as ``G p``. It
-    is only used on text that has already been read with its bounds, so no size is checked and
-    nothing is counted again.
+    allows numbers only. ``unbounded`` reads ``F[0,3] p`` as ``F p`` and ``G[0,3] p`` as ``G p``. It is
+    used only on text that has already been read with its bounds, so no size is checked and nothing is
+    counted again.
     """
 
     context: Context
@@ -84,11 +85,11 @@ class Env:
     constant: bool = False
     unbounded: bool = False
 
-    def within(self, scope: Scope, local: Mapping[str, Value]) -> Env:
+    def inside(self, scope: Scope, local: Mapping[str, Value]) -> Env:
         """Return the environment inside a declaration of ``scope``."""
         return replace(self, scope=scope, local=local)
 
-    def also(self, name: str, value: Value) -> Env:
+    def with_local(self, name: str, value: Value) -> Env:
         """Return the environment with one more local name."""
         return replace(self, local={**self.local, name: value})
 
@@ -130,11 +131,11 @@ def apply(op: str, args: tuple[Quantity, ...], dimension: Dimension | None) -> Q
         return constant(low, dimension) if low == high and not isinf(low) else None
     if op in _INFIX:
         binding, left, right = _INFIX[op]
-        text = f"{args[0].bracketed(left)} {op} {args[1].bracketed(right)}"
+        text = f"{args[0].operand_text(left)} {op} {args[1].operand_text(right)}"
     elif op == "^":
-        binding, text = POWER, f"{args[0].bracketed(CLOSED)}^{args[1].bracketed(CLOSED)}"
+        binding, text = POWER, f"{args[0].operand_text(CLOSED)}^{args[1].operand_text(CLOSED)}"
     elif op == "neg":
-        binding, text = SIGN, f"-{args[0].bracketed(POWER)}"
+        binding, text = SIGN, f"-{args[0].operand_text(POWER)}"
     else:
         binding, text = CLOSED, f"{op}({', '.join(arg.text for arg in args)})"
     expression = Op(op, tuple(arg.expression for arg in args))  # type: ignore[arg-type]

@@ -8,7 +8,7 @@ from fractions import Fraction
 from hypothesis import given, settings
 
 from tests.backends.program.interpreter import Scope
-from tests.resolve.test_comparison_signs import FINITE, THREE, around, varying
+from tests.resolve.test_comparison_signs import FINITE, THREE, nearby_numbers, signal_quantity
 from tltlc.program.arithmetic import ExpressionTranslator, defined
 from tltlc.program.bounds import proven, within
 from tltlc.resolve import units
@@ -20,14 +20,14 @@ from tltlc.resolve.values import constant
 @given(THREE, FINITE)
 def test_a_threshold_agrees_with_the_exact_comparison(ends: Sequence[float], x: float) -> None:
     low, threshold, high = ends
-    side, fixed = varying("x", low, high), constant(threshold, units.PLAIN)
+    side, fixed = signal_quantity("x", low, high), constant(threshold, units.PLAIN)
     for is_above, possible in ((True, threshold < high), (False, low < threshold)):
         if not possible:
             continue
         expression = robustness(side, fixed) if is_above else robustness(fixed, side)
         assigned = ExpressionTranslator({"x": "x"}, {}, "t").assigned("value", expression)
         statements, range_ = proven("value", assigned, {"x": within(low, high)})
-        for number in [*around(threshold, low, high), min(max(x, low), high)]:
+        for number in [*nearby_numbers(threshold, low, high), min(max(x, low), high)]:
             scope = Scope({"x": number})
             scope.run(defined("value", statements))
             value = scope.values["value"]

@@ -12,7 +12,7 @@ import torch
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tests.resolve.test_comparison_signs import FINITE, THREE, around, varying
+from tests.resolve.test_comparison_signs import FINITE, THREE, nearby_numbers, signal_quantity
 from tltl_runtime.spec.batch import BatchMonitor
 from tltl_runtime.spec.batch.float_formats import fits, narrowed
 from tltlc import compile_text
@@ -51,8 +51,8 @@ def truths(fspa: Fspa, samples: Sequence[Sequence[float]], dtype: torch.dtype, c
 @given(THREE, FINITE)
 def test_a_threshold_in_float64(ends: Sequence[float], x: float) -> None:
     low, threshold, high = ends
-    side, fixed = varying("x", low, high), constant(threshold, units.PLAIN)
-    samples = [[number] for number in (*around(threshold, low, high), min(max(x, low), high))]
+    side, fixed = signal_quantity("x", low, high), constant(threshold, units.PLAIN)
+    samples = [[number] for number in (*nearby_numbers(threshold, low, high), min(max(x, low), high))]
     if threshold < high:
         results = truths(automaton(robustness(side, fixed), x=(low, high)), samples, torch.float64)
         assert results == [Fraction(number) > Fraction(threshold) for (number,) in samples]
@@ -68,7 +68,7 @@ def test_numbers_of_32_bits_in_float32(ends: Sequence[float]) -> None:
     low, threshold, high = ends
     if not threshold < high:
         return
-    expression = robustness(varying("x", low, high), constant(threshold, units.PLAIN))
+    expression = robustness(signal_quantity("x", low, high), constant(threshold, units.PLAIN))
     single = np.float32(threshold)
     numbers = (single, np.nextafter(single, np.float32(inf)), np.nextafter(single, np.float32(-inf)), low, high, 0.0)
     samples = [[float(number)] for number in numbers if low <= number <= high]

@@ -99,7 +99,7 @@ def _units(place: Cursor) -> Iterator[types.CompletionItem]:
         known = ["Hz", *units.time_units()]
     for unit in known:
         conversion = units.in_si(1.0, unit)
-        detail = units.described(conversion[1]) if conversion else "samples"
+        detail = units.dimension_text(conversion[1]) if conversion else "samples"
         yield types.CompletionItem(unit, kind=Kind.Unit, detail=detail)
 
 

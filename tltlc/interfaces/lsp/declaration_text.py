@@ -125,7 +125,7 @@ def _english(declaration: LetDecl, env: Env) -> str | None:
     if binding is None:
         return None
     try:
-        formula = formulas.formula(declaration.body, env.within(binding.scope, {}))
+        formula = formulas.formula(declaration.body, env.inside(binding.scope, {}))
     except ResolutionError:
         return None
     return english_text(formula)

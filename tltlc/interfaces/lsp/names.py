@@ -11,7 +11,7 @@ from tltlc.grammar import tree
 from tltlc.grammar.lexer import Token
 from tltlc.grammar.parser import parse_formula
 from tltlc.grammar.walk import children
-from tltlc.resolve.scope import Binding, Declared, Scope
+from tltlc.resolve.scope import Binding, NamedDeclaration, Scope
 
 Kind = Literal["signal", "param", "predicate", "let", "entity", "spec", "parameter", "variable"]
 MERGED: tuple[Kind, ...] = ("signal", "param", "entity")
@@ -26,7 +26,7 @@ class Symbol:
 
     kind: Kind
     name: str
-    declaration: Union[Declared, tree.SpecDecl, tree.Parameter, tree.Quantified]
+    declaration: Union[NamedDeclaration, tree.SpecDecl, tree.Parameter, tree.Quantified]
     source: SourceFile
     span: Span
 

@@ -87,9 +87,11 @@ def _expand(expression: Expression, before: Constraints, extremes: bool) -> Iter
         remaining: list[Constraints] = [before]
         for condition, value in expression.cases:
             for path in remaining:
-                for taken in _where(condition, True, path, extremes):
-                    yield from _expand(value, taken, extremes)
-            remaining = [refused for path in remaining for refused in _where(condition, False, path, extremes)]
+                for then_path in _paths_where(condition, True, path, extremes):
+                    yield from _expand(value, then_path, extremes)
+            remaining = [
+                else_path for path in remaining for else_path in _paths_where(condition, False, path, extremes)
+            ]
             if len(remaining) > LARGEST_NUMBER_OF_CASES:
                 raise TooManyCasesError
         for path in remaining:
@@ -124,28 +126,30 @@ def _split_extreme(op: str, args: tuple[Expression, ...], before: Constraints) -
         for inner in _split_extreme("max", (value, low), before):
             yield from _split_extreme("min", (inner.value, high), inner.constraints)
     else:
-        for chosen in args:
-            rest = [other for other in args if other != chosen]
-            pairs = [(other, chosen) if op == "min" else (chosen, other) for other in rest]
-            yield ConstrainedValue((*before, *(Constraint(Op("-", pair), False) for pair in pairs)), chosen)
+        for extreme in args:
+            rest = [arg for arg in args if arg != extreme]
+            pairs = [(arg, extreme) if op == "min" else (extreme, arg) for arg in rest]
+            yield ConstrainedValue((*before, *(Constraint(Op("-", pair), False) for pair in pairs)), extreme)
 
 
-def _where(condition: Condition, truth: bool, before: Constraints, extremes: bool) -> Iterator[Constraints]:
+def _paths_where(condition: Condition, truth: bool, before: Constraints, extremes: bool) -> Iterator[Constraints]:
     """Yield the constraint sets under which a condition is true (or false), each added to ``before``."""
     spend()
     if condition.op == "not":
-        yield from _where(_condition(condition.args[0]), not truth, before, extremes)
+        yield from _paths_where(_condition(condition.args[0]), not truth, before, extremes)
     elif condition.op in ("and", "or"):
         if (condition.op == "and") == truth:
             paths = [before]
             for arg in condition.args:
-                paths = [extended for path in paths for extended in _where(_condition(arg), truth, path, extremes)]
+                paths = [
+                    extended for path in paths for extended in _paths_where(_condition(arg), truth, path, extremes)
+                ]
                 if len(paths) > LARGEST_NUMBER_OF_CASES:
                     raise TooManyCasesError
             yield from paths
         else:
             for arg in condition.args:
-                yield from _where(_condition(arg), truth, before, extremes)
+                yield from _paths_where(_condition(arg), truth, before, extremes)
     else:
         left, right = (_expression(arg) for arg in condition.args)
         for constraints, (a, b) in _expand_all((left, right), before, extremes):
@@ -168,9 +172,9 @@ def _collect_operands(node: Expression, before: Constraints, result: list[Constr
         for condition, value in node.cases:
             for path in remaining:
                 _collect_condition(condition, path, result)
-                for taken in _where(condition, True, path, False):
-                    _collect_operands(value, taken, result)
-            remaining = [refused for path in remaining for refused in _where(condition, False, path, False)]
+                for then_path in _paths_where(condition, True, path, False):
+                    _collect_operands(value, then_path, result)
+            remaining = [else_path for path in remaining for else_path in _paths_where(condition, False, path, False)]
             if len(result) + len(remaining) > LARGEST_NUMBER_OF_CASES:
                 raise TooManyCasesError
         for path in remaining:
@@ -189,7 +193,7 @@ def _collect_condition(condition: Condition, before: Constraints, result: list[C
         if (
             isinstance(arg, Condition) and condition.op != "not"
         ):  # the next operand is only evaluated if this one does not decide
-            paths = [extended for path in paths for extended in _where(arg, condition.op == "and", path, False)]
+            paths = [extended for path in paths for extended in _paths_where(arg, condition.op == "and", path, False)]
 
 
 def _condition(arg: Expression | Condition) -> Condition:

@@ -28,9 +28,9 @@ from tltlc.resolve.range_proof.cases import (
     variables,
     whens,
 )
-from tltlc.resolve.range_proof.proof import ProofGoal, unproved
+from tltlc.resolve.range_proof.proof import ProofGoal, unproved_goals
 from tltlc.resolve.range_proof.region import Box, ConstrainedBox, Variable
-from tltlc.resolve.range_proof.work import OutOfWorkError, limited, spend
+from tltlc.resolve.range_proof.work import OutOfWorkError, spend, step_limit
 
 FindingKind = Literal[
     "range_wrong",
@@ -50,7 +50,8 @@ class RangeProblem:
     """A property of a predicate that is wrong or could not be proved.
 
     ``witness`` gives the value of each signal and param at the point in ``message``. It is empty if
-    the kind ends in ``unproved`` or ``unchecked``. ``is_undefined``: the predicate has no value there.
+    the kind ends in ``unproved`` or ``unchecked``. ``is_undefined`` is true if the predicate has no
+    value at that point.
     """
 
     kind: FindingKind
@@ -73,14 +74,14 @@ def check_predicate(
     most one finding on the range and one on continuity. Takes a bounded number of steps and never
     raises.
     """
-    with limited(_MOST_STEPS):
+    with step_limit(_MOST_STEPS):
         if size(expression, LARGEST_SIZE) > LARGEST_SIZE:
-            return (_unchecked("range", f"it has more than {LARGEST_SIZE:,} operands and operators"),)
+            return (_unchecked_problem("range", f"it has more than {LARGEST_SIZE:,} operands and operators"),)
         try:
             box, bools = box_of(expression, signals, params)
             return _findings(Predicate(expression, box, bools, low, high))
         except (RecursionError, OutOfWorkError):
-            return (_unchecked("range", _TOO_LONG),)
+            return (_unchecked_problem("range", _TOO_LONG),)
 
 
 LARGEST_SIZE = 2000
@@ -92,29 +93,31 @@ _STEPS_OF_A_QUESTION = _MOST_STEPS // 3
 _TOO_LONG = f"the check takes too many steps: {_MOST_STEPS:,} are allowed"
 
 
-def _unchecked(aspect: Literal["range", "continuity"], why: str) -> RangeProblem:
+def _unchecked_problem(aspect: Literal["range", "continuity"], why: str) -> RangeProblem:
     return RangeProblem("range_unchecked" if aspect == "range" else "continuity_unchecked", why)
 
 
 def _findings(predicate: Predicate) -> tuple[RangeProblem, ...]:
     """Check the range, then continuity. Continuity is skipped if the range cannot be checked."""
     try:
-        with limited(_MOST_STEPS - _STEPS_FOR_A_WITNESS):
+        with step_limit(_MOST_STEPS - _STEPS_FOR_A_WITNESS):
             range_finding = _check_range(predicate)
     except TooManyCasesError:
-        return (_wrong(predicate) or _unchecked("range", _TOO_MANY_CASES),)
+        return (_find_wrong_range(predicate) or _unchecked_problem("range", _TOO_MANY_CASES),)
     except OutOfWorkError:
-        return (_wrong(predicate) or _unchecked("range", _TOO_LONG),)
-    return tuple(finding for finding in (range_finding, _bounded_continuity(predicate)) if finding is not None)
+        return (_find_wrong_range(predicate) or _unchecked_problem("range", _TOO_LONG),)
+    return tuple(
+        finding for finding in (range_finding, _check_continuity_within_limits(predicate)) if finding is not None
+    )
 
 
-def _bounded_continuity(predicate: Predicate) -> RangeProblem | None:
+def _check_continuity_within_limits(predicate: Predicate) -> RangeProblem | None:
     try:
         return _check_continuity(predicate)
     except TooManyCasesError:
-        return _unchecked("continuity", _TOO_MANY_MEETINGS)
+        return _unchecked_problem("continuity", _TOO_MANY_MEETINGS)
     except OutOfWorkError:
-        return _unchecked("continuity", _TOO_LONG)
+        return _unchecked_problem("continuity", _TOO_LONG)
 
 
 _TOO_MANY_CASES = f"its `when` splits it into more than {LARGEST_NUMBER_OF_CASES} cases"
@@ -138,37 +141,39 @@ class Predicate:
 def _check_range(predicate: Predicate) -> RangeProblem | None:
     whole = ConstrainedBox(predicate.box, {})
     low, high = predicate.low, predicate.high
-    tasks = [ProofGoal(case.value, case.constraints, low, high) for case in cases(predicate.expression)]
-    tasks += [
+    goals = [ProofGoal(case.value, case.constraints, low, high) for case in cases(predicate.expression)]
+    goals += [
         ProofGoal(operand.value, operand.constraints, -inf, inf) for operand in condition_operands(predicate.expression)
     ]
-    doubtful = unproved(tasks, whole)
+    doubtful = unproved_goals(goals, whole)
     if not doubtful:
         return None
-    wrong = _wrong(predicate)
+    wrong = _find_wrong_range(predicate)
     if wrong is not None:
         return wrong
     if _proves_exactly("range", predicate, doubtful, whole):
         return None
-    return RangeProblem("range_unproved", f"could not prove that the value stays in [{_number(low)}, {_number(high)}]")
+    return RangeProblem(
+        "range_unproved", f"could not prove that the value stays in [{_number_text(low)}, {_number_text(high)}]"
+    )
 
 
-def _wrong(predicate: Predicate) -> RangeProblem | None:
+def _find_wrong_range(predicate: Predicate) -> RangeProblem | None:
     """Return a point where the value leaves its range or is undefined.
 
     Returns None if the search finds no such point within its steps.
     """
-    from tltlc.resolve.range_proof.witness import find_outside
+    from tltlc.resolve.range_proof.witness import find_wrong_point
 
     try:
-        witness = find_outside(predicate.expression, predicate.box, predicate.bools, predicate.low, predicate.high)
+        witness = find_wrong_point(predicate.expression, predicate.box, predicate.bools, predicate.low, predicate.high)
     except OutOfWorkError:
         return None
     if witness is None:
         return None
     values = _by_name(witness.point)
-    problem = witness.reason if witness.value is None else f"is {_number(witness.value)}"
-    return RangeProblem("range_wrong", f"{_where(values)}the value {problem}", values, witness.is_undefined)
+    problem = witness.reason if witness.value is None else f"is {_number_text(witness.value)}"
+    return RangeProblem("range_wrong", f"{_point_text(values)}the value {problem}", values, witness.is_undefined)
 
 
 def _check_continuity(predicate: Predicate) -> RangeProblem | None:
@@ -177,16 +182,18 @@ def _check_continuity(predicate: Predicate) -> RangeProblem | None:
     )
     doubtful: list[ProofGoal] = []
     for when in whens(predicate.expression):
-        tasks = _doubtful_borders(when, predicate)
-        if not tasks:
+        goals = _doubtful_borders(when, predicate)
+        if not goals:
             continue
-        doubtful += tasks
+        doubtful += goals
         from tltlc.resolve.range_proof.jumps import find_jump
 
         jump = find_jump(cases(when), predicate.expression, predicate.box, predicate.bools)
         if jump is not None:
             values = _by_name(jump.point)
-            message = f"{_where(values)}the value jumps from {_number(jump.before)} to {_number(jump.after)}"
+            message = (
+                f"{_point_text(values)}the value jumps from {_number_text(jump.before)} to {_number_text(jump.after)}"
+            )
             return RangeProblem("discontinuous", message, values)
     if not doubtful or _proves_exactly("continuity", predicate, doubtful, ConstrainedBox(predicate.box, {})):
         return None
@@ -198,26 +205,26 @@ def _doubtful_borders(when: When, predicate: Predicate) -> list[ProofGoal]:
     all_cases = cases(when)
     if len(all_cases) < 2:
         return []
-    from tltlc.resolve.range_proof.continuity import agreement, meetings, proves_agreement
+    from tltlc.resolve.range_proof.continuity import agreement_goal, meetings, proves_agreement
 
     pairs = meetings(all_cases, ConstrainedBox(predicate.box, {}), predicate.bools)
-    return [agreement(meeting) for meeting in pairs if not proves_agreement(meeting)]
+    return [agreement_goal(meeting) for meeting in pairs if not proves_agreement(meeting)]
 
 
-def _proves_exactly(kind: str, predicate: Predicate, tasks: Sequence[ProofGoal], whole: ConstrainedBox) -> bool:
-    """Whether sympy proves the remaining tasks, now or in a cached answer."""
+def _proves_exactly(kind: str, predicate: Predicate, goals: Sequence[ProofGoal], whole: ConstrainedBox) -> bool:
+    """Whether sympy proves the remaining goals, now or in a cached answer."""
     from tltlc.resolve.range_proof import memory
 
     def compute() -> memory.Answer:
         if sys.platform == "emscripten":
-            # A browser has no sympy. Tasks that only sympy can prove stay unproved.
+            # A browser has no sympy. Goals that only sympy can prove stay unproved.
             return memory.Answer(False, 0)
         from tltlc.resolve.range_proof.exact import proves_all
 
         # Count these steps separately, so that the answer depends on the question alone and can be cached.
-        with limited(_STEPS_OF_A_QUESTION, counts_outside=False) as work:
+        with step_limit(_STEPS_OF_A_QUESTION, counts_outside=False) as work:
             try:
-                proved = proves_all(tasks, whole)
+                proved = proves_all(goals, whole)
             except OutOfWorkError:
                 proved = False
             return memory.Answer(proved, _STEPS_OF_A_QUESTION - max(0, work.left))
@@ -250,12 +257,12 @@ def _by_name(point: Mapping[Variable, float]) -> dict[str, float]:
     return {variable.name: value for variable, value in point.items()}
 
 
-def _where(values: Mapping[str, float]) -> str:
+def _point_text(values: Mapping[str, float]) -> str:
     """Return ``with distance = 3, far = 2 ``, or an empty text if there are no variables."""
     if not values:
         return ""
-    return "with " + ", ".join(f"{name} = {_number(value)}" for name, value in values.items()) + " "
+    return "with " + ", ".join(f"{name} = {_number_text(value)}" for name, value in values.items()) + " "
 
 
-def _number(value: float) -> str:
+def _number_text(value: float) -> str:
     return f"{round(value, 12) + 0.0:.6g}"  # adding 0 turns -0 into 0

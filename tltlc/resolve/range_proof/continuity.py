@@ -48,13 +48,13 @@ def meetings(
         if first.value == second.value:
             continue
         constraints = tuple(
-            _closed(constraint, bools)
+            _closed_constraint(constraint, bools)
             for constraint in dict.fromkeys((*first.constraints, *second.constraints))
             if holds_at_once(
                 constraint.difference, whole, -inf, inf
             )  # if it may be undefined, its border may not show where the case ends
         )
-        region = whole.where(constraints)
+        region = whole.constrain(constraints)
         if region is not None:
             yield Meeting(first, second, constraints, region)
 
@@ -71,13 +71,13 @@ def proves_agreement(meeting: Meeting) -> bool:
     return proves_within(difference, meeting.region, 0.0, 0.0, _PARTS)
 
 
-def agreement(meeting: Meeting) -> ProofGoal:
-    """Return the task of proving that two cases agree where they meet."""
+def agreement_goal(meeting: Meeting) -> ProofGoal:
+    """Return the goal of proving that two cases agree where they meet."""
     difference = Op("-", (meeting.first.value, meeting.second.value))
     return ProofGoal(difference, meeting.constraints, 0.0, 0.0)
 
 
-def _closed(constraint: Constraint, bools: frozenset[Variable]) -> Constraint:
+def _closed_constraint(constraint: Constraint, bools: frozenset[Variable]) -> Constraint:
     """Return the constraint on the border: ``>=`` if a signal can come arbitrarily close to it."""
     if any(isinstance(v, SignalValue) and v not in bools for v in variables(constraint.difference)):
         return Constraint(constraint.difference, False)
@@ -96,12 +96,12 @@ def _same_after_substitution(difference: Expression, region: ConstrainedBox) -> 
         numerator, denominator = form.numerator, form.denominator
         equations = [nf.quotient(e).numerator for e, known in region.known.items() if known == (0.0, 0.0)]
         equations += [
-            nf.add(nf.quotient(variable).numerator, nf.constant(nf.exact(side[0])), -1)
+            nf.add(nf.quotient(variable).numerator, nf.constant(nf.exact_decimal(side[0])), -1)
             for variable, side in region.box.items()
             if side[0] == side[1]
         ]
         while equations:
-            solved = nf.solved(equations.pop())
+            solved = nf.solve_for_factor(equations.pop())
             if solved is not None:
                 factor, by = solved
                 numerator, denominator, *equations = (

@@ -47,7 +47,7 @@ class Prover:
     def __init__(self) -> None:
         self.steps = 0
 
-    def never_negative(self, f: Term, limits: Sequence[Term], ranges: Ranges, *, strict: bool) -> bool:
+    def proves_nonnegative(self, f: Term, limits: Sequence[Term], ranges: Ranges, *, strict: bool) -> bool:
         """Whether f is provably >= 0 (> 0 if strict) at all points of the ranges where each limit
         is >= 0.
 
@@ -57,8 +57,8 @@ class Prover:
         if self.steps > _MOST_STEPS:
             raise GiveUpError
         spend(5 * _STEPS_OF_SYMPY)
-        f = _simplified(f)
-        limits = [_simplified(limit) for limit in limits]
+        f = _simplify(f)
+        limits = [_simplify(limit) for limit in limits]
         if any(limit.is_number and _number(limit) < -TOLERANCE for limit in limits):
             return True
         if f.is_number:
@@ -71,7 +71,7 @@ class Prover:
             base = divisor.as_base_exp()[0]
             if not (base.is_number or self._has_one_sign(base, limits, ranges)):
                 raise GiveUpError
-        return self._by_elimination(f, limits, {**ranges, **_sides(region)}, strict)
+        return self._by_elimination(f, limits, {**ranges, **_ranges_of(region)}, strict)
 
     def _by_elimination(self, f: Term, limits: Sequence[Term], ranges: Ranges, strict: bool) -> bool:
         """Try the variables in turn, those of the lowest degree first."""
@@ -81,17 +81,17 @@ class Prover:
 
         for x in sorted(f.free_symbols, key=degree):
             try:
-                return self._without(x, f, limits, ranges, strict)
+                return self._eliminate(x, f, limits, ranges, strict)
             except (GiveUpError, sympy.PolynomialError, NotImplementedError):
                 if self.steps > _MOST_STEPS:
                     raise
         raise GiveUpError
 
     def _has_one_sign(self, f: Term, limits: Sequence[Term], ranges: Ranges) -> bool:
-        return any(self.never_negative(term, limits, ranges, strict=True) for term in (f, -f))
+        return any(self.proves_nonnegative(term, limits, ranges, strict=True) for term in (f, -f))
 
-    def _without(self, x: Term, f: Term, limits: Sequence[Term], ranges: Ranges, strict: bool) -> bool:
-        """Ask the same question with each candidate for the minimum over x substituted."""
+    def _eliminate(self, x: Term, f: Term, limits: Sequence[Term], ranges: Ranges, strict: bool) -> bool:
+        """Whether ``f`` is provably never negative, asked for each candidate for its minimum over x."""
         if _degree(f, x) > LARGEST_DEGREE:
             raise GiveUpError
         rest = {symbol: side for symbol, side in ranges.items() if symbol != x}
@@ -100,9 +100,9 @@ class Prover:
         ends = [sympy.Rational(repr(end)) for end in ranges[x] if isfinite(end)]
         solvable = [limit for limit in bound_to_x if _is_solvable(limit, x)]
         if len(solvable) < len(bound_to_x):  # a proof on a larger region is enough
-            return self.never_negative(f, [*free, *solvable], ranges, strict=strict)
+            return self.proves_nonnegative(f, [*free, *solvable], ranges, strict=strict)
         borders = [root for limit in bound_to_x for root in _border_roots(limit, x)]
-        numerator = sympy.fraction(_simplified(sympy.diff(f, x)))[0]
+        numerator = sympy.fraction(_simplify(sympy.diff(f, x)))[0]
         polynomial = sympy.Poly(numerator, x)
         factors = [sympy.Poly(factor, x) for factor, _ in sympy.factor_list(polynomial.as_expr())[1]]
         # A factor of degree 1 whose leading coefficient is 0 has no root, or f is constant in x, so an end covers it.
@@ -111,9 +111,9 @@ class Prover:
             if may_lose_roots and not self._holds_where_zero(part.LC(), f, limits, ranges, strict):
                 return False
         for candidate in dict.fromkeys([*ends, *borders, *(root for part in factors for root in _roots(part))]):
-            inside = [limit.subs(x, candidate) for limit in (*bound_to_x, *_within(x, ranges[x]))]
-            there = [*_real_where(candidate), *free, *inside]
-            if not self.never_negative(f.subs(x, candidate), there, rest, strict=strict):
+            inside = [limit.subs(x, candidate) for limit in (*bound_to_x, *_range_limits(x, ranges[x]))]
+            there = [*_reality_limits(candidate), *free, *inside]
+            if not self.proves_nonnegative(f.subs(x, candidate), there, rest, strict=strict):
                 return False
         return all(
             self._holds_at_infinity(x, sign, f, free, limits, ranges, strict)
@@ -133,12 +133,12 @@ class Prover:
         if excess < 0:
             return not strict
         limit = above.LC() / below.LC() if excess == 0 else above.LC() * below.LC() * sign**excess
-        return self.never_negative(limit, free, rest, strict=strict and excess == 0)
+        return self.proves_nonnegative(limit, free, rest, strict=strict and excess == 0)
 
     def _holds_where_zero(self, leading: Term, f: Term, limits: Sequence[Term], ranges: Ranges, strict: bool) -> bool:
-        """Ask the question where a leading coefficient is zero.
+        """Whether ``f`` is provably never negative at the points where a leading coefficient is zero.
 
-        General roots and limits do not cover these points.
+        The general roots and limits do not cover these points.
         """
         if leading.is_number:
             return True
@@ -155,9 +155,9 @@ class Prover:
             if not self._holds_where_zero(sympy.Poly(factor, y).LC(), f, limits, ranges, strict):
                 return False
             (root,) = _border_roots(factor, y)
-            there = [limit.subs(y, root) for limit in (*limits, *_within(y, ranges[y]))]
+            there = [limit.subs(y, root) for limit in (*limits, *_range_limits(y, ranges[y]))]
             rest = {symbol: bounds for symbol, bounds in ranges.items() if symbol != y}
-            if not self.never_negative(f.subs(y, root), there, rest, strict=strict):
+            if not self.proves_nonnegative(f.subs(y, root), there, rest, strict=strict):
                 return False
         return True
 
@@ -185,14 +185,14 @@ def _border_roots(limit: Term, x: Term) -> list[Term]:
     return list(sympy.roots(sympy.Poly(sympy.fraction(limit)[0], x), multiple=True))
 
 
-def _within(x: Term, side: Interval) -> list[Term]:
+def _range_limits(x: Term, side: Interval) -> list[Term]:
     """Return the terms that are >= 0 in the range of x."""
     low, high = side
     lower = [x - sympy.Rational(repr(low))] if isfinite(low) else []
     return [*lower, sympy.Rational(repr(high)) - x] if isfinite(high) else lower
 
 
-def _real_where(candidate: Term) -> Iterator[Term]:
+def _reality_limits(candidate: Term) -> Iterator[Term]:
     """Yield the terms that must be >= 0 for a root to be real."""
     for power in candidate.atoms(sympy.Pow):
         base, exponent = power.as_base_exp()
@@ -200,7 +200,7 @@ def _real_where(candidate: Term) -> Iterator[Term]:
             yield base
 
 
-def _simplified(f: Term) -> Term:
+def _simplify(f: Term) -> Term:
     operations = f.count_ops()
     if f.has(sympy.zoo, sympy.nan, sympy.oo, sympy.I) or operations > _MOST_OPERATIONS:
         raise GiveUpError
@@ -245,10 +245,10 @@ def _degree(f: Term, x: Term) -> int:
 
 def _region(limits: Sequence[Term], ranges: Ranges) -> ConstrainedBox | None:
     whole = ConstrainedBox({SignalValue(symbol.name): side for symbol, side in ranges.items()}, {})
-    return whole.where(Constraint(_expression(limit), False) for limit in limits)
+    return whole.constrain(Constraint(_expression(limit), False) for limit in limits)
 
 
-def _sides(region: ConstrainedBox) -> Ranges:
+def _ranges_of(region: ConstrainedBox) -> Ranges:
     return {sympy.Symbol(variable.name, real=True): side for variable, side in region.box.items()}
 
 
@@ -276,8 +276,8 @@ def _expression(f: Term) -> Expression:
         return Const(_number(f))
     if f.is_Add or f.is_Mul:
         first, *rest = (_expression(arg) for arg in f.args)
-        for other in rest:
-            first = Op("+" if f.is_Add else "*", (first, other))
+        for term in rest:
+            first = Op("+" if f.is_Add else "*", (first, term))
         return first
     base, exponent = f.as_base_exp()
     if exponent.is_number and base != f:

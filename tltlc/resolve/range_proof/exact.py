@@ -15,27 +15,27 @@ from tltlc.expression.tree import Const, Expression, Op
 from tltlc.resolve.range_proof.cases import Constraint, TooManyCasesError, cases
 from tltlc.resolve.range_proof.elimination import LARGEST_DEGREE, GiveUpError, Prover, Term
 from tltlc.resolve.range_proof.interval import Interval, UndefinedError
-from tltlc.resolve.range_proof.normal_form import MOST_BITS, exact
+from tltlc.resolve.range_proof.normal_form import MOST_BITS, exact_decimal
 from tltlc.resolve.range_proof.proof import ProofGoal, proves_defined, proves_within
 from tltlc.resolve.range_proof.region import ConstrainedBox, bound
 
 
-def proves_all(tasks: Iterable[ProofGoal], whole: ConstrainedBox) -> bool:
-    """Whether each task is proved: its value is defined and within bounds where the constraints hold."""
+def proves_all(goals: Iterable[ProofGoal], whole: ConstrainedBox) -> bool:
+    """Whether each goal is proved: its value is defined and within bounds where the constraints hold."""
     try:
-        for task in tasks:
-            parts = cases(task.value, split_extremes=True)
-            task_region = whole.where(task.constraints)
-            if task_region is None:
+        for goal in goals:
+            parts = cases(goal.value, split_extremes=True)
+            goal_region = whole.constrain(goal.constraints)
+            if goal_region is None:
                 continue
-            if len(parts) > 1 and not proves_defined(task.value, task_region):
+            if len(parts) > 1 and not proves_defined(goal.value, goal_region):
                 return False  # splitting compares values, which would hide that one is undefined
             for case in parts:
-                constraints = (*task.constraints, *case.constraints)
-                region = whole.where(constraints)
-                if region is None or proves_within(case.value, region, task.low, task.high):
+                constraints = (*goal.constraints, *case.constraints)
+                region = whole.constrain(constraints)
+                if region is None or proves_within(case.value, region, goal.low, goal.high):
                     continue
-                if not proves_within_exactly(case.value, constraints, region, task.low, task.high):
+                if not proves_within_exactly(case.value, constraints, region, goal.low, goal.high):
                     return False
     except TooManyCasesError:
         return False
@@ -58,11 +58,13 @@ def proves_within_exactly(
         for divisor in _divisors(value):
             if not proves_defined(Op("/", (Const(1.0), divisor)), region):
                 below = translation.term(divisor)
-                if not any(prover.never_negative(t, limits, translation.ranges, strict=True) for t in (below, -below)):
+                if not any(
+                    prover.proves_nonnegative(t, limits, translation.ranges, strict=True) for t in (below, -below)
+                ):
                     return False
-        targets = [term - sympy.Rational(exact(low))] if isfinite(low) else []
-        targets += [sympy.Rational(exact(high)) - term] if isfinite(high) else []
-        return all(prover.never_negative(target, limits, translation.ranges, strict=False) for target in targets)
+        targets = [term - sympy.Rational(exact_decimal(low))] if isfinite(low) else []
+        targets += [sympy.Rational(exact_decimal(high)) - term] if isfinite(high) else []
+        return all(prover.proves_nonnegative(target, limits, translation.ranges, strict=False) for target in targets)
     except (GiveUpError, UndefinedError, sympy.PolynomialError, NotImplementedError, OverflowError):
         return False
 
@@ -78,7 +80,7 @@ class _Translation:
 
     def term(self, node: Expression) -> Term:
         if isinstance(node, Const):
-            return sympy.Rational(exact(node.value))
+            return sympy.Rational(exact_decimal(node.value))
         if isinstance(node, Op):
             exponent = node.args[-1]
             if node.op in ("+", "-", "*", "/", "neg"):

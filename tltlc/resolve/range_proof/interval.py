@@ -62,7 +62,7 @@ def power(a: Interval, b: Interval) -> Interval:
     if a[0] == 0 and b[0] <= 0:
         raise UndefinedError("raises zero to a negative power")
     corners = [_real_power(x, y) for x in a for y in b]
-    return max(0.0, _outwards(min(corners), -inf)), _outwards(max(corners), inf)
+    return max(0.0, _round_outwards(min(corners), -inf)), _round_outwards(max(corners), inf)
 
 
 def root(a: Interval) -> Interval:
@@ -76,14 +76,16 @@ def exponential(a: Interval) -> Interval:
     """Return ``exp``; raise UndefinedError if the value may overflow."""
     if a[1] > LARGEST_EXPONENT:
         raise UndefinedError("is too large to compute")
-    low, high = (1.0 if end == 0 else _outwards(exp(end), towards) for end, towards in zip(a, (-inf, inf), strict=True))
+    low, high = (
+        1.0 if end == 0 else _round_outwards(exp(end), towards) for end, towards in zip(a, (-inf, inf), strict=True)
+    )
     return max(0.0, low), high
 
 
 def hyperbolic_tangent(a: Interval) -> Interval:
     """Return ``tanh``."""
     low, high = (
-        0.0 if end == 0 else _outwards(tanh(end), towards) for end, towards in zip(a, (-inf, inf), strict=True)
+        0.0 if end == 0 else _round_outwards(tanh(end), towards) for end, towards in zip(a, (-inf, inf), strict=True)
     )
     return max(-1.0, low), min(1.0, high)
 
@@ -95,17 +97,17 @@ def absolute(a: Interval) -> Interval:
     return (-a[1], -a[0]) if a[1] <= 0 else (0.0, max(-a[0], a[1]))
 
 
-def smaller(a: Interval, b: Interval) -> Interval:
+def minimum(a: Interval, b: Interval) -> Interval:
     """Return ``min``."""
     return min(a[0], b[0]), min(a[1], b[1])
 
 
-def larger(a: Interval, b: Interval) -> Interval:
+def maximum(a: Interval, b: Interval) -> Interval:
     """Return ``max``."""
     return max(a[0], b[0]), max(a[1], b[1])
 
 
-def meet(a: Interval, b: Interval) -> Interval | None:
+def intersection(a: Interval, b: Interval) -> Interval | None:
     """Return the intersection, or None if it is empty."""
     low, high = max(a[0], b[0]), min(a[1], b[1])
     return (low, high) if low <= high else None
@@ -129,7 +131,7 @@ def _outward_power(x: float, n: int, towards: float) -> float:
     if n == 1 or x in (0.0, 1.0, -1.0):
         return x**n
     negative = x < 0 and n % 2 == 1
-    return _outwards(_real_power(abs(x), float(n)) * (-1.0 if negative else 1.0), towards, negative)
+    return _round_outwards(_real_power(abs(x), float(n)) * (-1.0 if negative else 1.0), towards, negative)
 
 
 def _real_power(x: float, y: float) -> float:
@@ -145,14 +147,14 @@ def _real_power(x: float, y: float) -> float:
 
 def _root(x: float, towards: float) -> float:
     value = sqrt(x)
-    return value if value * value == x and value == int(min(value, 1e6)) else max(0.0, _outwards(value, towards))
+    return value if value * value == x and value == int(min(value, 1e6)) else max(0.0, _round_outwards(value, towards))
 
 
 def _sum(x: float, y: float, towards: float) -> float:
     total = x + y
     if total - x == y and total - y == x:
         return total
-    return _outwards(total, towards)
+    return _round_outwards(total, towards)
 
 
 def _product(x: float, y: float, towards: float) -> float:
@@ -160,7 +162,7 @@ def _product(x: float, y: float, towards: float) -> float:
         return 0.0
     if abs(x) == 1 or abs(y) == 1:
         return x * y
-    return _outwards(x * y, towards, (x < 0) != (y < 0))
+    return _round_outwards(x * y, towards, (x < 0) != (y < 0))
 
 
 def _quotient(x: float, y: float, towards: float) -> float:
@@ -173,7 +175,7 @@ def _quotient(x: float, y: float, towards: float) -> float:
     negative = (x < 0) != (y < 0)
     if abs(y) < 1e-300:
         return -inf if negative else inf
-    return _outwards(x / y, towards, negative)
+    return _round_outwards(x / y, towards, negative)
 
 
 def _signed_ends(b: Interval) -> Interval:
@@ -184,7 +186,7 @@ def _signed_ends(b: Interval) -> Interval:
     return (b[0] or 5e-324), (b[1] or -5e-324)
 
 
-def _outwards(x: float, towards: float, negative: bool | None = None) -> float:
+def _round_outwards(x: float, towards: float, negative: bool | None = None) -> float:
     """Move two floats outwards, because library functions may err by one.
 
     Never crosses 0 if the sign is known.

@@ -35,16 +35,16 @@ def find_jump(
     expression.
     """
     crossings = 0
-    everywhere = list(points(expression, box, bools))
-    for start in everywhere[:: 1 + len(everywhere) // _MOST_POINTS]:
-        here = _active(all_cases, start)
+    candidates = list(points(expression, box, bools))
+    for start in candidates[:: 1 + len(candidates) // _MOST_POINTS]:
+        here = _case_at(all_cases, start)
         if here is None:
             continue
         for variable in box:
             if variable in bools or not isinstance(variable, SignalValue):
                 continue
-            for end in _along(start, variable, box, expression):
-                there = _active(all_cases, end)
+            for end in _points_along(start, variable, box, expression):
+                there = _case_at(all_cases, end)
                 if there is None or there.value == here.value:
                     continue
                 crossings += 1
@@ -57,7 +57,8 @@ def find_jump(
     return None
 
 
-def _active(all_cases: Sequence[ConstrainedValue], point: Point) -> ConstrainedValue | None:
+def _case_at(all_cases: Sequence[ConstrainedValue], point: Point) -> ConstrainedValue | None:
+    """Return the first case whose constraints all hold at a point, or None."""
     for case in all_cases:
         for constraint in case.constraints:
             value = value_at(constraint.difference, point).value
@@ -68,13 +69,13 @@ def _active(all_cases: Sequence[ConstrainedValue], point: Point) -> ConstrainedV
     return None
 
 
-def _along(start: Point, variable: Variable, box: Box, expression: Expression) -> Iterator[Point]:
+def _points_along(start: Point, variable: Variable, box: Box, expression: Expression) -> Iterator[Point]:
     """Yield other points on the line through ``start`` along one axis."""
     seen = {start[variable]}
-    for other in points(expression, {variable: box[variable]}, frozenset()):
-        if other[variable] not in seen:
-            seen.add(other[variable])
-            yield {**start, variable: other[variable]}
+    for candidate in points(expression, {variable: box[variable]}, frozenset()):
+        if candidate[variable] not in seen:
+            seen.add(candidate[variable])
+            yield {**start, variable: candidate[variable]}
         if len(seen) > 12:
             return
 
@@ -84,10 +85,10 @@ def _jump_between(
 ) -> Jump | None:
     """Bisect between points of different cases down to the border; return the jump there, if any."""
     low, high = start[variable], end[variable]
-    left, right = _active(all_cases, start), _active(all_cases, end)
+    left, right = _case_at(all_cases, start), _case_at(all_cases, end)
     while abs(high - low) > _BORDER_WIDTH * max(1.0, abs(low)):
         middle = midpoint(low, high)
-        case = _active(all_cases, {**start, variable: middle})
+        case = _case_at(all_cases, {**start, variable: middle})
         if left is not None and case is not None and case.value == left.value:
             low = middle
         else:
@@ -101,7 +102,7 @@ def _jump_between(
     for case, x, value in ((left, low - step, before), (right, high + step, after)):
         nearby = {**start, variable: x}
         near = value_at(expression, nearby).value
-        if _active(all_cases, nearby) != case or near is None or abs(near - value) > abs(after - before) / 10:
+        if _case_at(all_cases, nearby) != case or near is None or abs(near - value) > abs(after - before) / 10:
             return None
     border = low if abs(low - round(low, 9)) <= abs(high - round(high, 9)) else high
     return Jump({**start, variable: border}, before, after)

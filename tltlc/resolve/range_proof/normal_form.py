@@ -13,7 +13,7 @@ from tltlc.expression.tree import Const, Expression, Op, ParamValue, SignalValue
 from tltlc.resolve.range_proof import interval
 from tltlc.resolve.range_proof.interval import Interval
 from tltlc.resolve.range_proof.region import ConstrainedBox, bound
-from tltlc.resolve.range_proof.work import current, spend
+from tltlc.resolve.range_proof.work import current_budget, spend
 
 Monomial = frozenset[tuple[Expression, int]]
 Polynomial = dict[Monomial, Fraction]
@@ -42,7 +42,7 @@ def quotient(expression: Expression) -> Quotient:
 
     The result is cached for the duration of a check. Raises TooLargeError.
     """
-    work = current()
+    work = current_budget()
     if work is None or not isinstance(expression, Op):
         return _quotient(expression)
     spend()
@@ -60,7 +60,7 @@ def quotient(expression: Expression) -> Quotient:
 
 def _quotient(expression: Expression) -> Quotient:
     if isinstance(expression, Const):
-        return Quotient(constant(exact(expression.value)), constant(1))
+        return Quotient(constant(exact_decimal(expression.value)), constant(1))
     if isinstance(expression, Op):
         if expression.op in ("+", "-", "*", "/", "neg"):
             return _arithmetic(expression.op, [quotient(arg) for arg in expression.args])
@@ -71,7 +71,7 @@ def _quotient(expression: Expression) -> Quotient:
     return Quotient({frozenset([(expression, 1)]): Fraction(1)}, constant(1))
 
 
-def exact(value: float) -> Fraction:
+def exact_decimal(value: float) -> Fraction:
     """Return the decimal number that was written: 0.1 is one tenth."""
     return Fraction(repr(float(value)))
 
@@ -90,14 +90,14 @@ def polynomial_bound(polynomial: Polynomial, region: ConstrainedBox) -> Interval
     for expression, known in region.known.items():
         spend(1 + len(polynomial) // 4)
         try:
-            other = quotient(expression)
+            form = quotient(expression)
         except TooLargeError:
             continue
-        scale = _ratio(polynomial, other.numerator) if other.denominator == constant(1) else None
+        scale = _ratio(polynomial, form.numerator) if form.denominator == constant(1) else None
         if scale is not None:  # polynomial = scale * expression + rest
-            rest = polynomial.get(ONE, Fraction(0)) - scale * other.numerator.get(ONE, Fraction(0))
+            rest = polynomial.get(ONE, Fraction(0)) - scale * form.numerator.get(ONE, Fraction(0))
             bounds = interval.add(interval.multiply(known, _point(scale)), _point(rest))
-            total = interval.meet(total, bounds) or bounds
+            total = interval.intersection(total, bounds) or bounds
     return total
 
 
@@ -144,7 +144,7 @@ def substitute(polynomial: Polynomial, factor: Expression, by: Polynomial) -> Po
     return result
 
 
-def solved(equation: Polynomial) -> tuple[Expression, Polynomial] | None:
+def solve_for_factor(equation: Polynomial) -> tuple[Expression, Polynomial] | None:
     """Solve ``equation = 0`` for a factor that occurs once, with a constant coefficient.
 
     Returns the factor and its value, or None if there is no such factor.
@@ -166,23 +166,23 @@ def _arithmetic(op: str, args: list[Quotient]) -> Quotient:
     result = args[0]
     if op == "neg":
         return Quotient(add({}, result.numerator, -1), result.denominator)
-    for other in args[1:]:
+    for operand in args[1:]:
         if op == "*":
-            result = _reduced(result.numerator, result.denominator, other.numerator, other.denominator)
+            result = _reduced_product(result.numerator, result.denominator, operand.numerator, operand.denominator)
         elif op == "/":
-            result = _reduced(result.numerator, result.denominator, other.denominator, other.numerator)
-        elif result.denominator == other.denominator:
+            result = _reduced_product(result.numerator, result.denominator, operand.denominator, operand.numerator)
+        elif result.denominator == operand.denominator:
             sign = 1 if op == "+" else -1
-            result = Quotient(add(result.numerator, other.numerator, sign), result.denominator)
+            result = Quotient(add(result.numerator, operand.numerator, sign), result.denominator)
         else:
-            left = multiply(result.numerator, other.denominator)
-            right = multiply(other.numerator, result.denominator)
+            left = multiply(result.numerator, operand.denominator)
+            right = multiply(operand.numerator, result.denominator)
             sign = 1 if op == "+" else -1
-            result = Quotient(add(left, right, sign), multiply(result.denominator, other.denominator))
+            result = Quotient(add(left, right, sign), multiply(result.denominator, operand.denominator))
     return result
 
 
-def _reduced(a: Polynomial, b: Polynomial, c: Polynomial, d: Polynomial) -> Quotient:
+def _reduced_product(a: Polynomial, b: Polynomial, c: Polynomial, d: Polynomial) -> Quotient:
     """Return ``a/b * c/d``.
 
     Cancels a numerator that is a multiple of the other denominator.

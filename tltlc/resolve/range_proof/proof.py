@@ -13,7 +13,7 @@ from math import inf
 from tltlc.core.record import record, replace
 from tltlc.expression.tree import Expression, Op
 from tltlc.resolve.range_proof.cases import Constraints, size
-from tltlc.resolve.range_proof.interval import EVERYTHING, Interval, UndefinedError, meet
+from tltlc.resolve.range_proof.interval import EVERYTHING, Interval, UndefinedError, intersection
 from tltlc.resolve.range_proof.region import ConstrainedBox, bound
 from tltlc.resolve.range_proof.work import spend
 
@@ -25,7 +25,7 @@ _FEWEST_PARTS = 10
 
 @record
 class ProofGoal:
-    """A proof goal: the value is defined and in ``[low, high]`` where all constraints hold."""
+    """What is to be proved: the value is defined and in ``[low, high]`` where all constraints hold."""
 
     value: Expression
     constraints: Constraints
@@ -33,17 +33,17 @@ class ProofGoal:
     high: float
 
 
-def unproved(tasks: Sequence[ProofGoal], whole: ConstrainedBox) -> list[ProofGoal]:
-    """Return the tasks that are not proved on the whole region; the total work is bounded."""
-    nodes = sum(size(task.value, _NODES_OF_ALL) for task in tasks)
+def unproved_goals(goals: Sequence[ProofGoal], whole: ConstrainedBox) -> list[ProofGoal]:
+    """Return the goals that are not proved on the whole region; the total work is bounded."""
+    nodes = sum(size(goal.value, _NODES_OF_ALL) for goal in goals)
     parts = max(_FEWEST_PARTS, min(MOST_PARTS, _NODES_OF_ALL // max(1, nodes)))
-    open_tasks = []
+    open_goals = []
     spend(nodes // 10)
-    for task in tasks:
-        region = whole.where(task.constraints)
-        if region is not None and not proves_within(task.value, region, task.low, task.high, parts):
-            open_tasks.append(task)
-    return open_tasks
+    for goal in goals:
+        region = whole.constrain(goal.constraints)
+        if region is not None and not proves_within(goal.value, region, goal.low, goal.high, parts):
+            open_goals.append(goal)
+    return open_goals
 
 
 def proves_within(value: Expression, region: ConstrainedBox, low: float, high: float, parts: int = MOST_PARTS) -> bool:
@@ -53,7 +53,7 @@ def proves_within(value: Expression, region: ConstrainedBox, low: float, high: f
     """
     if holds_at_once(value, region, low, high):
         return True
-    if _defined(value, region):
+    if _is_defined(value, region):
         region = _with_ratios(value, region)
         if holds_at_once(value, region, low, high) or _proves_by_sign(value, region, low, high):
             return True
@@ -63,22 +63,22 @@ def proves_within(value: Expression, region: ConstrainedBox, low: float, high: f
 def holds_at_once(value: Expression, region: ConstrainedBox, low: float, high: float) -> bool:
     """Like proves_within, but with one interval evaluation."""
     try:
-        return inside(bound(value, region), low, high)
+        return is_within(bound(value, region), low, high)
     except UndefinedError:
         return False
 
 
 def proves_defined(value: Expression, region: ConstrainedBox, parts: int = MOST_PARTS) -> bool:
     """Whether the value is provably defined at each point of the region."""
-    return _defined(value, region) or _holds_in_parts(value, region, -inf, inf, parts)
+    return _is_defined(value, region) or _holds_in_parts(value, region, -inf, inf, parts)
 
 
-def inside(bounds: Interval, low: float, high: float) -> bool:
+def is_within(bounds: Interval, low: float, high: float) -> bool:
     """Whether the interval lies in ``[low, high]``, up to TOLERANCE."""
     return bounds[0] >= low - TOLERANCE and bounds[1] <= high + TOLERANCE
 
 
-def _defined(value: Expression, region: ConstrainedBox) -> bool:
+def _is_defined(value: Expression, region: ConstrainedBox) -> bool:
     return holds_at_once(value, region, -inf, inf)
 
 
@@ -91,7 +91,7 @@ def _with_ratios(value: Expression, region: ConstrainedBox) -> ConstrainedBox:
     for node in _ratios(value):
         low = next((end for end in (0.0, -1.0) if _proves_by_sign(node, region, end, inf)), -inf)
         high = next((end for end in (0.0, 1.0) if _proves_by_sign(node, region, -inf, end)), inf)
-        known[node] = meet(known.get(node, EVERYTHING), (low, high)) or (low, high)
+        known[node] = intersection(known.get(node, EVERYTHING), (low, high)) or (low, high)
         region = replace(region, known=known)
     return region
 
@@ -109,7 +109,7 @@ def _proves_by_sign(value: Expression, region: ConstrainedBox, low: float, high:
 
     For ``n/d`` with d of one sign, the signs of ``n - low * d`` and ``n - high * d`` decide.
     """
-    from tltlc.resolve.range_proof.normal_form import TooLargeError, add, exact, polynomial_bound, quotient
+    from tltlc.resolve.range_proof.normal_form import TooLargeError, add, exact_decimal, polynomial_bound, quotient
 
     try:
         form = quotient(value)
@@ -119,7 +119,7 @@ def _proves_by_sign(value: Expression, region: ConstrainedBox, low: float, high:
         sign = 1 if below[0] >= 0 else -1
         for end, side in ((low, sign), (high, -sign)):
             if end not in (-inf, inf):
-                over = polynomial_bound(add(form.numerator, form.denominator, -exact(end)), region)
+                over = polynomial_bound(add(form.numerator, form.denominator, -exact_decimal(end)), region)
                 if (over[0] < 0) if side > 0 else (over[1] > 0):
                     return False
     except (TooLargeError, UndefinedError):
@@ -137,5 +137,5 @@ def _holds_in_parts(value: Expression, region: ConstrainedBox, low: float, high:
         halves = part.halves()
         if halves is None or tried > limit:
             return False
-        parts += [half for half in (whole.narrowed() for whole in halves) if half is not None]
+        parts += [half for half in (whole.narrow() for whole in halves) if half is not None]
     return True

@@ -31,7 +31,7 @@ class ConstrainedBox:
     known: Mapping[Expression, Interval]
     nonzero: frozenset[Expression] = frozenset()
 
-    def where(self, constraints: Iterable[Constraint]) -> ConstrainedBox | None:
+    def constrain(self, constraints: Iterable[Constraint]) -> ConstrainedBox | None:
         """Return the part where the constraints hold, with its box narrowed.
 
         Returns None if it is provably empty.
@@ -39,7 +39,7 @@ class ConstrainedBox:
         known, nonzero = dict(self.known), set(self.nonzero)
         for constraint in _with_chains(constraints):
             difference = constraint.difference
-            known[difference] = interval.meet(known.get(difference, EVERYTHING), (0.0, inf)) or (0.0, 0.0)
+            known[difference] = interval.intersection(known.get(difference, EVERYTHING), (0.0, inf)) or (0.0, 0.0)
             if isinstance(difference, Op) and difference.op == "-":
                 mirrored = Op("-", difference.args[::-1])
                 known[mirrored] = interval.negate(known[difference])
@@ -47,9 +47,9 @@ class ConstrainedBox:
                     nonzero.add(mirrored)
             if constraint.strict:
                 nonzero.add(difference)
-        return ConstrainedBox(self.box, known, frozenset(nonzero)).narrowed()
+        return ConstrainedBox(self.box, known, frozenset(nonzero)).narrow()
 
-    def narrowed(self) -> ConstrainedBox | None:
+    def narrow(self) -> ConstrainedBox | None:
         """Return the same points in a box as small as the known bounds allow.
 
         Returns None if the bounds exclude each other.
@@ -82,22 +82,22 @@ class ConstrainedBox:
 
 
 def _with_chains(constraints: Iterable[Constraint]) -> list[Constraint]:
-    """Return the constraints, plus ``a - c`` where they order a, b and c.
+    """Return the constraints, plus a constraint on ``a - c`` where ``a - b`` and ``b - c`` have one.
 
-    The bounds of the single constraints do not imply this one.
+    The bounds of the two constraints do not imply the third one.
     """
     chained = list(constraints)
     differences = [c for c in chained if isinstance(c.difference, Op) and c.difference.op == "-"]
     spend(len(differences) * len(differences) // 4)
     for upper in differences:
         for lower in differences:
-            (a, b), (also_b, c) = _operands(upper), _operands(lower)
+            (a, b), (also_b, c) = _two_operands(upper), _two_operands(lower)
             if b == also_b and a != c:
                 chained.append(Constraint(Op("-", (a, c)), upper.strict or lower.strict))
     return chained
 
 
-def _operands(constraint: Constraint) -> tuple[Expression, Expression]:
+def _two_operands(constraint: Constraint) -> tuple[Expression, Expression]:
     assert isinstance(constraint.difference, Op)
     left, right = constraint.difference.args
     return left, right
@@ -110,7 +110,7 @@ def bound(expression: Expression, region: ConstrainedBox) -> Interval:
     """
     value = _bound(expression, region)
     known = region.known.get(expression) if region.known else None
-    return (interval.meet(value, known) or known) if known else value
+    return (interval.intersection(value, known) or known) if known else value
 
 
 def _bound(expression: Expression, region: ConstrainedBox) -> Interval:
@@ -121,10 +121,10 @@ def _bound(expression: Expression, region: ConstrainedBox) -> Interval:
         return region.box[expression]
     assert isinstance(expression, Op), "cases have no `when`"
     nonzero = expression.op == "/" and bool(region.nonzero) and expression.args[1] in region.nonzero
-    return _combined(expression, [bound(arg, region) for arg in expression.args], nonzero)
+    return _combine(expression, [bound(arg, region) for arg in expression.args], nonzero)
 
 
-def _combined(expression: Op, args: list[Interval], nonzero: bool) -> Interval:
+def _combine(expression: Op, args: list[Interval], nonzero: bool) -> Interval:
     """Return the bounds of an operation from the bounds of its arguments.
 
     ``nonzero`` states that its divisor is not 0. Raises UndefinedError if the operation may be
@@ -145,10 +145,10 @@ def _apply(op: str, args: list[Interval]) -> Interval:
     if op in _UNARY:
         return _UNARY[op](first)
     if op == "clamp":
-        return interval.smaller(interval.larger(first, args[1]), args[2])
+        return interval.minimum(interval.maximum(first, args[1]), args[2])
     function = _BINARY[op]
-    for other in args[1:]:
-        first = function(first, other)
+    for arg in args[1:]:
+        first = function(first, arg)
     return first
 
 
@@ -165,8 +165,8 @@ _BINARY = {
     "*": interval.multiply,
     "/": interval.divide,
     "^": interval.power,
-    "min": interval.smaller,
-    "max": interval.larger,
+    "min": interval.minimum,
+    "max": interval.maximum,
 }
 
 
@@ -190,7 +190,7 @@ class _Narrowing:
         Returns the remaining part of ``target``. Raises _EmptyError if no part remains.
         """
         spend()
-        remaining = interval.meet(self._bound(expression), target)
+        remaining = interval.intersection(self._bound(expression), target)
         if remaining is None:
             raise _EmptyError
         if isinstance(expression, (SignalValue, ParamValue)):
@@ -208,10 +208,10 @@ class _Narrowing:
         elif op in ("+", "-") and len(args) == 2:
             self._narrow_sum(op, args, value)
         elif op == "*" and len(args) == 2:
-            for one, other in ((args[0], args[1]), (args[1], args[0])):
-                divisor = self._bound(other)
+            for factor, cofactor in ((args[0], args[1]), (args[1], args[0])):
+                divisor = self._bound(cofactor)
                 if divisor[0] > 0 or divisor[1] < 0:
-                    self.narrow(one, interval.divide(value, divisor))
+                    self.narrow(factor, interval.divide(value, divisor))
         elif op == "/":
             self.narrow(args[0], interval.multiply(value, self._bound(args[1])))
         elif op in ("min", "max"):
@@ -237,9 +237,9 @@ class _Narrowing:
 
     def _bound(self, expression: Expression) -> Interval:
         """Return the bounds of an expression in the current box, EVERYTHING if it may be undefined."""
-        return self._computed(expression) or EVERYTHING
+        return self._bound_or_none(expression) or EVERYTHING
 
-    def _computed(self, expression: Expression) -> Interval | None:
+    def _bound_or_none(self, expression: Expression) -> Interval | None:
         if isinstance(expression, Const):
             return expression.value, expression.value
         if isinstance(expression, (SignalValue, ParamValue)):
@@ -247,28 +247,25 @@ class _Narrowing:
         assert isinstance(expression, Op), "cases have no `when`"
         if expression not in self._bounds:
             spend()
-            self._bounds[expression] = self._of_operation(expression)
+            self._bounds[expression] = self._operation_bounds(expression)
         return self._bounds[expression]
 
-    def _of_operation(self, expression: Op) -> Interval | None:
-        args = [self._computed(arg) for arg in expression.args]
+    def _operation_bounds(self, expression: Op) -> Interval | None:
+        args = [self._bound_or_none(arg) for arg in expression.args]
         try:
-            return _combined(expression, [_defined(arg) for arg in args], nonzero=False)
+            return _combine(expression, [_require_defined(arg) for arg in args], nonzero=False)
         except UndefinedError:
             return None
 
 
-def _defined(bounds: Interval | None) -> Interval:
+def _require_defined(bounds: Interval | None) -> Interval:
     if bounds is None:
         raise UndefinedError
     return bounds
 
 
 def _length(side: Interval) -> float:
-    """Return how much a cut across a side may help.
-
-    This is the length of the side on a logarithmic scale.
-    """
+    """Return the length of a side on a logarithmic scale, which tells how much a cut across the side may help."""
     return sum(copysign(log1p(min(abs(end), _FAR_AWAY)), end) * sign for end, sign in zip(side, (-1, 1), strict=True))
 
 

@@ -56,7 +56,7 @@ def _cost(expression: Expression) -> int:
     return 1 + sum(1 for _ in nodes(expression)) // 3
 
 
-def find_outside(
+def find_wrong_point(
     expression: Expression, box: Box, bools: frozenset[Variable], low: float, high: float
 ) -> SamplePoint | None:
     """Return a point of the box where the value is undefined or clearly outside ``[low, high]``.
@@ -97,12 +97,15 @@ def points(expression: Expression, box: Box, bools: frozenset[Variable]) -> Iter
     axes = [_axis(box[name], name in bools, extra) for name in names]
     grid = [dict(zip(names, values, strict=True)) for values in _grid(axes)]
     yield from grid
-    for one, other in islice(permutations(names, 2), 20):
+    for variable, partner in islice(permutations(names, 2), 20):
         for point in grid[:20]:
-            if box[one][0] <= point[other] <= box[one][1] and one not in bools:
-                yield {**point, one: point[other]}
+            if box[variable][0] <= point[partner] <= box[variable][1] and variable not in bools:
+                yield {**point, variable: point[partner]}
     for number in range(1, _SCATTERED + 1 if names else 1):
-        yield {name: _at(box[name], _fraction(number, position), name in bools) for position, name in enumerate(names)}
+        yield {
+            name: _value_at_fraction(box[name], _fraction(number, position), name in bools)
+            for position, name in enumerate(names)
+        }
 
 
 def _grid(axes: list[tuple[float, ...]]) -> Iterator[tuple[float, ...]]:
@@ -141,7 +144,7 @@ def _fraction(number: int, position: int) -> float:
     return (0.5 + number * stride) % 1.0
 
 
-def _at(side: Interval, fraction: float, is_bool: bool) -> float:
+def _value_at_fraction(side: Interval, fraction: float, is_bool: bool) -> float:
     """Return the value at a fraction of a range.
 
     An unbounded range is mapped so that most values lie near its finite end or near 0.

@@ -30,7 +30,7 @@ class ProofBudget:
 _CURRENT: ContextVar[ProofBudget | None] = ContextVar("work", default=None)
 
 
-def current() -> ProofBudget | None:
+def current_budget() -> ProofBudget | None:
     """Return the active limit, or None."""
     return _CURRENT.get()
 
@@ -45,8 +45,8 @@ def spend(steps: int = 1) -> None:
 
 
 @contextmanager
-def limited(steps: int, *, counts_outside: bool = True) -> Iterator[ProofBudget]:
-    """Limit the block to ``steps``.
+def step_limit(steps: int, *, counts_outside: bool = True) -> Iterator[ProofBudget]:
+    """Limit the ``with`` block to ``steps``.
 
     If ``counts_outside``, the steps also count against the enclosing limit, and the block gets no
     more than that limit has left.

@@ -53,7 +53,7 @@ def _offer(name: str, binding: Binding, env: Env) -> OfferedName:
     offer = OfferedName(name, binding.kind, parameters, place, binding.scope is env.scope)
     if binding.kind == "signal":
         info = context.signal_infos[binding.name]
-        return replace(offer, value=info.of(info.parameters))
+        return replace(offer, value=info.signal_of(info.parameters))
     if binding.kind == "param":
         return replace(offer, value=context.params[binding.name])
     if binding.kind == "predicate" and offer.is_own:

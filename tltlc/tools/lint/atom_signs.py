@@ -9,10 +9,10 @@ from typing import Final, Literal, Protocol
 from tltlc.io.limits import WORK
 from tltlc.resolve.range_proof.cases import TooManyCasesError, cases
 from tltlc.resolve.range_proof.check import box_of
-from tltlc.resolve.range_proof.proof import TOLERANCE, ProofGoal, unproved
+from tltlc.resolve.range_proof.proof import TOLERANCE, ProofGoal, unproved_goals
 from tltlc.resolve.range_proof.region import ConstrainedBox
 from tltlc.resolve.range_proof.witness import points, value_at
-from tltlc.resolve.range_proof.work import OutOfWorkError, limited
+from tltlc.resolve.range_proof.work import OutOfWorkError, step_limit
 from tltlc.resolve.spec import Atom, Param, Signal
 
 Sign = Literal["positive", "not positive", "negative", "not negative"]
@@ -48,7 +48,7 @@ def can_be(sign: Sign, atom: Atom, of: Declares, tries: int = _MOST_POINTS) -> b
     The search makes at most ``tries`` tries and at most as many steps as a check of a predicate.
     """
     try:
-        with limited(WORK["check of a predicate"]):
+        with step_limit(WORK["check of a predicate"]):
             box, bools = box_of(atom.expression, *_declared(of))
             for point in islice(points(atom.expression, box, bools), tries):
                 value = value_at(atom.expression, point).value
@@ -63,10 +63,10 @@ def is_always(sign: Sign, atom: Atom, of: Declares) -> bool:
     """Whether it is proved that an atom has this sign for all values of its signals and params."""
     low, high = _RANGES[sign]
     try:
-        with limited(WORK["check of a predicate"]):
+        with step_limit(WORK["check of a predicate"]):
             box, _ = box_of(atom.expression, *_declared(of))
             tasks = [ProofGoal(case.value, case.constraints, low, high) for case in cases(atom.expression)]
-            return not unproved(tasks, ConstrainedBox(box, {}))
+            return not unproved_goals(tasks, ConstrainedBox(box, {}))
     except (OutOfWorkError, TooManyCasesError, RecursionError):
         return False
 

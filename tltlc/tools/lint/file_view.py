@@ -17,7 +17,7 @@ from tltlc.grammar.walk import children
 from tltlc.logic.formula import Formula
 from tltlc.logic.text.phrases import is_state
 from tltlc.resolve import formulas
-from tltlc.resolve.imports import Loaded
+from tltlc.resolve.imports import LoadedModule
 from tltlc.resolve.kinds import entity
 from tltlc.resolve.problem import ResolutionError
 from tltlc.resolve.spec import ResolvedFile, Spec
@@ -81,7 +81,9 @@ class Expression:
         """Return the operands, in order."""
         if isinstance(self.tree, Quantified):
             variable, body = self.tree.variable, self.tree.body
-            return [Expression(body, self.env.also(variable, entity(name, self.env))) for name in self.tree.entities]
+            return [
+                Expression(body, self.env.with_local(variable, entity(name, self.env))) for name in self.tree.entities
+            ]
         return [self.at(child) for child in children(self.tree)]
 
 
@@ -153,7 +155,7 @@ class View:
 
     module: Module
     env: Env
-    modules: tuple[Loaded, ...]
+    modules: tuple[LoadedModule, ...]
     specs: tuple[SpecView, ...]
     said: tuple[Diagnostic, ...]
     elsewhere: Container[str] = frozenset()

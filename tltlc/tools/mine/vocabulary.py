@@ -191,7 +191,7 @@ def _visible(module: Module, options: ResolveOptions) -> dict[str, Binding]:
     """Return the names that a module sees: its own and those of its imports."""
     log = Log()
     names = build_scopes(load(module, options, log), log)[-1].names
-    stop_at_errors(log.all())
+    stop_at_errors(log.diagnostics())
     return names
 
 

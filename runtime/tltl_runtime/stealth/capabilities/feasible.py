@@ -107,7 +107,7 @@ def _highest(expression: expressions.Expression, box: Mapping[ranges.Variable, r
     highest = -inf
     try:
         for case in ranges.cases(expression):
-            region = ranges.ConstrainedBox(box, {}).where(case.constraints)
+            region = ranges.ConstrainedBox(box, {}).constrain(case.constraints)
             if region is not None:
                 highest = max(highest, ranges.bound(case.value, region)[1])
     except (ranges.TooManyCasesError, ranges.UndefinedError):

@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Container, Iterable, Iterator, Sequence
 
 from tltlc.grammar.tree import ClockDecl, ExclusiveDecl, Import, ParamDecl, SignalDecl
-from tltlc.resolve.imports import Loaded
+from tltlc.resolve.imports import LoadedModule
 from tltlc.tools.lint.file_view import View
 from tltlc.tools.lint.removal import item, without
 from tltlc.tools.lint.rule import LintRule, Remark, removal
@@ -71,7 +71,7 @@ def _prefix(declaration: Import) -> str:
     return f"{declaration.alias}." if declaration.alias else ""
 
 
-def _effective_unnamed(modules: Iterable[Loaded]) -> set[int]:
+def _effective_unnamed(modules: Iterable[LoadedModule]) -> set[int]:
     """Return the ids of the modules that have an effect without being named.
 
     Such a module declares a clock, exclusive atoms, or a signal or param that another module
