@@ -19,7 +19,7 @@ from tltlc.grammar.mistakes import english
 from tltlc.grammar.parser import parse
 from tltlc.monitor.guards import holds
 from tltlc.monitor.tables import tables
-from tltlc.tools.lint.scopes import after
+from tltlc.tools.lint.scopes import apply_edits
 from tltlc.tools.witness.blocks import values
 
 Letter = frozenset[str]
@@ -282,7 +282,7 @@ def fixed_text(clause: str) -> str | None:
     text = f"spec s {{ {clause}\n}}\n"
     source = SourceFile("a.tltl", text)
     fixes = [fix for diagnostic in parse(source)[1] for fix in diagnostic.fixes]
-    return after(source, fixes[0].edits).text if fixes else None
+    return apply_edits(source, fixes[0].edits).text if fixes else None
 
 
 def compile_spec(text: str) -> Fspa:

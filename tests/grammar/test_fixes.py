@@ -6,14 +6,14 @@ import pytest
 
 from tltlc.core.source import SourceFile
 from tltlc.grammar.parser import parse
-from tltlc.tools.lint.scopes import after
+from tltlc.tools.lint.scopes import apply_edits
 
 
 def fixed_text(text: str) -> str:
     """Apply the first fix of the only error in a text, and assert that no error is left."""
     source = SourceFile("a.tltl", text)
     _, (diagnostic,) = parse(source)
-    fixed = after(source, diagnostic.fixes[0].edits)
+    fixed = apply_edits(source, diagnostic.fixes[0].edits)
     assert not parse(fixed)[1]
     return fixed.text
 

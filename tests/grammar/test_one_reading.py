@@ -36,8 +36,8 @@ from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.grammar.parser import parse
 from tltlc.resolve.resolution import resolve
-from tltlc.tools.lint.fixes import of_errors
-from tltlc.tools.lint.scopes import after
+from tltlc.tools.lint.fixes import fixes_of_errors
+from tltlc.tools.lint.scopes import apply_edits
 
 HEAD = """entity k, d
 signal a: bool
@@ -400,8 +400,8 @@ def edited_specs(clause: str) -> list[str]:
         diagnostics = errors(source)
         if not diagnostics:
             valid.append(source.text)
-        offers = of_errors(diagnostics, source, lambda text: (parse(text)[1], errors(text)))
-        queue += (after(source, offer.fix.edits).text for offer in offers)
+        offers = fixes_of_errors(diagnostics, source, lambda text: (parse(text)[1], errors(text)))
+        queue += (apply_edits(source, offer.fix.edits).text for offer in offers)
     return valid
 
 

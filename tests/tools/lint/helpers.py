@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable
 from tltlc.core.source import SourceFile
 from tltlc.pipeline import CompileOptions
 from tltlc.tools.lint.file_view import SpecView, View
-from tltlc.tools.lint.fixing import Fixed, fix
+from tltlc.tools.lint.fixing import FixedFile, fix
 from tltlc.tools.lint.rule import LintFinding, Remark
 from tltlc.tools.lint.run import lint, view_of
 
@@ -28,30 +28,30 @@ def codes(text: str, **options: object) -> list[str]:
     return [finding.diagnostic.code for finding in findings_in(text, **options)]
 
 
-def marked(text: str, code: str) -> list[str]:
+def labelled_texts(text: str, code: str) -> list[str]:
     """Return the text at the first label of each finding with this code."""
     labels = [finding.diagnostic.labels[0] for finding in findings_in(text) if finding.diagnostic.code == code]
     return [label.source.slice(label.span) for label in labels]
 
 
-def remarks(check: Callable[[View], Iterable[Remark]], text: str) -> tuple[SpecView, list[Remark]]:
-    """Return the spec of a text, and the remarks of one rule, regardless of the other rules."""
+def spec_and_remarks(check: Callable[[View], Iterable[Remark]], text: str) -> tuple[SpecView, list[Remark]]:
+    """Return the only spec of a text, and the remarks of one rule on it, without duplicates."""
     view = view_of(SourceFile("example.tltl", text), CompileOptions())
     (spec,) = view.specs
     return spec, list(dict.fromkeys(check(view)))
 
 
-def apply_fixes(text: str) -> Fixed:
-    """Return a text with all fixes applied."""
+def apply_fixes(text: str) -> FixedFile:
+    """Apply all fixes to a text."""
     return fix(SourceFile("example.tltl", text))
 
 
 def block(*clauses: str, before: str = SIGNALS) -> str:
-    """Return a spec of these clauses. It has a limit and a `judge at`, so that no rule reports
+    """Return a spec of these clauses. It has a limit and `judge at goal`, so that no rule reports
     their absence."""
     return before + _HEAD + "\n    ".join(clauses) + "\n}\n"
 
 
-def marked_in_block(code: str, *clauses: str, before: str = SIGNALS) -> list[str]:
+def labelled_texts_in_block(code: str, *clauses: str, before: str = SIGNALS) -> list[str]:
     """Return the text at the first label of each finding with this code, in a spec of these clauses."""
-    return marked(block(*clauses, before=before), code)
+    return labelled_texts(block(*clauses, before=before), code)

@@ -18,12 +18,12 @@ class Predicate(NamedTuple):
     value: Callable[[float], float]
 
     @property
-    def declared(self) -> str:
+    def declaration(self) -> str:
         """The declaration of this predicate as ``p``."""
         return f"{BEFORE}predicate p in [-1, 1] = clamp({self.text}, -1, 1)\n"
 
     def values(self) -> list[float]:
-        """Its values for many values of x, including both ends of the range."""
+        """Return the values for many values of x, including both ends of its range."""
         return [max(-1.0, min(1.0, self.value(x))) for x in _VALUES]
 
 

@@ -1,4 +1,4 @@
-"""Random small formulas and specs as source text, with all their short traces."""
+"""Random small formulas and specs as source text, and all short traces over their atoms."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ _UNARY = ("!({})", "F ({})", "G ({})", "X ({})", "N ({})")
 _BINARY = ("({}) & ({})", "({}) | ({})", "({}) U ({})", "({}) -> ({})")
 
 
-def written(atoms: Sequence[str], max_leaves: int = 4) -> st.SearchStrategy[str]:
-    """Formulas over these atoms."""
+def formula_texts(atoms: Sequence[str], max_leaves: int = 4) -> st.SearchStrategy[str]:
+    """Return a strategy for the texts of formulas over these atoms."""
     return st.recursive(
         st.sampled_from(atoms),
         lambda inner: (
@@ -26,11 +26,11 @@ def written(atoms: Sequence[str], max_leaves: int = 4) -> st.SearchStrategy[str]
     )
 
 
-SMALL = written(["a", "b", "c"])
+SMALL = formula_texts(["a", "b", "c"])
 
 
 class World(NamedTuple):
-    """Declarations, the atoms that can be formed from them, and all short traces of these atoms."""
+    """Declarations (``before``), atoms over them, and all short traces of these atoms."""
 
     before: str
     atoms: tuple[str, ...]
@@ -57,9 +57,12 @@ RANGED = World(
 def specs(
     draw: st.DrawFn, *clauses: str, worlds: Sequence[World] = (FREE, EXCLUSIVE, RANGED), most: int = 3
 ) -> tuple[World, str]:
-    """A spec of one to ``most`` clauses, taken from ``clauses`` with formulas in place of ``{}``."""
+    """Draw a world, and the text of a spec of one to ``most`` clauses.
+
+    The clauses are drawn from ``clauses``, with formulas in place of ``{}``.
+    """
     world = draw(st.sampled_from(worlds))
     chosen = draw(st.lists(st.sampled_from(clauses), min_size=1, max_size=most))
-    formulas = written(world.atoms)
+    formulas = formula_texts(world.atoms)
     filled = [template.format(*(f"({draw(formulas)})" for _ in range(template.count("{}")))) for template in chosen]
     return world, block(*filled, before=world.before)

@@ -1,4 +1,4 @@
-"""Comments that silence findings."""
+"""``allow`` comments, which silence findings."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tests.tools.lint.helpers import apply_fixes, codes
 from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic, Label
 from tltlc.pipeline import CompileOptions
-from tltlc.tools.lint.allow import silenced
+from tltlc.tools.lint.allow import apply_allow_comments
 from tltlc.tools.lint.rule import LintFinding
 from tltlc.tools.lint.run import lint, view_of
 
@@ -56,7 +56,7 @@ def test_allowed_findings_are_not_reported(text: str) -> None:
         ("// tltlc: allow TLT0427, TLT0418\nspec hide = G !seen", []),
     ],
 )
-def test_findings_allowed_elsewhere_are_reported(text: str, expected: list[str]) -> None:
+def test_a_comment_in_another_place_or_form_silences_nothing(text: str, expected: list[str]) -> None:
     assert codes(BEFORE + text) == expected
 
 
@@ -146,8 +146,8 @@ LINES = (
 )
 
 
-@pytest.mark.parametrize(("text", "what"), LINES, ids=[what for _, what in LINES])
-def test_the_work_for_comments_is_linear(text: str, what: str) -> None:
+@pytest.mark.parametrize(("text", "case"), LINES, ids=[case for _, case in LINES])
+def test_the_work_for_comments_is_linear(text: str, case: str) -> None:
     def work(number: int) -> int:
         source = text.format(
             codes="TLT0421 TLT0420 " * number,
@@ -158,9 +158,9 @@ def test_the_work_for_comments_is_linear(text: str, what: str) -> None:
         view = view_of(SourceFile("example.tltl", source), CompileOptions())
         spans = [declaration.span for declaration in view.module.declarations]
         findings = [LintFinding(Diagnostic("TLT0421", "unused", (Label(view.source, span),))) for span in spans]
-        return calls(lambda: silenced(view, findings))
+        return calls(lambda: apply_allow_comments(view, findings))
 
-    assert work(800) < 2.5 * work(400), what
+    assert work(800) < 2.5 * work(400), case
 
 
 def test_every_comment_for_the_same_finding_counts_as_used() -> None:

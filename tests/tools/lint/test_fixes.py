@@ -11,9 +11,9 @@ from tltlc.diagnostics.diagnostic import Diagnostic, Edit
 from tltlc.grammar.parser import parse
 from tltlc.grammar.tree import Module
 from tltlc.pipeline import CompileOptions, Session
-from tltlc.tools.lint.fixes import OfferedFix, of_errors, of_findings
+from tltlc.tools.lint.fixes import OfferedFix, fixes_of_errors, fixes_of_findings
 from tltlc.tools.lint.run import findings, lint, view_of
-from tltlc.tools.lint.scopes import after, keeping_scopes
+from tltlc.tools.lint.scopes import apply_edits, preserve_scopes
 
 
 def errors(source: SourceFile) -> tuple[Sequence[Diagnostic], Sequence[Diagnostic]]:
@@ -23,7 +23,7 @@ def errors(source: SourceFile) -> tuple[Sequence[Diagnostic], Sequence[Diagnosti
 
 def offers(text: str) -> list[OfferedFix]:
     source = SourceFile("x.tltl", text)
-    return list(of_errors(errors(source)[1], source, errors))
+    return list(fixes_of_errors(errors(source)[1], source, errors))
 
 
 @pytest.mark.parametrize(
@@ -44,7 +44,7 @@ def offers(text: str) -> list[OfferedFix]:
 )
 def test_fixes_of_errors_are_offered(text: str, expected: dict[str, str]) -> None:
     source = SourceFile("x.tltl", text)
-    assert {offer.fix.title: after(source, offer.fix.edits).text for offer in offers(text)} == expected
+    assert {offer.fix.title: apply_edits(source, offer.fix.edits).text for offer in offers(text)} == expected
 
 
 def test_a_fix_that_leaves_as_many_errors_is_not_offered() -> None:
@@ -52,36 +52,36 @@ def test_a_fix_that_leaves_as_many_errors_is_not_offered() -> None:
     source = SourceFile("x.tltl", "spec x = F alive")
     _, diagnostics = errors(source)
     assert diagnostics[0].fixes
-    assert list(of_errors(diagnostics, source, lambda _: ((), diagnostics))) == []
+    assert list(fixes_of_errors(diagnostics, source, lambda _: ((), diagnostics))) == []
 
 
-def test_a_fix_is_titled_by_what_it_does() -> None:
+def test_the_title_of_a_fix_says_what_it_removes() -> None:
     source = SourceFile("x.tltl", "import core\nsignal a: bool\nentity e\nspec x = F a")
-    assert [offer.fix.title for offer in of_findings(lint(source), parse(source)[0])] == [
+    assert [offer.fix.title for offer in fixes_of_findings(lint(source), parse(source)[0])] == [
         "Remove the import",
         "Remove it",
     ]
 
 
-def test_a_fix_keeps_allow_comments() -> None:
+def test_a_fix_keeps_the_allow_comment_of_another_statement() -> None:
     allow = "// tltlc: allow TLT0419\n"
     source = SourceFile("x.tltl", f"/// Old.\n{allow}import core\nsignal a: bool\nspec x {{\n    reach a\n}}\n")
-    (offer,) = of_findings(lint(source), parse(source)[0])
-    assert after(source, offer.fix.edits).text == f"{allow}signal a: bool\nspec x {{\n    reach a\n}}\n"
+    (offer,) = fixes_of_findings(lint(source), parse(source)[0])
+    assert apply_edits(source, offer.fix.edits).text == f"{allow}signal a: bool\nspec x {{\n    reach a\n}}\n"
 
 
 def test_the_same_fix_of_many_findings_is_tried_once(monkeypatch: pytest.MonkeyPatch) -> None:
     tried: list[Sequence[Edit]] = []
 
-    def recorded(module: Module, edits: Sequence[Edit]) -> tuple[Edit, ...] | None:
+    def record_attempt(module: Module, edits: Sequence[Edit]) -> tuple[Edit, ...] | None:
         tried.append(edits)
-        return keeping_scopes(module, edits)
+        return preserve_scopes(module, edits)
 
-    monkeypatch.setattr("tltlc.tools.lint.fixes.keeping_scopes", recorded)
+    monkeypatch.setattr("tltlc.tools.lint.fixes.preserve_scopes", record_attempt)
     source = SourceFile("example.tltl", f"// tltlc: allow{' TLT0421' * 50}\nsignal a: bool\nspec s = F a\n")
     view = view_of(source, CompileOptions())
     comment_findings = [finding for finding in findings(view) if finding.diagnostic.code == "TLT0427"]
-    assert (len(list(of_findings(comment_findings, view.module))), len(tried)) == (50, 1)
+    assert (len(list(fixes_of_findings(comment_findings, view.module))), len(tried)) == (50, 1)
 
 
 def test_no_more_fixes_are_tried_after_the_limit(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -91,4 +91,4 @@ def test_no_more_fixes_are_tried_after_the_limit(monkeypatch: pytest.MonkeyPatch
     source = SourceFile("example.tltl", f"signal a: bool\nspec s = F a  // tltlc: allow TLT0420\n{lets}")
     view = view_of(source, CompileOptions())
     unused_findings = [finding for finding in findings(view) if finding.diagnostic.code == "TLT0421"]
-    assert (len(unused_findings), len(list(of_findings(unused_findings, view.module)))) == (count, 5)
+    assert (len(unused_findings), len(list(fixes_of_findings(unused_findings, view.module)))) == (count, 5)

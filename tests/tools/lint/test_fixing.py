@@ -1,4 +1,4 @@
-"""Fixes: the text that they leave, and that they never change the meaning of a spec."""
+"""Fixes produce the expected text and never change the meaning of a spec."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from tests.tools.lint.helpers import apply_fixes, codes, findings_in
 from tltlc.core.source import SourceFile
 from tltlc.grammar.parser import parse
 from tltlc.tools.lint.rule import Edit
-from tltlc.tools.lint.scopes import keeping_scopes
+from tltlc.tools.lint.scopes import preserve_scopes
 
 SPEC = "spec s = F a\n"
 MORE = "signal x in [0, 9]\nspec s = F more(x, 1, 1)\n"
@@ -84,7 +84,7 @@ BLOCK = "spec s {\n    reach a\n}\n"
         (NO_LIMIT + "signal b: bool\nsignal a: bool\n" + BLOCK, NO_LIMIT + "signal a: bool\n" + BLOCK),
     ],
 )
-def test_no_fix_changes_what_a_comment_allows(before: str, after: str | None) -> None:
+def test_no_fix_changes_which_statements_a_comment_applies_to(before: str, after: str | None) -> None:
     assert apply_fixes(before).source.text == (before if after is None else after)
 
 
@@ -97,7 +97,7 @@ def test_a_duplicate_within_a_formula_is_not_fixed() -> None:
 def test_fixed_and_remaining_findings_are_listed() -> None:
     fixed = apply_fixes("signal a: bool\nsignal b: bool\nlet c = F b\nspec s { reach a }\n")
     assert [finding.title for finding in fixed.fixed] == ["nothing uses the let `c`", "nothing uses the signal `b`"]
-    assert [finding.diagnostic.code for finding in fixed.left] == ["TLT0419"]
+    assert [finding.diagnostic.code for finding in fixed.remaining] == ["TLT0419"]
 
 
 DECLARATIONS = {
@@ -119,7 +119,7 @@ FORMULAS = ("F a", "G b", "soon", "at(b)", "F near_to(x)", "F n > 3", "G few", "
 
 @st.composite
 def modules(draw: st.DrawFn) -> str:
-    """A file with all the declarations in some order, and specs that use some of them."""
+    """Draw a file with all declarations in a random order, and specs that use some of them."""
     order = draw(st.permutations(list(DECLARATIONS)))
     gaps = draw(st.lists(st.sampled_from(["\n", "\n\n", "\n\n\n", " \n"]), min_size=len(order), max_size=len(order)))
     formulas = draw(st.lists(st.sampled_from(FORMULAS), min_size=1, max_size=4))
@@ -139,8 +139,8 @@ PIECES = (
 
 
 @st.composite
-def commented(draw: st.DrawFn) -> str:
-    """A file with documentation, remarks and allow comments in all places."""
+def commented_files(draw: st.DrawFn) -> str:
+    """Draw a file with documentation, ordinary comments and ``allow`` comments in all places."""
     order = draw(st.permutations(PIECES))
     lines = st.lists(st.sampled_from(("/// Documented.", "// tltlc: a remark", "", *ALLOWS)), max_size=3)
     text = ""
@@ -150,8 +150,8 @@ def commented(draw: st.DrawFn) -> str:
     return text
 
 
-def remarks(text: str) -> set[tuple[str, str, str]]:
-    """The code and title of each finding, and the text that it labels."""
+def reported_findings(text: str) -> set[tuple[str, str, str]]:
+    """Return the code and title of each finding, and the text at its first label."""
     diagnostics = [finding.diagnostic for finding in findings_in(text)]
     return {
         (diagnostic.code, diagnostic.title, diagnostic.labels[0].source.slice(diagnostic.labels[0].span))
@@ -160,11 +160,11 @@ def remarks(text: str) -> set[tuple[str, str, str]]:
 
 
 @settings(deadline=None, max_examples=25)
-@given(commented())
+@given(commented_files())
 def test_fixes_reveal_no_silenced_finding(text: str) -> None:
     """A finding that was silenced before the fixes is silenced after them."""
-    silenced = remarks(text.replace("// tltlc: allow", "// tltlc, allow")) - remarks(text)
-    after = remarks(apply_fixes(text).source.text)
+    silenced = reported_findings(text.replace("// tltlc: allow", "// tltlc, allow")) - reported_findings(text)
+    after = reported_findings(apply_fixes(text).source.text)
     assert not silenced & after
 
 
@@ -172,7 +172,7 @@ def test_fixes_reveal_no_silenced_finding(text: str) -> None:
 @given(modules())
 def test_fixes_keep_all_automata_and_leave_nothing_to_fix(text: str) -> None:
     fixed = apply_fixes(text)
-    assert not any(finding.fix for finding in fixed.left)
+    assert not any(finding.fix for finding in fixed.remaining)
     assert apply_fixes(fixed.source.text).source == fixed.source
     _, problems = parse(fixed.source)
     assert not problems
@@ -191,6 +191,6 @@ def test_the_work_for_comments_above_one_line_is_linear() -> None:
         source = SourceFile("example.tltl", f"signal a: bool\nspec s = F a\n{comments}{lets}\n")
         module, _ = parse(source)
         edits = [Edit(declaration.span, "") for declaration in module.declarations[2:]]
-        return calls(lambda: keeping_scopes(module, edits))
+        return calls(lambda: preserve_scopes(module, edits))
 
     assert work(400) < 2.5 * work(200)

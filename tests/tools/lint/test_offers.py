@@ -1,4 +1,4 @@
-"""The fixes of errors, applied to all golden error messages and to typical mistakes."""
+"""The fixes of errors, on all golden error messages and on typical mistakes."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic, Fix, TltlError
 from tltlc.grammar.parser import parse
 from tltlc.resolve.resolution import resolve
-from tltlc.tools.lint.fixes import OfferedFix, of_errors
-from tltlc.tools.lint.scopes import after
+from tltlc.tools.lint.fixes import OfferedFix, fixes_of_errors
+from tltlc.tools.lint.scopes import apply_edits
 
 GOLDEN = [case for case in cases("error") if re.match("TLT0[123]", case.name) and "input.tltl" in case.files]
 HEAD = """clock 10 Hz
@@ -185,7 +185,7 @@ def all_fixes(source: SourceFile) -> Iterator[tuple[Diagnostic, Fix]]:
 
 
 def offers(source: SourceFile) -> list[OfferedFix]:
-    return list(of_errors(errors(source), source, lambda text: (parse(text)[1], errors(text))))
+    return list(fixes_of_errors(errors(source), source, lambda text: (parse(text)[1], errors(text))))
 
 
 def in_spec(clause: str) -> SourceFile:
@@ -203,7 +203,7 @@ def check(source: SourceFile) -> None:
             assert 0 <= flat[0] <= flat[-1] <= len(source.text)
             assert len(set(fix.edits)) == len(fix.edits) > 0
     for offer in offers(source):
-        fixed = after(source, offer.fix.edits)
+        fixed = apply_edits(source, offer.fix.edits)
         assert (len(parse(fixed)[1]), len(errors(fixed))) < (len(parse(source)[1]), len(errors(source)))
 
 
@@ -214,15 +214,15 @@ def test_fixes_of_golden_messages_are_sound(case: Case, tmp_path: Path, monkeypa
     check(SourceFile("input.tltl", case.files["input.tltl"].decode()))
 
 
-@pytest.mark.parametrize(("clause", "meant"), CORRECTIONS.items(), ids=CORRECTIONS)
-def test_fixes_of_a_clause_produce_the_corrections(clause: str, meant: list[str]) -> None:
+@pytest.mark.parametrize(("clause", "corrections"), CORRECTIONS.items(), ids=CORRECTIONS)
+def test_fixes_of_a_clause_produce_the_corrections(clause: str, corrections: list[str]) -> None:
     source = in_spec(clause)
     check(source)
-    fixed_sources = [after(source, offer.fix.edits) for offer in offers(source)]
+    fixed_sources = [apply_edits(source, offer.fix.edits) for offer in offers(source)]
     assert [fixed_source.text for fixed_source in fixed_sources] == [
-        in_spec(fixed_source).text for fixed_source in meant
+        in_spec(correction).text for correction in corrections
     ]
-    for fixed_source, correction in zip(fixed_sources, meant, strict=True):
+    for fixed_source, correction in zip(fixed_sources, corrections, strict=True):
         assert formula(fixed_source) == formula(in_spec(correction))
 
 
@@ -232,8 +232,7 @@ def formula(source: SourceFile) -> str:
 
 
 def test_every_fix_of_the_table_is_offered() -> None:
-    """Trying a fix before offering it is only a safeguard: a diagnostic should come with fixes that
-    work."""
+    """A fix is tried before it is offered. This is only a safeguard: all fixes should pass."""
     refused = {
         (clause, fix.title)
         for clause in CORRECTIONS
@@ -247,14 +246,13 @@ def test_the_table_has_many_rows() -> None:
     assert len(CORRECTIONS) >= 60
 
 
-def test_an_error_of_one_use_does_not_change_the_definition() -> None:
-    """The definition must not be edited because one use has bad arguments."""
+def test_bad_arguments_of_one_use_offer_no_fix_of_the_definition() -> None:
     text = f"{HEAD}let more(n) = coins > n\nspec s {{\n    keep more(3)\n    keep more(60)\n}}\n"
     (diagnostic,) = errors(SourceFile("a.tltl", text))
     assert (diagnostic.code, diagnostic.fixes) == ("TLT0310", ())
 
 
-def test_a_fix_keeps_words_apart() -> None:
+def test_a_fix_inserts_a_space_between_two_words() -> None:
     with pytest.raises(TltlError):
         tltlc.compile_text(f"{HEAD}spec s = a|~b")
     ((_, fix),) = all_fixes(SourceFile("a.tltl", f"{HEAD}spec s = a|~b"))
@@ -371,14 +369,14 @@ def test_an_english_verb_is_no_misspelt_line_of_a_test(verb: str) -> None:
 def test_a_declaration_is_inserted_above_documentation() -> None:
     source = SourceFile("a.tltl", "/// Nobody sees.\n// TODO tune\n\nspec s = F a\n")
     (fix,) = (fix for _, fix in all_fixes(source) if fix.title.startswith("Declare"))
-    assert after(source, fix.edits).text == f"signal a: bool\n{source.text}"
+    assert apply_edits(source, fix.edits).text == f"signal a: bool\n{source.text}"
 
 
 def test_a_plain_number_is_not_read_as_a_percentage() -> None:
     for declared, correction in (("hearts in [0, 1]", "false"), ("hearts: ratio", "hearts >= 3 %")):
         source = SourceFile("a.tltl", f"signal {declared}\nspec s {{ reach hearts >= 3 }}\n")
         ((_, fix),) = all_fixes(source)
-        assert after(source, fix.edits).text == source.text.replace("hearts >= 3", correction)
+        assert apply_edits(source, fix.edits).text == source.text.replace("hearts >= 3", correction)
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""Each page of a rule shows what to avoid and what to prefer, and both examples are correct."""
+"""The page of each rule has an example to avoid and an example to prefer; both are linted."""
 
 from __future__ import annotations
 
@@ -20,8 +20,10 @@ CODES = sorted([*(rule.code for rule in rules()), allow.CODE])
 
 
 def codes_of_example(code: str, kind: str) -> list[str]:
-    """Return the codes reported for an example of a page: the first example is to be avoided, the
-    second preferred."""
+    """Return the codes that the linter reports for an example of a page.
+
+    ``kind`` is ``avoid`` for the first example, or ``prefer`` for the second.
+    """
     avoid, prefer = (block for block in blocks(FOLDER / f"{code}.md") if block.kind == "tltl")
     block = avoid if kind == "avoid" else prefer
     return [finding.diagnostic.code for finding in lint(SourceFile("example.tltl", block.text))]

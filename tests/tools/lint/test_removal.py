@@ -1,4 +1,4 @@
-"""How fixes treat comments and documentation."""
+"""Fixes remove a declaration with its documentation, and no other comment."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tests.tools.lint.helpers import apply_fixes, codes
 from tltlc.core.source import SourceFile, Span
 from tltlc.grammar.parser import parse
 from tltlc.grammar.tree import Comment
-from tltlc.tools.lint.removal import without
+from tltlc.tools.lint.removal import removal_span
 
 SPEC = "spec s = F a\n"
 
@@ -48,13 +48,13 @@ class _Comments(Sequence[Comment]):
 
     def __init__(self, text: str) -> None:
         self._comments = parse(SourceFile("example.tltl", text))[0].comments
-        self.looks = 0
+        self.accesses = 0
 
     def __len__(self) -> int:
         return len(self._comments)
 
     def __getitem__(self, index: Any) -> Any:
-        self.looks += 1
+        self.accesses += 1
         return self._comments[index]
 
 
@@ -62,6 +62,6 @@ def test_only_a_few_of_many_comments_are_accessed() -> None:
     text = "".join(f"// Of a{number}.\nsignal a{number}: bool\n" for number in range(500))
     comments = _Comments(text)
     start = text.index("signal a300")
-    span = without(SourceFile("example.tltl", text), Span(start, text.index("\n", start)), comments)
+    span = removal_span(SourceFile("example.tltl", text), Span(start, text.index("\n", start)), comments)
     assert text[span.start : span.end] == "signal a300: bool\n"
-    assert comments.looks < 20
+    assert comments.accesses < 20

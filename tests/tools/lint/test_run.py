@@ -17,12 +17,12 @@ IMPOSSIBLE = block("reach at(x) and at(y)", before=APART)
 
 
 def severities(text: str, levels: Mapping[str, str]) -> dict[str, str]:
-    """Lint a text with these levels, and return the severity of each code."""
+    """Return the severity of each code that linting a text with these levels reports."""
     reported = lint(SourceFile("a.tltl", text), levels=levels)
     return {finding.diagnostic.code: finding.diagnostic.severity for finding in reported}
 
 
-def test_a_message_is_dropped_if_an_equally_severe_rule_is_more_specific() -> None:
+def test_a_more_specific_rule_of_equal_severity_supersedes_a_message() -> None:
     assert severities(IMPOSSIBLE, {}).keys() & {NO_TRACE, NO_GOAL} == {NO_GOAL}
     assert severities(IMPOSSIBLE, {NO_TRACE: "error", NO_GOAL: "error"}).keys() & {NO_TRACE, NO_GOAL} == {NO_GOAL}
 
@@ -61,17 +61,17 @@ def test_long_formulas_are_linted(formula: str) -> None:
 
 
 class _Rule:
-    """A rule that reports each declaration, and counts how often ``supersedes`` is read."""
+    """A rule that reports every declaration, and counts how often ``supersedes`` is read."""
 
     code, severity = "TLT0432", "warning"
-    asked = 0
+    reads = 0
 
     def check(self, view: View) -> list[Remark]:
         return [Remark("odd", (view.label(declaration.span),), "mend it") for declaration in view.module.declarations]
 
     @property
     def supersedes(self) -> tuple[str, ...]:
-        self.asked += 1
+        self.reads += 1
         return ("TLT0410",)
 
 
@@ -79,4 +79,4 @@ def test_supersedes_is_read_once_per_rule(monkeypatch: pytest.MonkeyPatch) -> No
     rule = _Rule()
     monkeypatch.setattr("tltlc.tools.lint.run.rules", lambda: (rule,))
     assert len(findings_in("".join(f"signal a{number}: bool\n" for number in range(100)))) == 100
-    assert rule.asked == 1
+    assert rule.reads == 1

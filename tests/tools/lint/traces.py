@@ -1,5 +1,6 @@
-"""Evaluate formulas on all short traces at once, straight from the definitions. A number has one
-bit for each trace."""
+"""Evaluate formulas on all short traces at once, straight from the definitions.
+
+A set of traces is a number with one bit for each trace."""
 
 from __future__ import annotations
 
@@ -12,7 +13,7 @@ from tltlc.logic.formula import Formula
 
 LONGEST: Final = 5
 Bits = tuple[int, ...]
-"""For each length from 1 on, the traces of that length with some property."""
+"""A set of traces: for each length from 1 to ``LONGEST``, the bits of the traces of that length."""
 
 
 class Traces:
@@ -22,7 +23,7 @@ class Traces:
         self.letters = letters
 
     @cached_property
-    def every(self) -> Bits:
+    def all_traces(self) -> Bits:
         """The bits of all traces."""
         return tuple((1 << len(self.letters) ** length) - 1 for length in range(1, LONGEST + 1))
 
@@ -30,36 +31,37 @@ class Traces:
         """Return the traces that satisfy the formula."""
         return tuple(self._truths(formula, length)[0] for length in range(1, LONGEST + 1))
 
-    def ever(self, formula: Formula, without: Collection[Formula] = ()) -> Bits:
-        """Return the traces with a step at which the formula holds and none of ``without`` does."""
+    def holding_at_some_step(self, formula: Formula, without: Collection[Formula] = ()) -> Bits:
+        """Return the traces with a step at which the formula holds and no formula of ``without`` does."""
         traces = []
         for length in range(1, LONGEST + 1):
             steps = self._truths(formula, length)
             for excluded in without:
                 steps = [here & ~there for here, there in zip(steps, self._truths(excluded, length), strict=True)]
-            traces.append(_any(steps))
+            traces.append(_union(steps))
         return tuple(traces)
 
     def _truths(self, formula: Formula, length: int) -> list[int]:
-        """For each step, the traces of this length whose suffix from this step satisfies the
+        """Return, for each step, the traces of this length whose suffix from that step satisfies the
         formula."""
-        every = self.every[length - 1]
+        every = self.all_traces[length - 1]
         truths: dict[Formula, list[int]] = {}
         for node in formula.bottom_up():
             args = [truths[argument] for argument in node.args]
             if node.op == "atom":
                 truths[node] = [self._atom(node.name, step, length) for step in range(length)]
             elif node.is_temporal:
-                truths[node] = _from_the_end(node.op, args, every)
+                truths[node] = _temporal_operator(node.op, args, every)
             else:
                 columns = zip(*args, strict=True) if args else [()] * length
-                truths[node] = [_now(node.op, column, every) for column in columns]
+                truths[node] = [_boolean_operator(node.op, column, every) for column in columns]
         return truths[formula]
 
     def _atom(self, name: str, step: int, length: int) -> int:
-        """The traces with this atom at a step.
+        """Return the traces of this length in which the atom holds at a step.
 
-        The letter at a step is a digit of the trace's number; the base is the number of letters.
+        The bit of a trace is a number whose digits are the letters of the trace, in base
+        ``len(self.letters)``, the first step last.
         """
         count = len(self.letters)
         digits = "".join(("1" if name in letter else "0") * count**step for letter in self.letters)
@@ -78,35 +80,35 @@ def includes(more: Bits, fewer: Bits) -> bool:
     return all(not few & ~many for many, few in zip(more, fewer, strict=True))
 
 
-def both(one: Bits, other: Bits) -> Bits:
+def intersection(one: Bits, other: Bits) -> Bits:
     """Return the traces that are in both sets."""
-    return tuple(mine & yours for mine, yours in zip(one, other, strict=True))
+    return tuple(first & second for first, second in zip(one, other, strict=True))
 
 
-def _any(steps: Sequence[int]) -> int:
+def _union(steps: Sequence[int]) -> int:
     union = 0
     for step in steps:
         union |= step
     return union
 
 
-def _now(op: str, args: Sequence[int], every: int) -> int:
+def _boolean_operator(op: str, args: Sequence[int], every: int) -> int:
     if op in ("true", "false"):
         return every if op == "true" else 0
     if op == "or":
-        return _any(args)
+        return _union(args)
     if op == "and":
-        return every & ~_any([every & ~arg for arg in args])
+        return every & ~_union([every & ~arg for arg in args])
     first, last = args[0], args[-1]
     if op == "not":
         return every & ~first
     return every & (~first | last) if op == "implies" else every & ~(first ^ last)
 
 
-def _from_the_end(op: str, args: Sequence[Sequence[int]], every: int) -> list[int]:
-    """Compute the truths of a temporal operator, from the last step to the first.
+def _temporal_operator(op: str, args: Sequence[Sequence[int]], every: int) -> list[int]:
+    """Return the traces that satisfy a temporal operator, for each step; computed from the last step.
 
-    After the last step, the weak operators are true and the strong ones are false.
+    After the last step, the weak operators are true and the strong operators are false.
     """
     behind = every if op in ("N", "G", "W", "R") else 0
     truths: list[int] = []

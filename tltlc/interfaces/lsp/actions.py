@@ -11,7 +11,7 @@ from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.interfaces.lsp.analysed_text import Document
 from tltlc.interfaces.lsp.diagnostics import remark
 from tltlc.interfaces.lsp.edits import text_edit
-from tltlc.tools.lint.fixes import of_errors, of_findings
+from tltlc.tools.lint.fixes import fixes_of_errors, fixes_of_findings
 from tltlc.tools.lint.rule import LintFinding
 
 
@@ -43,7 +43,7 @@ def actions(
             # Editors may apply a preferred action without asking, so it must not be a guess.
             is_preferred=offer.fix.applicability == "safe",
         )
-        for offer in (*of_findings(near, document.module), *of_errors(diagnostics, document.source, errors))
+        for offer in (*fixes_of_findings(near, document.module), *fixes_of_errors(diagnostics, document.source, errors))
     ]
 
 

@@ -20,7 +20,7 @@ from tltlc.pipeline import CompileOptions, Session
 from tltlc.resolve.resolution import Resolution
 from tltlc.resolve.scope import Scope
 from tltlc.tools.lint.rule import LintFinding
-from tltlc.tools.lint.run import levelled
+from tltlc.tools.lint.run import apply_levels
 
 if TYPE_CHECKING:
     from tltlc.io.project import Project
@@ -89,7 +89,7 @@ class Document:
             return (*self.syntax_errors, *(diagnostic for diagnostic in errors if not missing.may_mend(diagnostic)))
         resolved = self.resolution
         remaining = drop_silenced((loaded.module for loaded in resolved.modules), resolved.diagnostics)
-        kept = levelled(map(LintFinding, remaining), self.project.lint)
+        kept = apply_levels(map(LintFinding, remaining), self.project.lint)
         return tuple(finding.diagnostic for finding in kept)
 
     @property

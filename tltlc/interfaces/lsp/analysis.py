@@ -14,11 +14,11 @@ from tltlc.io.files import unsaved_texts
 from tltlc.monitor.spec_tests import run_tests
 from tltlc.pipeline import CompileOptions
 from tltlc.tools.lint.file_view import View
-from tltlc.tools.lint.importers import used_elsewhere, words
+from tltlc.tools.lint.importers import importer_names, names_used_elsewhere
 from tltlc.tools.lint.neighbours import neighbours
 from tltlc.tools.lint.rule import LintFinding
 from tltlc.tools.lint.rules import rules
-from tltlc.tools.lint.run import findings, levelled, view_of
+from tltlc.tools.lint.run import apply_levels, findings, view_of
 
 _OF_USE: Final = ("TLT0421", "TLT0422")
 """Codes of the rules that depend on which names other files use."""
@@ -71,10 +71,10 @@ def analyse(request: Request) -> DocumentAnalysis:
         try:
             view = view_of(request.source, CompileOptions(library_dirs=request.libraries))
         except TltlError as error:
-            return DocumentAnalysis(levelled(map(LintFinding, error.diagnostics), request.levels))
+            return DocumentAnalysis(apply_levels(map(LintFinding, error.diagnostics), request.levels))
         if _seems_unused(view):
             # Reading the neighbouring files is slow, so do it only if their uses matter.
-            view = replace(view, elsewhere=_elsewhere(request))
+            view = replace(view, used_elsewhere=_elsewhere(request))
         file_findings = findings(view, request.levels)
         return _with_tests(view, file_findings)
 
@@ -95,7 +95,7 @@ def _elsewhere(request: Request) -> Container[str]:
         # Skip files of other projects. Keep new files, which may not be saved yet.
         if place in neighbour_texts or not os.path.lexists(place):
             neighbour_texts[place] = text
-    return used_elsewhere(name, [words(path, text) for path, text in neighbour_texts.items()])
+    return names_used_elsewhere(name, [importer_names(path, text) for path, text in neighbour_texts.items()])
 
 
 def _with_tests(view: View, file_findings: tuple[LintFinding, ...]) -> DocumentAnalysis:

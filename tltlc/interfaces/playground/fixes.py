@@ -28,4 +28,4 @@ def of_errors(source: SourceFile, diagnostics: Iterable[Diagnostic], libraries: 
         session = Session(text, CompileOptions(library_dirs=libraries), proofs=False)
         return session.syntax_errors, session.source_diagnostics
 
-    return list(fixes.of_errors(diagnostics, source, errors))
+    return list(fixes.fixes_of_errors(diagnostics, source, errors))

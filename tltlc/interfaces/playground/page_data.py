@@ -22,7 +22,7 @@ from tltlc.pipeline import CompileOptions
 from tltlc.tools.explain.explanation import Explanation, explain
 from tltlc.tools.explain.sections import failure_texts
 from tltlc.tools.explain.values import values
-from tltlc.tools.lint.fixes import OfferedFix, of_findings
+from tltlc.tools.lint.fixes import OfferedFix, fixes_of_findings
 from tltlc.tools.lint.run import findings, view_of
 
 NAME: Final = "<playground>"
@@ -68,7 +68,7 @@ def view(text: str, spec: str = "", letters: Iterable[Letter] = (), notation: No
     remarks = findings(compiled, project.lint)
     results = run_tests(compiled.program, (spec_view.fspa for spec_view in compiled.specs))
     messages = [*(finding.diagnostic for finding in remarks), *(result.failure for result in results if result.failure)]
-    page.update(_messages(messages, source, list(of_findings(remarks[:MOST_MESSAGES], compiled.module))))
+    page.update(_messages(messages, source, list(fixes_of_findings(remarks[:MOST_MESSAGES], compiled.module))))
     page["specs"] = [spec_view.spec.name for spec_view in compiled.specs]
     page["tests"] = [
         {"title": result.test.title, "spec": result.test.spec, "passed": result.passed} for result in results

@@ -1,6 +1,6 @@
 """Apply ``allow`` comments to findings, and report comments that have no effect.
 
-:mod:`tltlc.grammar.allow_comments` defines these comments.
+:mod:`tltlc.grammar.allow_comments` defines the form of these comments.
 """
 
 from __future__ import annotations
@@ -16,75 +16,81 @@ from tltlc.grammar.allow_comments import Allowance, codes, is_allowing
 from tltlc.grammar.allow_index import AllowIndex
 from tltlc.grammar.tree import Comment
 from tltlc.tools.lint.file_view import View
-from tltlc.tools.lint.removal import without
-from tltlc.tools.lint.rule import LintFinding, removal
+from tltlc.tools.lint.removal import removal_span
+from tltlc.tools.lint.rule import LintFinding, removal_fix
 
 CODE: Final = "TLT0427"
 SEVERITY: Final[Severity] = "warning"
-_INTENDED: Final = re.compile(r"//+\s*tltlc\s*:\s*(?:allow\b|\w+\s+TLT[0-9]{4}\b)")
+_LIKE_ALLOW: Final = re.compile(r"//+\s*tltlc\s*:\s*(?:allow\b|\w+\s+TLT[0-9]{4}\b)")
+"""Matches ``allow`` comments, and comments that are probably misspelt ``allow`` comments."""
 
 
-def silenced(view: View, findings: Iterable[LintFinding]) -> list[LintFinding]:
+def apply_allow_comments(view: View, findings: Iterable[LintFinding]) -> list[LintFinding]:
     """Return the findings that no comment silences, plus findings about the comments themselves.
 
-    A comment silences findings in its own file. Each code that the linted file allows in vain gets
-    a finding, unless the comment also allows TLT0427. Each comment that names no code or is
-    misspelt gets a finding, too.
+    A comment silences findings in its own file. Each code that a comment of the linted file allows,
+    but that silences nothing, gets a finding, unless the comment also allows TLT0427. Each comment
+    that names no code or is misspelt gets a finding, too.
     """
     comments = AllowIndex(loaded.module for loaded in view.modules)
-    left = [finding for finding in findings if not comments.silences(finding.diagnostic)]
-    own = comments.allowances(view.source)
-    asked_for = {allowance.comment for allowance in own if allowance.code == CODE}
-    undecided = _Undecided(view)
-    needless = [
+    remaining = [finding for finding in findings if not comments.silences(finding.diagnostic)]
+    allowances = comments.allowances(view.source)
+    excused = {allowance.comment for allowance in allowances if allowance.code == CODE}
+    settled_specs = _SettledSpecs(view)
+    unused = [
         allowance
-        for allowance in own
-        if allowance.comment not in asked_for
+        for allowance in allowances
+        if allowance.comment not in excused
         and not comments.has_silenced(allowance)
-        and not undecided.touch(allowance)
+        and not settled_specs.overlap(allowance)
     ]
-    in_vain = set(map(id, needless))
-    kept = {allowance.comment for allowance in own if id(allowance) not in in_vain}
+    unused_ids = set(map(id, unused))
+    used_comments = {allowance.comment for allowance in allowances if id(allowance) not in unused_ids}
     fixes = {
-        comment: removal("Remove it", (without(view.source, comment.span),))
-        for comment in dict.fromkeys(allowance.comment for allowance in needless)
-        if comment not in kept
+        comment: removal_fix("Remove it", (removal_span(view.source, comment.span),))
+        for comment in dict.fromkeys(allowance.comment for allowance in unused)
+        if comment not in used_comments
     }
-    left += [_in_vain(allowance, fixes.get(allowance.comment)) for allowance in needless]
-    bare = [comment for comment in view.module.comments if is_allowing(comment) and not codes(comment)]
-    left += [_without_code(comment, view.source) for comment in bare]
-    return left + [_misspelt(comment, view.source) for comment in view.module.comments if _is_misspelt(comment)]
+    remaining += [_unused_code(allowance, fixes.get(allowance.comment)) for allowance in unused]
+    without_code = [comment for comment in view.module.comments if is_allowing(comment) and not codes(comment)]
+    remaining += [_missing_code(comment, view.source) for comment in without_code]
+    return remaining + [
+        _misspelt_comment(comment, view.source) for comment in view.module.comments if _is_misspelt(comment)
+    ]
 
 
-class _Undecided:
-    """The specs that every trace satisfies, or none. Most rules skip them until they are fixed."""
+class _SettledSpecs:
+    """The specs that every trace satisfies or no trace satisfies.
+
+    Most rules skip these specs, so a comment on one of them may silence a finding later.
+    """
 
     def __init__(self, view: View) -> None:
         self._specs = sorted(
             (spec.declaration.span for spec in view.specs if spec.is_settled), key=lambda span: span.start
         )
         self._starts = [span.start for span in self._specs]
-        self._known: dict[int, bool] = {}
+        self._results: dict[int, bool] = {}
 
-    def touch(self, allowance: Allowance) -> bool:
+    def overlap(self, allowance: Allowance) -> bool:
         """Whether a comment applies to any of these specs."""
         if allowance.statements is None:
             return bool(self._specs)
         # Comments on the same line share one tuple of places.
-        if id(allowance.statements) not in self._known:
-            self._known[id(allowance.statements)] = any(map(self._covers, allowance.statements))
-        return self._known[id(allowance.statements)]
+        if id(allowance.statements) not in self._results:
+            self._results[id(allowance.statements)] = any(map(self._covers, allowance.statements))
+        return self._results[id(allowance.statements)]
 
     def _covers(self, place: Span) -> bool:
         index = bisect_right(self._starts, place.start) - 1
         return index >= 0 and self._specs[index].covers(place)
 
 
-def _in_vain(allowance: Allowance, fix: Fix | None) -> LintFinding:
+def _unused_code(allowance: Allowance, fix: Fix | None) -> LintFinding:
     """Return the finding for an allowed code that silences nothing.
 
-    ``fix`` removes the comment. It is None if the comment allows other codes with effect; then the
-    author has to edit the comment.
+    ``fix`` removes the comment. It is None if another code of the comment silences something; then
+    the author has to edit the comment.
     """
     where = "in this file" if allowance.statements is None else "here"
     title = f"this allows {allowance.code}, which is not found {where}"
@@ -92,18 +98,20 @@ def _in_vain(allowance: Allowance, fix: Fix | None) -> LintFinding:
     return LintFinding(Diagnostic(CODE, title, (label,), "remove it", SEVERITY, (fix,) if fix else ()))
 
 
-def _without_code(comment: Comment, source: SourceFile) -> LintFinding:
-    title, suggestion = "this comment allows nothing", "name a code, e.g. `// tltlc: allow TLT0419`"
-    return LintFinding(Diagnostic(CODE, title, (Label(source, comment.span),), suggestion, SEVERITY))
+def _missing_code(comment: Comment, source: SourceFile) -> LintFinding:
+    """Return the finding for a comment that names no code."""
+    title, help_ = "this comment allows nothing", "name a code, e.g. `// tltlc: allow TLT0419`"
+    return LintFinding(Diagnostic(CODE, title, (Label(source, comment.span),), help_, SEVERITY))
 
 
 def _is_misspelt(comment: Comment) -> bool:
-    return bool(_INTENDED.match(comment.text)) and not is_allowing(comment)
+    return bool(_LIKE_ALLOW.match(comment.text)) and not is_allowing(comment)
 
 
-def _misspelt(comment: Comment, source: SourceFile) -> LintFinding:
-    title, suggestion = (
+def _misspelt_comment(comment: Comment, source: SourceFile) -> LintFinding:
+    """Return the finding for a comment that is probably meant as an ``allow`` comment."""
+    title, help_ = (
         "this comment allows nothing",
         "write `// tltlc: allow`, with two slashes, and the code behind it",
     )
-    return LintFinding(Diagnostic(CODE, title, (Label(source, comment.span),), suggestion, SEVERITY))
+    return LintFinding(Diagnostic(CODE, title, (Label(source, comment.span),), help_, SEVERITY))

@@ -1,4 +1,7 @@
-"""Determine which signs the value of an atom can have over all values of its signals and params."""
+"""Determine which signs the value of an atom can have.
+
+All values of its signals and params within their ranges are considered.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +21,7 @@ from tltlc.resolve.spec import Atom, Param, Signal
 Sign = Literal["positive", "not positive", "negative", "not negative"]
 
 
-class Declares(Protocol):
+class Declarations(Protocol):
     """Anything that declares signals and params, for example an automaton."""
 
     @property
@@ -42,40 +45,47 @@ _RANGES: Final[dict[Sign, tuple[float, float]]] = {
 }
 
 
-def can_be(sign: Sign, atom: Atom, of: Declares, tries: int = _MOST_POINTS) -> bool:
+def can_be(sign: Sign, atom: Atom, declarations: Declarations, tries: int = _MOST_POINTS) -> bool:
     """Whether a search finds values of signals and params for which an atom has this sign.
 
-    The search makes at most ``tries`` tries and at most as many steps as a check of a predicate.
+    The search tries at most ``tries`` points. It is limited to the work of a check of a predicate.
+    False means only that the search found no such values.
     """
     try:
         with step_limit(WORK["check of a predicate"]):
-            box, bools = box_of(atom.expression, *_declared(of))
+            box, bools = box_of(atom.expression, *_by_name(declarations))
             for point in islice(points(atom.expression, box, bools), tries):
                 value = value_at(atom.expression, point).value
-                if value is not None and _has(sign, value):
+                if value is not None and _has_sign(sign, value):
                     return True
     except OutOfWorkError:
         pass
     return False
 
 
-def is_always(sign: Sign, atom: Atom, of: Declares) -> bool:
-    """Whether it is proved that an atom has this sign for all values of its signals and params."""
+def is_always(sign: Sign, atom: Atom, declarations: Declarations) -> bool:
+    """Whether an atom provably has this sign for all values of its signals and params.
+
+    False if the proof fails or takes too much work.
+    """
     low, high = _RANGES[sign]
     try:
         with step_limit(WORK["check of a predicate"]):
-            box, _ = box_of(atom.expression, *_declared(of))
-            tasks = [ProofGoal(case.value, case.constraints, low, high) for case in cases(atom.expression)]
-            return not unproved_goals(tasks, ConstrainedBox(box, {}))
+            box, _ = box_of(atom.expression, *_by_name(declarations))
+            goals = [ProofGoal(case.value, case.constraints, low, high) for case in cases(atom.expression)]
+            return not unproved_goals(goals, ConstrainedBox(box, {}))
     except (OutOfWorkError, TooManyCasesError, RecursionError):
         return False
 
 
-def _declared(of: Declares) -> tuple[dict[str, Signal], dict[str, Param]]:
-    return {signal.name: signal for signal in of.signals}, {param.name: param for param in of.params}
+def _by_name(declarations: Declarations) -> tuple[dict[str, Signal], dict[str, Param]]:
+    return (
+        {signal.name: signal for signal in declarations.signals},
+        {param.name: param for param in declarations.params},
+    )
 
 
-def _has(sign: Sign, value: float) -> bool:
+def _has_sign(sign: Sign, value: float) -> bool:
     if sign == "positive":
         return value > 0
     if sign == "not positive":

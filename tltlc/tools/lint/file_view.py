@@ -1,6 +1,6 @@
-"""The view of a file that rules get: its syntax tree, names, specs and automata.
+"""What a lint rule sees of a file: its syntax tree, names, specs and automata.
 
-Everything in it is computed once for all rules.
+All of this is computed once and shared by all rules.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from tltlc.resolve.kinds import entity
 from tltlc.resolve.problem import ResolutionError
 from tltlc.resolve.spec import ResolvedFile, Spec
 from tltlc.resolve.values import Env
-from tltlc.tools.lint.names import Mentioned, mentions
+from tltlc.tools.lint.names import MentionedNames, mentioned_names
 
 _COMPARISONS = ("<", "<=", ">", ">=")
 
@@ -45,46 +45,52 @@ class Expression:
     @property
     def text(self) -> str:
         """The source text of the expression on one line, without brackets around it."""
-        return " ".join(self.source.slice(inner(self.tree).span).split())
+        return " ".join(self.source.slice(without_brackets(self.tree).span).split())
 
-    def at(self, tree: Expr) -> Expression:
-        """Return a part of this expression that is not inside one of its quantifiers."""
+    def with_tree(self, tree: Expr) -> Expression:
+        """Return a part of this expression, with the same environment.
+
+        The part must not be inside a quantifier of this expression: use :meth:`parts` for those.
+        """
         return Expression(tree, self.env)
 
     def formula(self) -> Formula | None:
-        """Return the formula that the expression stands for, or None if it stands for none."""
+        """Return the resolved formula, or None if the expression is not a formula."""
         try:
             return formulas.formula(self.tree, self.env)
         except ResolutionError:
             return None
 
-    def is_of_one_step(self) -> bool:
-        """Whether the expression depends on one step alone.
+    def depends_on_one_step(self) -> bool:
+        """Whether the expression has atoms and no temporal operator.
 
-        It does if it has atoms and no temporal operator.
+        Then its truth depends on a single step.
         """
         formula = self.formula()
         return formula is not None and is_state(formula) and bool(formula.atoms())
 
     def parts(self) -> Iterator[Expression]:
-        """Yield the expression and everything in it, outer before inner.
+        """Yield the expression and all its subexpressions, outer before inner.
 
-        The body of a quantifier comes once for each entity.
+        The body of a quantifier is yielded once for each entity.
         """
-        waiting = [self]
-        while waiting:
-            part = waiting.pop()
+        pending = [self]
+        while pending:
+            part = pending.pop()
             yield part
-            waiting += reversed(part.children())
+            pending += reversed(part.children())
 
     def children(self) -> list[Expression]:
-        """Return the operands, in order."""
+        """Return the operands, in order.
+
+        A quantifier has its body once for each entity.
+        """
         if isinstance(self.tree, Quantified):
             variable, body = self.tree.variable, self.tree.body
             return [
                 Expression(body, self.env.with_local(variable, entity(name, self.env))) for name in self.tree.entities
             ]
-        return [self.at(child) for child in children(self.tree)]
+        return [self.with_tree(child) for child in children(self.tree)]
 
 
 @record
@@ -110,7 +116,7 @@ class SpecView:
 
     @property
     def is_settled(self) -> bool:
-        """Whether every trace satisfies the spec, or none does."""
+        """Whether every trace satisfies the spec, or no trace does."""
         return self.fspa.states[0].verdict in ("satisfied", "violated")
 
     def clauses(self, *kinds: str) -> Iterator[tuple[Clause, Expression]]:
@@ -148,17 +154,17 @@ class SpecView:
 class View:
     """A file that compiles without errors.
 
-    ``said`` holds the diagnostics of the compiler. ``modules`` are the imported modules, and last
-    the file's own. ``elsewhere`` has the names that other files may use from this one. ``program``
-    has its tests.
+    ``diagnostics`` are those of the compiler. ``modules`` are the imported modules, followed by the
+    file's own module. ``used_elsewhere`` contains the names of this file that other files may use.
+    ``program`` has the file's tests.
     """
 
     module: Module
     env: Env
     modules: tuple[LoadedModule, ...]
     specs: tuple[SpecView, ...]
-    said: tuple[Diagnostic, ...]
-    elsewhere: Container[str] = frozenset()
+    diagnostics: tuple[Diagnostic, ...]
+    used_elsewhere: Container[str] = frozenset()
     program: ResolvedFile = ResolvedFile((), ())
 
     @property
@@ -167,21 +173,21 @@ class View:
         return self.module.source
 
     @property
-    def used(self) -> Mentioned:
-        """The names that are used by the file itself or, from this file, by others."""
-        return Mentioned(mentions(self.module), self.elsewhere)
+    def used_names(self) -> MentionedNames:
+        """The names of this file that the file itself or other files use."""
+        return MentionedNames(mentioned_names(self.module), self.used_elsewhere)
 
     def label(self, span: Span, message: str = "") -> Label:
         """Return a label on a place in the file."""
         return Label(self.source, span, message)
 
 
-def operand(part: Expression) -> str:
+def operand_text(part: Expression) -> str:
     """Return the text of an expression as an operand of ``and`` or of a word like ``eventually``.
 
-    It has brackets if it needs them.
+    The text has brackets if it needs them there.
     """
-    tree = inner(part.tree)
+    tree = without_brackets(part.tree)
     return f"({part.text})" if isinstance(tree, (BinaryExpr, Quantified)) and not _is_comparison(tree) else part.text
 
 
@@ -189,7 +195,7 @@ def _is_comparison(tree: Expr) -> bool:
     return isinstance(tree, BinaryExpr) and tree.op in _COMPARISONS
 
 
-def inner(tree: Expr) -> Expr:
+def without_brackets(tree: Expr) -> Expr:
     """Return an expression without the brackets around it."""
     while isinstance(tree, GroupExpr):
         tree = tree.inner

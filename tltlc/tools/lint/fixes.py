@@ -1,4 +1,7 @@
-"""Find fixes of diagnostics that can be applied as they are. Each is tried before it is offered."""
+"""Find the fixes of diagnostics that can be applied without further edits.
+
+Each fix is tried before it is offered.
+"""
 
 from __future__ import annotations
 
@@ -14,24 +17,24 @@ from tltlc.grammar.allow_comments import commented_spans
 from tltlc.grammar.tree import Module
 from tltlc.io.limits import WORK
 from tltlc.tools.lint.rule import LintFinding
-from tltlc.tools.lint.scopes import after, keeping_scopes
+from tltlc.tools.lint.scopes import apply_edits, preserve_scopes
 
-_MOST: Final = 8
-"""Only the fixes of this many errors are tried."""
+_MOST_ERRORS: Final = 8
+"""Fixes are tried for at most this many errors."""
 
-Errors = Callable[[SourceFile], tuple[Sequence[Diagnostic], Iterable[Diagnostic]]]
-"""Returns the syntax errors in a text, and all diagnostics of its syntax and names."""
+ErrorFinder = Callable[[SourceFile], tuple[Sequence[Diagnostic], Iterable[Diagnostic]]]
+"""Takes a text; returns its syntax errors, and all diagnostics of its syntax and names."""
 
 
 @record
 class OfferedFix:
-    """A fix that can be applied as it is, with its diagnostic."""
+    """A fix that can be applied without further edits, with its diagnostic."""
 
     diagnostic: Diagnostic
     fix: Fix
 
 
-def of_findings(findings: Iterable[LintFinding], module: Module) -> Iterator[OfferedFix]:
+def fixes_of_findings(findings: Iterable[LintFinding], module: Module) -> Iterator[OfferedFix]:
     """Yield the fixes of lint findings in a module, as ``tltlc lint --fix`` applies them.
 
     A fix must not change what the ``allow`` comments of the module apply to. If the module has such
@@ -44,17 +47,20 @@ def of_findings(findings: Iterable[LintFinding], module: Module) -> Iterator[Off
             edits: tuple[Edit, ...] | None = fix.edits
             if has_comments:
                 if fix.edits not in tried and len(tried) < WORK["fixes tried"]:
-                    tried[fix.edits] = keeping_scopes(module, fix.edits)
+                    tried[fix.edits] = preserve_scopes(module, fix.edits)
                 edits = tried.get(fix.edits)
             if edits:
                 yield OfferedFix(finding.diagnostic, replace(fix, edits=edits))
 
 
-def of_errors(diagnostics: Iterable[Diagnostic], source: SourceFile, errors: Errors) -> Iterator[OfferedFix]:
-    """Yield the fixes of these diagnostics about a text that leave fewer errors in it."""
+def fixes_of_errors(diagnostics: Iterable[Diagnostic], source: SourceFile, errors: ErrorFinder) -> Iterator[OfferedFix]:
+    """Yield those fixes of the diagnostics that leave fewer errors in the text.
+
+    Only diagnostics about ``source`` count; ``errors`` checks the text before and after each fix.
+    """
     candidates = [
         OfferedFix(diagnostic, fix)
-        for diagnostic in islice(diagnostics, _MOST)
+        for diagnostic in islice(diagnostics, _MOST_ERRORS)
         if _is_in(source, diagnostic)
         for fix in diagnostic.fixes
     ]
@@ -62,7 +68,7 @@ def of_errors(diagnostics: Iterable[Diagnostic], source: SourceFile, errors: Err
         return
     before = _count_errors(source, errors)
     for offer in candidates:
-        if _is_fewer(_count_errors(after(source, offer.fix.edits), errors), before):
+        if _is_fewer(_count_errors(apply_edits(source, offer.fix.edits), errors), before):
             yield offer
 
 
@@ -70,16 +76,16 @@ def _is_in(source: SourceFile, diagnostic: Diagnostic) -> bool:
     return bool(diagnostic.labels) and diagnostic.labels[0].source == source
 
 
-def _count_errors(source: SourceFile, errors: Errors) -> tuple[int, Counter[str]]:
+def _count_errors(source: SourceFile, errors: ErrorFinder) -> tuple[int, Counter[str]]:
     """Return the number of syntax errors, and a count of all errors by code."""
     syntax_errors, diagnostics = errors(source)
     return len(syntax_errors), Counter(error.code for error in diagnostics if error.severity == "error")
 
 
 def _is_fewer(now: tuple[int, Counter[str]], before: tuple[int, Counter[str]]) -> bool:
-    """Whether fewer errors are left.
+    """Whether there are fewer errors ``now`` than ``before``.
 
-    With as many syntax errors as before, no code may have more errors than before. With fewer
-    syntax errors, more of the text is parsed, so new errors of other kinds may appear.
+    If the number of syntax errors is the same, no code may have more errors than before. If there
+    are fewer syntax errors, more of the text is parsed, so new errors of other kinds may appear.
     """
     return now[0] < before[0] or (now[0] == before[0] and now[1] < before[1])

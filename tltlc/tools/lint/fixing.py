@@ -14,71 +14,71 @@ from tltlc.io.limits import WORK
 from tltlc.pipeline import CompileOptions
 from tltlc.tools.lint.rule import LintFinding
 from tltlc.tools.lint.run import findings, view_of
-from tltlc.tools.lint.scopes import after, keeping_scopes
+from tltlc.tools.lint.scopes import apply_edits, preserve_scopes
 
 _MOST_ROUNDS = 100
-"""A limit that no real file reaches: every round removes something."""
+"""No real file needs this many rounds: each round removes something."""
 
 
 @record
-class Fixed:
+class FixedFile:
     """A text after all fixes.
 
-    ``fixed`` are the diagnostics that were fixed, each with its place in the text where it was
-    found. ``left`` are the findings that remain.
+    ``fixed`` are the diagnostics that were fixed. Their labels point into the text in which each was
+    found. ``remaining`` are the findings in ``source``.
     """
 
     source: SourceFile
     fixed: tuple[Diagnostic, ...]
-    left: tuple[LintFinding, ...]
+    remaining: tuple[LintFinding, ...]
 
 
 def fix(
     source: SourceFile,
     options: CompileOptions | None = None,
     levels: Mapping[str, str] = EMPTY,
-    elsewhere: Container[str] = frozenset(),
-) -> Fixed:
+    used_elsewhere: Container[str] = frozenset(),
+) -> FixedFile:
     """Return a file with all fixes applied, repeated until nothing changes.
 
-    ``levels`` is as in :func:`tltlc.tools.lint.run.levelled`, ``elsewhere`` as in
+    ``levels`` is as in :func:`tltlc.tools.lint.run.apply_levels`, ``used_elsewhere`` as in
     :func:`tltlc.tools.lint.run.lint`.
 
     Errors: the same as :func:`tltlc.tools.lint.run.lint`.
     """
 
-    def linted(text: SourceFile) -> tuple[Module, tuple[LintFinding, ...]]:
-        view = replace(view_of(text, options or CompileOptions()), elsewhere=elsewhere)
+    def lint_text(text: SourceFile) -> tuple[Module, tuple[LintFinding, ...]]:
+        view = replace(view_of(text, options or CompileOptions()), used_elsewhere=used_elsewhere)
         return view.module, findings(view, levels)
 
-    module, left = linted(source)
+    module, remaining = lint_text(source)
     fixed: list[Diagnostic] = []
     for _ in range(_MOST_ROUNDS):
-        edited, applied = _applied(module, left)
+        edited, applied = _apply_once(module, remaining)
         if not applied:
             break
         try:
-            module, left = linted(edited)
+            module, remaining = lint_text(edited)
         except TltlError:
             # These fixes break the file, so discard them and keep the text before them.
             break
         fixed += applied
-    return Fixed(module.source, tuple(fixed), left)
+    return FixedFile(module.source, tuple(fixed), remaining)
 
 
-def _applied(module: Module, left: tuple[LintFinding, ...]) -> tuple[SourceFile, list[Diagnostic]]:
-    """Apply all fixes that do not overlap and do not change what comments apply to.
+def _apply_once(module: Module, findings: tuple[LintFinding, ...]) -> tuple[SourceFile, list[Diagnostic]]:
+    """Apply all fixes that neither overlap nor change what ``allow`` comments apply to.
 
     Returns the new text and the diagnostics that were fixed.
     """
-    fixable = _without_overlaps([finding for finding in left if finding.fix])
+    fixable = _without_overlaps([finding for finding in findings if finding.fix])
     if not fixable:
         return module.source, []
     if commented_spans(module):
-        applied, edits = _keeping_scopes(module, fixable)
+        applied, edits = _fixable_together(module, fixable)
     else:
         applied, edits = fixable, _edits(fixable)
-    return after(module.source, edits), [finding.diagnostic for finding in applied]
+    return apply_edits(module.source, edits), [finding.diagnostic for finding in applied]
 
 
 def _without_overlaps(findings: Iterable[LintFinding]) -> list[LintFinding]:
@@ -110,25 +110,24 @@ def _edits(findings: Iterable[LintFinding]) -> tuple[Edit, ...]:
     return tuple(dict.fromkeys(edit for finding in findings for edit in finding.fix))
 
 
-def _keeping_scopes(module: Module, findings: Sequence[LintFinding]) -> tuple[list[LintFinding], tuple[Edit, ...]]:
-    """Return the findings that can be fixed together, and their edits.
+def _fixable_together(module: Module, findings: Sequence[LintFinding]) -> tuple[list[LintFinding], tuple[Edit, ...]]:
+    """Return the findings whose fixes together do not change what comments apply to, and their edits.
 
-    Their fixes do not change what comments apply to. This tries all findings at once and then
-    halves, because most files have few findings that cannot be fixed. It stops after ``WORK["fixes
-    tried"]`` attempts.
+    The search tries all findings at once and then halves, because most files have few findings that
+    cannot be fixed. It stops after ``WORK["fixes tried"]`` attempts.
     """
     applied: list[LintFinding] = []
     edits: tuple[Edit, ...] = ()
-    waiting = [list(findings)]
+    pending = [list(findings)]
     for _ in range(WORK["fixes tried"]):
-        if not waiting:
+        if not pending:
             break
-        part = waiting.pop()
-        together = keeping_scopes(module, _edits([*applied, *part]))
+        part = pending.pop()
+        together = preserve_scopes(module, _edits([*applied, *part]))
         if together is not None:
             applied += part
             edits = together
         elif len(part) > 1:
             half = len(part) // 2
-            waiting += [part[half:], part[:half]]
+            pending += [part[half:], part[:half]]
     return applied, edits

@@ -6,28 +6,31 @@ from collections.abc import Iterator
 
 from tltlc.grammar import walk
 from tltlc.grammar.tree import BinaryExpr, Quantified, Unary
-from tltlc.tools.lint.file_view import Expression, SpecView, inner
+from tltlc.tools.lint.file_view import Expression, SpecView, without_brackets
 
 
 def goals(spec: SpecView) -> Iterator[Expression]:
     """Yield each step of ``reach`` and ``then``, and each operand of ``eventually``.
 
-    Negated expressions have no goals.
+    Expressions inside a negation, and the conditions of implications, are left out.
     """
     for clause, value in spec.clauses("reach", "keep", "require"):
         if clause.kind == "reach":
             for step in walk.operands(value.tree, "then"):
-                yield value.at(step)
-                yield from _inside(value.at(step))
+                yield value.with_tree(step)
+                yield from _goals_inside(value.with_tree(step))
         else:
-            yield from _inside(value)
+            yield from _goals_inside(value)
 
 
 def conjuncts(goal: Expression) -> list[Expression]:
-    """Return the conjuncts of a goal, in order; for `all`, the conjuncts for each entity."""
+    """Return the conjuncts of a goal, in order.
+
+    For `all`, these are the conjuncts of the body for each entity.
+    """
     parts: list[Expression] = []
     for tree in walk.conjuncts(goal.tree):
-        part = goal.at(inner(tree))
+        part = goal.with_tree(without_brackets(tree))
         if isinstance(part.tree, Quantified) and part.tree.all:
             parts += [conjunct for body in part.children() for conjunct in conjuncts(body)]
         else:
@@ -35,20 +38,20 @@ def conjuncts(goal: Expression) -> list[Expression]:
     return parts
 
 
-def is_of_implications(value: Expression) -> bool:
+def consists_of_implications(value: Expression) -> bool:
     """Whether an expression consists of implications only.
 
-    As a goal it would be met as soon as the conditions of the implications do not hold.
+    As a goal, such an expression is met as soon as the conditions of its implications do not hold.
     """
     trees = (part.tree for part in conjuncts(value))
     return all(isinstance(tree, BinaryExpr) and tree.op == "implies" for tree in trees)
 
 
-def _inside(value: Expression) -> Iterator[Expression]:
+def _goals_inside(value: Expression) -> Iterator[Expression]:
     """Yield the goals in an expression, outer before inner. Does not recurse."""
-    waiting = [value]
-    while waiting:
-        part = waiting.pop()
+    pending = [value]
+    while pending:
+        part = pending.pop()
         tree = part.tree
         if isinstance(tree, Unary) and tree.op == "not":
             continue
@@ -56,8 +59,8 @@ def _inside(value: Expression) -> Iterator[Expression]:
         if isinstance(tree, Unary) and tree.op == "F":
             yield from operands
         elif isinstance(tree, BinaryExpr) and tree.op == "then":
-            operands = [part.at(step) for step in walk.operands(tree, "then")]
+            operands = [part.with_tree(step) for step in walk.operands(tree, "then")]
             yield from operands
         elif isinstance(tree, BinaryExpr) and tree.op == "implies":
             operands = operands[1:]
-        waiting += reversed(operands)
+        pending += reversed(operands)

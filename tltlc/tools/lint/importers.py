@@ -10,18 +10,19 @@ from typing import Final
 
 from tltlc.core.record import record
 
-_PIECE: Final = re.compile(r'//[^\n]*|"(?P<text>[^"\n]*)"?|(?P<name>[A-Za-z_][\w.]*)')
-"""A comment, a quoted text or a name.
+_TOKEN: Final = re.compile(r'//[^\n]*|"(?P<text>[^"\n]*)"?|(?P<name>[A-Za-z_][\w.]*)')
+"""Matches a comment, a quoted text or a name.
 
-Each match consumes all of its characters, so nothing is scanned twice.
+Each match consumes all of its characters, so the scan takes linear time.
 """
 
 
 @record
 class ImporterNames:
-    """The imports of a file and every name outside its comments.
+    """The imports of a file, and every name outside its comments.
 
-    An import is stored as the last part of its name, without ``.tltl``.
+    ``stem`` is the name of the file without folder and ``.tltl``. ``imports`` has the stems of the
+    files that it imports. ``names`` is empty if the file imports nothing.
     """
 
     stem: str
@@ -30,33 +31,30 @@ class ImporterNames:
 
 
 @record
-class Used:
-    """The names that files use, and every suffix of a dotted name: ``near`` of ``game.near``.
+class UsedNames:
+    """A container of names and of all suffixes of dotted names: ``near`` for ``game.near``.
 
-    ``backwards`` are the dotted names, each reversed, in sorted order. There are too many suffixes
-    to list them all.
+    ``reversed_names`` has each dotted name spelt backwards, in sorted order. A binary search there
+    finds a suffix, so the suffixes, which may be many, are not stored.
     """
 
     names: frozenset[str]
-    backwards: tuple[str, ...]
+    reversed_names: tuple[str, ...]
 
     def __contains__(self, name: object) -> bool:
         if not isinstance(name, str) or name in self.names:
             return name in self.names
         reversed_suffix = f".{name}"[::-1]
-        place = bisect_left(self.backwards, reversed_suffix)
-        return place < len(self.backwards) and self.backwards[place].startswith(reversed_suffix)
+        place = bisect_left(self.reversed_names, reversed_suffix)
+        return place < len(self.reversed_names) and self.reversed_names[place].startswith(reversed_suffix)
 
 
-def words(path: str, text: str) -> ImporterNames:
-    """Return the words of a file, which need not compile.
-
-    If the file imports nothing, its names do not matter and are left out.
-    """
+def importer_names(path: str, text: str) -> ImporterNames:
+    """Return the imports and names in the text of the file at ``path``. It need not compile."""
     targets: set[str] = set()
     names: set[str] = set()
     previous = ""
-    for quoted, name in _pieces(text):
+    for quoted, name in _tokens(text):
         if previous == "import":
             targets.add(_stem(quoted or name.replace(".", "/")))
         names.add(name)
@@ -64,25 +62,25 @@ def words(path: str, text: str) -> ImporterNames:
     return ImporterNames(_stem(path), frozenset(targets), frozenset(names) if targets else frozenset())
 
 
-def used_elsewhere(path: str, others: Iterable[ImporterNames]) -> Container[str]:
-    """Return every name in those ``others`` that import this file.
+def names_used_elsewhere(path: str, files: Iterable[ImporterNames]) -> Container[str]:
+    """Return every name in those ``files`` that import the file at ``path``.
 
-    This includes files that import it through others. Files with the same name in different folders
-    are not distinguished, so the result may have names that are not really used from this file.
+    Indirect imports count, too. Files with the same name in different folders are not
+    distinguished, so the result may contain names that do not come from this file.
     """
-    remaining, reached = list(others), {_stem(path)}
+    remaining, reached = list(files), {_stem(path)}
     importers: list[ImporterNames] = []
     while importing := [file for file in remaining if file.imports & reached]:
         remaining = [file for file in remaining if not file.imports & reached]
         reached |= {file.stem for file in importing}
         importers += importing
     names = frozenset().union(*(file.names for file in importers))
-    return Used(names, tuple(sorted(name[::-1] for name in names if "." in name)))
+    return UsedNames(names, tuple(sorted(name[::-1] for name in names if "." in name)))
 
 
-def _pieces(text: str) -> Iterator[tuple[str, str]]:
-    """Yield the quoted texts and the names of a file, in order; one of each pair is empty."""
-    for match in _PIECE.finditer(text):
+def _tokens(text: str) -> Iterator[tuple[str, str]]:
+    """Yield pairs of a quoted text and a name, in order; one of the two is empty."""
+    for match in _TOKEN.finditer(text):
         if match.lastgroup:
             yield match["text"] or "", match["name"] or ""
 

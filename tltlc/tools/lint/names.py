@@ -12,17 +12,17 @@ _FORMULAS = ("reach", "keep", "avoid", "require")
 
 
 @record
-class Mentioned:
-    """The names that a file mentions itself, and the names that other files use from it."""
+class MentionedNames:
+    """The names that a file mentions itself (``here``), and those that other files use from it."""
 
     here: frozenset[str]
-    elsewhere: Container[str]
+    used_elsewhere: Container[str]
 
     def __contains__(self, name: object) -> bool:
-        return name in self.here or name in self.elsewhere
+        return name in self.here or name in self.used_elsewhere
 
 
-def mentions(module: Module) -> frozenset[str]:
+def mentioned_names(module: Module) -> frozenset[str]:
     """Return every name that occurs in an expression of a module, as it is written there."""
     return frozenset(name for declaration in module.declarations for name in _in_declaration(declaration))
 

@@ -1,6 +1,6 @@
-"""Find the source files that may import the given files.
+"""Find the source files that may import given files.
 
-These are the files in the same folder tree and in the folders above.
+They are in the same folder tree or in a folder above.
 """
 
 from __future__ import annotations
@@ -15,19 +15,22 @@ _ROOTS: Final = ("tltl.toml", ".git")
 
 
 def neighbours(paths: Iterable[str]) -> dict[Path, str]:
-    """Return the texts of the given files and of their neighbours.
+    """Return the texts of the given files and of their neighbours, by resolved path.
 
-    The neighbours are the files in the same trees and in the folders above. Files that cannot be
-    read are left out. The root of a tree is the folder of the project file or of the repository,
-    else the current folder, else the file's own folder.
+    The neighbours are the source files in the same folder trees and in the folders above. The root
+    of a tree is the folder of the project file or of the repository. If there is neither, it is the
+    current folder, or the file's own folder if that is not below the current folder. Files that
+    cannot be read are left out.
     """
     from tltlc.diagnostics.diagnostic import TltlError
     from tltlc.io.files import read_source
 
     files = {Path(os.path.realpath(path)) for path in paths}
     folders = {file.parent for file in files}
-    inside = {file for root in {_root(folder) for folder in folders} for file in _below(root)}
-    above = {file for folder in {parent for child in folders for parent in child.parents} for file in _in(folder)}
+    inside = {file for root in {_root(folder) for folder in folders} for file in _sources_below(root)}
+    above = {
+        file for folder in {parent for child in folders for parent in child.parents} for file in _sources_in(folder)
+    }
     texts: dict[Path, str] = {}
     for file in sorted(files | inside | above):
         try:
@@ -45,15 +48,15 @@ def _root(folder: Path) -> Path:
     return here if here in folder.parents else folder
 
 
-def _below(root: Path) -> Iterator[Path]:
+def _sources_below(root: Path) -> Iterator[Path]:
     from tltlc.io.files import walk
 
     for folder, folders, _ in walk(root):
         folders[:] = [name for name in folders if not name.startswith(".") and name != "node_modules"]
-        yield from _in(Path(folder))
+        yield from _sources_in(Path(folder))
 
 
-def _in(folder: Path) -> list[Path]:
+def _sources_in(folder: Path) -> list[Path]:
     try:
         return [file for file in folder.glob("*.tltl") if file.is_file()]
     except OSError:

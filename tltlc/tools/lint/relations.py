@@ -21,23 +21,24 @@ _MOST_PAIRS: Final = 24
 _TRIES: Final = 40
 """Limits that keep lint rules fast.
 
-They limit the nodes of an expression, the pairs of atoms, and the points that are searched before
-the proof is tried.
+They are the most nodes of an expression, the most pairs of atoms, and the most points that are
+searched before a proof is tried.
 """
 
 
 @record
-class _Declared:
+class _Declarations:
     signals: tuple[Signal, ...]
     params: tuple[Param, ...]
 
 
 def relations(spec: SpecView, names: Collection[str]) -> tuple[Conjunct, ...]:
-    """Return which of these atoms, or their negations, exclude each other, as parts of the spec.
+    """Return the proved relations between these atoms, as clauses that can be added to the spec.
 
-    This follows from the ranges of signals. Every relation in the result is proved.
+    Each has the form ``G !(p & q)``, where p and q are atoms or negated atoms over common signals
+    that never hold together.
     """
-    formulas = (always(not_(pair)) for pair in _pairs(spec, names))
+    formulas = (always(not_(pair)) for pair in _impossible_pairs(spec, names))
     return tuple(Conjunct(formula, spec.spec.source, spec.spec.name_span) for formula in formulas)
 
 
@@ -45,24 +46,25 @@ def is_impossible(spec: SpecView) -> bool:
     """Whether no trace satisfies a spec, considering the proved relations between its atoms."""
     if spec.fspa.states[0].verdict == "violated":
         return True
-    known = relations(spec, [candidate.name for candidate in spec.fspa.atoms])
-    return bool(known) and spec.decision((*spec.spec.parts, *known), spec.spec)
+    proved = relations(spec, [candidate.name for candidate in spec.fspa.atoms])
+    return bool(proved) and spec.decision((*spec.spec.parts, *proved), spec.spec)
 
 
-def _pairs(spec: SpecView, names: Collection[str]) -> Iterator[Formula]:
-    declared = _Declared(spec.fspa.signals, spec.fspa.params)
+def _impossible_pairs(spec: SpecView, names: Collection[str]) -> Iterator[Formula]:
+    """Yield conjunctions of two atoms, or negations, that are proved never to hold."""
+    declared = _Declarations(spec.fspa.signals, spec.fspa.params)
     simple = [candidate for candidate in spec.fspa.atoms if candidate.name in names and _is_simple(candidate)]
-    pairs = [pair for pair in combinations(simple, 2) if _reads(pair[0]) & _reads(pair[1])]
+    pairs = [pair for pair in combinations(simple, 2) if _signals(pair[0]) & _signals(pair[1])]
     for pair in pairs[:_MOST_PAIRS]:
         for signs in product((True, False), repeat=2):
-            if _never_meet(pair, signs, declared):
+            if _never_hold_together(pair, signs, declared):
                 both = (atom(member.name) for member in pair)
                 yield and_(*(formula if holds else not_(formula) for formula, holds in zip(both, signs, strict=True)))
 
 
 @lru_cache(maxsize=1024)
-def _never_meet(pair: tuple[Atom, Atom], signs: tuple[bool, ...], declared: _Declared) -> bool:
-    """Whether it is proved that two atoms never have these truth values at one step."""
+def _never_hold_together(pair: tuple[Atom, Atom], signs: tuple[bool, ...], declared: _Declarations) -> bool:
+    """Whether two atoms provably never have these truth values at one step."""
     conditions = tuple(
         Condition(">" if holds else "<=", (member.expression, Const(0.0)))
         for member, holds in zip(pair, signs, strict=True)
@@ -71,10 +73,10 @@ def _never_meet(pair: tuple[Atom, Atom], signs: tuple[bool, ...], declared: _Dec
     return not can_be("positive", both, declared, _TRIES) and is_always("not positive", both, declared)
 
 
-def _is_simple(of: Atom) -> bool:
-    """Whether an expression is small and linear in signals and params, like most comparisons."""
+def _is_simple(candidate: Atom) -> bool:
+    """Whether the expression of an atom is small and linear in signals and params."""
     count = 0
-    for count, node in enumerate(nodes(of.expression), start=1):
+    for count, node in enumerate(nodes(candidate.expression), start=1):
         if count > _MOST_NODES or isinstance(node, When) or (isinstance(node, Op) and not _is_linear(node)):
             return False
     return count > 0
@@ -87,5 +89,5 @@ def _is_linear(node: Op) -> bool:
     return node.op in ("+", "-", "neg", "min", "max", "clamp", "abs")
 
 
-def _reads(of: Atom) -> set[str]:
-    return {node.name for node in nodes(of.expression) if isinstance(node, SignalNode)}
+def _signals(candidate: Atom) -> set[str]:
+    return {node.name for node in nodes(candidate.expression) if isinstance(node, SignalNode)}

@@ -1,6 +1,6 @@
 """Compute the spans to delete when a declaration, a clause or a list item is removed.
 
-The spans are chosen so that no odd gap is left.
+The spans include the spaces and empty lines that would be left over.
 """
 
 from __future__ import annotations
@@ -12,10 +12,11 @@ from tltlc.grammar.mistakes.insertion import documentation_start
 from tltlc.grammar.tree import Comment
 
 
-def without(source: SourceFile, span: Span, comments: Sequence[Comment] = ()) -> Span:
-    """Return the span to delete so that ``span`` goes without leaving a gap.
+def removal_span(source: SourceFile, span: Span, comments: Sequence[Comment] = ()) -> Span:
+    """Return the span to delete in order to remove a declaration, clause or comment.
 
-    It includes the documentation above, and the end of the line if nothing else is on the line.
+    The result includes the documentation above ``span``. If nothing else is on its lines, it also
+    includes the line ends, and one of two empty lines around. ``comments`` are those of the module.
     """
     text = source.text
     start, end = documentation_start(source, span.start, comments), span.end
@@ -35,10 +36,10 @@ def without(source: SourceFile, span: Span, comments: Sequence[Comment] = ()) ->
     return Span(line, end)
 
 
-def item(spans: Sequence[Span], index: int, comments: Sequence[Comment]) -> tuple[Span, ...]:
-    """Return the span of a list item and one comma next to it; the list has at least two items.
+def item_removal_spans(spans: Sequence[Span], index: int, comments: Sequence[Comment]) -> tuple[Span, ...]:
+    """Return the span that removes an item from a list of at least two items, with one comma.
 
-    Returns an empty tuple if that would delete a comment.
+    The tuple is empty if removing the item would delete a comment.
     """
     removed = Span(spans[index - 1].end, spans[index].end) if index else Span(spans[0].start, spans[1].start)
     return () if any(removed.start <= comment.span.start < removed.end for comment in comments) else (removed,)

@@ -15,9 +15,10 @@ if TYPE_CHECKING:
 
 @record
 class Remark:
-    """The message of a rule, with fields as in :class:`~tltlc.diagnostics.diagnostic.Diagnostic`.
+    """What a rule reports, with fields as in :class:`~tltlc.diagnostics.diagnostic.Diagnostic`.
 
-    The fix, if there is one, does not change the meaning of any spec in the file.
+    The runner adds the code and the severity of the rule. A fix must not change the meaning of any
+    spec in the file.
     """
 
     title: str
@@ -30,9 +31,9 @@ class Remark:
 class LintRule:
     """A lint rule. The page of ``code`` says what it finds, what to write instead, and why.
 
-    ``check`` is a pure function from a file to remarks. ``supersedes`` are the codes of less
-    specific diagnostics. Such a diagnostic is left out if one of its labels covers a remark of this
-    rule.
+    ``check`` is a pure function from a file to remarks. ``supersedes`` lists codes of less specific
+    diagnostics: such a diagnostic is dropped if one of its labels covers the first label of a
+    remark of this rule.
     """
 
     code: str
@@ -43,19 +44,16 @@ class LintRule:
 
 @record
 class LintFinding:
-    """A diagnostic of the linter."""
+    """A diagnostic that the linter reports: of a rule, of the compiler, or about a comment."""
 
     diagnostic: Diagnostic
 
     @property
     def fix(self) -> tuple[Edit, ...]:
-        """The edits of the first safe fix; empty if there is none.
-
-        They do not change what any spec asks for.
-        """
+        """The edits of the first safe fix, which changes the meaning of no spec; empty if none."""
         return next((fix.edits for fix in self.diagnostic.fixes if fix.applicability == "safe"), ())
 
 
-def removal(title: str, spans: Iterable[Span]) -> Fix:
-    """Return the safe fix that removes these spans."""
+def removal_fix(title: str, spans: Iterable[Span]) -> Fix:
+    """Return a safe fix that deletes these spans."""
     return Fix(title, tuple(Edit(span, "") for span in spans), "safe")

@@ -10,67 +10,70 @@ from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.grammar.tree import SpecDecl
 from tltlc.pipeline import CompileOptions, Session
-from tltlc.tools.lint.allow import silenced
+from tltlc.tools.lint.allow import apply_allow_comments
 from tltlc.tools.lint.file_view import SpecView, View
 from tltlc.tools.lint.rule import LintFinding, LintRule
 from tltlc.tools.lint.rules import rules
 
-_COUNTS: Final = {"note": 0, "warning": 1, "error": 2}
+_RANKS: Final = {"note": 0, "warning": 1, "error": 2}
 
 
 def lint(
     source: SourceFile,
     options: CompileOptions | None = None,
-    elsewhere: Container[str] = frozenset(),
+    used_elsewhere: Container[str] = frozenset(),
     levels: Mapping[str, str] = EMPTY,
 ) -> tuple[LintFinding, ...]:
     """Return the findings about a file that compiles, in the order of its text.
 
     They include the compiler's own warnings. All specs of the file are checked, even if the options
-    name only some. ``elsewhere`` has the names that other files may use from this one.
-    :func:`levelled` explains ``levels``.
+    name only some. ``used_elsewhere`` contains the names of this file that other files may use.
+    :func:`apply_levels` explains ``levels``.
 
     Errors: :class:`TltlError` with all diagnostics, as in :func:`tltlc.pipeline.compile_source`.
     """
-    return findings(replace(view_of(source, options or CompileOptions()), elsewhere=elsewhere), levels)
+    return findings(replace(view_of(source, options or CompileOptions()), used_elsewhere=used_elsewhere), levels)
 
 
 def findings(view: View, levels: Mapping[str, str] = EMPTY) -> tuple[LintFinding, ...]:
-    """Return the findings of the compiler and the rules in the order of the text.
+    """Return the findings of the compiler and of all rules, in the order of the text.
 
-    Findings that comments or ``levels`` silence are left out. A finding supersedes another one only
-    if it is shown itself and its severity is at least as high.
+    Findings that comments or ``levels`` silence are left out. Only a finding that is not silenced
+    supersedes others, and only those whose severity is not higher than its own.
     """
-    all_findings = [LintFinding(diagnostic) for diagnostic in view.said]
+    all_findings = [LintFinding(diagnostic) for diagnostic in view.diagnostics]
     supersedes: dict[str, tuple[str, ...]] = {}
     for rule in rules():
         # A rule looks at the body of a quantifier once for each entity, and reports the same for all.
-        all_findings += dict.fromkeys(_found(rule, view))
+        all_findings += dict.fromkeys(_rule_findings(rule, view))
         supersedes[rule.code] = rule.supersedes
-    shown = levelled(silenced(view, all_findings), levels)
+    unsilenced = apply_levels(apply_allow_comments(view, all_findings), levels)
     superseding: dict[str, list[Diagnostic]] = {}
-    for finding in shown:
+    for finding in unsilenced:
         for code in supersedes.get(finding.diagnostic.code, ()):
             superseding.setdefault(code, []).append(finding.diagnostic)
     remaining = [
         finding
-        for finding in shown
+        for finding in unsilenced
         if not _is_superseded(finding.diagnostic, superseding.get(finding.diagnostic.code, ()))
     ]
-    return tuple(sorted(remaining, key=lambda finding: _place(finding, view.source)))
+    return tuple(sorted(remaining, key=lambda finding: _sort_key(finding, view.source)))
 
 
-def levelled(all_findings: Iterable[LintFinding], levels: Mapping[str, str]) -> tuple[LintFinding, ...]:
+def apply_levels(all_findings: Iterable[LintFinding], levels: Mapping[str, str]) -> tuple[LintFinding, ...]:
     """Return the findings with their severities set by ``levels``, which maps codes to levels.
 
     Findings with the level ``allow`` are left out.
     """
-    shown = [finding for finding in all_findings if levels.get(finding.diagnostic.code) != "allow"]
-    return tuple(_at(finding, levels.get(finding.diagnostic.code, finding.diagnostic.severity)) for finding in shown)
+    reported = [finding for finding in all_findings if levels.get(finding.diagnostic.code) != "allow"]
+    return tuple(
+        _with_severity(finding, levels.get(finding.diagnostic.code, finding.diagnostic.severity))
+        for finding in reported
+    )
 
 
 def view_of(source: SourceFile, options: CompileOptions) -> View:
-    """Compile all specs of a file. The errors are the same as in :func:`lint`."""
+    """Compile all specs of a file, and return the view for the rules. Errors are as in :func:`lint`."""
     session = Session(source, replace(options, specs=()))
     automata, module, resolved = session.automata, session.module, session.resolution
     declared = {
@@ -83,27 +86,29 @@ def view_of(source: SourceFile, options: CompileOptions) -> View:
     return View(module, resolved.env, resolved.modules, specs, session.reported, program=session.program)
 
 
-def _at(finding: LintFinding, severity: str) -> LintFinding:
+def _with_severity(finding: LintFinding, severity: str) -> LintFinding:
     return replace(finding, diagnostic=replace(finding.diagnostic, severity=severity))
 
 
-def _found(rule: LintRule, view: View) -> Iterator[LintFinding]:
+def _rule_findings(rule: LintRule, view: View) -> Iterator[LintFinding]:
     for remark in rule.check(view):
         fixes = (remark.fix,) if remark.fix else ()
         yield LintFinding(Diagnostic(rule.code, remark.title, remark.labels, remark.help, rule.severity, fixes))
 
 
 def _is_superseded(diagnostic: Diagnostic, superseding: Iterable[Diagnostic]) -> bool:
-    """Whether a superseding diagnostic points at a place that a label of this one covers.
+    """Whether a label of the diagnostic covers the first label of one in ``superseding``.
 
-    The superseding diagnostic must have at least the same severity.
+    Only diagnostics with at least the same severity count.
     """
-    places = [other.labels[0] for other in superseding if _COUNTS[other.severity] >= _COUNTS[diagnostic.severity]]
+    places = [
+        candidate.labels[0] for candidate in superseding if _RANKS[candidate.severity] >= _RANKS[diagnostic.severity]
+    ]
     labels = diagnostic.labels
     return any(label.source == place.source and label.span.covers(place.span) for label in labels for place in places)
 
 
-def _place(finding: LintFinding, source: SourceFile) -> tuple[bool, int, str]:
+def _sort_key(finding: LintFinding, source: SourceFile) -> tuple[bool, int, str]:
     """Return the sort key of a finding. Findings in imported files come first."""
     label = finding.diagnostic.labels[0] if finding.diagnostic.labels else None
     return label is not None and label.source == source, label.span.start if label else 0, finding.diagnostic.code

@@ -12,15 +12,15 @@ from tltlc.diagnostics.diagnostic import Edit
 from tltlc.grammar.allow_comments import commented_spans
 from tltlc.grammar.parser import parse
 from tltlc.grammar.tree import Comment, Module
-from tltlc.tools.lint.removal import without
+from tltlc.tools.lint.removal import removal_span
 
 T = TypeVar("T")
 _Places = tuple[Span, ...] | None
-"""The statements that a comment applies to. None is the whole file."""
+"""The spans of the statements that a comment applies to. None is the whole file."""
 
 
-def after(source: SourceFile, edits: Iterable[Edit]) -> SourceFile:
-    """Return the text after edits that do not overlap."""
+def apply_edits(source: SourceFile, edits: Iterable[Edit]) -> SourceFile:
+    """Return the text with the edits applied. The edits must not overlap."""
     pieces: list[str] = []
     place = 0
     for edit in sorted(edits, key=lambda edit: edit.span.start):
@@ -29,47 +29,47 @@ def after(source: SourceFile, edits: Iterable[Edit]) -> SourceFile:
     return SourceFile(source.name, "".join([*pieces, source.text[place:]]))
 
 
-def keeping_scopes(module: Module, edits: Sequence[Edit]) -> tuple[Edit, ...] | None:
-    """Return the edits, adjusted so that comments that stay apply to the same statements.
+def preserve_scopes(module: Module, edits: Sequence[Edit]) -> tuple[Edit, ...] | None:
+    """Return the edits, adjusted so that each remaining comment applies to the same statements.
 
-    An edit leaves out comments that still apply to something: to the whole file, or to another
-    statement of the line. Comments that apply only to removed statements are removed, too.
+    Comments that apply only to removed statements are removed, too. Other comments are cut out of
+    the edits: they apply to the whole file, or to another statement on the same line.
 
-    Returns None if a comment that stays would apply to other statements than before. For example,
+    Returns None if a remaining comment would apply to other statements than before. For example,
     when the first declaration of a file is removed, a comment on the next one can become a comment
     on the whole file.
     """
     scopes = commented_spans(module)
-    known, changes = frozenset(edits), _Changes(edits)
+    known_edits, offsets = frozenset(edits), _Offsets(edits)
     kept = [
         comment.span
-        for comment, applies in _of_each(scopes, lambda places: places is None or any(map(changes.keep, places)))
+        for comment, applies in _map_places(scopes, lambda places: places is None or any(map(offsets.keeps, places)))
         # An edit may intend to remove the comment itself.
-        if applies and Edit(without(module.source, comment.span), "") not in known
+        if applies and Edit(removal_span(module.source, comment.span), "") not in known_edits
     ]
-    edits = tuple(part for edit in edits for part in _around(module.source.text, edit, kept))
-    known, changes = frozenset(edits), _Changes(edits)
-    orphans = _of_each(scopes, lambda places: bool(places) and not any(map(changes.keep, places or ())))
+    edits = tuple(part for edit in edits for part in _without_comments(module.source.text, edit, kept))
+    known_edits, offsets = frozenset(edits), _Offsets(edits)
+    orphans = _map_places(scopes, lambda places: bool(places) and not any(map(offsets.keeps, places or ())))
     spans = [comment.span for comment, is_orphan in orphans if is_orphan]
-    removals = [Edit(without(module.source, span), "") for span in spans if changes.keep(span)]
-    all_edits = (*edits, *(removal for removal in removals if removal not in known))
-    all_changes = _Changes(all_edits)
-    fixed, _ = parse(after(module.source, all_edits))
+    removals = [Edit(removal_span(module.source, span), "") for span in spans if offsets.keeps(span)]
+    all_edits = (*edits, *(removal for removal in removals if removal not in known_edits))
+    final_offsets = _Offsets(all_edits)
+    fixed, _ = parse(apply_edits(module.source, all_edits))
     # Equal sets get equal numbers, so that the scopes of many comments on one line compare fast.
     numbers: dict[frozenset[int] | None, int] = {}
-    starts_before = _of_each(scopes, lambda places: _number(all_changes.starts(places), numbers))
-    starts_now = _of_each(commented_spans(fixed), lambda places: _number(_starts(places), numbers))
+    starts_before = _map_places(scopes, lambda places: _number(final_offsets.starts(places), numbers))
+    starts_now = _map_places(commented_spans(fixed), lambda places: _number(_starts(places), numbers))
     before = {
-        all_changes.moved(comment.span.start): starts
+        final_offsets.new_offset(comment.span.start): starts
         for comment, starts in starts_before
-        if all_changes.keep(comment.span)
+        if final_offsets.keeps(comment.span)
     }
     now = {comment.span.start: starts for comment, starts in starts_now}
     return all_edits if now == before else None
 
 
-class _Changes:
-    """Maps offsets through edits that do not overlap."""
+class _Offsets:
+    """Maps offsets in the old text to offsets in the text after edits that do not overlap."""
 
     def __init__(self, edits: Sequence[Edit]) -> None:
         by_start = sorted((edit.span.start, edit.span.end) for edit in edits)
@@ -79,42 +79,43 @@ class _Changes:
         self._ends = [end for end, _ in by_end]
         self._shifts = [0, *accumulate(shift for _, shift in by_end)]
 
-    def keep(self, span: Span) -> bool:
-        """Whether the start of a span is kept."""
+    def keeps(self, span: Span) -> bool:
+        """Whether no edit removes the start of a span."""
         place = bisect_right(self._starts, span.start)
         return not place or self._reach[place - 1] <= span.start
 
-    def moved(self, offset: int) -> int:
-        """Return where an offset outside all edits is after them."""
+    def new_offset(self, offset: int) -> int:
+        """Return the new offset for an old offset outside all edits."""
         return offset + self._shifts[bisect_right(self._ends, offset)]
 
     def starts(self, places: Iterable[Span] | None) -> frozenset[int] | None:
-        """Return where the kept statements begin after the edits; None for the whole file."""
+        """Return the new offsets at which the kept statements begin; None for the whole file."""
         if places is None:
             return None
-        return frozenset(self.moved(place.start) for place in places if self.keep(place))
+        return frozenset(self.new_offset(place.start) for place in places if self.keeps(place))
 
 
-def _of_each(scopes: Sequence[tuple[Comment, _Places]], of: Callable[[_Places], T]) -> list[tuple[Comment, T]]:
-    """Return each comment with the result of a function on its places.
+def _map_places(scopes: Sequence[tuple[Comment, _Places]], function: Callable[[_Places], T]) -> list[tuple[Comment, T]]:
+    """Return each comment with the result of ``function`` on its places.
 
-    Comments on one line share their places, so the function runs only once for each line.
+    Comments on one line share one tuple of places, so the function runs only once for each line.
     """
     results: dict[int, T] = {}
     for _, places in scopes:
         if id(places) not in results:
-            results[id(places)] = of(places)
+            results[id(places)] = function(places)
     return [(comment, results[id(places)]) for comment, places in scopes]
 
 
 def _number(starts: frozenset[int] | None, numbers: dict[frozenset[int] | None, int]) -> int:
+    """Return the number of a set of starts; a new set gets the next number."""
     return numbers.setdefault(starts, len(numbers))
 
 
-def _around(text: str, edit: Edit, kept: Sequence[Span]) -> Iterator[Edit]:
-    """Yield an edit in parts that leave out the lines of ``kept`` comments.
+def _without_comments(text: str, edit: Edit, kept: Sequence[Span]) -> Iterator[Edit]:
+    """Yield the parts of an edit that are outside the lines of the ``kept`` comments.
 
-    ``kept`` is in order.
+    ``kept`` is sorted by position.
     """
     start = edit.span.start
     for index in range(bisect_left(kept, start, key=lambda span: span.start), len(kept)):

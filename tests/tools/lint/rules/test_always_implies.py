@@ -1,4 +1,4 @@
-"""TLT0435: an `always` before `implies` covers the left side only."""
+"""TLT0435: an `always` that covers only the left side of `implies`."""
 
 from __future__ import annotations
 
@@ -6,13 +6,13 @@ import re
 
 import pytest
 
-from tests.tools.lint.helpers import SIGNALS, codes, findings_in, marked
+from tests.tools.lint.helpers import SIGNALS, codes, findings_in, labelled_texts
 from tltlc.automaton.compare import are_equivalent
 from tltlc.pipeline import compile_text
 
 
 @pytest.mark.parametrize(
-    ("formula", "condition", "meant"),
+    ("formula", "condition", "correction"),
     [
         ("always a implies eventually b", "always a", "always (a implies eventually b)"),
         ("G a -> F b", "G a", "G (a -> F b)"),
@@ -21,12 +21,12 @@ from tltlc.pipeline import compile_text
         ("F c and (always a implies F b)", "always a", "always (a implies F b)"),
     ],
 )
-def test_an_always_that_ends_before_implies_is_reported(formula: str, condition: str, meant: str) -> None:
+def test_an_always_that_ends_before_implies_is_reported(formula: str, condition: str, correction: str) -> None:
     text = f"{SIGNALS}spec s = {formula}"
-    assert marked(text, "TLT0435") == [condition]
+    assert labelled_texts(text, "TLT0435") == [condition]
     (help_text,) = (finding.diagnostic.help for finding in findings_in(text) if finding.diagnostic.code == "TLT0435")
     suggestion, bracketed = re.findall("`([^`]*)`", help_text or "")
-    assert suggestion == meant
+    assert suggestion == correction
     # The suggestion is a different formula. With the brackets of the second suggestion, the formula is the
     # same and no longer reported.
     part = formula.partition("and (")[2].rstrip(")") or formula
@@ -49,5 +49,5 @@ def test_an_always_that_ends_before_implies_is_reported(formula: str, condition:
         "always a and (b implies c)",
     ],
 )
-def test_formulas_that_are_clear_are_not_reported(formula: str) -> None:
+def test_a_formula_with_brackets_or_without_such_an_always_is_not_reported(formula: str) -> None:
     assert "TLT0435" not in codes(f"{SIGNALS}spec s = {formula}")

@@ -1,11 +1,11 @@
-"""TLT0431: clauses that contradict each other through the values of signals."""
+"""TLT0431: clauses that contradict each other because of the ranges of signals."""
 
 from __future__ import annotations
 
 import pytest
 from hypothesis import given
 
-from tests.tools.lint.helpers import RANGES, marked_in_block, remarks
+from tests.tools.lint.helpers import RANGES, labelled_texts_in_block, spec_and_remarks
 from tests.tools.lint.strategies import RANGED, World, specs
 from tltlc.tools.lint.rules import apart_by_ranges
 
@@ -24,13 +24,15 @@ from tltlc.tools.lint.rules import apart_by_ranges
         (("reach a", "avoid a"), []),
     ],
 )
-def test_clauses_that_signals_contradict_are_reported(clauses: tuple[str, ...], expected: list[str]) -> None:
-    assert marked_in_block("TLT0431", *clauses, before=RANGES) == expected
+def test_clauses_that_contradict_each_other_by_ranges_are_reported(
+    clauses: tuple[str, ...], expected: list[str]
+) -> None:
+    assert labelled_texts_in_block("TLT0431", *clauses, before=RANGES) == expected
 
 
 @given(specs("keep {}", "avoid {}", "reach {}", "require {}", worlds=[RANGED]))
 def test_no_trace_of_values_satisfies_a_reported_spec(drawn: tuple[World, str]) -> None:
     world, text = drawn
-    spec, reported = remarks(apart_by_ranges.check, text)
+    spec, reported = spec_and_remarks(apart_by_ranges.check, text)
     for _ in reported:
         assert not any(world.traces.satisfying(spec.spec.formula))

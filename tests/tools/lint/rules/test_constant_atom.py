@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from hypothesis import given
 
-from tests.tools.lint.helpers import block, codes, findings_in, remarks
+from tests.tools.lint.helpers import block, codes, findings_in, spec_and_remarks
 from tests.tools.lint.predicates import PREDICATES, Predicate
 from tltlc.tools.lint.rules import constant_atom
 
@@ -44,7 +44,7 @@ def test_an_atom_is_reported_once_per_file() -> None:
 
 @given(PREDICATES)
 def test_reported_atoms_are_constant_on_all_values(predicate: Predicate) -> None:
-    _, reported = remarks(constant_atom.check, block("reach p", before=predicate.declared))
+    _, reported = spec_and_remarks(constant_atom.check, block("reach p", before=predicate.declaration))
     for remark in reported:
         truths = {value > 0 for value in predicate.values()}
         assert truths == {remark.title == "`p` always holds"}

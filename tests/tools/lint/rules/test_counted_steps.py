@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 import tltlc
-from tests.tools.lint.helpers import SIGNALS, block, findings_in, marked_in_block
+from tests.tools.lint.helpers import SIGNALS, block, findings_in, labelled_texts_in_block
 from tltlc.automaton.compare import are_equivalent
 
 
@@ -25,7 +25,8 @@ from tltlc.automaton.compare import are_equivalent
 )
 def test_repeated_nexts_are_reported(clause: str, expected: list[str]) -> None:
     assert [
-        marked_text.rstrip() for marked_text in marked_in_block("TLT0418", clause, before="clock 10 Hz\n" + SIGNALS)
+        labelled_text.rstrip()
+        for labelled_text in labelled_texts_in_block("TLT0418", clause, before="clock 10 Hz\n" + SIGNALS)
     ] == expected
 
 

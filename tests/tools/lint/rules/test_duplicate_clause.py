@@ -6,7 +6,7 @@ import pytest
 
 import tltlc
 from tests.calls import calls
-from tests.tools.lint.helpers import SIGNALS, apply_fixes, marked_in_block
+from tests.tools.lint.helpers import SIGNALS, apply_fixes, labelled_texts_in_block
 from tltlc.core.source import SourceFile
 from tltlc.pipeline import CompileOptions
 from tltlc.tools.lint.rules.duplicate_clause import RULE
@@ -27,7 +27,7 @@ from tltlc.tools.lint.run import view_of
     ],
 )
 def test_duplicate_clauses_are_reported(clauses: tuple[str, ...], expected: list[str]) -> None:
-    assert marked_in_block("TLT0425", *clauses) == expected
+    assert labelled_texts_in_block("TLT0425", *clauses) == expected
 
 
 def test_the_first_of_two_duplicates_is_kept() -> None:
@@ -52,7 +52,7 @@ def test_a_clause_that_decides_when_the_spec_is_judged_is_not_removed(clauses: t
     assert before.judge == after.judge == "goal"
 
 
-def test_a_duplicate_beside_such_a_clause_is_removed() -> None:
+def test_a_duplicate_of_the_earliest_clause_is_removed_beside_a_bounded_one() -> None:
     text = "signal a: bool\nspec s {\n    limit 9 steps\n    require a\n    require F[0,0] a\n    require a\n}\n"
     assert apply_fixes(text).source.text == text.replace("    require a\n}", "}")
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 from hypothesis import given
 
-from tests.tools.lint.helpers import APART, PLACES, marked_in_block, remarks
+from tests.tools.lint.helpers import APART, PLACES, labelled_texts_in_block, spec_and_remarks
 from tests.tools.lint.strategies import EXCLUSIVE, World, specs
-from tltlc.tools.lint.file_view import inner
+from tltlc.tools.lint.file_view import without_brackets
 from tltlc.tools.lint.goals import goals
 from tltlc.tools.lint.rules import exclusive_goal
 
@@ -26,20 +26,22 @@ from tltlc.tools.lint.rules import exclusive_goal
     ],
 )
 def test_goals_of_exclusive_atoms_are_reported(clause: str, expected: list[str]) -> None:
-    assert marked_in_block("TLT0414", clause, before=APART) == expected
-    assert marked_in_block("TLT0414", clause, before=PLACES) == []
-    assert marked_in_block("TLT0410", clause, before=APART) == []
+    assert labelled_texts_in_block("TLT0414", clause, before=APART) == expected
+    assert labelled_texts_in_block("TLT0414", clause, before=PLACES) == []
+    assert labelled_texts_in_block("TLT0410", clause, before=APART) == []
 
 
 def test_the_warning_of_the_compiler_stays_if_it_has_another_reason() -> None:
-    assert marked_in_block("TLT0410", "reach at(x) and at(y)", "reach at(z)", "avoid at(z)", before=APART) != []
+    assert labelled_texts_in_block("TLT0410", "reach at(x) and at(y)", "reach at(z)", "avoid at(z)", before=APART) != []
 
 
 @given(specs("reach {} and {}", "reach {} then ({} and {})", "require F ({} & {})", worlds=[EXCLUSIVE], most=1))
 def test_no_step_meets_a_reported_goal(drawn: tuple[World, str]) -> None:
     world, text = drawn
-    spec, reported = remarks(exclusive_goal.check, text)
+    spec, reported = spec_and_remarks(exclusive_goal.check, text)
     for remark in reported:
-        (goal,) = (candidate for candidate in goals(spec) if inner(candidate.tree).span == remark.labels[0].span)
+        (goal,) = (
+            candidate for candidate in goals(spec) if without_brackets(candidate.tree).span == remark.labels[0].span
+        )
         formula = goal.formula()
-        assert formula and not any(world.traces.ever(formula))
+        assert formula and not any(world.traces.holding_at_some_step(formula))

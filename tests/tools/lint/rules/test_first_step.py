@@ -5,18 +5,18 @@ from __future__ import annotations
 import pytest
 
 import tltlc
-from tests.tools.lint.helpers import PLACES, SIGNALS, block, codes, findings_in, marked_in_block
+from tests.tools.lint.helpers import PLACES, SIGNALS, block, codes, findings_in, labelled_texts_in_block
 from tltlc.automaton.compare import are_equivalent
 
 
 def test_clauses_about_the_first_step_are_reported() -> None:
-    assert marked_in_block("TLT0429", "require a and not b") == ["require a and not b"]
-    assert marked_in_block("TLT0429", "require a implies F b", "require true", "keep a", "require X a") == []
+    assert labelled_texts_in_block("TLT0429", "require a and not b") == ["require a and not b"]
+    assert labelled_texts_in_block("TLT0429", "require a implies F b", "require true", "keep a", "require X a") == []
     assert "TLT0429" not in codes(f"{SIGNALS}spec s = a")
 
 
 @pytest.mark.parametrize(
-    ("formula", "expected", "way_out"),
+    ("formula", "expected", "correction"),
     [
         ("eventually a and b", ["b"], "eventually (a and b)"),
         ("F a & b & (a or c) & G c", ["b & (a or c)"], "F (a and b and (a or c))"),
@@ -30,22 +30,22 @@ def test_clauses_about_the_first_step_are_reported() -> None:
         ("eventually a and b until c", [], ""),
     ],
 )
-def test_operands_outside_a_temporal_operator_are_reported(formula: str, expected: list[str], way_out: str) -> None:
-    assert marked_in_block("TLT0429", f"require {formula}") == expected
+def test_operands_outside_a_temporal_operator_are_reported(formula: str, expected: list[str], correction: str) -> None:
+    assert labelled_texts_in_block("TLT0429", f"require {formula}") == expected
     diagnostics = [
         finding.diagnostic
         for finding in findings_in(f"{SIGNALS}spec s = {formula}")
         if finding.diagnostic.code == "TLT0429"
     ]
-    assert [diagnostic.help for diagnostic in diagnostics] == [f"both together are `{way_out}`" for _ in expected]
+    assert [diagnostic.help for diagnostic in diagnostics] == [f"both together are `{correction}`" for _ in expected]
     for diagnostic in diagnostics:
         # The suggestion compiles, and is a different formula.
-        original, suggested = tltlc.compile_text(f"{SIGNALS}spec s = {formula}\nspec t = {way_out}")
+        original, suggested = tltlc.compile_text(f"{SIGNALS}spec s = {formula}\nspec t = {correction}")
         assert diagnostic.severity == "note" and not are_equivalent(original, suggested)
 
 
 @pytest.mark.parametrize(
-    ("formula", "way_out"),
+    ("formula", "correction"),
     [
         ("a and b", "at every step is `keep a and b`, at some step `reach a and b`"),
         # As a goal, it would be met as soon as `a` is false.
@@ -56,7 +56,7 @@ def test_operands_outside_a_temporal_operator_are_reported(formula: str, expecte
         ("a and (a -> b)", "at every step is `keep a and (a -> b)`, at some step `reach a and (a -> b)`"),
     ],
 )
-def test_the_suggestion_is_no_goal_that_a_false_condition_meets(formula: str, way_out: str) -> None:
+def test_the_suggestion_is_no_goal_that_a_false_condition_meets(formula: str, correction: str) -> None:
     text = block("reach c", f"require {formula}", before=SIGNALS + PLACES)
     (finding,) = (candidate for candidate in findings_in(text) if candidate.diagnostic.code == "TLT0429")
-    assert finding.diagnostic.help == way_out
+    assert finding.diagnostic.help == correction

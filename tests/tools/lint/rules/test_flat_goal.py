@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from hypothesis import given
 
-from tests.tools.lint.helpers import block, marked_in_block, remarks
+from tests.tools.lint.helpers import block, labelled_texts_in_block, spec_and_remarks
 from tests.tools.lint.predicates import PREDICATES, Predicate
 from tltlc.tools.lint.rules import flat_goal
 
@@ -27,11 +27,11 @@ from tltlc.tools.lint.rules import flat_goal
 )
 def test_flat_goals_are_reported(clauses: tuple[str, ...], expected: list[str]) -> None:
     before = "import stealth\nsignal a: bool signal b: bool\npredicate full in [0, 1] = max(0, 2 * health - 1)\n"
-    assert marked_in_block("TLT0417", *clauses, before=before) == expected
+    assert labelled_texts_in_block("TLT0417", *clauses, before=before) == expected
 
 
 @given(PREDICATES)
 def test_a_reported_atom_is_0_wherever_it_is_false(predicate: Predicate) -> None:
-    _, reported = remarks(flat_goal.check, block("reach p", before=predicate.declared))
+    _, reported = spec_and_remarks(flat_goal.check, block("reach p", before=predicate.declaration))
     for _ in reported:
         assert min(predicate.values()) == 0

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from hypothesis import given
 
-from tests.tools.lint.helpers import SIGNALS, codes, remarks
+from tests.tools.lint.helpers import SIGNALS, codes, spec_and_remarks
 from tests.tools.lint.strategies import FREE, World, specs
 from tltlc.automaton.compare import are_equivalent
 from tltlc.pipeline import compile_text
@@ -36,17 +36,17 @@ def test_an_until_whose_first_operand_matters_is_not_reported(clause: str) -> No
 
 
 @pytest.mark.parametrize(
-    ("clause", "offered"),
+    ("clause", "suggested_clause"),
     [
         ("avoid a until b", "require (not a) weak_until b"),
         ("avoid (a or c) until b", "require (not (a or c)) weak_until b"),
         ("reach a until b", "require a until b"),
     ],
 )
-def test_the_suggestion_is_judged_at_the_same_time(clause: str, offered: str) -> None:
-    (remark,) = remarks(idle_until.check, spec(clause))[1]
-    assert remark.help == f"say `{offered}`"
-    original, suggested = (compile_text(spec(source_clause))[0] for source_clause in (clause, offered))
+def test_the_suggested_clause_is_judged_at_the_same_moment(clause: str, suggested_clause: str) -> None:
+    (remark,) = spec_and_remarks(idle_until.check, spec(clause))[1]
+    assert remark.help == f"say `{suggested_clause}`"
+    original, suggested = (compile_text(spec(source_clause))[0] for source_clause in (clause, suggested_clause))
     assert original.judge == suggested.judge
 
 
@@ -57,9 +57,9 @@ def spec(clause: str) -> str:
 @given(specs("reach {} until {}", "avoid {} until {}", "reach {} then ({} until {})", worlds=[FREE], most=1))
 def test_the_simplified_clause_is_equivalent(drawn: tuple[World, str]) -> None:
     world, text = drawn
-    spec, reported = remarks(idle_until.check, text)
+    spec, reported = spec_and_remarks(idle_until.check, text)
     for remark in reported:
         span = remark.labels[0].span
         _, goal = remark.labels[0].message.split("`")[1].split(" ", 1)
-        same, _ = remarks(idle_until.check, f"{text[: span.start]}({goal}){text[span.end :]}")
+        same, _ = spec_and_remarks(idle_until.check, f"{text[: span.start]}({goal}){text[span.end :]}")
         assert world.traces.satisfying(spec.spec.formula) == world.traces.satisfying(same.spec.formula)

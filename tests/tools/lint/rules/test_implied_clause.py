@@ -9,9 +9,17 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 import tltlc
-from tests.tools.lint.helpers import RANGES, SIGNALS, block, codes, findings_in, marked_in_block, remarks
+from tests.tools.lint.helpers import (
+    RANGES,
+    SIGNALS,
+    block,
+    codes,
+    findings_in,
+    labelled_texts_in_block,
+    spec_and_remarks,
+)
 from tests.tools.lint.strategies import SMALL, World, specs
-from tests.tools.lint.traces import both, includes
+from tests.tools.lint.traces import includes, intersection
 from tltlc.automaton.compare import are_equivalent, is_included
 from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.logic.formula import Formula, and_
@@ -25,7 +33,7 @@ def automaton(formulas: list[Formula]) -> tltlc.Fspa:
 @given(st.lists(SMALL, min_size=2, max_size=4))
 def test_implied_clauses_can_be_removed(clauses: list[str]) -> None:
     text = block(*(f"require ({clause})" for clause in clauses))
-    view, reported = remarks(implied_clause.check, text)
+    view, reported = spec_and_remarks(implied_clause.check, text)
     parts = view.spec.parts
     assume(view.fspa.states[0].verdict != "violated")
     at = {part.span: part.formula for part in parts}
@@ -33,11 +41,11 @@ def test_implied_clauses_can_be_removed(clauses: list[str]) -> None:
         part, *reasons = (at[label.span] for label in remark.labels)
         assert is_included(automaton(reasons), automaton([part]))
     implied = {remark.labels[0].span for remark in reported}
-    duplicates = {remark.labels[0].span for remark in remarks(duplicate_clause.check, text)[1]}
+    duplicates = {remark.labels[0].span for remark in spec_and_remarks(duplicate_clause.check, text)[1]}
     remaining = [part for part in parts if part.span not in implied | duplicates]
     assert are_equivalent(automaton(list(at.values())), automaton([part.formula for part in remaining]))
     # A clause that constrains only the last step is not used as a reason.
-    last = [remark.labels[0].span for remark in remarks(recurrence.check, text)[1]]
+    last = [remark.labels[0].span for remark in spec_and_remarks(recurrence.check, text)[1]]
     reasons = [part.formula for part in remaining if not any(part.span.covers(span) for span in last)]
     for formula in (part.formula for part in remaining):
         others = [other for other in reasons if other is not formula]
@@ -50,8 +58,10 @@ def test_implied_clauses_can_be_removed(clauses: list[str]) -> None:
 
 def test_infinite_semantics_imply_other_clauses() -> None:
     clauses = ("require G F a", "require G F (a or b)")
-    assert marked_in_block("TLT0413", "semantics infinite", *clauses) == ["G F (a or b)"]
-    assert marked_in_block("TLT0413", "semantics infinite", "require F G a", "require G F (a or b)") == ["G F (a or b)"]
+    assert labelled_texts_in_block("TLT0413", "semantics infinite", *clauses) == ["G F (a or b)"]
+    assert labelled_texts_in_block("TLT0413", "semantics infinite", "require F G a", "require G F (a or b)") == [
+        "G F (a or b)"
+    ]
 
 
 @pytest.mark.parametrize(
@@ -67,23 +77,23 @@ def test_infinite_semantics_imply_other_clauses() -> None:
     ],
 )
 def test_a_comparison_may_imply_a_clause(clauses: tuple[str, ...], expected: list[str]) -> None:
-    assert marked_in_block("TLT0413", *clauses, before=RANGES) == expected
+    assert labelled_texts_in_block("TLT0413", *clauses, before=RANGES) == expected
 
 
 def test_an_exclusive_atom_may_imply_an_avoid() -> None:
     exclusive = SIGNALS + "exclusive a, b\n"
-    assert marked_in_block("TLT0413", "keep a", "avoid b", before=exclusive) == ["avoid b"]
-    assert marked_in_block("TLT0413", "keep a", "avoid b") == []
+    assert labelled_texts_in_block("TLT0413", "keep a", "avoid b", before=exclusive) == ["avoid b"]
+    assert labelled_texts_in_block("TLT0413", "keep a", "avoid b") == []
 
 
 @given(specs("keep {}", "avoid {}", "reach {}", "require {}"))
 def test_no_trace_meets_the_reasons_and_breaks_the_implied_clause(drawn: tuple[World, str]) -> None:
     world, text = drawn
-    spec, reported = remarks(implied_clause.check, text)
+    spec, reported = spec_and_remarks(implied_clause.check, text)
     satisfying = {part.span: world.traces.satisfying(part.formula) for part in spec.spec.parts}
     for remark in reported:
         needless, *reasons = (satisfying[label.span] for label in remark.labels)
-        common = reduce(both, reasons)
+        common = reduce(intersection, reasons)
         assert any(common) and includes(needless, common)
 
 
@@ -98,8 +108,8 @@ def test_no_trace_meets_the_reasons_and_breaks_the_implied_clause(drawn: tuple[W
     ],
 )
 def test_a_clause_about_the_last_step_is_no_reason(clauses: tuple[str, ...], expected: list[str]) -> None:
-    assert marked_in_block("TLT0413", *clauses) == expected
-    assert marked_in_block("TLT0424", *clauses) != []
+    assert labelled_texts_in_block("TLT0413", *clauses) == expected
+    assert labelled_texts_in_block("TLT0424", *clauses) != []
 
 
 def test_clauses_with_contradictory_values_imply_nothing() -> None:

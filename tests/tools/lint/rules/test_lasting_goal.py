@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from hypothesis import given
 
-from tests.tools.lint.helpers import codes, marked, remarks
+from tests.tools.lint.helpers import codes, labelled_texts, spec_and_remarks
 from tests.tools.lint.strategies import FREE, World, specs
 from tltlc.monitor.monitor import Monitor
 from tltlc.pipeline import compile_text
@@ -32,7 +32,7 @@ def spec(*clauses: str) -> str:
     ],
 )
 def test_a_reported_goal_is_met_in_one_step(clause: str, expected: str) -> None:
-    assert marked(spec(clause), "TLT0434") == [expected]
+    assert labelled_texts(spec(clause), "TLT0434") == [expected]
     (fspa,) = compile_text(spec(clause))
     monitor = Monitor(fspa)
     assert monitor.step({"a": True, "b": False, "c": True}).done and monitor.success
@@ -40,7 +40,7 @@ def test_a_reported_goal_is_met_in_one_step(clause: str, expected: str) -> None:
 
 @pytest.mark.parametrize("clause", ["reach b then (always for 3 s a)", "require b then c then (always for 3 s a)"])
 def test_the_last_goal_of_a_chain_is_reported(clause: str) -> None:
-    assert marked(spec(clause), "TLT0434") == ["always for 3 s a"]
+    assert labelled_texts(spec(clause), "TLT0434") == ["always for 3 s a"]
 
 
 @pytest.mark.parametrize(
@@ -57,11 +57,11 @@ def test_the_last_goal_of_a_chain_is_reported(clause: str) -> None:
         ("semantics infinite", "reach (always for 3 s a)"),
     ],
 )
-def test_specs_that_take_the_time_or_ask_for_less_are_not_reported(clauses: tuple[str, ...]) -> None:
+def test_a_spec_that_one_step_cannot_meet_or_that_is_no_goal_is_not_reported(clauses: tuple[str, ...]) -> None:
     assert "TLT0434" not in codes(spec(*clauses))
 
 
-def test_the_suggested_next_makes_the_goal_take_the_time() -> None:
+def test_a_next_beside_the_goal_makes_it_take_the_whole_time() -> None:
     (fspa,) = compile_text(spec("reach (always for 3 s a) and (next after 29 steps true)"))
     monitor = Monitor(fspa)
     assert [monitor.step({"a": True}).done for _ in range(30)] == [False] * 29 + [True]
@@ -73,6 +73,6 @@ LASTING = "(always for 3 steps {} and {})"
 @given(specs(f"reach {LASTING}", f"reach {LASTING} and {{}}", f"require F ({LASTING} | {{}})", worlds=[FREE], most=1))
 def test_some_trace_of_one_step_meets_a_reported_goal(drawn: tuple[World, str]) -> None:
     world, text = drawn
-    spec, reported = remarks(lasting_goal.check, text)
+    spec, reported = spec_and_remarks(lasting_goal.check, text)
     for _ in reported:
         assert world.traces.satisfying(spec.spec.formula)[0]

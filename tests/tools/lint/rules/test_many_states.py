@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.tools.lint.helpers import block, findings_in, marked_in_block
+from tests.tools.lint.helpers import block, findings_in, labelled_texts_in_block
 
 
 @pytest.mark.parametrize(
@@ -18,11 +18,11 @@ from tests.tools.lint.helpers import block, findings_in, marked_in_block
     ],
 )
 def test_the_longest_bound_is_reported(clauses: tuple[str, ...], expected: list[str]) -> None:
-    assert marked_in_block("TLT0423", *clauses) == expected
+    assert labelled_texts_in_block("TLT0423", *clauses) == expected
 
 
 def test_a_long_spec_with_a_large_automaton_is_not_reported() -> None:
-    assert marked_in_block("TLT0423", f"reach {' then '.join('abc' * 40)}") == []
+    assert labelled_texts_in_block("TLT0423", f"reach {' then '.join('abc' * 40)}") == []
 
 
 def test_without_a_bound_the_goals_are_reported() -> None:

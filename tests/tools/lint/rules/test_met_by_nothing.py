@@ -9,9 +9,17 @@ from pathlib import Path
 import pytest
 from hypothesis import given
 
-from tests.tools.lint.helpers import RANGES, block, codes, findings_in, marked, marked_in_block, remarks
+from tests.tools.lint.helpers import (
+    RANGES,
+    block,
+    codes,
+    findings_in,
+    labelled_texts,
+    labelled_texts_in_block,
+    spec_and_remarks,
+)
 from tests.tools.lint.strategies import World, specs
-from tests.tools.lint.traces import both
+from tests.tools.lint.traces import intersection
 from tltlc.logic.formula import TRUE, Formula, atom
 from tltlc.tools.lint.file_view import SpecView
 from tltlc.tools.lint.goals import goals
@@ -51,11 +59,11 @@ EXAMPLES = Path(__file__).parents[4] / "examples"
     ],
 )
 def test_goals_that_a_false_condition_meets_are_reported(clause: str, expected: list[str]) -> None:
-    assert marked_in_block("TLT0412", clause) == expected
+    assert labelled_texts_in_block("TLT0412", clause) == expected
 
 
 @pytest.mark.parametrize(
-    ("clauses", "is_found"),
+    ("clauses", "is_reported"),
     [
         (("reach a implies b", "keep a"), False),
         (("reach not a or b", "keep c"), True),
@@ -67,11 +75,11 @@ def test_goals_that_a_false_condition_meets_are_reported(clause: str, expected: 
         (("reach F a implies b", "keep F a"), False),
     ],
 )
-def test_the_other_clauses_are_taken_into_account(clauses: tuple[str, ...], is_found: bool) -> None:
-    assert bool(marked_in_block("TLT0412", *clauses)) == is_found
+def test_only_traces_that_satisfy_the_other_clauses_count(clauses: tuple[str, ...], is_reported: bool) -> None:
+    assert bool(labelled_texts_in_block("TLT0412", *clauses)) == is_reported
 
 
-def test_a_condition_that_is_kept_is_not_reported() -> None:
+def test_the_label_names_no_condition_that_another_clause_keeps() -> None:
     text = block("reach a implies (b or not c)", "keep a")
     (diagnostic,) = (finding.diagnostic for finding in findings_in(text) if finding.diagnostic.code == "TLT0412")
     assert [label.message for label in diagnostic.labels] == ["can be met without `b`"]
@@ -86,30 +94,32 @@ def test_a_condition_that_is_kept_is_not_reported() -> None:
         ("reach x > 5 implies y > 3", ["x > 5 implies y > 3"]),
     ],
 )
-def test_relations_between_comparisons_are_taken_into_account(clause: str, expected: list[str]) -> None:
-    assert marked_in_block("TLT0412", clause, before=RANGES) == expected
+def test_only_values_that_comparisons_can_have_together_count(clause: str, expected: list[str]) -> None:
+    assert labelled_texts_in_block("TLT0412", clause, before=RANGES) == expected
 
 
-def test_the_papers_formula_as_it_is_printed() -> None:
+def test_the_formula_that_the_paper_prints_is_reported() -> None:
     text = (EXAMPLES / "branching.tltl").read_text(encoding="utf-8").replace("tltlc: allow", "")
-    assert marked(text, "TLT0412") == ["open_right implies near(e_right)"]
+    assert labelled_texts(text, "TLT0412") == ["open_right implies near(e_right)"]
     assert len(codes(text)) == 1
 
 
 @given(specs("reach {}", "reach {} implies {}", "reach {} then ({} or {})", "keep {}", "avoid {}"))
 def test_some_trace_meets_a_reported_goal_while_the_atoms_are_false(drawn: tuple[World, str]) -> None:
     world, text = drawn
-    spec, reported = remarks(met_by_nothing.check, text)
+    spec, reported = spec_and_remarks(met_by_nothing.check, text)
     satisfying = world.traces.satisfying(spec.spec.formula)
     for remark in reported:
         enclosing = [goal for goal in goals(spec) if goal.tree.span.covers(remark.labels[0].span)]
-        met = [world.traces.ever(goal.formula() or TRUE, without=list(failing(remark, spec))) for goal in enclosing]
-        assert any(any(both(traces, satisfying)) for traces in met)
+        met = [
+            world.traces.holding_at_some_step(goal.formula() or TRUE, without=list(failing(remark, spec)))
+            for goal in enclosing
+        ]
+        assert any(any(intersection(traces, satisfying)) for traces in met)
 
 
 def failing(remark: Remark, spec: SpecView) -> Iterator[Formula]:
-    """Yield the formulas that may be false according to a remark: conditions of implications, or
-    atoms that it lists."""
+    """Yield the formulas that a remark says may be false: conditions of implications, or atoms."""
     trees = {part.tree.span: part.formula() for clause in spec.formulas() for part in clause.parts()}
     for label in remark.labels:
         formula = trees[label.span]

@@ -7,7 +7,15 @@ from hypothesis import given
 
 import tltlc
 from tests.calls import calls
-from tests.tools.lint.helpers import APART, PLACES, RANGES, SIGNALS, findings_in, marked_in_block, remarks
+from tests.tools.lint.helpers import (
+    APART,
+    PLACES,
+    RANGES,
+    SIGNALS,
+    findings_in,
+    labelled_texts_in_block,
+    spec_and_remarks,
+)
 from tests.tools.lint.strategies import World, specs
 from tltlc.core.source import SourceFile
 from tltlc.pipeline import CompileOptions
@@ -39,21 +47,23 @@ from tltlc.tools.lint.run import view_of
     ],
 )
 def test_clauses_that_no_trace_breaks_are_reported(clauses: tuple[str, ...], expected: list[str]) -> None:
-    assert marked_in_block("TLT0430", *clauses, before=RANGES) == expected
+    assert labelled_texts_in_block("TLT0430", *clauses, before=RANGES) == expected
 
 
 def test_a_clause_that_exclusive_atoms_satisfy_is_reported() -> None:
-    assert marked_in_block("TLT0430", "reach at(z)", "avoid at(x) and at(y)", before=APART) == ["avoid at(x) and at(y)"]
-    assert marked_in_block("TLT0430", "reach at(z)", "avoid at(x) and at(y)", before=PLACES) == []
+    assert labelled_texts_in_block("TLT0430", "reach at(z)", "avoid at(x) and at(y)", before=APART) == [
+        "avoid at(x) and at(y)"
+    ]
+    assert labelled_texts_in_block("TLT0430", "reach at(z)", "avoid at(x) and at(y)", before=PLACES) == []
 
 
 @given(specs("keep {}", "avoid {}", "reach {}", "require {}"))
 def test_no_trace_breaks_a_reported_clause(drawn: tuple[World, str]) -> None:
     world, text = drawn
-    spec, reported = remarks(needless_clause.check, text)
+    spec, reported = spec_and_remarks(needless_clause.check, text)
     for remark in reported:
         (formula,) = (part.formula for part in spec.spec.parts if part.span == remark.labels[0].span)
-        assert world.traces.satisfying(formula) == world.traces.every
+        assert world.traces.satisfying(formula) == world.traces.all_traces
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from hypothesis import given
 
-from tests.tools.lint.helpers import APART, block, codes, marked_in_block, remarks
+from tests.tools.lint.helpers import APART, block, codes, labelled_texts_in_block, spec_and_remarks
 from tests.tools.lint.strategies import World, specs
 from tltlc.logic.formula import and_
 from tltlc.tools.lint.rules import never_answered
@@ -28,7 +28,7 @@ from tltlc.tools.lint.rules import never_answered
     ],
 )
 def test_implications_of_exclusive_atoms_are_reported(clause: str, expected: list[str]) -> None:
-    assert marked_in_block("TLT0432", "reach at(z)", clause, before=APART) == expected
+    assert labelled_texts_in_block("TLT0432", "reach at(z)", clause, before=APART) == expected
 
 
 def test_an_implication_is_reported_beside_the_contradiction_that_it_causes() -> None:
@@ -38,17 +38,19 @@ def test_an_implication_is_reported_beside_the_contradiction_that_it_causes() ->
 
 def test_a_clause_that_is_impossible_is_reported_as_a_contradiction_only() -> None:
     clause = "keep (!at(x) -> at(x)) and at(y)"
-    assert marked_in_block("TLT0432", clause, before=APART) == []
-    assert marked_in_block("TLT0410", clause, before=APART) != []
-    assert marked_in_block("TLT0432", "keep (!at(x) -> at(x)) and not at(y)", before=APART) == ["!at(x) -> at(x)"]
+    assert labelled_texts_in_block("TLT0432", clause, before=APART) == []
+    assert labelled_texts_in_block("TLT0410", clause, before=APART) != []
+    assert labelled_texts_in_block("TLT0432", "keep (!at(x) -> at(x)) and not at(y)", before=APART) == [
+        "!at(x) -> at(x)"
+    ]
 
 
 @given(specs("keep {} implies {}", "require G ({} -> {})", "require {} implies {}", most=1))
 def test_the_two_sides_of_a_reported_implication_never_hold_together(drawn: tuple[World, str]) -> None:
     world, text = drawn
-    spec, reported = remarks(never_answered.check, text)
+    spec, reported = spec_and_remarks(never_answered.check, text)
     for remark in reported:
         trees = {part.tree.span: part for _, clause in spec.clauses("keep", "require") for part in clause.parts()}
         formula = trees[remark.labels[0].span].formula()
-        assert formula and not any(world.traces.ever(and_(*formula.args)))
-        assert all(any(world.traces.ever(side)) for side in formula.args)
+        assert formula and not any(world.traces.holding_at_some_step(and_(*formula.args)))
+        assert all(any(world.traces.holding_at_some_step(side)) for side in formula.args)

@@ -8,7 +8,7 @@ from tests.tools.lint.helpers import codes
 
 
 @pytest.mark.parametrize(
-    ("clauses", "is_found"),
+    ("clauses", "is_reported"),
     [
         ("reach a", False),
         ("avoid a", True),
@@ -20,6 +20,6 @@ from tests.tools.lint.helpers import codes
         ("semantics infinite reach a require G F b", False),
     ],
 )
-def test_specs_without_a_goal_are_reported(clauses: str, is_found: bool) -> None:
+def test_specs_without_a_goal_are_reported(clauses: str, is_reported: bool) -> None:
     text = f"signal a: bool signal b: bool let both = a & b\nspec s {{ limit 9 steps {clauses} }}"
-    assert ("TLT0420" in codes(text)) == is_found
+    assert ("TLT0420" in codes(text)) == is_reported

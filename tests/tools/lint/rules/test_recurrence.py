@@ -9,7 +9,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import tltlc
-from tests.tools.lint.helpers import PLACES, SIGNALS, block, codes, findings_in, marked, marked_in_block, remarks
+from tests.tools.lint.helpers import (
+    PLACES,
+    SIGNALS,
+    block,
+    codes,
+    findings_in,
+    labelled_texts,
+    labelled_texts_in_block,
+    spec_and_remarks,
+)
 from tests.tools.lint.strategies import FREE, SMALL, World, specs
 from tltlc.automaton.compare import are_equivalent
 from tltlc.automaton.finite.build import build
@@ -56,11 +65,11 @@ CLAUSES = (
     ],
 )
 def test_formulas_about_the_last_step_are_reported(clause: str, expected: list[str]) -> None:
-    assert marked_in_block("TLT0424", clause) == expected
-    assert marked_in_block("TLT0424", clause, "semantics infinite") == []
+    assert labelled_texts_in_block("TLT0424", clause) == expected
+    assert labelled_texts_in_block("TLT0424", clause, "semantics infinite") == []
 
 
-def test_another_clause_is_not_blamed_for_one_about_the_last_step() -> None:
+def test_a_clause_about_the_last_step_implies_no_other_clause() -> None:
     before = "signal a: bool signal b: bool\n"
     assert codes(block("reach a", "keep b until a", before=before)) == ["TLT0424"]
     assert codes(block("reach a", "require b until a", before=before)) == ["TLT0413"]
@@ -84,8 +93,8 @@ def test_a_reported_clause_depends_on_the_last_step_only(clause: str, formula: s
 
 
 def test_a_quantified_formula_is_reported_once() -> None:
-    assert marked_in_block("TLT0424", "require all e in (x, y): G F at(e)", before=PLACES) == ["G F"]
-    assert marked_in_block("TLT0412", "require all e in (x, y): F (at(z) -> at(e))", before=PLACES) == [
+    assert labelled_texts_in_block("TLT0424", "require all e in (x, y): G F at(e)", before=PLACES) == ["G F"]
+    assert labelled_texts_in_block("TLT0412", "require all e in (x, y): F (at(z) -> at(e))", before=PLACES) == [
         "at(z) -> at(e)"
     ]
 
@@ -108,7 +117,7 @@ def test_the_suggestion_is_no_goal_that_a_false_condition_meets(clause: str, goa
 
 def test_lets_are_checked_if_all_specs_are_finite() -> None:
     text = "signal a: bool let often = G F a spec s = often"
-    assert marked(text, "TLT0424") == ["G F"]
+    assert labelled_texts(text, "TLT0424") == ["G F"]
     assert codes(f"{text} spec t {{ semantics infinite limit 9 steps judge at limit require often }}") == []
     assert codes("signal a: bool let often = G F a") == []
 
@@ -117,11 +126,11 @@ def test_lets_are_checked_if_all_specs_are_finite() -> None:
 def test_a_reported_part_depends_on_the_last_step_only(drawn: tuple[World, str]) -> None:
     """Replacing the part by its condition on the last step gives an equivalent spec."""
     world, text = drawn
-    spec, reported = remarks(recurrence.check, text)
+    spec, reported = spec_and_remarks(recurrence.check, text)
     for part in last_steps(spec, reported):
         awaited = text[part.operand.span.start : part.operand.span.end]
         alone = f"{text[: part.span.start]}(F ((N false) & ({awaited}))){text[part.span.end :]}"
-        same, _ = remarks(recurrence.check, alone)
+        same, _ = spec_and_remarks(recurrence.check, alone)
         assert world.traces.satisfying(spec.spec.formula) == world.traces.satisfying(same.spec.formula)
 
 

@@ -17,7 +17,7 @@ from tltlc.tools.lint.run import view_of
 
 
 @pytest.mark.parametrize(
-    ("one", "other", "is_found"),
+    ("one", "other", "is_reported"),
     [
         ("F (a & X F b)", "a then b", True),
         ("F a", "F (a | a & b)", True),
@@ -26,8 +26,8 @@ from tltlc.tools.lint.run import view_of
         ("a U b", "b R a", False),
     ],
 )
-def test_equivalent_specs_are_reported(one: str, other: str, is_found: bool) -> None:
-    assert ("TLT0426" in codes(f"{SIGNALS}spec s = {one}\nspec t = {other}")) == is_found
+def test_equivalent_specs_are_reported(one: str, other: str, is_reported: bool) -> None:
+    assert ("TLT0426" in codes(f"{SIGNALS}spec s = {one}\nspec t = {other}")) == is_reported
 
 
 @given(SMALL, SMALL)

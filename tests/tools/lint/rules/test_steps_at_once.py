@@ -8,14 +8,14 @@ import pytest
 from hypothesis import given
 
 import tltlc
-from tests.tools.lint.helpers import APART, PLACES, block, findings_in, marked_in_block, remarks
+from tests.tools.lint.helpers import APART, PLACES, block, findings_in, labelled_texts_in_block, spec_and_remarks
 from tests.tools.lint.strategies import World, specs
 from tests.tools.lint.traces import Traces
 from tltlc.tools.lint.rules import steps_at_once
 
 
 @pytest.mark.parametrize(
-    ("clauses", "before", "is_found"),
+    ("clauses", "before", "is_reported"),
     [
         (("reach at(x)", "reach at(y)"), PLACES, True),
         (("reach at(x)", "reach at(y)"), APART, False),
@@ -28,8 +28,8 @@ from tltlc.tools.lint.rules import steps_at_once
         (("reach at(x)", "reach d(y) < 3 m"), PLACES, False),
     ],
 )
-def test_goals_that_one_step_may_meet_are_reported(clauses: tuple[str, ...], before: str, is_found: bool) -> None:
-    assert ("s" in marked_in_block("TLT0415", *clauses, before=before)) == is_found
+def test_goals_that_one_step_may_meet_are_reported(clauses: tuple[str, ...], before: str, is_reported: bool) -> None:
+    assert ("s" in labelled_texts_in_block("TLT0415", *clauses, before=before)) == is_reported
 
 
 @pytest.mark.parametrize(
@@ -43,7 +43,7 @@ def test_goals_that_one_step_may_meet_are_reported(clauses: tuple[str, ...], bef
     ],
 )
 def test_a_condition_that_is_kept_is_not_a_second_goal(clauses: tuple[str, ...]) -> None:
-    assert marked_in_block("TLT0415", *clauses, before=PLACES) == []
+    assert labelled_texts_in_block("TLT0415", *clauses, before=PLACES) == []
 
 
 def test_the_suggested_exclusive_never_makes_a_spec_impossible() -> None:
@@ -73,11 +73,11 @@ def test_the_suggested_exclusive_never_makes_a_spec_impossible() -> None:
         ("reach at(x) then at(z)", "reach at(x) or at(y)"),
     ],
 )
-def test_goals_are_not_reported_if_exclusive_would_lengthen_nothing(clauses: tuple[str, ...]) -> None:
-    assert marked_in_block("TLT0415", *clauses, before=PLACES) == []
+def test_goals_are_not_reported_if_exclusive_lengthens_no_path(clauses: tuple[str, ...]) -> None:
+    assert labelled_texts_in_block("TLT0415", *clauses, before=PLACES) == []
 
 
-def test_atoms_of_different_predicates_are_not_declared_exclusive() -> None:
+def test_the_suggested_exclusive_has_atoms_of_one_predicate() -> None:
     before = PLACES + "signal seen(e): bool\n"
     helps = [
         finding.diagnostic.help
@@ -88,8 +88,7 @@ def test_atoms_of_different_predicates_are_not_declared_exclusive() -> None:
     assert [match and match[1] for match in matches] == ["at(x), at(y)", "seen(x), seen(y)"]
 
 
-def test_exclusive_atoms_make_the_spec_longer() -> None:
-    """As the rule says: with the suggested declaration, the spec has more steps of progress."""
+def test_exclusive_atoms_add_a_step_of_progress() -> None:
     clauses = ("reach at(x)", "reach at(y)")
     (joint,) = tltlc.compile_text(block(*clauses, before=PLACES))
     (apart,) = tltlc.compile_text(block(*clauses, before=APART))
@@ -102,7 +101,7 @@ NEAR = World("entity x, y, z\nsignal at(e): bool\nsignal b: bool\n", ("at(x)", "
 @given(specs("reach {}", "reach at(x)", "reach at(y) then {}", "require {}", "keep {}", worlds=[NEAR]))
 def test_the_suggested_exclusive_lengthens_the_spec_and_keeps_it_possible(drawn: tuple[World, str]) -> None:
     _, text = drawn
-    spec, reported = remarks(steps_at_once.check, text)
+    spec, reported = spec_and_remarks(steps_at_once.check, text)
     for remark in reported:
         excluded = re.search("`(exclusive .*)`", remark.help)
         if excluded:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.tools.lint.helpers import block, codes, marked
+from tests.tools.lint.helpers import block, codes, labelled_texts
 
 
 @pytest.mark.parametrize(
@@ -26,9 +26,9 @@ def test_used_declarations_are_not_reported(text: str) -> None:
 
 def test_a_declaration_used_only_by_an_unused_one_is_reported_in_the_next_run() -> None:
     text = "signal a: bool\nsignal b: bool\nlet c = F b\nspec s = F a\n"
-    assert marked(text, "TLT0421") == ["c"]
+    assert labelled_texts(text, "TLT0421") == ["c"]
 
 
 def test_a_level_or_tag_of_the_same_name_is_no_use() -> None:
     text = block("level vault", "tag quick", "reach a", before="signal vault: bool signal quick: bool signal a: bool\n")
-    assert marked(text, "TLT0421") == ["vault", "quick"]
+    assert labelled_texts(text, "TLT0421") == ["vault", "quick"]

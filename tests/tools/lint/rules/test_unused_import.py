@@ -27,7 +27,7 @@ def test_an_import_that_narrows_a_signal_counts_as_used(tmp_path, monkeypatch) -
     assert codes(text.format("another")) == ["TLT0422"]
 
 
-def test_each_imported_file_is_visited_once(tmp_path, monkeypatch) -> None:  # type: ignore[no-untyped-def]
+def test_the_work_is_linear_in_the_files_of_a_chain_of_imports(tmp_path, monkeypatch) -> None:  # type: ignore[no-untyped-def]
     monkeypatch.chdir(tmp_path)
     text = "import m0\nsignal a: bool\nspec s { limit 3 steps reach a }"
 

@@ -41,19 +41,19 @@ def command(paths: tuple[str, ...], fixing: bool, settings: CompileSettings, for
     from tltlc.diagnostics.diagnostic import TltlError
     from tltlc.interfaces.cli.folders import every_source, leads_out
     from tltlc.interfaces.cli.report import Report, counted, tally
-    from tltlc.tools.lint.importers import used_elsewhere, words
+    from tltlc.tools.lint.importers import importer_names, names_used_elsewhere
     from tltlc.tools.lint.neighbours import neighbours
 
     with Report(format) as report:
         files = every_source(paths or (".",), report)
-        neighbour_words = {path: words(str(path), text) for path, text in neighbours(files).items()}
+        neighbour_words = {path: importer_names(str(path), text) for path, text in neighbours(files).items()}
         for path in files:
             try:
                 can_fix = fixing and not leads_out(path, paths or (".",))
                 if fixing and not can_fix:
                     report.say(f"{path} is left as it is: it is a link out of the folder")
                 diagnostics = _lint_file(
-                    path, used_elsewhere(path, neighbour_words.values()), can_fix, settings, report
+                    path, names_used_elsewhere(path, neighbour_words.values()), can_fix, settings, report
                 )
             except TltlError as error:
                 diagnostics = error.diagnostics
@@ -95,7 +95,7 @@ def _lint_file(
     for diagnostic in fixes.fixed:
         label = diagnostic.labels[0]
         report.say(f"fixed {label.source.name}:{label.source.position(label.span.start)[0]}: {diagnostic.title}")
-    return _diagnostics(fixes.left)
+    return _diagnostics(fixes.remaining)
 
 
 def _diagnostics(findings: tuple[LintFinding, ...]) -> tuple[Diagnostic, ...]:

@@ -63,7 +63,7 @@ def _look(arguments: tuple[str, ...], settings: CompileSettings) -> None:
     from tltlc.interfaces.cli.folders import every_source
     from tltlc.interfaces.cli.report import Report, counted, tally
     from tltlc.io.files import log_lookup
-    from tltlc.tools.lint.importers import used_elsewhere, words
+    from tltlc.tools.lint.importers import importer_names, names_used_elsewhere
     from tltlc.tools.lint.neighbours import neighbours
 
     report = Report()
@@ -71,12 +71,12 @@ def _look(arguments: tuple[str, ...], settings: CompileSettings) -> None:
     for path in (*paths, *arguments):
         # A change is reported under the first noted name: this one, not the name of a neighbour.
         log_lookup(path)
-    neighbour_words = [words(str(path), text) for path, text in neighbours(paths).items()]
+    neighbour_words = [importer_names(str(path), text) for path, text in neighbours(paths).items()]
     passed = 0
     failures: list[Diagnostic] = []
     for path in paths:
         try:
-            findings, results = _file(path, used_elsewhere(path, neighbour_words), settings)
+            findings, results = _file(path, names_used_elsewhere(path, neighbour_words), settings)
         except TltlError as error:
             report.add(error.diagnostics)
             continue
@@ -105,5 +105,5 @@ def _file(
     check_text(source)
     with project.apply_lint_levels():
         view = view_of(source, compile_settings(settings, project))
-    file_findings = findings(replace(view, elsewhere=elsewhere), project.lint)
+    file_findings = findings(replace(view, used_elsewhere=elsewhere), project.lint)
     return file_findings, run_tests(view.program, (compiled.fspa for compiled in view.specs))

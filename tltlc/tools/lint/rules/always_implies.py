@@ -1,4 +1,4 @@
-"""TLT0435: `always a implies b`, where `always` ends before `implies`."""
+"""TLT0435: `always a implies b`, where `always` covers only `a`."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from tltlc.tools.lint.rule import LintRule, Remark
 def check(view: View) -> Iterator[Remark]:
     """Yield a remark for each condition in `require` that begins with an unbracketed `always`.
 
-    An example is `G a -> F b`. If the condition contains other temporal operators, as in
-    `G F a -> G F b`, this reading is usually intended and there is no remark.
+    An example is `G a -> F b`. If the operand of `always` contains temporal operators, as in
+    `G F a -> G F b`, the author usually means what is written, so there is no remark.
     """
     for spec in view.specs:
         for _, value in spec.clauses("require"):
@@ -24,8 +24,8 @@ def check(view: View) -> Iterator[Remark]:
                 if isinstance(part.tree, BinaryExpr) and part.tree.op in ("implies", "iff"):
                     first, *rest = operands(part.tree.left, "and")
                     if isinstance(first, Unary) and first.op == "G" and not isinstance(first.operand, GroupExpr):
-                        condition = (part.at(first.operand), *map(part.at, rest))
-                        if all(map(Expression.is_of_one_step, condition)):
+                        condition = (part.with_tree(first.operand), *map(part.with_tree, rest))
+                        if all(map(Expression.depends_on_one_step, condition)):
                             yield _remark(part, part.tree, first)
 
 
@@ -40,8 +40,8 @@ def _remark(part: Expression, tree: BinaryExpr, first: Unary) -> Remark:
         part.source, tree.left.span, f"the condition of `{connective}` is all of this: `{word}` ends before it"
     )
     condition = text_between(first.span.start, tree.left.span.end)
-    suggestion = f"at every step is `{word} ({corrected})`; where this is meant, say so: `({condition}) {connective} …`"
-    return Remark(f"`{word}` speaks of the condition alone", (label,), suggestion)
+    help_ = f"at every step is `{word} ({corrected})`; where this is meant, say so: `({condition}) {connective} …`"
+    return Remark(f"`{word}` speaks of the condition alone", (label,), help_)
 
 
 RULE = LintRule("TLT0435", "warning", check)

@@ -17,9 +17,9 @@ _MOST_LABELS: Final = 4
 
 
 def check(view: View) -> Iterator[Remark]:
-    """Yield a remark for each spec that is unsatisfiable only because of what its atoms compute.
+    """Yield a remark for each spec that is unsatisfiable because of the values of its atoms.
 
-    The compiler does not see this: to it, atoms have no relation to each other.
+    The compiler treats atoms as independent, so it does not report such a spec.
     """
     for spec in view.specs:
         if spec.fspa.states[0].verdict != "violated" and is_impossible(spec):
@@ -27,15 +27,15 @@ def check(view: View) -> Iterator[Remark]:
 
 
 def _remark(spec: SpecView) -> Remark:
-    known = relations(spec, [atom.name for atom in spec.fspa.atoms])
-    needed = contradiction(replace(spec.spec, parts=(*known, *spec.spec.parts)), spec.decision)
-    clauses = [part for part in needed if part not in known]
+    proved = relations(spec, [atom.name for atom in spec.fspa.atoms])
+    needed = contradiction(replace(spec.spec, parts=(*proved, *spec.spec.parts)), spec.decision)
+    clauses = [part for part in needed if part not in proved]
     together = "this cannot be met" if len(clauses) == 1 else "together with the others"
     labels = tuple(Label(part.source, part.span, together) for part in clauses[:_MOST_LABELS])
-    excluded = next(part for part in needed if part in known).formula.args[0].args[0]
+    excluded = next(part for part in needed if part in proved).formula.args[0].args[0]
     title = f"no trace satisfies `{spec.spec.name}`, by the values that its signals can have"
-    suggestion = f"`{phrase(excluded)}` is never true: check the numbers, and the direction of each comparison"
-    return Remark(title, labels, suggestion)
+    help_ = f"`{phrase(excluded)}` is never true: check the numbers, and the direction of each comparison"
+    return Remark(title, labels, help_)
 
 
 RULE = LintRule("TLT0431", "warning", check)

@@ -1,4 +1,4 @@
-"""TLT0416: an atom that always holds, or never, for all values of the signals."""
+"""TLT0416: an atom that always holds or never holds, whatever the values of the signals."""
 
 from __future__ import annotations
 
@@ -10,21 +10,21 @@ from tltlc.tools.lint.rule import LintRule, Remark
 
 
 def check(view: View) -> Iterator[Remark]:
-    """Yield a remark for each atom that is constant, once for each atom of the file."""
-    seen: set[str] = set()
+    """Yield a remark for each constant atom, once for each name in the file."""
+    checked: set[str] = set()
     for spec in view.specs:
         for atom in spec.fspa.atoms:
-            if atom.name in seen:
+            if atom.name in checked:
                 continue
-            seen.add(atom.name)
+            checked.add(atom.name)
             if not can_be("positive", atom, spec.fspa) and is_always("not positive", atom, spec.fspa):
                 label = spec.atom_label(atom.name, "its value is 0 or less for all values of the signals")
-                suggestion = "an atom holds where its value is above 0: check the sign, the range and the units"
-                yield Remark(f"`{atom.name}` never holds", (label,), suggestion)
+                help_ = "an atom holds where its value is above 0: check the sign, the range and the units"
+                yield Remark(f"`{atom.name}` never holds", (label,), help_)
             elif not can_be("not positive", atom, spec.fspa) and is_always("positive", atom, spec.fspa):
                 label = spec.atom_label(atom.name, "its value is above 0 for all values of the signals")
-                suggestion = "an atom fails where its value is 0 or less: check the sign, the range and the units"
-                yield Remark(f"`{atom.name}` always holds", (label,), suggestion)
+                help_ = "an atom fails where its value is 0 or less: check the sign, the range and the units"
+                yield Remark(f"`{atom.name}` always holds", (label,), help_)
 
 
 RULE = LintRule("TLT0416", "error", check)

@@ -11,14 +11,14 @@ from tltlc.grammar.tree import Expr, LetDecl, NumberExpr, Unary
 from tltlc.grammar.walk import parts
 from tltlc.resolve.constants import samples
 from tltlc.resolve.values import Env
-from tltlc.tools.lint.file_view import Expression, View, inner, operand
+from tltlc.tools.lint.file_view import Expression, View, operand_text, without_brackets
 from tltlc.tools.lint.rule import LintRule, Remark
 
 
 def check(view: View) -> Iterator[Remark]:
-    """Yield a remark for each chain of two or more `next`, in specs and lets.
+    """Yield a remark for each chain of `next` that takes two or more steps, in specs and lets.
 
-    `next after` counts as that many steps.
+    A `next after N steps` counts as N steps.
     """
     trees = [formula.tree for spec in view.specs for formula in spec.formulas()]
     trees += [declaration.body for declaration in view.module.declarations if isinstance(declaration, LetDecl)]
@@ -34,41 +34,42 @@ def check(view: View) -> Iterator[Remark]:
 def _chain(first: Unary, inside: set[int]) -> tuple[float, Expr]:
     """Return how many steps a chain takes, and the expression at its end.
 
-    A `next` with a bound in seconds ends the chain. Adds the ids of the chain's nodes to
+    A `next` with a bound in seconds ends the chain. The ids of the nodes of the chain are added to
     ``inside``.
     """
-    steps, tree = 0.0, inner(first)
+    steps, tree = 0.0, without_brackets(first)
     while isinstance(tree, Unary) and tree.op == first.op and _steps(tree):
         inside.add(id(tree))
         steps += _steps(tree)
-        tree = inner(tree.operand)
+        tree = without_brackets(tree.operand)
     return steps, tree
 
 
 def _steps(tree: Unary) -> float:
+    """Return how many steps a `next` takes; 0 if its bound is in seconds."""
     if tree.bound is None:
         return 1
     return tree.bound.high.value if tree.bound.high.unit in (None, "step", "steps") else 0
 
 
 def _remark(view: View, chain: Unary, steps: float, awaited: Expr) -> Remark:
-    text = operand(Expression(awaited, view.env))
-    suggestion = f"exactly {steps:g} steps later is seldom meant: declare a `clock`, and say it in seconds"
+    text = operand_text(Expression(awaited, view.env))
+    help_ = f"exactly {steps:g} steps later is seldom meant: declare a `clock`, and say it in seconds"
     if view.env.context.clock_s:
         time = _seconds(steps, view.env.context.clock_s, view.env)
         if chain.op == "N":
-            suggestion = f"say it in seconds: `weak_next after {time} s {text}`"
+            help_ = f"say it in seconds: `weak_next after {time} s {text}`"
         else:
-            suggestion = f"say it in seconds: `next after {time} s {text}`"
-            suggestion += f", or `eventually within {time} s {text}` where it may come earlier"
+            help_ = f"say it in seconds: `next after {time} s {text}`"
+            help_ += f", or `eventually within {time} s {text}` where it may come earlier"
     label = Label(view.source, Span(chain.span.start, awaited.span.start), f"exactly {steps:g} steps from now")
-    return Remark("this counts steps, whatever time they take", (label,), suggestion)
+    return Remark("this counts steps, whatever time they take", (label,), help_)
 
 
 def _seconds(steps: float, period: float, env: Env) -> str:
-    """Return a short time in seconds that covers exactly this many steps.
+    """Return a short decimal number of seconds that the compiler turns into exactly this many steps.
 
-    Times round up to steps, so the result is never longer than the exact time.
+    The compiler rounds times up to steps, so the result is at most ``steps * period``.
     """
     exact = steps * period
     shorter = (str(Context(prec=digits, rounding=ROUND_DOWN).create_decimal(exact)) for digits in range(3, 18))

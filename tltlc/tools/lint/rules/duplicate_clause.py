@@ -12,43 +12,43 @@ from tltlc.grammar.tree import Clause
 from tltlc.logic.formula import Formula
 from tltlc.resolve.spec import Conjunct
 from tltlc.tools.lint.file_view import View
-from tltlc.tools.lint.removal import without
+from tltlc.tools.lint.removal import removal_span
 from tltlc.tools.lint.removal_advice import changes_judge
-from tltlc.tools.lint.rule import LintRule, Remark, removal
+from tltlc.tools.lint.rule import LintRule, Remark, removal_fix
 
 
 def check(view: View) -> Iterator[Remark]:
-    """Yield a remark for each clause, or part of one, that repeats an earlier one.
+    """Yield a remark for each clause, or conjunct of a clause, that repeats an earlier one.
 
-    Both must have the same form.
+    Both must have the same formula. Formulas that are merely equivalent are reported as TLT0413.
     """
     for spec in view.specs:
         first: dict[Formula, Conjunct] = {}
-        covering = _covering(spec.declaration.clauses, spec.spec.parts)
+        clauses = _clauses_of_one_part(spec.declaration.clauses, spec.spec.parts)
         remaining = list(spec.spec.parts)
         for part in spec.spec.parts:
             earlier = first.setdefault(part.formula, part)
             if earlier is not part:
                 labels = (view.label(part.span, "this again"), view.label(earlier.span, "said here"))
                 if part.unbounded != earlier.unbounded:
-                    left = [other for other in remaining if other is not part]
-                    if changes_judge(part, left, spec):
+                    others = [candidate for candidate in remaining if candidate is not part]
+                    if changes_judge(part, others, spec):
                         # The bound of the later part makes it a goal, for example `F[0,0] a` after `a`.
-                        suggestion = f"remove one of them and say `judge at {spec.fspa.judge}`"
-                        yield Remark(_TITLE, labels, suggestion)
+                        help_ = f"remove one of them and say `judge at {spec.fspa.judge}`"
+                        yield Remark(_TITLE, labels, help_)
                         continue
-                    remaining = left
-                yield Remark(_TITLE, labels, "remove one of them", _fix(covering.get(part.span), view))
+                    remaining = others
+                yield Remark(_TITLE, labels, "remove one of them", _fix(clauses.get(part.span), view))
 
 
 def _fix(clause: Clause | None, view: View) -> Fix | None:
-    """Return the fix that removes the clause, or None if no clause consists of the part alone."""
+    """Return the fix that removes the clause; None if ``clause`` is None."""
     if clause is None:
         return None
-    return removal("Remove one of them", (without(view.source, clause.span, view.module.comments),))
+    return removal_fix("Remove one of them", (removal_span(view.source, clause.span, view.module.comments),))
 
 
-def _covering(clauses: Sequence[Clause], parts: Iterable[Conjunct]) -> dict[Span, Clause]:
+def _clauses_of_one_part(clauses: Sequence[Clause], parts: Iterable[Conjunct]) -> dict[Span, Clause]:
     """Return the clauses that consist of one part, by the span of that part."""
     starts = [clause.span.start for clause in clauses]
     covered: dict[int, list[Span]] = {}

@@ -10,36 +10,40 @@ from tltlc.diagnostics.diagnostic import Label
 from tltlc.logic.formula import and_
 from tltlc.logic.text.phrases import is_state
 from tltlc.resolve.spec import Conjunct, Spec
-from tltlc.tools.lint.file_view import Expression, SpecView, View, inner
+from tltlc.tools.lint.file_view import Expression, SpecView, View, without_brackets
 from tltlc.tools.lint.goals import conjuncts, goals
 from tltlc.tools.lint.rule import LintRule, Remark
 
 
 def check(view: View) -> Iterator[Remark]:
-    """Yield a remark for each goal that asks for what ``exclusive`` forbids at one step."""
+    """Yield a remark for each goal that asks for two atoms of an ``exclusive`` group at one step."""
     for spec in view.specs:
         for goal in goals(spec) if spec.spec.exclusive else ():
-            names = _excluding(goal, spec)
+            names = _conflicting_atoms(goal, spec)
             if names:
                 title = "this goal asks for atoms that never hold together"
                 listed = " and ".join(f"`{name}`" for name in names)
-                label = Label(goal.source, inner(goal.tree).span, f"{listed} are `exclusive`")
-                suggestion = "ask for one after the other with `then`, or for either with `or`"
-                yield Remark(title, (label,), suggestion)
+                label = Label(goal.source, without_brackets(goal.tree).span, f"{listed} are `exclusive`")
+                help_ = "ask for one after the other with `then`, or for either with `or`"
+                yield Remark(title, (label,), help_)
 
 
-def _excluding(goal: Expression, spec: SpecView) -> list[str]:
-    """Return the exclusive atoms that make a goal impossible.
+def _conflicting_atoms(goal: Expression, spec: SpecView) -> list[str]:
+    """Return the names of the exclusive atoms that make a goal impossible.
 
-    The result is empty if the goal is possible, or impossible for another reason.
+    The list is empty if the goal is possible, or if it is impossible for another reason.
     """
     formulas = [part.formula() for part in conjuncts(goal)]
     formula = and_(*(state for state in formulas if state is not None and is_state(state)))
-    used = formula.atoms()
+    goal_atoms = formula.atoms()
     for group in spec.spec.exclusive:
-        names = [name for name in used if name in {spec.spec.atoms[index].name for index in group}]
+        names = [name for name in goal_atoms if name in {spec.spec.atoms[index].name for index in group}]
         part = Conjunct(formula, goal.source, goal.tree.span)
-        if len(names) > 1 and _is_impossible(part, spec.spec) and not _is_impossible(part, _free(spec.spec)):
+        if (
+            len(names) > 1
+            and _is_impossible(part, spec.spec)
+            and not _is_impossible(part, _without_exclusive(spec.spec))
+        ):
             return names
     return []
 
@@ -48,7 +52,7 @@ def _is_impossible(part: Conjunct, spec: Spec) -> bool:
     return unsatisfiable((part,), spec)
 
 
-def _free(spec: Spec) -> Spec:
+def _without_exclusive(spec: Spec) -> Spec:
     return replace(spec, exclusive=())
 
 

@@ -9,41 +9,41 @@ from tltlc.diagnostics.diagnostic import Label
 from tltlc.grammar.tree import GroupExpr, Unary
 from tltlc.grammar.walk import conjuncts
 from tltlc.tools.lint import goals
-from tltlc.tools.lint.file_view import Expression, View, operand
+from tltlc.tools.lint.file_view import Expression, View, operand_text
 from tltlc.tools.lint.rule import LintRule, Remark
 
 
 def check(view: View) -> Iterator[Remark]:
-    """Yield a remark for each `require` clause in a block that constrains only the first step.
+    """Yield a remark for each `require` clause of a block that constrains only the first step.
 
-    Also yields a remark for what follows the operand of a temporal operator and seems to belong to
-    it, like b in `eventually a and b`.
+    Also yields a remark for conjuncts that follow the operand of a temporal operator and were
+    probably meant to belong to the operand, like b in `eventually a and b`.
     """
     for spec in view.specs:
         for clause, value in spec.clauses("require"):
-            parts = [value.at(tree) for tree in conjuncts(value.tree)]
-            if spec.declaration.block and all(map(Expression.is_of_one_step, parts)):
+            parts = [value.with_tree(tree) for tree in conjuncts(value.tree)]
+            if spec.declaration.block and all(map(Expression.depends_on_one_step, parts)):
                 label = Label(value.source, clause.span, "asked at the first step, and never again")
-                suggestion = f"at every step is `keep {value.text}`"
-                if not goals.is_of_implications(value):
-                    suggestion += f", at some step `reach {value.text}`"
-                yield Remark("this speaks of the first step alone", (label,), suggestion)
+                help_ = f"at every step is `keep {value.text}`"
+                if not goals.consists_of_implications(value):
+                    help_ += f", at some step `reach {value.text}`"
+                yield Remark("this speaks of the first step alone", (label,), help_)
                 continue
             for place, part in enumerate(parts):
-                following = list(takewhile(Expression.is_of_one_step, parts[place + 1 :]))
+                following = list(takewhile(Expression.depends_on_one_step, parts[place + 1 :]))
                 if following and isinstance(part.tree, Unary) and _is_bare(part.tree):
-                    yield _outside(part, part.tree, following)
+                    yield _remark(part, part.tree, following)
 
 
 def _is_bare(tree: Unary) -> bool:
-    """Whether a temporal operator has no brackets that show where its operand ends."""
+    """Whether this is an `eventually` or `always` without brackets around its operand."""
     return tree.op in ("F", "G") and not isinstance(tree.operand, GroupExpr)
 
 
-def _outside(temporal: Expression, tree: Unary, following: list[Expression]) -> Remark:
+def _remark(temporal: Expression, tree: Unary, following: list[Expression]) -> Remark:
     source = temporal.source
     word = " ".join(source.text[tree.span.start : tree.operand.span.start].split())
-    inside = " and ".join(map(operand, (temporal.at(tree.operand), *following)))
+    inside = " and ".join(map(operand_text, (temporal.with_tree(tree.operand), *following)))
     span = following[0].tree.span.to(following[-1].tree.span)
     label = Label(source, span, f"asked at the first step: `{word}` ends before it")
     return Remark("this speaks of the first step alone", (label,), f"both together are `{word} ({inside})`")

@@ -1,4 +1,4 @@
-"""TLT0417: a goal whose atom has the value 0 at every sample where it does not hold."""
+"""TLT0417: a goal with an atom whose value is 0 wherever the atom does not hold."""
 
 from __future__ import annotations
 
@@ -12,30 +12,30 @@ from tltlc.tools.lint.rule import LintRule, Remark
 
 
 def check(view: View) -> Iterator[Remark]:
-    """Yield a remark for each atom that a state waits for and whose value is never negative.
+    """Yield a remark for each atom that an edge towards the goal needs and that is never negative.
 
-    There is no remark if the edge that leaves the state also needs an atom that can be negative.
+    There is no remark if the edge also needs an atom that can be negative.
     """
     for spec in view.specs:
         flat = {index for index, atom in enumerate(spec.fspa.atoms) if _is_flat(atom, spec.fspa)}
         for index in _awaited(spec.fspa, flat) if flat else ():
             name = spec.fspa.atoms[index].name
             label = spec.atom_label(name, "0 until it holds: progress cannot tell near from far")
-            suggestion = "give the predicate negative values where it does not hold, the lower the farther"
-            yield Remark(f"the value of `{name}` is never negative", (label,), suggestion)
+            help_ = "give the predicate negative values where it does not hold, the lower the farther"
+            yield Remark(f"the value of `{name}` is never negative", (label,), help_)
 
 
 def _is_flat(atom: Atom, fspa: Fspa) -> bool:
-    """Whether an atom is proved never to be negative, and is 0 somewhere."""
+    """Whether the value of an atom is provably never negative, and can be 0."""
     can_fail = can_be("not positive", atom, fspa)
     return can_fail and not can_be("negative", atom, fspa) and is_always("not negative", atom, fspa)
 
 
 def _awaited(fspa: Fspa, flat: Set[int]) -> list[int]:
-    """Return the flat atoms that an edge towards the goal needs and a self-loop does not.
+    """Return the flat atoms that an edge towards the goal needs but the self-loop does not.
 
-    If an edge needs several atoms, the least value counts. So one atom that can be negative is
-    enough to tell near from far, and then no atom of the edge is returned.
+    If an edge needs several atoms, progress uses the least of their values. So one atom that can be
+    negative is enough to tell near from far, and then no atom of this edge is returned.
     """
     stays: dict[int, list[Implicant]] = {}
     for edge in fspa.edges:

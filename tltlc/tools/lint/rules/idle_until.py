@@ -7,31 +7,33 @@ from collections.abc import Iterator
 from tltlc.diagnostics.diagnostic import Label
 from tltlc.grammar.tree import BinaryExpr
 from tltlc.grammar.walk import operands
-from tltlc.tools.lint.file_view import View, inner, operand
+from tltlc.tools.lint.file_view import View, operand_text, without_brackets
 from tltlc.tools.lint.rule import LintRule, Remark
 
 
 def check(view: View) -> Iterator[Remark]:
-    """Yield a remark for each clause that amounts to its second formula.
+    """Yield a remark for each `until` in a clause that is equivalent to its second operand.
 
     `a until b` holds at every step where b holds. In a chain of goals, only the last `until` gets a
-    remark: an earlier one also says from when on the next goal counts.
+    remark: an earlier `until` also determines from which step the next goal counts.
     """
     for spec in view.specs:
         for clause, value in spec.clauses("reach", "avoid"):
             *earlier, last = operands(value.tree, "then")
-            part = value.at(inner(last))
+            part = value.with_tree(without_brackets(last))
             if not isinstance(part.tree, BinaryExpr) or part.tree.op != "U":
                 continue
-            before, goal = value.at(part.tree.left), value.at(part.tree.right)
+            before, goal = value.with_tree(part.tree.left), value.with_tree(part.tree.right)
             label = Label(value.source, part.tree.span, f"this is `{clause.kind} {goal.text}` and no more")
-            suggestion = f"say `require {operand(before)} until {operand(goal)}`"
+            help_ = f"say `require {operand_text(before)} until {operand_text(goal)}`"
             if clause.kind == "avoid":
                 # `avoid` does not require its second formula to occur, hence `weak_until`.
-                suggestion = f"say `require (not {operand(before)}) weak_until {operand(goal)}`"
+                help_ = f"say `require (not {operand_text(before)}) weak_until {operand_text(goal)}`"
             if earlier:
-                suggestion = f"say `{operand(value.at(earlier[-1]))} and ({part.text})`, which counts from there on"
-            yield Remark("the first half of this `until` has no say", (label,), suggestion)
+                help_ = (
+                    f"say `{operand_text(value.with_tree(earlier[-1]))} and ({part.text})`, which counts from there on"
+                )
+            yield Remark("the first half of this `until` has no say", (label,), help_)
 
 
 RULE = LintRule("TLT0433", "warning", check)

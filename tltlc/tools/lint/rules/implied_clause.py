@@ -11,21 +11,21 @@ from tltlc.logic.formula import Formula, not_
 from tltlc.resolve.spec import Conjunct, Spec
 from tltlc.tools.lint.file_view import SpecView, View
 from tltlc.tools.lint.relations import is_impossible, relations
-from tltlc.tools.lint.removal_advice import leave_out
+from tltlc.tools.lint.removal_advice import removal_help
 from tltlc.tools.lint.rule import LintRule, Remark
 from tltlc.tools.lint.rules import recurrence
 
 _MOST_PARTS = 24
-"""Specs with more clauses are not checked: each check builds an automaton of the other clauses."""
+"""Specs with more clauses are not checked, because each check builds an automaton of the others."""
 
 
 def check(view: View) -> Iterator[Remark]:
-    """Yield a remark for each clause that other clauses of its spec imply, with those clauses.
+    """Yield a remark for each clause that other clauses of its spec imply.
 
-    A clause that constrains only the last step is usually a mistake, so it does not count as a
-    reason.
+    The labels after the first one are on these clauses. A clause that constrains only the last step
+    is usually a mistake, so it does not count as a reason.
     """
-    doubtful = [remark.labels[0] for remark in recurrence.check(view)]
+    last_step_labels = [remark.labels[0] for remark in recurrence.check(view)]
     for spec in view.specs:
         # Another rule reports duplicate clauses.
         first: dict[Formula, Conjunct] = {}
@@ -33,31 +33,31 @@ def check(view: View) -> Iterator[Remark]:
             first.setdefault(part.formula, part)
         parts = list(first.values())
         if 1 < len(parts) <= _MOST_PARTS and not is_impossible(spec):
-            yield from _remarks(spec, parts, [part for part in parts if not _is_any_in(doubtful, part)])
+            yield from _remarks(spec, parts, [part for part in parts if not _contains_any(last_step_labels, part)])
 
 
-def _is_any_in(places: Sequence[Label], part: Conjunct) -> bool:
+def _contains_any(places: Sequence[Label], part: Conjunct) -> bool:
     return any(part.source == place.source and part.span.covers(place.span) for place in places)
 
 
 def _remarks(spec: SpecView, parts: Sequence[Conjunct], reasons: Sequence[Conjunct]) -> Iterator[Remark]:
-    left, remaining = list(reasons), list(spec.spec.parts)
-    # Of two clauses that imply each other, the later one is reported. A reported clause is no reason for others.
+    possible_reasons, remaining = list(reasons), list(spec.spec.parts)
+    # If two clauses imply each other, report the later one. A reported clause is no reason for others.
     for part in reversed(parts):
-        candidates = [candidate for candidate in left if candidate is not part]
-        needed = _reasons(part, candidates, _known(part, spec), spec)
+        candidates = [candidate for candidate in possible_reasons if candidate is not part]
+        needed = _reasons(part, candidates, _relations(part, spec), spec)
         if needed:
-            left = candidates
+            possible_reasons = candidates
             labels = (
                 Label(part.source, part.span, "nothing is lost without this"),
                 *(Label(reason.source, reason.span, "because of this") for reason in needed),
             )
             title = f"{'another clause asks' if len(needed) == 1 else 'other clauses ask'} for this already"
             remaining = [other for other in remaining if other.formula is not part.formula]
-            yield Remark(title, labels, f"{leave_out(part, remaining, spec)}, or say what more it should ask for")
+            yield Remark(title, labels, f"{removal_help(part, remaining, spec)}, or say what more it should ask for")
 
 
-def _known(part: Conjunct, spec: SpecView) -> list[Conjunct]:
+def _relations(part: Conjunct, spec: SpecView) -> list[Conjunct]:
     """Return the proved relations between the atoms of a part and the other atoms of the spec."""
     own = set(part.formula.atoms())
     return [
@@ -68,25 +68,25 @@ def _known(part: Conjunct, spec: SpecView) -> list[Conjunct]:
 
 
 def _reasons(
-    part: Conjunct, others: Sequence[Conjunct], known: Sequence[Conjunct], spec: SpecView
+    part: Conjunct, others: Sequence[Conjunct], proved: Sequence[Conjunct], spec: SpecView
 ) -> tuple[Conjunct, ...]:
-    """Return a minimal set of other parts that imply a part together; empty if they do not."""
-    if not _share_atoms(part, others, known, spec.spec):
+    """Return a minimal set of the other parts that together imply a part; empty if they do not."""
+    if not _share_atoms(part, others, proved, spec.spec):
         return ()
     negated = replace(part, formula=not_(part.formula))
-    together = (*others, *known, negated)
+    together = (*others, *proved, negated)
     if not spec.decision(together, spec.spec):
         return ()
     needed = contradiction(replace(spec.spec, parts=together), spec.decision)
     return tuple(other for other in needed if other in others)
 
 
-def _share_atoms(part: Conjunct, others: Sequence[Conjunct], known: Sequence[Conjunct], spec: Spec) -> bool:
-    """Whether other parts are about an atom of the part, or about one that excludes such an atom.
+def _share_atoms(part: Conjunct, others: Sequence[Conjunct], proved: Sequence[Conjunct], spec: Spec) -> bool:
+    """Whether other parts have an atom of the part, or an atom that excludes one of its atoms.
 
-    If not, they cannot imply the part.
+    If they have none, they cannot imply the part.
     """
-    own = set(part.formula.atoms()).union(*(relation.formula.atoms() for relation in known))
+    own = set(part.formula.atoms()).union(*(relation.formula.atoms() for relation in proved))
     for group in spec.exclusive:
         names = {spec.atoms[index].name for index in group}
         own |= names if own & names else set()

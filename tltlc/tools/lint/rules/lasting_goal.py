@@ -1,6 +1,6 @@
 """TLT0434: `reach (always for 3 s a)`, which a single step can meet.
 
-The bounded `always` asks for nothing after the end of the trace.
+A bounded `always` requires nothing of the steps after the end of the trace.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from tltlc.grammar.tree import BinaryExpr, Unary
 from tltlc.grammar.walk import operands
 from tltlc.logic.formula import FALSE, and_, weak_next
 from tltlc.resolve.spec import Conjunct
-from tltlc.tools.lint.file_view import Expression, SpecView, View, inner, operand
+from tltlc.tools.lint.file_view import Expression, SpecView, View, operand_text, without_brackets
 from tltlc.tools.lint.goals import conjuncts
 from tltlc.tools.lint.rule import LintRule, Remark
 
@@ -21,9 +21,9 @@ _SUGGESTION = "let a signal count the time, and ask for enough of it, as in `rea
 
 
 def check(view: View) -> Iterator[Remark]:
-    """Yield a remark for each bounded `always` in a last goal.
+    """Yield a remark for each bounded `always` in a last goal that one step can meet.
 
-    This applies to specs that end with success as soon as they are met.
+    Only specs whose episodes end with success as soon as the spec is met are checked.
     """
     for spec in view.specs:
         if spec.fspa.semantics != "finite" or spec.fspa.judge != "goal":
@@ -32,58 +32,56 @@ def check(view: View) -> Iterator[Remark]:
             goals = (
                 [value] if clause.kind == "reach" else [goal for part in conjuncts(value) for goal in _goals_of(part)]
             )
-            for final in map(_last, goals):
+            for final in map(_last_parts, goals):
                 remarks = [remark for last_part in final for remark in _remarks(last_part)]
                 if remarks and _is_met_by_one_step(final, spec):
                     yield from remarks
 
 
 def _goals_of(part: Expression) -> Iterator[Expression]:
-    """Yield what a conjunct asks for at some step, as a goal; nothing if it is no goal."""
+    """Yield the operand of `eventually`, or a whole `then` chain; nothing for other expressions."""
     if isinstance(part.tree, Unary) and part.tree.op == "F":
-        yield part.at(part.tree.operand)
+        yield part.with_tree(part.tree.operand)
     elif isinstance(part.tree, BinaryExpr) and part.tree.op == "then":
         yield part
 
 
-def _last(goal: Expression) -> list[Expression]:
-    """Return what a goal asks for last.
+def _last_parts(goal: Expression) -> list[Expression]:
+    """Return the conjuncts that must be met last for a goal to be met.
 
-    For a chain this is its last step, for `eventually a` it is what a asks for last.
+    For a `then` chain, they are those of its last step; for `eventually a`, those of a.
     """
     parts: list[Expression] = []
-    waiting = [goal]
-    while waiting:
-        goal = waiting.pop()
-        for part in conjuncts(goal.at(operands(goal.tree, "then")[-1])):
+    pending = [goal]
+    while pending:
+        goal = pending.pop()
+        for part in conjuncts(goal.with_tree(operands(goal.tree, "then")[-1])):
             inside = list(_goals_of(part))
-            waiting += inside
+            pending += inside
             parts += [] if inside else [part]
     return parts
 
 
 def _is_met_by_one_step(final: list[Expression], spec: SpecView) -> bool:
-    """Whether a trace of one step can meet all of these expressions.
-
-    Anything that asks for a later step needs a longer trace.
-    """
+    """Whether a trace of one step can satisfy all of these expressions."""
     formulas = (formula for formula in map(Expression.formula, final) if formula is not None)
     at_end = and_(weak_next(FALSE), *formulas)
     return not unsatisfiable((Conjunct(at_end, spec.spec.source, spec.spec.name_span),), spec.spec)
 
 
 def _remarks(goal: Expression) -> Iterator[Remark]:
-    waiting = [(goal, True)]
-    while waiting:
-        part, holds = waiting.pop()
-        tree = inner(part.tree)
+    """Yield a remark for each bounded `always`, or negated bounded `eventually`, in an expression."""
+    pending = [(goal, True)]
+    while pending:
+        part, holds = pending.pop()
+        tree = without_brackets(part.tree)
         if isinstance(tree, Unary) and tree.op == "not":
-            waiting.append((part.at(tree.operand), not holds))
+            pending.append((part.with_tree(tree.operand), not holds))
         elif isinstance(tree, BinaryExpr) and tree.op in ("and", "or"):
-            waiting += (part.at(tree.right), holds), (part.at(tree.left), holds)
+            pending += (part.with_tree(tree.right), holds), (part.with_tree(tree.left), holds)
         elif isinstance(tree, Unary) and tree.bound is not None and tree.op == ("G" if holds else "F"):
-            lasting = part.at(tree.operand)
-            condition = lasting.text if holds else f"not {operand(lasting)}"
+            lasting = part.with_tree(tree.operand)
+            condition = lasting.text if holds else f"not {operand_text(lasting)}"
             message = f"past the end it asks nothing, so one step with `{condition}` is enough"
             yield Remark("this goal is met by one step", (Label(part.source, tree.span, message),), _SUGGESTION)
 

@@ -12,7 +12,7 @@ from tltlc.tools.lint.rule import LintRule, Remark
 
 _FEW: Final = 100
 _PER_PART: Final = 10
-"""No remark for up to ``_FEW`` states, or up to this many for each part of the spec.
+"""There is no remark for up to ``_FEW`` states, or for up to this many states per part of the spec.
 
 The parts of a spec are its operators, names and numbers.
 """
@@ -38,8 +38,8 @@ def _remark(spec: SpecView, states: int) -> Remark:
         return Remark(title, (label,), "shorten it, choose a slower `clock`, or let a signal count the time")
     first, *rest = (Label(part.source, part.span) for part in spec.spec.parts[:_MOST_LABELS])
     message = "the states of its parts multiply" if rest else "this has to remember much"
-    suggestion = "split the spec, say an order with `then`, or declare atoms that never hold together `exclusive`"
-    return Remark(title, (Label(first.source, first.span, message), *rest), suggestion)
+    help_ = "split the spec, say an order with `then`, or declare atoms that never hold together `exclusive`"
+    return Remark(title, (Label(first.source, first.span, message), *rest), help_)
 
 
 RULE = LintRule("TLT0423", "note", check)

@@ -1,4 +1,4 @@
-"""TLT0412: a goal that can be met without doing anything, because false atoms can meet it."""
+"""TLT0412: a goal that can be met without doing anything, while its atoms are false."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from tltlc.diagnostics.diagnostic import Label
 from tltlc.grammar.tree import BinaryExpr
 from tltlc.logic.formula import TRUE, Formula, and_, atom, eventually, not_, or_, rebuild
 from tltlc.resolve.spec import Conjunct
-from tltlc.tools.lint.file_view import Expression, SpecView, View, inner, operand
+from tltlc.tools.lint.file_view import Expression, SpecView, View, operand_text, without_brackets
 from tltlc.tools.lint.goals import conjuncts, goals
 from tltlc.tools.lint.relations import relations
 from tltlc.tools.lint.rule import LintRule, Remark
 
 
 def check(view: View) -> Iterator[Remark]:
-    """Yield a remark for each goal that can be met while none of the atoms it asks for holds.
+    """Yield a remark for each goal that can be met while none of the atoms that it asks for holds.
 
-    The other clauses are taken into account.
+    Only traces that satisfy the other clauses count.
     """
     for spec in view.specs:
         if not spec.is_settled:
@@ -31,19 +31,19 @@ def _remarks(goal: Expression, spec: SpecView) -> Iterator[Remark]:
     formula = goal.formula()
     if formula is None:
         return
-    still = _standing_still(formula)
-    holding, failing = _wanted(still)
-    # If all atoms should hold, or all should not, the player has to bring the goal about.
+    still = _without_temporal_operators(formula)
+    holding, failing = _helpful_atoms(still)
+    # If all atoms must hold, or all must fail, the player has to do something for the goal.
     if not failing or not set(holding) - set(failing):
         return
 
-    known = relations(spec, spec.spec.formula.atoms())
+    proved = relations(spec, spec.spec.formula.atoms())
 
     def can_be(state: Formula) -> bool:
         part = Conjunct(eventually(state), goal.source, goal.tree.span)
-        return not spec.decision((*spec.spec.parts, *known, part), spec.spec)
+        return not spec.decision((*spec.spec.parts, *proved, part), spec.spec)
 
-    # If the other clauses already ensure an atom, there is nothing to do for it.
+    # An atom that the other clauses already ensure needs no action.
     missing = [name for name in holding if can_be(not_(atom(name)))]
     awaited = [name for name in missing if name not in failing]
     met = and_(formula, still, *(not_(atom(name)) for name in missing))
@@ -52,15 +52,15 @@ def _remarks(goal: Expression, spec: SpecView) -> Iterator[Remark]:
         conditions = (part.formula() or TRUE for part, _ in implications)
         # If some condition always holds, the implications are not the reason.
         if implications and can_be(and_(met, *map(not_, conditions))):
-            yield _of_implications(implications)
+            yield _remark_on_implications(implications)
         else:
             listed = " and ".join(f"`{name}`" for name in awaited)
-            label = Label(goal.source, inner(goal.tree).span, f"can be met without {listed}")
+            label = Label(goal.source, without_brackets(goal.tree).span, f"can be met without {listed}")
             yield Remark(_TITLE, (label,), f"ask with `and` for what is to be done, or for {listed} alone")
 
 
-def _standing_still(formula: Formula) -> Formula:
-    """Return what a formula amounts to while nothing changes, without temporal operators."""
+def _without_temporal_operators(formula: Formula) -> Formula:
+    """Return a formula without temporal operators that is equivalent while no atom changes."""
     still: dict[Formula, Formula] = {}
     for part in formula.bottom_up():
         args = tuple(still[argument] for argument in part.args)
@@ -77,26 +77,26 @@ def _standing_still(formula: Formula) -> Formula:
     return still[formula]
 
 
-def _wanted(state: Formula) -> tuple[list[str], list[str]]:
-    """Return the atoms whose truth helps a formula, and those whose falsehood does.
+def _helpful_atoms(state: Formula) -> tuple[list[str], list[str]]:
+    """Return the atoms whose truth can make a formula true, and those whose falsehood can.
 
-    An atom may be in both.
+    An atom may be in both lists.
     """
     signs: dict[tuple[Formula, bool], None] = {}
-    waiting = [(state, True)]
-    while waiting:
-        part, holds = waiting.pop()
+    pending = [(state, True)]
+    while pending:
+        part, holds = pending.pop()
         if (part, holds) in signs:
             continue
         signs[part, holds] = None
         if part.op == "not":
-            waiting.append((part.args[0], not holds))
+            pending.append((part.args[0], not holds))
         elif part.op == "implies":
-            waiting += (part.args[1], holds), (part.args[0], not holds)
+            pending += (part.args[1], holds), (part.args[0], not holds)
         elif part.op == "iff":
-            waiting += [(argument, sign) for argument in part.args for sign in (True, False)]
+            pending += [(argument, sign) for argument in part.args for sign in (True, False)]
         else:
-            waiting += [(argument, holds) for argument in reversed(part.args)]
+            pending += [(argument, holds) for argument in reversed(part.args)]
     atoms = [(part.name, holds) for part, holds in signs if part.op == "atom"]
     return [name for name, holds in atoms if holds], [name for name, holds in atoms if not holds]
 
@@ -104,21 +104,21 @@ def _wanted(state: Formula) -> tuple[list[str], list[str]]:
 def _implications(goal: Expression) -> list[tuple[Expression, Expression]]:
     """Return the condition and the result of each implication that a goal asks for.
 
-    The body of `all` counts once for all entities.
+    The body of `all` counts once, not once for each entity.
     """
     by_span: dict[Span, tuple[Expression, Expression]] = {}
     for part in conjuncts(goal):
         if isinstance(part.tree, BinaryExpr) and part.tree.op == "implies":
-            by_span[part.tree.span] = part.at(part.tree.left), part.at(part.tree.right)
+            by_span[part.tree.span] = part.with_tree(part.tree.left), part.with_tree(part.tree.right)
     return list(by_span.values())
 
 
-def _of_implications(implications: list[tuple[Expression, Expression]]) -> Remark:
+def _remark_on_implications(implications: list[tuple[Expression, Expression]]) -> Remark:
     labels, alternatives = [], []
     for condition, result in implications:
         span = condition.tree.span.to(result.tree.span)
         labels.append(Label(condition.source, span, f"true while {condition.text} is false"))
-        alternatives.append(f"{operand(condition)} and {operand(result)}")
+        alternatives.append(f"{operand_text(condition)} and {operand_text(result)}")
     return Remark(
         _TITLE,
         tuple(labels),

@@ -11,12 +11,12 @@ from tltlc.logic.formula import not_
 from tltlc.resolve.spec import Conjunct
 from tltlc.tools.lint.file_view import SpecView, View
 from tltlc.tools.lint.relations import relations
-from tltlc.tools.lint.removal_advice import leave_out
+from tltlc.tools.lint.removal_advice import removal_help
 from tltlc.tools.lint.rule import LintRule, Remark
 
 
 def check(view: View) -> Iterator[Remark]:
-    """Yield a remark for each clause that no trace violates, regardless of the other clauses."""
+    """Yield a remark for each clause that no trace violates, whatever the other clauses are."""
     for spec in view.specs:
         # If every trace satisfies the whole spec, the compiler reports that.
         if spec.fspa.states[0].verdict == "satisfied":
@@ -24,10 +24,12 @@ def check(view: View) -> Iterator[Remark]:
         remaining = list(spec.spec.parts)
         for part in spec.spec.parts:
             if _is_always_met(part, spec):
-                remaining = [other for other in remaining if other is not part]
+                remaining = [candidate for candidate in remaining if candidate is not part]
                 label = Label(part.source, part.span, "every trace satisfies this")
                 yield Remark(
-                    "this clause asks nothing of the game", (label,), f"{leave_out(part, remaining, spec)}{_OR}"
+                    "this clause asks nothing of the game",
+                    (label,),
+                    f"{removal_help(part, remaining, spec)}{_ALTERNATIVE}",
                 )
 
 
@@ -36,6 +38,6 @@ def _is_always_met(part: Conjunct, spec: SpecView) -> bool:
     return spec.decision((negated, *relations(spec, part.formula.atoms())), spec.spec)
 
 
-_OR: Final = ", or say what it is to ask for: was `and` meant where `or` stands, or the other way?"
+_ALTERNATIVE: Final = ", or say what it is to ask for: was `and` meant where `or` stands, or the other way?"
 
 RULE = LintRule("TLT0430", "warning", check, supersedes=("TLT0429",))

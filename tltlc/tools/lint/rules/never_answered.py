@@ -10,16 +10,16 @@ from tltlc.grammar.tree import BinaryExpr, Clause, Unary
 from tltlc.logic.formula import Formula, always, and_
 from tltlc.logic.text.phrases import is_state
 from tltlc.resolve.spec import Conjunct
-from tltlc.tools.lint.file_view import Expression, SpecView, View, operand
+from tltlc.tools.lint.file_view import Expression, SpecView, View, operand_text
 from tltlc.tools.lint.relations import relations
 from tltlc.tools.lint.rule import LintRule, Remark
 
 
 def check(view: View) -> Iterator[Remark]:
-    """Yield a remark for each implication in a rule whose two sides never hold at the same step.
+    """Yield a remark for each required implication whose two sides never hold at the same step.
 
-    Each side must be able to hold on its own. Clauses that no trace satisfies get no remark,
-    because they do more than forbid one side.
+    Each side must be able to hold by itself. There is no remark for a clause that no trace
+    satisfies, because it does more than forbid one side.
     """
     for spec in view.specs:
         for clause, value in spec.clauses("keep", "require"):
@@ -29,30 +29,30 @@ def check(view: View) -> Iterator[Remark]:
 
 
 def _implications(value: Expression) -> Iterator[Expression]:
-    """Yield the implications that must hold as rules.
+    """Yield the implications that the expression requires to hold.
 
     Implications in goals, in negations, in conditions and in `iff` are left out.
     """
-    waiting = [value]
-    while waiting:
-        part = waiting.pop()
+    pending = [value]
+    while pending:
+        part = pending.pop()
         if isinstance(part.tree, (Unary, BinaryExpr)) and part.tree.op in ("not", "F", "then", "iff"):
             continue
         operands = part.children()
         if isinstance(part.tree, BinaryExpr) and part.tree.op == "implies":
             yield part
             operands = operands[1:]
-        waiting += reversed(operands)
+        pending += reversed(operands)
 
 
 def _never_together(implication: Expression, spec: SpecView) -> bool:
     formula = implication.formula()
     if formula is None or formula.op != "implies" or not is_state(formula):
         return False
-    known = relations(spec, formula.atoms())
+    proved = relations(spec, formula.atoms())
 
     def can_be(state: Formula) -> bool:
-        return not unsatisfiable((Conjunct(state, implication.source, implication.tree.span), *known), spec.spec)
+        return not unsatisfiable((Conjunct(state, implication.source, implication.tree.span), *proved), spec.spec)
 
     condition, result = formula.args
     return not can_be(and_(condition, result)) and can_be(condition) and can_be(result)
@@ -68,10 +68,10 @@ def _can_hold(clause: Clause, value: Expression, spec: SpecView) -> bool:
 
 def _remark(implication: Expression) -> Remark:
     assert isinstance(implication.tree, BinaryExpr)
-    condition, result = implication.at(implication.tree.left), implication.at(implication.tree.right)
+    condition, result = implication.with_tree(implication.tree.left), implication.with_tree(implication.tree.right)
     label = Label(implication.source, implication.tree.span, f"so this only forbids `{condition.text}`")
-    suggestion = f"where it comes later, write `{operand(condition)} implies eventually {operand(result)}`"
-    return Remark(f"`{result.text}` never holds at the step of `{condition.text}`", (label,), suggestion)
+    help_ = f"where it comes later, write `{operand_text(condition)} implies eventually {operand_text(result)}`"
+    return Remark(f"`{result.text}` never holds at the step of `{condition.text}`", (label,), help_)
 
 
 RULE = LintRule("TLT0432", "warning", check)

@@ -9,9 +9,9 @@ from tltlc.tools.lint.rule import LintRule, Remark
 
 
 def check(view: View) -> Iterator[Remark]:
-    """Yield a remark for each spec that is a block and has no limit.
+    """Yield a remark for each spec that is a block without a limit.
 
-    Only a block can have one.
+    A spec of the form `spec NAME = FORMULA` cannot have a limit.
     """
     for spec in view.specs:
         if spec.spec.limit_steps is None and spec.declaration.block:

@@ -1,4 +1,4 @@
-"""TLT0420: a spec without a goal that does not say it is judged at its limit."""
+"""TLT0420: a spec without a goal and without `judge at limit`."""
 
 from __future__ import annotations
 
@@ -10,25 +10,25 @@ from tltlc.tools.lint.rule import LintRule, Remark
 
 
 def check(view: View) -> Iterator[Remark]:
-    """Yield a remark for each spec that is judged at its limit without a clause that says so."""
+    """Yield a remark for each spec that is judged at its limit only because it has no goal."""
     for spec in view.specs:
-        # A block without a limit gets TLT0419 instead, and a settled spec gets a warning of the compiler.
+        # A block without a limit gets TLT0419, and a settled spec gets a warning of the compiler.
         has_other_remark = spec.is_settled or spec.spec.limit_steps is None
         if _is_judged_at_limit(spec) and spec.spec.judge is None and not has_other_remark:
             label = spec.name_label("it rewards lasting: progress is the share of its limit that has passed")
-            suggestion = "add a goal with `reach`, or say that this is meant: `judge at limit`"
-            yield Remark(f"`{spec.spec.name}` has no goal, so it is judged at its limit", (label,), suggestion)
+            help_ = "add a goal with `reach`, or say that this is meant: `judge at limit`"
+            yield Remark(f"`{spec.spec.name}` has no goal, so it is judged at its limit", (label,), help_)
 
 
 def _is_judged_at_limit(spec: SpecView) -> bool:
-    # Over infinite traces, a spec with a goal is also judged at its limit if the goal does not decide everything.
+    # Over infinite traces, a spec with a goal is also judged at its limit if the goal does not decide the spec.
     endless = spec.spec.semantics == "infinite"
-    lasts = not endless or (spec.fspa.states[0].distance == 0 and not _recurs(spec.spec.formula))
+    lasts = not endless or (spec.fspa.states[0].distance == 0 and not _has_recurrence(spec.spec.formula))
     return spec.fspa.judge == "limit" and lasts
 
 
-def _recurs(formula: Formula) -> bool:
-    """Whether something must happen again and again, which is a goal that is never done."""
+def _has_recurrence(formula: Formula) -> bool:
+    """Whether the formula requires something to happen again and again (`always eventually`)."""
     return any(part.op == "G" and part.args[0].op == "F" for part in formula.walk())
 
 

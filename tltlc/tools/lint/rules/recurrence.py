@@ -8,67 +8,68 @@ from tltlc.core.source import Span
 from tltlc.diagnostics.diagnostic import Label
 from tltlc.grammar.tree import BinaryExpr, Expr, LetDecl, Unary
 from tltlc.grammar.walk import operands, parts
-from tltlc.tools.lint.file_view import Expression, View, inner, operand
-from tltlc.tools.lint.goals import is_of_implications
+from tltlc.tools.lint.file_view import Expression, View, operand_text, without_brackets
+from tltlc.tools.lint.goals import consists_of_implications
 from tltlc.tools.lint.rule import LintRule, Remark
 
 _WORDS = {"F": "it comes again and again", "G": "it lasts from some time on"}
-"""What the author usually means, by the inner operator."""
-_OTHER = {"G": "F", "F": "G"}
+"""What the author usually means, by the inner operator of the two."""
+_DUAL = {"G": "F", "F": "G"}
 _OF_CLAUSES = {"keep": ("G", True), "avoid": ("G", False), "reach": ("F", True)}
-"""The operator of each clause kind, and whether its formula applies as it is or negated."""
+"""The operator that each clause kind stands for, and whether it applies to the formula or its negation."""
 
 
 def check(view: View) -> Iterator[Remark]:
     """Yield a remark for each `G F p` and `F G p` of a spec over finite traces.
 
-    This includes clauses that stand for the outer operator. Lets are checked only if all specs of
+    A clause counts as the outer operator that it stands for. Lets are checked only if all specs of
     the file are over finite traces.
     """
     finite = [spec for spec in view.specs if spec.spec.semantics == "finite"]
     for spec in finite:
         for clause, formula in spec.clauses("reach", "keep", "avoid", "require"):
-            yield from _inside(formula.tree, view)
+            yield from _remarks_inside(formula.tree, view)
             # In a chain of goals only the last step can be a condition on the end of the trace.
             last = operands(formula.tree, "then")[-1] if clause.kind == "reach" else formula.tree
-            start = clause.span.start if last is formula.tree else inner(last).span.start
+            start = clause.span.start if last is formula.tree else without_brackets(last).span.start
             if clause.kind in _OF_CLAUSES:
                 yield from _remarks(start, last, *_OF_CLAUSES[clause.kind], view)
     if len(finite) == len(view.specs) > 0:
         for declaration in view.module.declarations:
             if isinstance(declaration, LetDecl):
-                yield from _inside(declaration.body, view)
+                yield from _remarks_inside(declaration.body, view)
 
 
-def _inside(tree: Expr, view: View) -> Iterator[Remark]:
+def _remarks_inside(tree: Expr, view: View) -> Iterator[Remark]:
     for part in parts(tree):
-        if isinstance(part, Unary) and part.op in _OTHER and part.bound is None:
+        if isinstance(part, Unary) and part.op in _DUAL and part.bound is None:
             yield from _remarks(part.span.start, part.operand, part.op, True, view)
 
 
 def _remarks(start: int, tree: Expr, outer: str, holds: bool, view: View) -> Iterator[Remark]:
-    """Yield remarks for the parts of an operand that reduce to their truth at the last step.
+    """Yield remarks for the parts of an operand that constrain only the last step.
 
-    ``outer`` is the operator in front of the operand. The operand is negated unless ``holds``.
-    `always` distributes over `and`, and `eventually` over `or`.
+    ``outer``, `F` or `G`, is the operator in front of the operand. If ``holds`` is false, the operand
+    is negated. `always` distributes over `and`, and `eventually` over `or`, so the operands of
+    these are checked, too. ``start`` is the offset at which the label of the whole operand begins.
     """
-    whole = inner(tree)
-    waiting = [(tree, holds)]
-    while waiting:
-        part, sign = waiting.pop()
-        part = inner(part)
+    whole = without_brackets(tree)
+    pending = [(tree, holds)]
+    while pending:
+        part, sign = pending.pop()
+        part = without_brackets(part)
         begin = start if part is whole else part.span.start
         if isinstance(part, Unary) and part.op == "not":
-            whole = inner(part.operand) if part is whole else whole
-            waiting.append((part.operand, not sign))
-        elif isinstance(part, Unary) and part.op in _OTHER and part.bound is None:
-            op = part.op if sign else _OTHER[part.op]
-            if op == _OTHER[outer]:
+            whole = without_brackets(part.operand) if part is whole else whole
+            pending.append((part.operand, not sign))
+        elif isinstance(part, Unary) and part.op in _DUAL and part.bound is None:
+            op = part.op if sign else _DUAL[part.op]
+            if op == _DUAL[outer]:
                 yield _remark(Span(begin, part.op_span.end), op, Expression(part.operand, view.env), sign)
         elif (
             isinstance(part, BinaryExpr) and part.op in ("and", "or") and (part.op == "and") == ((outer == "G") == sign)
         ):
-            waiting += (part.right, sign), (part.left, sign)
+            pending += (part.right, sign), (part.left, sign)
         elif isinstance(part, BinaryExpr) and part.op == "U" and sign and outer == "G":
             goal = Expression(part.right, view.env).text
             label = Label(
@@ -79,13 +80,13 @@ def _remarks(start: int, tree: Expr, outer: str, holds: bool, view: View) -> Ite
 
 
 def _remark(place: Span, op: str, awaited: Expression, sign: bool) -> Remark:
-    """Return the remark; ``sign`` is whether ``awaited`` is to hold, or else its negation."""
-    goal = awaited.text if sign else f"not {operand(awaited)}"
+    """Return the remark. ``sign`` is false if the negation of ``awaited`` is required."""
+    goal = awaited.text if sign else f"not {operand_text(awaited)}"
     label = Label(awaited.source, place, f"where the trace ends, this is `{goal}` at its last step and no more")
-    suggestion = f"where play has no end and {_WORDS[op]}, say `semantics infinite`"
-    if not (sign and is_of_implications(awaited)):
-        suggestion += f"; once is `reach {goal}`"
-    return Remark("this speaks of the last step alone", (label,), suggestion)
+    help_ = f"where play has no end and {_WORDS[op]}, say `semantics infinite`"
+    if not (sign and consists_of_implications(awaited)):
+        help_ += f"; once is `reach {goal}`"
+    return Remark("this speaks of the last step alone", (label,), help_)
 
 
 RULE = LintRule("TLT0424", "warning", check)

@@ -10,20 +10,20 @@ from tltlc.tools.lint.file_view import SpecView, View
 from tltlc.tools.lint.rule import LintRule, Remark
 
 _WORK: Final = 200_000
-"""Steps after which two specs count as different: a note must not take longer than compiling."""
+"""Work after which two specs count as different: a note must not take longer than compiling."""
 
 
 def check(view: View) -> Iterator[Remark]:
-    """Yield a remark for each spec that accepts the same traces as an earlier one.
+    """Yield a remark for each spec that accepts the same traces as an earlier spec.
 
-    Both must be judged the same way. Specs that every trace satisfies, or none, already have a
-    warning of the compiler and are left out.
+    Both must be judged the same way. Specs that every trace or no trace satisfies are left out,
+    because the compiler already warns of them.
     """
-    firsts: dict[object, list[SpecView]] = {}
+    earlier_specs: dict[object, list[SpecView]] = {}
     for spec in view.specs:
         if spec.is_settled:
             continue
-        alike = firsts.setdefault(_form(spec.fspa), [])
+        alike = earlier_specs.setdefault(_form(spec.fspa), [])
         earlier = next((candidate for candidate in alike if _accept_the_same(candidate.fspa, spec.fspa)), None)
         if earlier is None:
             alike.append(spec)
@@ -34,7 +34,7 @@ def check(view: View) -> Iterator[Remark]:
 
 
 def _form(fspa: Fspa) -> object:
-    """Return a key that is equal for specs that may accept the same traces.
+    """Return a key. Only specs with equal keys can accept the same traces.
 
     Over finite traces, specs with equal keys do accept the same traces.
     """
@@ -45,7 +45,7 @@ def _form(fspa: Fspa) -> object:
 def _edges(fspa: Fspa) -> tuple[object, ...]:
     """Return the edges in a canonical form that does not depend on the numbers of states and atoms.
 
-    Minimal automata of one language have canonical guards, so they have the same form.
+    Minimal automata that accept the same traces have the same guards, and so the same form.
     """
     leaving: dict[int, list[tuple[list[list[tuple[str, bool]]], int]]] = {state.id: [] for state in fspa.states}
     for edge in fspa.edges:

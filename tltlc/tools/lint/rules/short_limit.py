@@ -9,7 +9,7 @@ from tltlc.tools.lint.rule import LintRule, Remark
 
 
 def check(view: View) -> Iterator[Remark]:
-    """Yield a remark for each spec whose goal is more steps away than its limit allows."""
+    """Yield a remark for each spec whose goal needs more steps than its limit allows."""
     for spec in view.specs:
         limit, least = spec.spec.limit_steps, spec.fspa.states[0].distance
         if limit is not None and least is not None and least > limit:

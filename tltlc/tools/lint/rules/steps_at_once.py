@@ -11,41 +11,41 @@ from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import Label, TltlError
 from tltlc.logic.formula import Formula
 from tltlc.resolve.spec import Spec
-from tltlc.tools.lint.file_view import Expression, SpecView, View, inner
+from tltlc.tools.lint.file_view import Expression, SpecView, View, without_brackets
 from tltlc.tools.lint.goals import conjuncts, goals
 from tltlc.tools.lint.rule import LintRule, Remark
 
 _MOST_LABELS: Final = 4
 _MOST_STATES: Final = 1_000
-"""Limit on the automaton that is built to see the effect of `exclusive`.
+"""The most states of the automaton that is built to see the effect of `exclusive`.
 
-It keeps a note from taking longer than the compilation.
+A note must not take longer than the compilation.
 """
 
 
 def check(view: View) -> Iterator[Remark]:
-    """Yield a remark for each predicate whose atoms can shorten the way by holding together.
+    """Yield a remark for each predicate whose atoms, holding together, shorten the path to the goal.
 
-    The way to the goal is longer if these atoms are declared exclusive. Also yields a remark for
-    each goal that asks for several of the atoms at one step.
+    The path is longer if these atoms are declared exclusive. Also yields a remark for each goal that
+    asks for several of these atoms at one step.
     """
     entities = {binding.name for binding in view.env.scope.names.values() if binding.kind == "entity"}
     for spec in view.specs:
         if spec.fspa.semantics != "finite" or spec.fspa.states[0].verdict == "violated":
             continue
-        groups = _reached(_alike(spec.fspa, entities), spec)
+        groups = _goal_atoms(_same_predicate(spec.fspa, entities), spec)
         if groups:
-            yield from _together(groups, spec)
+            yield from _joint_goals(groups, spec)
         for group in groups:
             indices = sorted(set().union(*(_atoms_together(edge, group) for edge in spec.fspa.edges)))
             if indices and _is_shortened(spec, indices):
                 yield _remark(spec, [spec.fspa.atoms[index].name for index in indices])
 
 
-def _together(groups: list[set[int]], spec: SpecView) -> Iterator[Remark]:
+def _joint_goals(groups: list[set[int]], spec: SpecView) -> Iterator[Remark]:
     """Yield a remark for each goal that asks for several atoms of a group at one step.
 
-    The author may well mean one after the other.
+    The author may mean one after the other.
     """
     for goal in goals(spec):
         parts = [part for part in conjuncts(goal) if _atom(part)]
@@ -55,34 +55,34 @@ def _together(groups: list[set[int]], spec: SpecView) -> Iterator[Remark]:
             if len({_atom(part) for part in members}) > 1:
                 member_names = list(dict.fromkeys(_atom(part) for part in members))
                 title = f"`{member_names[0]}` and `{member_names[1]}` are asked for at one step"
-                label = Label(goal.source, inner(goal.tree).span, "all of this at the same moment")
-                suggestion = f"where one comes after the other, say so: `{' then '.join(member_names)}`"
-                yield Remark(title, (label,), suggestion)
+                label = Label(goal.source, without_brackets(goal.tree).span, "all of this at the same moment")
+                help_ = f"where one comes after the other, say so: `{' then '.join(member_names)}`"
+                yield Remark(title, (label,), help_)
 
 
 def _atom(part: Expression) -> str:
-    """Return the name of an atom, or an empty string if the expression is no atom."""
+    """Return the name of the atom, or an empty string if the expression is not an atom."""
     formula = part.formula()
     return formula.name if formula is not None and formula.op == "atom" else ""
 
 
-def _reached(groups: list[set[int]], spec: SpecView) -> list[set[int]]:
-    """Return the atoms of each group that goals ask for, in groups of at least two.
+def _goal_atoms(groups: list[set[int]], spec: SpecView) -> list[set[int]]:
+    """Return the groups restricted to atoms that goals ask for; groups of one atom are left out.
 
-    Atoms that are kept, or that occur in an `until`, are no steps towards a goal.
+    Atoms of `keep` clauses, or below an `until`, are not goals.
     """
-    goal_atoms = {part.name for goal in goals(spec) for part in _operands(goal.formula()) if part.op == "atom"}
-    reached = [{index for index in group if spec.fspa.atoms[index].name in goal_atoms} for group in groups]
+    names = {part.name for goal in goals(spec) for part in _operands(goal.formula()) if part.op == "atom"}
+    reached = [{index for index in group if spec.fspa.atoms[index].name in names} for group in groups]
     return [group for group in reached if len(group) > 1]
 
 
 def _operands(formula: Formula | None) -> Iterator[Formula]:
     """Yield the operands of `and` and `or`, or the formula itself if it is neither."""
-    waiting = [] if formula is None else [formula]
-    while waiting:
-        part = waiting.pop()
+    pending = [] if formula is None else [formula]
+    while pending:
+        part = pending.pop()
         if part.op in ("and", "or"):
-            waiting += reversed(part.args)
+            pending += reversed(part.args)
         else:
             yield part
 
@@ -90,7 +90,7 @@ def _operands(formula: Formula | None) -> Iterator[Formula]:
 def _with_exclusive(spec: Spec, indices: list[int]) -> Spec:
     """Return the spec with these atoms declared exclusive.
 
-    The indices refer to the automaton, which has the same atoms as the spec.
+    The indices are those of the automaton, which has the same atoms as the spec.
     """
     return replace(spec, exclusive=(*spec.exclusive, tuple(indices)))
 
@@ -100,14 +100,14 @@ def _remark(spec: SpecView, names: list[str]) -> Remark:
     labels = (Label(part.source, part.span) for part in parts[:_MOST_LABELS])
     others = f" and {len(names) - 2} more" if len(names) > 2 else ""
     title = f"`{names[0]}` and `{names[1]}`{others} may be met at one step, so progress counts them as one"
-    suggestion = f"where at most one of them holds at a time, say so: `exclusive {', '.join(names)}`"
-    return Remark(title, (spec.name_label(), *labels), suggestion)
+    help_ = f"where at most one of them holds at a time, say so: `exclusive {', '.join(names)}`"
+    return Remark(title, (spec.name_label(), *labels), help_)
 
 
-def _alike(fspa: Fspa, entities: Iterable[str]) -> list[set[int]]:
-    """Return groups of atoms that differ only in their first entity.
+def _same_predicate(fspa: Fspa, entities: Iterable[str]) -> list[set[int]]:
+    """Return groups of indices of atoms that differ only in their first entity.
 
-    An example is ``near(s1)`` and ``near(s2)``.
+    For example, ``near(s1)`` and ``near(s2)`` are in one group.
     """
     known = set(entities)
     groups: dict[tuple[str, ...], set[int]] = {}
@@ -118,9 +118,9 @@ def _alike(fspa: Fspa, entities: Iterable[str]) -> list[set[int]]:
 
 
 def _atoms_together(edge: Edge, group: set[int]) -> set[int]:
-    """Return the atoms of a group that an edge needs to hold at the same step.
+    """Return the atoms of a group that hold together in the implicants of an edge.
 
-    The result is empty if the edge can be taken otherwise.
+    The set is empty if the edge can be taken with at most one atom of the group.
     """
     together = [group.intersection(atom for atom, holds in prime if holds) for prime in edge.guard.primes]
     return set().union(*together) if all(len(atoms) > 1 for atoms in together) else set()

@@ -1,4 +1,4 @@
-"""TLT0421: a declaration that nothing uses, in a file that has specs."""
+"""TLT0421: an unused declaration in a file that has specs."""
 
 from __future__ import annotations
 
@@ -8,56 +8,56 @@ from typing import Final, Union
 from tltlc.core.source import Span
 from tltlc.grammar.tree import EntityDecl, LetDecl, ParamDecl, PredicateDecl, SignalDecl
 from tltlc.tools.lint.file_view import View
-from tltlc.tools.lint.removal import item, without
-from tltlc.tools.lint.rule import LintRule, Remark, removal
+from tltlc.tools.lint.removal import item_removal_spans, removal_span
+from tltlc.tools.lint.rule import LintRule, Remark, removal_fix
 
 _KINDS: Final = {SignalDecl: "signal", ParamDecl: "param", PredicateDecl: "predicate", LetDecl: "let"}
-Declared = Union[SignalDecl, ParamDecl, PredicateDecl, LetDecl]
+NamedDeclaration = Union[SignalDecl, ParamDecl, PredicateDecl, LetDecl]
 
 
 def check(view: View) -> Iterator[Remark]:
-    """Yield a remark for each declaration that is named neither here nor in an importing file.
+    """Yield a remark for each signal, param, entity, predicate and let that is not used.
 
-    This covers signals, params, entities, predicates and lets.
+    A use is a mention of the name in this file or in a file that imports it.
     """
     if not view.specs:
         return
-    used = view.used
+    used_names = view.used_names
     for declaration in view.module.declarations:
         if isinstance(declaration, EntityDecl):
-            yield from _entities(declaration, used, view)
+            yield from _entities(declaration, used_names, view)
         elif isinstance(declaration, (SignalDecl, ParamDecl, PredicateDecl, LetDecl)) and not (
-            declaration.name in used or _is_refined(declaration, view)
+            declaration.name in used_names or _is_refined(declaration, view)
         ):
-            removed = without(view.source, declaration.span, view.module.comments)
+            removed = removal_span(view.source, declaration.span, view.module.comments)
             yield _remark(_KINDS[type(declaration)], declaration.name, declaration.name_span, (removed,), view)
 
 
-def _entities(declaration: EntityDecl, used: Container[str], view: View) -> Iterator[Remark]:
+def _entities(declaration: EntityDecl, used_names: Container[str], view: View) -> Iterator[Remark]:
     spans = [name.span for name in declaration.names]
-    unused = [index for index, name in enumerate(declaration.names) if name.name not in used]
+    unused = [index for index, name in enumerate(declaration.names) if name.name not in used_names]
     for index in unused:
         if len(unused) == len(spans):
-            removed: tuple[Span, ...] = (without(view.source, declaration.span, view.module.comments),)
+            removed: tuple[Span, ...] = (removal_span(view.source, declaration.span, view.module.comments),)
         else:
-            removed = item(spans, index, view.module.comments)
+            removed = item_removal_spans(spans, index, view.module.comments)
         yield _remark("entity", declaration.names[index].name, spans[index], removed, view)
 
 
 def _remark(kind: str, name: str, place: Span, removed: tuple[Span, ...], view: View) -> Remark:
     title = f"nothing uses the {kind} `{name}`"
-    return Remark(title, (view.label(place),), "remove it, or use it", removal("Remove it", removed))
+    return Remark(title, (view.label(place),), "remove it, or use it", removal_fix("Remove it", removed))
 
 
-def _is_refined(declaration: Declared, view: View) -> bool:
+def _is_refined(declaration: NamedDeclaration, view: View) -> bool:
     """Whether an imported module declares the same signal or param.
 
-    Then that module uses the declaration, with the range that is given here.
+    Then the declaration narrows the range of that signal or param, which is a use.
     """
     return any(
-        isinstance(other, (SignalDecl, ParamDecl)) and other.name == declaration.name
+        isinstance(imported, (SignalDecl, ParamDecl)) and imported.name == declaration.name
         for loaded in view.modules[:-1]
-        for other in loaded.module.declarations
+        for imported in loaded.module.declarations
     )
 
 

@@ -1,4 +1,4 @@
-"""TLT0422: an import that is not used, in a file that has specs."""
+"""TLT0422: an unused import in a file that has specs."""
 
 from __future__ import annotations
 
@@ -9,51 +9,51 @@ from collections.abc import Container, Iterable, Iterator, Sequence
 from tltlc.grammar.tree import ClockDecl, ExclusiveDecl, Import, ParamDecl, SignalDecl
 from tltlc.resolve.imports import LoadedModule
 from tltlc.tools.lint.file_view import View
-from tltlc.tools.lint.removal import item, without
-from tltlc.tools.lint.rule import LintRule, Remark, removal
+from tltlc.tools.lint.removal import item_removal_spans, removal_span
+from tltlc.tools.lint.rule import LintRule, Remark, removal_fix
 
 
 def check(view: View) -> Iterator[Remark]:
     """Yield a remark for each unused import, and for each unused name in an import list."""
     if not view.specs:
         return
-    used = view.used
-    brought, unnamed = _brought(used, view), _effective_unnamed(view.modules)
+    used_names = view.used_names
+    used_by_target, effective = _used_by_target(used_names, view), _effective_modules(view.modules)
     for declaration, loaded in view.modules[-1].imports:
-        if id(loaded) in unnamed:
+        if id(loaded) in effective:
             continue
-        if not _brings_any(declaration, brought.get(declaration.target, [])):
-            removed = without(view.source, declaration.span, view.module.comments)
+        if not _provides_any(declaration, used_by_target.get(declaration.target, [])):
+            removed = removal_span(view.source, declaration.span, view.module.comments)
             title = f"nothing of `{declaration.target}` is used"
             label = view.label(declaration.target_span)
-            yield Remark(title, (label,), "remove the import, or use it", removal("Remove the import", (removed,)))
+            yield Remark(title, (label,), "remove the import, or use it", removal_fix("Remove the import", (removed,)))
         else:
-            yield from _names(declaration, used, view)
+            yield from _unused_names(declaration, used_names, view)
 
 
-def _names(declaration: Import, used: Container[str], view: View) -> Iterator[Remark]:
+def _unused_names(declaration: Import, used_names: Container[str], view: View) -> Iterator[Remark]:
     names = declaration.names or ()
     for index, name in enumerate(names):
-        if f"{_prefix(declaration)}{name.name}" not in used:
-            removed = item([entry.span for entry in names], index, view.module.comments)
+        if f"{_prefix(declaration)}{name.name}" not in used_names:
+            removed = item_removal_spans([entry.span for entry in names], index, view.module.comments)
             title = f"`{name.name}` of `{declaration.target}` is not used"
-            fix = removal("Remove it from the import", removed)
+            fix = removal_fix("Remove it from the import", removed)
             yield Remark(title, (view.label(name.span),), "remove it from the import, or use it", fix)
 
 
-def _brought(used: Container[str], view: View) -> dict[str, list[str]]:
-    """Return the used names in sorted order, by the target of the import that provides them.
+def _used_by_target(used_names: Container[str], view: View) -> dict[str, list[str]]:
+    """Return the used names of each import, sorted, by the target of the import.
 
-    A name that several imports provide counts for the first of them.
+    If several imports provide a name, it counts for the first of them.
     """
     by_target: dict[str, list[str]] = {}
     for name, binding in view.env.scope.names.items():
-        if binding.via is not None and name in used:
+        if binding.via is not None and name in used_names:
             by_target.setdefault(binding.via, []).append(name)
     return {target: sorted(names) for target, names in by_target.items()}
 
 
-def _brings_any(declaration: Import, names: Sequence[str]) -> bool:
+def _provides_any(declaration: Import, names: Sequence[str]) -> bool:
     """Whether an import provides any of these sorted names."""
     if declaration.names is not None:
         return any(_first(names, entry.name) == entry.name for entry in declaration.names)
@@ -71,12 +71,12 @@ def _prefix(declaration: Import) -> str:
     return f"{declaration.alias}." if declaration.alias else ""
 
 
-def _effective_unnamed(modules: Iterable[LoadedModule]) -> set[int]:
-    """Return the ids of the modules that have an effect without being named.
+def _effective_modules(modules: Iterable[LoadedModule]) -> set[int]:
+    """Return the ids of the modules that have an effect even if none of their names is used.
 
-    Such a module declares a clock, exclusive atoms, or a signal or param that another module
-    declares as well, so that its range counts. A module also has an effect if one of its imports
-    does. Imported modules come first in ``modules``.
+    Such a module declares a clock, exclusive atoms, or a signal or param that another module also
+    declares and whose range it narrows. A module also has an effect if one of its imports has one.
+    In ``modules``, imported modules come before the modules that import them.
     """
     effective: set[int] = set()
     modules = tuple(modules)
@@ -95,7 +95,7 @@ def _effective_unnamed(modules: Iterable[LoadedModule]) -> set[int]:
             or (isinstance(declaration, (SignalDecl, ParamDecl)) and declaring[declaration.name] > 1)
             for declaration in loaded.module.declarations
         )
-        if own or any(id(other) in effective for _, other in loaded.imports):
+        if own or any(id(imported) in effective for _, imported in loaded.imports):
             effective.add(id(loaded))
     return effective
 
