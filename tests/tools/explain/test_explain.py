@@ -1,5 +1,4 @@
-"""Explanations of specs match their automata and formulas; the texts for the examples are golden
-files."""
+"""Explanations agree with automata and formulas; those of the examples are golden files."""
 
 from __future__ import annotations
 
@@ -27,9 +26,9 @@ from tltlc.logic.oracle import all_traces, robustness_of_state
 from tltlc.monitor.guards import holds
 from tltlc.pipeline import compile_source, read_artefact
 from tltlc.tools.explain.explanation import explain
-from tltlc.tools.explain.sections import SectionTable, document
+from tltlc.tools.explain.sections import SectionTable, sections
 from tltlc.tools.explain.text import text
-from tltlc.tools.explain.values import values
+from tltlc.tools.explain.values import json_values
 from tltlc.tools.witness import blocks
 
 __all__ = ["inside", "tltlc"]
@@ -54,7 +53,7 @@ def test_texts_of_the_examples_match_the_golden_files(path: Path) -> None:
     assert all(len(line) <= 100 and line == line.rstrip() for line in explanation.splitlines())
 
 
-def test_no_golden_file_is_left_over() -> None:
+def test_every_golden_file_belongs_to_an_example() -> None:
     assert {path.stem for path in GOLDEN.iterdir()} == {path.stem for path in EXAMPLES}
 
 
@@ -71,7 +70,7 @@ def decoded(fspa: Fspa) -> Fspa:
     return read_artefact(SourceFile("x.fspa.json", artefact))
 
 
-def test_names_within_names_are_parsed() -> None:
+def test_an_artefact_keeps_the_formula_if_names_contain_each_other() -> None:
     text_ = "signal x in [-9, 9]  signal y in [0, 9]  signal x1: bool  signal F1.x: bool\n"
     text_ += "spec s = F x > 1 & G(x + y > 1 -> x > 1.5) & (!x1 U F1.x) & F -x > 1"
     (fspa,) = compiler.compile_text(text_)
@@ -96,7 +95,7 @@ def test_formulas_of_guards_are_true_where_the_guards_are(formula: Formula) -> N
 
 @settings(max_examples=100, deadline=None)
 @given(FORMULAS)
-def test_the_explanation_matches_the_automaton(formula: Formula) -> None:
+def test_states_edges_and_traces_of_an_explanation_match_the_automaton(formula: Formula) -> None:
     fspa = build(spec_from_formula(formula))
     explanation = explain(fspa)
     verdicts = {state.verdict for state in fspa.states}
@@ -115,16 +114,16 @@ def test_the_explanation_matches_the_automaton(formula: Formula) -> None:
         assert explanation.states[explanation.fail.steps[-1].state].verdict == "violated"
     if explanation.succeed is not None:
         assert fspa.states[explanation.succeed.steps[-1].state].accepting
-    jsonschema.validate({"specs": [values(explanation)]}, SCHEMA)
+    jsonschema.validate({"specs": [json_values(explanation)]}, SCHEMA)
 
 
-def is_looser(fspa: Fspa, one: int, other: int) -> bool:
-    """Whether ``other`` accepts all short traces that ``one`` accepts."""
+def is_looser(fspa: Fspa, source: int, target: int) -> bool:
+    """Whether the state ``target`` accepts all short traces that ``source`` accepts."""
     traces = all_traces(tuple(atom.name for atom in fspa.atoms), 3)
-    return all(ends_well(fspa, other, trace) for trace in traces if ends_well(fspa, one, trace))
+    return all(is_accepted(fspa, target, trace) for trace in traces if is_accepted(fspa, source, trace))
 
 
-def ends_well(fspa: Fspa, state: int, letters: Iterable[Letter]) -> bool:
+def is_accepted(fspa: Fspa, state: int, letters: Iterable[Letter]) -> bool:
     for letter in letters:
         truth = blocks.values(fspa, letter)
         state = next(edge.target for edge in fspa.edges_from(state) if holds(edge.guard, truth))
@@ -134,7 +133,7 @@ def ends_well(fspa: Fspa, state: int, letters: Iterable[Letter]) -> bool:
 def test_single_goals_are_listed_before_goals_at_once() -> None:
     (fspa,) = compiler.compile_text("signal a: bool  signal b: bool  spec s { reach a  reach b }")
     assert [lead.when for lead in explain(fspa).states[0].leads] == ["b and not a", "a and not b", "a and b"]
-    # The passing of time is not listed as a lead.
+    # An edge on which only time passes is not listed.
     (fspa,) = compiler.compile_text("signal a: bool  spec s = F[0,3] a")
     assert [lead.when for lead in explain(fspa).states[0].leads] == ["a"]
 
@@ -150,11 +149,11 @@ def test_single_goals_are_listed_before_goals_at_once() -> None:
 def test_counting_states_share_a_row(formula: str, rows: list[str]) -> None:
     (fspa,) = compiler.compile_text(f"signal a: bool  signal b: bool  spec s = {formula}")
     explanation = explain(fspa)
-    (section,) = (candidate for candidate in document(explanation) if candidate.heading == "States")
+    (section,) = (candidate for candidate in sections(explanation) if candidate.heading == "States")
     (table,) = section.blocks
     assert isinstance(table, SectionTable)
     assert [row[0] for row in table.rows] == rows
-    assert len(values(explanation)["states"]) == len(fspa.states)
+    assert len(json_values(explanation)["states"]) == len(fspa.states)
 
 
 def test_a_row_of_counting_states_names_the_steps_and_the_target() -> None:
@@ -178,7 +177,7 @@ def test_documents_of_the_examples_fit_the_schema(path: Path, tltlc: Run) -> Non
     jsonschema.validate(json.loads(tltlc("explain", path, "--format", "json").out), SCHEMA)
 
 
-def test_json_and_markdown_output(tltlc: Run) -> None:
+def test_json_and_markdown_have_the_goals_and_failures_of_the_example(tltlc: Run) -> None:
     document = json.loads(tltlc("explain", EXAMPLE, "--format", "json").out)
     (spec,) = document["specs"]
     assert spec["name"] == "cover_and_hide"
@@ -195,17 +194,17 @@ def test_json_and_markdown_output(tltlc: Run) -> None:
 
 def test_a_file_is_explained_spec_by_spec(tltlc: Run, inside: Path) -> None:
     Path("two.tltl").write_text("signal a: bool\nspec one = F a\nspec two { keep a  judge at limit }\n")
-    both = tltlc("explain", "two.tltl")
-    assert both.out.startswith("one\n===\n") and "\n\ntwo\n===\n" in both.out
+    outcome = tltlc("explain", "two.tltl")
+    assert outcome.out.startswith("one\n===\n") and "\n\ntwo\n===\n" in outcome.out
     assert tltlc("explain", "two.tltl:two").out.startswith("two\n===\n")
-    assert "goes on until the game ends it" in both.out
+    assert "goes on until the game ends it" in outcome.out
     missing = tltlc("explain", "two.tltl:three")
     assert (missing.status, missing.out) == (2, "")
     assert "TLT0720" in missing.err
 
 
 @pytest.mark.parametrize(
-    ("clauses", "said"),
+    ("clauses", "phrase"),
     [
         ("reach a & F b", "    1. a\n    2. now or later, b\n"),
         ("require F(a & b) & G(a -> F b)", "    - whenever a, reach b at that step or later\n"),
@@ -219,22 +218,22 @@ def test_a_file_is_explained_spec_by_spec(tltlc: Run, inside: Path) -> None:
         ("semantics infinite require G F a", "  Again and again, for ever:\n    - reach a\n"),
     ],
 )
-def test_the_text_contains_the_expected_phrases(clauses: str, said: str) -> None:
+def test_each_kind_of_clause_has_its_phrase_in_the_text(clauses: str, phrase: str) -> None:
     (fspa,) = compiler.compile_text(f"signal a: bool  signal b: bool  spec s {{ {clauses} }}")
-    assert said in text(explain(fspa))
+    assert phrase in text(explain(fspa))
 
 
 @pytest.mark.parametrize("name", ["cover_and_hide", "navigation", "branching"])
 def test_explaining_takes_less_than_three_times_the_calls_of_compiling(name: str) -> None:
     source = read_source(ROOT / "examples" / f"{name}.tltl")
 
-    def compiled() -> None:
+    def compile_only() -> None:
         compile_source(source)
 
-    def explained() -> None:
+    def compile_and_explain() -> None:
         compilation = compile_source(source)
         for fspa in compilation.automata:
             text(explain(fspa))
 
-    explained()  # Warm up: read the libraries.
-    assert calls(explained) < 3 * calls(compiled)
+    compile_and_explain()  # Warm up: read the libraries.
+    assert calls(compile_and_explain) < 3 * calls(compile_only)

@@ -21,7 +21,7 @@ from tltlc.monitor.spec_tests import run_tests
 from tltlc.pipeline import CompileOptions
 from tltlc.tools.explain.explanation import Explanation, explain
 from tltlc.tools.explain.sections import failure_texts
-from tltlc.tools.explain.values import values
+from tltlc.tools.explain.values import json_values
 from tltlc.tools.lint.fixes import OfferedFix, fixes_of_findings
 from tltlc.tools.lint.run import findings, view_of
 
@@ -85,7 +85,7 @@ def _messages(messages: Sequence[Diagnostic], source: SourceFile, offers: Sequen
 
 
 def _spec(fspa: Fspa, source_explanation: Explanation, letters: Iterable[Letter], notation: Notation) -> dict[str, Any]:
-    explanation = values(source_explanation)
+    explanation = json_values(source_explanation)
     drawn, note = picture(fspa, notation)
     leads = {row["id"]: row["leads"] for row in explanation["states"]}
     return {

@@ -1,5 +1,5 @@
 """Explain specs in plain words.
 
-An explanation has what the spec asks for, the states of its automaton, and the shortest traces that
-succeed and that fail.
+An explanation says what a spec asks for, lists the states of its automaton, and shows a shortest
+trace that succeeds and one that fails.
 """

@@ -6,14 +6,17 @@ from tltlc.automaton.fspa import Fspa
 
 
 def ending(fspa: Fspa) -> str:
-    """Return when an episode ends and what counts as success (semantics, section 4)."""
-    first, verdicts = fspa.states[0].verdict, {state.verdict for state in fspa.states}
-    if first in ("satisfied", "violated"):
-        return f"Every episode is a {'success' if first == 'satisfied' else 'failure'}."
-    breaks = "violated" in verdicts
+    """Return sentences that say when an episode ends and what counts as success.
+
+    The rules are those of section 4 of ``docs/semantics.md``.
+    """
+    initial, verdicts = fspa.states[0].verdict, {state.verdict for state in fspa.states}
+    if initial in ("satisfied", "violated"):
+        return f"Every episode is a {'success' if initial == 'satisfied' else 'failure'}."
+    can_break = "violated" in verdicts
     if fspa.judge == "goal":
-        or_fails = ", and with failure as soon as it is broken for good" if breaks else ""
-        too = ", too" if breaks else ""
+        or_fails = ", and with failure as soon as it is broken for good" if can_break else ""
+        too = ", too" if can_break else ""
         return (
             f"An episode ends with success as soon as the spec is met{or_fails}. "
             f"One that is over before the spec is met is a failure{too}."
@@ -22,14 +25,14 @@ def ending(fspa: Fspa) -> str:
     met = "it is in a state with 0 to go" if fspa.semantics == "infinite" else "the spec is met"
     early = [
         *(["with success as soon as nothing can break the spec any more"] if "satisfied" in verdicts else []),
-        *(["with failure as soon as the spec is broken for good"] if breaks else []),
+        *(["with failure as soon as the spec is broken for good"] if can_break else []),
     ]
     sooner = f" It ends before that {', and '.join(early)}." if early else ""
     return f"An episode goes on {until}, and is a success if {met} then.{sooner}"
 
 
 def limit_text(steps: int | None, seconds: float | None) -> str:
-    """Return a sentence on the limit of an episode."""
+    """Return a sentence about the limit of an episode; None in both arguments means no limit."""
     if steps is None:
         return "There is no limit."
     time = "" if seconds is None else f", {seconds:g} s"

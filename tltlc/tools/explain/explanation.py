@@ -1,6 +1,6 @@
-"""The complete explanation of a spec in words.
+"""The explanation of a spec, as data.
 
-All outputs of ``tltlc explain`` are built from it.
+All output formats of ``tltlc explain`` are written from it.
 """
 
 from __future__ import annotations
@@ -16,19 +16,19 @@ from tltlc.logic.formula import TRUE, Formula, and_, atom, not_, or_, rebuild
 from tltlc.logic.text.outline import Outline, outline
 from tltlc.logic.text.phrases import phrase
 from tltlc.tools.explain.ending import ending
-from tltlc.tools.explain.next_steps import leading_on
+from tltlc.tools.explain.next_steps import edges_leading_on
 from tltlc.tools.witness.traces import Witness, accepting, rejecting
 from tltlc.tools.witness.transitions import Moves
 
 ANYTHING: Final = "anything"
-"""The text for a step at which all samples lead to the same state."""
+"""The condition of a step at which every sample leads to the same state."""
 _MOST_WORK: Final = 2_000_000
-"""The most steps that the search for an infinite trace may take here."""
+"""The most steps of work in the search for an infinite trace."""
 
 
 @record
-class Lead:
-    """An edge that leads on from a state: its condition in words, and the number of its target."""
+class NextStep:
+    """An edge towards the goal: its condition in words (``when``), and the number of its target."""
 
     when: str
     state: int
@@ -36,23 +36,25 @@ class Lead:
 
 @record
 class StateRow:
-    """A state: what remains to be satisfied, its verdict, its distance, and the edges that lead on.
+    """A state: what remains to be satisfied, its verdict, its distance, and its edges to the goal.
 
-    The distance is None in a trap.
+    ``distance`` is None in a trap. :func:`~tltlc.tools.explain.next_steps.edges_leading_on` defines
+    which edges are in ``leads``.
     """
 
     id: int
     remains: str
     verdict: str
     distance: int | None
-    leads: tuple[Lead, ...]
+    leads: tuple[NextStep, ...]
 
 
 @record
 class TrapCondition:
-    """A condition that breaks the spec for good, and the states in which it does.
+    """A condition that breaks the spec for good in some states.
 
-    ``everywhere`` is true if it does so in every state that is not decided yet.
+    ``when`` is the condition in words. ``everywhere`` is true if ``states`` has every state that is
+    neither satisfied nor violated.
     """
 
     when: str
@@ -61,8 +63,12 @@ class TrapCondition:
 
 
 @record
-class WayStep:
-    """Consecutive steps with the same condition, and the state that the last of them leads to."""
+class TraceStep:
+    """Consecutive steps of a trace with the same condition.
+
+    ``times`` is their number, ``what`` the condition in words, and ``state`` the state after the last
+    step.
+    """
 
     times: int
     what: str
@@ -71,12 +77,12 @@ class WayStep:
 
 @record
 class ExampleTrace:
-    """A trace to success or failure.
+    """A trace that succeeds or fails.
 
-    Over infinite traces, ``cycle`` is the index of the first step that repeats for ever.
+    ``cycle`` is the index of the first step that repeats for ever, or None for a finite trace.
     """
 
-    steps: tuple[WayStep, ...]
+    steps: tuple[TraceStep, ...]
     cycle: int | None
 
 
@@ -84,13 +90,13 @@ class ExampleTrace:
 class Explanation:
     """A spec in words. The fields are those of the JSON of ``tltlc explain --format json``.
 
-    ``outline`` is None if another tool gave the automaton a name and no formula. ``exclusive`` lists
-    atoms of which at most one holds at a time. ``counting`` lists runs of states, each leading to the next, that differ
-    only in a count. ``judge`` is ``goal`` or ``limit``, and ``ending`` says what that means for
-    this spec.
+    ``outline`` is None if the automaton comes from another tool and has no formula. ``exclusive``
+    lists groups of atoms of which at most one holds at a time. ``counting`` lists runs of states that
+    differ only in a count; each state of a run leads to the next. ``judge`` is ``goal`` or
+    ``limit``, and ``ending`` says what that means for this spec.
 
-    ``succeed`` and ``fail`` are None if there is no such trace, or if none was found. Over finite
-    traces both are shortest, and ``fail`` ends where success is no longer possible.
+    ``succeed`` and ``fail`` are None if there is no such trace, or if the search found none. Over
+    finite traces both are shortest traces, and ``fail`` ends where success is no longer possible.
     """
 
     name: str
@@ -136,8 +142,8 @@ def explain(fspa: Fspa) -> Explanation:
         spec_size=fspa.spec_size,
         states=_states(fspa, guards),
         counting=tuple(tuple(state.id for state in run) for run in folded(fspa).folded.values()),
-        succeed=_way(fspa, _found(moves, accept=True)),
-        fail=_way(fspa, _found(moves, accept=False)),
+        succeed=_example_trace(fspa, _witness(moves, accept=True)),
+        fail=_example_trace(fspa, _witness(moves, accept=False)),
     )
 
 
@@ -162,11 +168,12 @@ def _formula(fspa: Fspa, guard: Guard) -> Formula:
 
 def _literals(fspa: Fspa, implicant: Implicant) -> Formula:
     """Return the conjunction of literals; ``true`` if there are none."""
-    named = [(atom(fspa.atoms[index].name), holds) for index, holds in implicant]
-    return and_(*(literal if holds else not_(literal) for literal, holds in named))
+    literals = [(atom(fspa.atoms[index].name), holds) for index, holds in implicant]
+    return and_(*(literal if holds else not_(literal) for literal, holds in literals))
 
 
-def _words(state: Formula) -> str:
+def _condition_text(state: Formula) -> str:
+    """Return the condition of a step in words."""
     return ANYTHING if state is TRUE else phrase(_positive_first(state))
 
 
@@ -179,10 +186,10 @@ def _positive_first(state: Formula) -> Formula:
 
 
 def _states(fspa: Fspa, guards: tuple[Formula, ...]) -> tuple[StateRow, ...]:
-    leads: dict[int, dict[Lead, None]] = {}
-    for index in leading_on(fspa):
+    leads: dict[int, dict[NextStep, None]] = {}
+    for index in edges_leading_on(fspa):
         edge = fspa.edges[index]
-        leads.setdefault(edge.source, {})[Lead(_words(guards[index]), edge.target)] = None
+        leads.setdefault(edge.source, {})[NextStep(_condition_text(guards[index]), edge.target)] = None
     return tuple(
         StateRow(state.id, label_text(fspa, state.id), state.verdict, state.distance, tuple(leads.get(state.id, ())))
         for state in fspa.states
@@ -190,22 +197,26 @@ def _states(fspa: Fspa, guards: tuple[Formula, ...]) -> tuple[StateRow, ...]:
 
 
 def _failures(fspa: Fspa, guards: tuple[Formula, ...]) -> tuple[TrapCondition, ...]:
-    """Return what leads into a trap, one entry for each reason.
+    """Return the conditions that lead into a trap, one entry for each condition.
 
-    Reasons that apply in every undecided state come first.
+    Conditions that apply in every undecided state come first.
     """
-    broken = {state.id for state in fspa.states if state.verdict == "violated"}
-    open_ = {state.id for state in fspa.states if state.verdict in ("pending", "holding")}
+    violated = {state.id for state in fspa.states if state.verdict == "violated"}
+    undecided = {state.id for state in fspa.states if state.verdict in ("pending", "holding")}
     sources: dict[str, dict[int, None]] = {}
     for edge, guard in zip(fspa.edges, guards, strict=True):
-        if edge.source not in broken and edge.target in broken:
+        if edge.source not in violated and edge.target in violated:
             for reason in guard.args if guard.op == "or" else (guard,):
-                sources.setdefault(_words(reason), {})[edge.source] = None
-    failures = [TrapCondition(when, tuple(states), set(states) == open_) for when, states in sources.items()]
+                sources.setdefault(_condition_text(reason), {})[edge.source] = None
+    failures = [TrapCondition(when, tuple(states), set(states) == undecided) for when, states in sources.items()]
     return tuple(sorted(failures, key=lambda failure: (not failure.everywhere, failure.states)))
 
 
-def _found(moves: Moves, accept: bool) -> Witness | None:
+def _witness(moves: Moves, accept: bool) -> Witness | None:
+    """Return a trace that succeeds, or else one that fails; None if none is found.
+
+    A finite trace that fails must end in a violated state.
+    """
     try:
         witness = accepting(moves, _MOST_WORK) if accept else rejecting(moves, _MOST_WORK)
     except OutOfWork:
@@ -216,18 +227,18 @@ def _found(moves: Moves, accept: bool) -> Witness | None:
     return witness if moves.fspa.states[edge.target].verdict == "violated" else None
 
 
-def _way(fspa: Fspa, witness: Witness | None) -> ExampleTrace | None:
-    """Return the witness in words; consecutive steps with the same text are one step."""
+def _example_trace(fspa: Fspa, witness: Witness | None) -> ExampleTrace | None:
+    """Return a witness in words, with consecutive equal steps merged; None for None."""
     if witness is None:
         return None
-    steps: list[WayStep] = []
+    steps: list[TraceStep] = []
     cycle: int | None = None
     for index, move in enumerate(witness.moves):
-        condition, state = _words(_literals(fspa, move.prime)), fspa.edges[move.edge].target
+        condition, state = _condition_text(_literals(fspa, move.prime)), fspa.edges[move.edge].target
         if index == witness.cycle:
             cycle = len(steps)
         elif steps and steps[-1].what == condition:
-            steps[-1] = WayStep(steps[-1].times + 1, condition, state)
+            steps[-1] = TraceStep(steps[-1].times + 1, condition, state)
             continue
-        steps.append(WayStep(1, condition, state))
+        steps.append(TraceStep(1, condition, state))
     return ExampleTrace(tuple(steps), cycle)

@@ -1,4 +1,4 @@
-"""Arrange an explanation in headings, paragraphs, lists and a table.
+"""Arrange an explanation in sections of paragraphs, lists and tables.
 
 The text and Markdown outputs are written from these sections.
 """
@@ -19,8 +19,8 @@ _MOST_STEPS = 60
 
 
 @record
-class List:
-    """A list of items under a title, numbered from 1 if ``numbered``."""
+class SectionList:
+    """A list of items under a title, which may be empty; numbered from 1 if ``numbered``."""
 
     title: str
     items: tuple[str, ...]
@@ -40,61 +40,61 @@ class Section:
     """Blocks under a heading. A block that is a string is a paragraph."""
 
     heading: str
-    blocks: tuple[str | List | SectionTable, ...]
+    blocks: tuple[str | SectionList | SectionTable, ...]
 
 
-def document(explained: Explanation) -> tuple[Section, ...]:
+def sections(explanation: Explanation) -> tuple[Section, ...]:
     """Return the sections. The heading of the first one is the spec's name."""
-    # Over infinite traces, the traces that are found are short, but there may be shorter ones.
-    which = "A way" if explained.semantics == "infinite" else "The shortest way"
+    # Over infinite traces, the search finds short traces, but not always the shortest.
+    article = "A way" if explanation.semantics == "infinite" else "The shortest way"
     return (
-        Section(explained.name, tuple(filter(None, (explained.doc, explained.english)))),
-        *_asked(explained),
-        Section("What breaks it", _failures(explained)),
-        Section("When it ends", (explained.ending, limit_text(explained.limit_steps, explained.limit_s))),
-        Section("States", _states(explained)),
-        Section(f"{which} to succeed", _way(explained.succeed, _no_success(explained))),
-        Section(f"{which} to fail", _way(explained.fail, _no_failure(explained))),
+        Section(explanation.name, tuple(filter(None, (explanation.doc, explanation.english)))),
+        *_requirements(explanation),
+        Section("What breaks it", _failures(explanation)),
+        Section("When it ends", (explanation.ending, limit_text(explanation.limit_steps, explanation.limit_s))),
+        Section("States", _states(explanation)),
+        Section(f"{article} to succeed", _trace_blocks(explanation.succeed, _no_success(explanation))),
+        Section(f"{article} to fail", _trace_blocks(explanation.fail, _no_failure(explanation))),
     )
 
 
-def _asked(explained: Explanation) -> tuple[Section, ...]:
-    outline = explained.outline
+def _requirements(explanation: Explanation) -> tuple[Section, ...]:
+    outline = explanation.outline
     if outline is None:
         return ()
     rows = [[f"{'now or later, ' if goal.together else ''}{goal.text}" for goal in goals] for goals in outline.goals]
-    lists = [List("Reach, in this order:", tuple(row), numbered=True) for row in rows if len(row) > 1]
+    lists = [SectionList("Reach, in this order:", tuple(row), numbered=True) for row in rows if len(row) > 1]
     single = tuple(row[0] for row in rows if len(row) == 1)
     if single:
-        lists.append(List("Reach, in any order:" if len(single) > 1 else "Reach:", single))
+        lists.append(SectionList("Reach, in any order:" if len(single) > 1 else "Reach:", single))
     for title, items in (
         ("Throughout:", outline.throughout),
         ("Again and again, for ever:", outline.recurring),
         ("And:" if lists or outline.throughout or outline.recurring else "Do this:", outline.others),
-        ("At most one of these holds at a time:", tuple(", ".join(group) for group in explained.exclusive)),
+        ("At most one of these holds at a time:", tuple(", ".join(group) for group in explanation.exclusive)),
     ):
         if items:
-            lists.append(List(title, items))
+            lists.append(SectionList(title, items))
     return (Section("What it asks for", tuple(lists)),) if lists else ()
 
 
-def _failures(explained: Explanation) -> tuple[str | List, ...]:
-    if not explained.failures:
-        return ("Nothing breaks it for good." if explained.succeed else "It cannot be met at all.",)
-    return (List("", failure_texts(explained)),)
+def _failures(explanation: Explanation) -> tuple[str | SectionList, ...]:
+    if not explanation.failures:
+        return ("Nothing breaks it for good." if explanation.succeed else "It cannot be met at all.",)
+    return (SectionList("", failure_texts(explanation)),)
 
 
-def failure_texts(explained: Explanation) -> tuple[str, ...]:
+def failure_texts(explanation: Explanation) -> tuple[str, ...]:
     """Return what breaks the spec for good, and in which states.
 
-    If there are many failures, the rest is only counted.
+    If there are more than ``_MOST_FAILURES`` failures, the last text has the number of the others.
     """
-    texts = [_failure(failure) for failure in explained.failures[:_MOST_FAILURES]]
-    rest = len(explained.failures) - len(texts)
+    texts = [_failure_text(failure) for failure in explanation.failures[:_MOST_FAILURES]]
+    rest = len(explanation.failures) - len(texts)
     return (*texts, *([f"and {rest} more"] if rest else ()))
 
 
-def _failure(failure: TrapCondition) -> str:
+def _failure_text(failure: TrapCondition) -> str:
     if failure.everywhere:
         return f"{failure.when}, at any step"
     numbers = [str(state) for state in failure.states[:_MOST_STATES]]
@@ -102,17 +102,17 @@ def _failure(failure: TrapCondition) -> str:
     return f"{failure.when}, in state{'s' * (len(failure.states) > 1)} {', '.join(numbers)}{ellipsis}"
 
 
-def _states(explained: Explanation) -> tuple[str | SectionTable, ...]:
+def _states(explanation: Explanation) -> tuple[str | SectionTable, ...]:
     """Return a table with a row for each state.
 
-    States that differ only in a count share a row.
+    The states of a run that differ only in a count share a row.
     """
-    runs = {run[0]: run for run in explained.counting}
-    inside = {state for run in explained.counting for state in run[1:]}
+    runs = {run[0]: run for run in explanation.counting}
+    continued = {state for run in explanation.counting for state in run[1:]}
     rows = [
-        tuple(explained.states[number] for number in runs.get(state.id, (state.id,)))
-        for state in explained.states
-        if state.id not in inside
+        tuple(explanation.states[number] for number in runs.get(state.id, (state.id,)))
+        for state in explanation.states
+        if state.id not in continued
     ]
     table = SectionTable(
         ("State", "Verdict", "To go", "What remains", "What leads on"), tuple(map(_row, rows[:_MOST_ROWS]))
@@ -123,28 +123,29 @@ def _states(explained: Explanation) -> tuple[str | SectionTable, ...]:
 
 def _row(run: tuple[StateRow, ...]) -> tuple[str, ...]:
     first, last = run[0], run[-1]
-    onward = run[1].id if len(run) > 1 else None
+    successor = run[1].id if len(run) > 1 else None
     leads = [
-        f"{lead.when} (to {'the next' if lead.state == onward else lead.state})" for lead in first.leads[:_MOST_LEADS]
+        f"{lead.when} (to {'the next' if lead.state == successor else lead.state})"
+        for lead in first.leads[:_MOST_LEADS]
     ]
     rest = len(first.leads) - len(leads)
     return (
         _numbers([state.id for state in run]),
         first.verdict,
-        span(_to_go(first), _to_go(last)),
+        span(_distance_text(first), _distance_text(last)),
         span(first.remains, last.remains),
         "; ".join([*leads, *([f"{rest} more"] * bool(rest))]),
     )
 
 
-def _to_go(state: StateRow) -> str:
+def _distance_text(state: StateRow) -> str:
     return "-" if state.distance is None else str(state.distance)
 
 
 def _numbers(states: list[int]) -> str:
     """Return state numbers as ranges: ``2, 4–101``.
 
-    If there are many ranges, this shows the first ones and the last.
+    If there are more than ``_MOST_RANGES`` ranges, only the first ones and the last are shown.
     """
     ranges: list[list[int]] = []
     for state in sorted(states):
@@ -156,17 +157,17 @@ def _numbers(states: list[int]) -> str:
     return ", ".join(texts if len(texts) <= _MOST_RANGES else [*texts[: _MOST_RANGES - 1], "…", texts[-1]])
 
 
-def _way(way: ExampleTrace | None, otherwise: str) -> tuple[str | List, ...]:
-    if way is None:
+def _trace_blocks(trace: ExampleTrace | None, otherwise: str) -> tuple[str | SectionList, ...]:
+    if trace is None:
         return (otherwise,)
-    cycle = () if way.cycle is None else way.steps[way.cycle :]
-    is_decided = bool(way.cycle) and all(step.what == ANYTHING for step in cycle)
-    steps = way.steps[: way.cycle] if is_decided else way.steps
+    cycle = () if trace.cycle is None else trace.steps[trace.cycle :]
+    is_decided = bool(trace.cycle) and all(step.what == ANYTHING for step in cycle)
+    steps = trace.steps[: trace.cycle] if is_decided else trace.steps
     items = [
         f"{step.what}{f', for {step.times} steps' if step.times > 1 else ''} (to state {step.state})"
         for step in steps[:_MOST_STEPS]
     ]
-    blocks: list[str | List] = [List("", tuple(items), numbered=True)]
+    blocks: list[str | SectionList] = [SectionList("", tuple(items), numbered=True)]
     if len(items) < len(steps):
         blocks.append(f"And {len(steps) - len(items)} more; `--format json` shows all of them.")
     elif is_decided:
@@ -179,13 +180,13 @@ def _way(way: ExampleTrace | None, otherwise: str) -> tuple[str | List, ...]:
     return tuple(blocks)
 
 
-def _no_success(explained: Explanation) -> str:
-    return "There is none." if explained.states[0].verdict == "violated" else "None was found."
+def _no_success(explanation: Explanation) -> str:
+    return "There is none." if explanation.states[0].verdict == "violated" else "None was found."
 
 
-def _no_failure(explained: Explanation) -> str:
-    if explained.failures:
+def _no_failure(explanation: Explanation) -> str:
+    if explanation.failures:
         return "None was found."
-    if explained.states[0].verdict == "satisfied":
+    if explanation.states[0].verdict == "satisfied":
         return "There is none: every trace meets it."
     return "There is none: it fails only by not being met when the episode is over."

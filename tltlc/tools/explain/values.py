@@ -1,4 +1,4 @@
-"""Convert an explanation to JSON values."""
+"""Convert an explanation to JSON json_values."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from typing import Any
 from tltlc.tools.explain.explanation import Explanation
 
 
-def values(explained: Explanation) -> dict[str, Any]:
-    """Return the fields of an explanation by name, recursively as JSON values."""
-    fields: dict[str, Any] = _value(explained)
+def json_values(explanation: Explanation) -> dict[str, Any]:
+    """Return the fields of an explanation by name, recursively as JSON json_values."""
+    fields: dict[str, Any] = _value(explanation)
     return fields
 
 

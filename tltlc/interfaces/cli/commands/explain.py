@@ -75,10 +75,12 @@ def _show(explanations: list[Explanation], format: str) -> None:  # noqa: A002
     if format == "json":
         import json
 
-        from tltlc.tools.explain.values import values
+        from tltlc.tools.explain.values import json_values
 
         click.echo(
-            json.dumps({"specs": [values(explanation) for explanation in explanations]}, indent=2, ensure_ascii=False)
+            json.dumps(
+                {"specs": [json_values(explanation) for explanation in explanations]}, indent=2, ensure_ascii=False
+            )
         )
         return
     if format == "markdown":
