@@ -1,5 +1,4 @@
-"""``tltlc breaking``: old files come from a revision or a folder, with the imports of that
-revision; its formats."""
+"""``tltlc breaking``: changes since a revision or against a folder, and its formats."""
 
 from __future__ import annotations
 
@@ -45,8 +44,8 @@ def commit(tag: str) -> None:
 
 @pytest.fixture
 def repository(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A repository, as the current folder; its revision `v1` has a spec that imports a library of
-    the project."""
+    """Make the current folder a repository. Its revision `v1` has a spec and a library that it
+    imports."""
     monkeypatch.chdir(tmp_path)
     git("init", "-q", ".")
     write(specs__leave=SPEC, libs__mine=LIBRARY, tltl=PROJECT)
@@ -54,8 +53,8 @@ def repository(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def codes(done: Outcome) -> list[str]:
-    return [f"{diagnostic['severity']} {diagnostic['code']}" for diagnostic in json.loads(done.out)["diagnostics"]]
+def codes(outcome: Outcome) -> list[str]:
+    return [f"{diagnostic['severity']} {diagnostic['code']}" for diagnostic in json.loads(outcome.out)["diagnostics"]]
 
 
 @needs_git
@@ -93,9 +92,9 @@ def test_the_repository_is_the_one_that_holds_the_file(
     monkeypatch.chdir("/")
     path = repository / "specs/leave.tltl"
     assert codes(tltlc("breaking", path, "--against", "v1", "--format", "json")) == ["error TLT0753"]
-    elsewhere = tltlc("breaking", path, ROOT / "examples/patrol.tltl", "--against", "v1")
-    assert elsewhere.status == 3
-    assert "patrol.tltl` does not lie in the repository" in elsewhere.err
+    outside = tltlc("breaking", path, ROOT / "examples/patrol.tltl", "--against", "v1")
+    assert outside.status == 3
+    assert "patrol.tltl` does not lie in the repository" in outside.err
 
 
 @needs_git
@@ -150,7 +149,7 @@ def test_a_renamed_artefact_is_breaking(repository: Path, tltlc: Run) -> None:  
 
 
 @needs_git
-def test_annotations_name_paths_of_the_working_tree(repository: Path, tltlc: Run) -> None:  # noqa: F811
+def test_annotations_for_services_point_into_the_current_files(repository: Path, tltlc: Run) -> None:  # noqa: F811
     write(specs__leave="signal door: bool\nspec enter = F !door\n")
     (gone, _) = tltlc("breaking", "specs", "--against", "v1", "--format", "github").out.splitlines()
     assert gone.startswith("::error file=specs/leave.tltl,line=1,")
@@ -346,7 +345,7 @@ def test_renamed_signals_are_breaking(
     assert outcome.status == 1
 
 
-def test_an_old_folder_can_be_compared(tmp_path: Path, tltlc: Run, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
+def test_an_old_folder_is_compared(tmp_path: Path, tltlc: Run, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
     monkeypatch.chdir(tmp_path)
     write(new__leave="signal door: bool\nspec leave = G door\n", old__leave="signal door: bool\nspec leave = F door\n")
     for path, against in (("new", "old"), ("new/leave.tltl", "old"), (tmp_path / "new", tmp_path / "old")):
@@ -362,7 +361,7 @@ def test_an_old_folder_can_be_compared(tmp_path: Path, tltlc: Run, monkeypatch: 
     assert "before" not in tltlc("breaking", ".", "--against", "before").err
 
 
-def test_github_and_sarif_formats(tmp_path: Path, tltlc: Run, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
+def test_github_and_sarif_have_the_changed_place(tmp_path: Path, tltlc: Run, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
     monkeypatch.chdir(tmp_path)
     write(new__leave="signal door: bool\nspec leave = G door\n", old__leave="signal door: bool\nspec leave = F door\n")
     outcome = tltlc("breaking", "new", "--against", "old", "--format", "github")
@@ -381,7 +380,7 @@ def test_shipped_specs_equal_themselves(tmp_path: Path, tltlc: Run, monkeypatch:
 
 
 @pytest.mark.parametrize(
-    ("library", "old", "new", "found"),
+    ("library", "old", "new", "expected"),
     [
         ("core", "(x - threshold) / margin, -1", "(x - threshold) / margin / 2, -1", ["warning TLT0757"]),
         ("core", "tanh((x - y) / scale)", "tanh((y - x) / scale)", ["error TLT0757"]),
@@ -413,11 +412,11 @@ def test_shipped_specs_equal_themselves(tmp_path: Path, tltlc: Run, monkeypatch:
         ("spatial", "tolerance: angle = 30 deg", "tolerance: angle", ["error TLT0759"]),
     ],
 )
-def test_changes_of_a_library_are_reported(
+def test_a_change_of_a_shipped_library_is_reported_by_its_severity(
     library: str,
     old: str,
     new: str,
-    found: list[str] | None,
+    expected: list[str] | None,
     tltlc: Run,  # noqa: F811
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
@@ -426,10 +425,10 @@ def test_changes_of_a_library_are_reported(
     before = (ROOT / f"stdlib_predicates/{library}.tltl").read_text(encoding="utf-8")
     after = before.replace(old, new)
     assert after != before
-    if found is None:
-        after, found = after.replace("= level_size", "= size"), ["error TLT0756"]
+    if expected is None:
+        after, expected = after.replace("= level_size", "= size"), ["error TLT0756"]
     write(old__mine=before, mine=after)
-    assert codes(tltlc("breaking", "mine.tltl", "--against", "old", "--format", "json")) == found
+    assert codes(tltlc("breaking", "mine.tltl", "--against", "old", "--format", "json")) == expected
 
 
 def test_changed_declarations_of_a_library_are_reported(
@@ -446,16 +445,16 @@ def test_changed_declarations_of_a_library_are_reported(
         outcome = tltlc("breaking", "mine.tltl", "--against", "old", "--format", "json")
         return [(diagnostic["severity"], diagnostic["title"]) for diagnostic in json.loads(outcome.out)["diagnostics"]]
 
-    ruled = f"clock 20 Hz\n{plain}exclusive a, b\n"
-    assert diagnostics(plain, ruled) == [
+    with_rules = f"clock 20 Hz\n{plain}exclusive a, b\n"
+    assert diagnostics(plain, with_rules) == [
         ("error", "`a` and `b` are exclusive now"),
         ("error", "specs are sampled every 0.05 s now, and were sampled by no clock"),
     ]
-    assert diagnostics(ruled, plain) == [
+    assert diagnostics(with_rules, plain) == [
         ("warning", "`a` and `b` are no longer exclusive"),
         ("error", "specs are sampled by no clock now, and were sampled every 0.05 s"),
     ]
-    assert diagnostics(ruled, ruled.replace("a, b", "b, a").replace("20 Hz", "50 ms")) == []
+    assert diagnostics(with_rules, with_rules.replace("a, b", "b, a").replace("20 Hz", "50 ms")) == []
     # A group that a wider group implies is not reported.
     wide = f"{plain}exclusive a, b, c\n"
     narrow = wide.replace("a, b, c", "a, b")
@@ -491,9 +490,11 @@ def test_a_predicate_that_reads_more_signals_is_reported(
     monkeypatch.chdir(tmp_path)
     signals = "signal a: bool\nsignal b: bool\nsignal c: bool\n"
     write(old__mine=f"{signals}predicate p = 2 * a - 1\n", mine=f"{signals}predicate p = 2 * min(a, b, c) - 1\n")
-    (reads, _) = json.loads(tltlc("breaking", "mine.tltl", "--against", "old", "--format", "json").out)["diagnostics"]
-    assert reads["title"] == "the predicate `p` reads `b` and `c` now"
-    assert reads["help"] == "have the game supply them wherever the predicate is used"
+    (added_signals, _) = json.loads(tltlc("breaking", "mine.tltl", "--against", "old", "--format", "json").out)[
+        "diagnostics"
+    ]
+    assert added_signals["title"] == "the predicate `p` reads `b` and `c` now"
+    assert added_signals["help"] == "have the game supply them wherever the predicate is used"
 
 
 @pytest.mark.parametrize("arguments", [["-", "--against", "x"], ["a.tltl:b", "--against", "x"], ["a.tltl"]])

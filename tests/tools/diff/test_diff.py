@@ -1,5 +1,7 @@
-"""The output of ``tltlc diff``: texts in ``golden/NAME``, which ``UPDATE_GOLDEN=1`` rewrites, and
-JSON."""
+"""The output of ``tltlc diff`` as text, in the golden files ``golden/NAME``, and as JSON.
+
+``UPDATE_GOLDEN=1`` rewrites the golden files.
+"""
 
 from __future__ import annotations
 
@@ -28,7 +30,7 @@ from tltlc.pipeline import compile_source
 from tltlc.tools.diff.diff_json import document
 from tltlc.tools.diff.pairs import FileDiff, diff, diff_files
 from tltlc.tools.diff.text import text
-from tltlc.tools.diff.traces import block, trace_description
+from tltlc.tools.diff.traces import difference_test, trace_description
 
 GOLDEN = Path(__file__).parent / "golden"
 CASES = sorted(path for path in GOLDEN.iterdir() if path.is_dir())
@@ -96,14 +98,14 @@ def test_printed_tests_pass(case: Path, copy, tltlc: Run) -> None:  # type: igno
 
 @settings(max_examples=100, deadline=None)
 @given(SMALL, SMALL)
-def test_a_printed_test_tells_the_two_specs_apart(first: Formula, second: Formula) -> None:
+def test_a_printed_test_passes_for_one_spec_and_fails_for_the_other(first: Formula, second: Formula) -> None:
     texts = [f"signal a: bool  signal b: bool  spec s = {write(formula, ASCII)}\n" for formula in (first, second)]
     (a,), (b,) = map(compile_text, texts)
     pair = diff(a, b)
     for trace in (pair.comparison.only_a, pair.comparison.only_b):
         if trace is None:
             continue
-        test = block(pair, trace_description(pair, trace), "one that tells")
+        test = difference_test(pair, trace_description(pair, trace), "a difference")
         if test is None:
             assert not a.atoms and not b.atoms
             continue
@@ -142,10 +144,10 @@ def test_an_artefact_equals_its_source(tltlc: Run, inside: Path) -> None:  # noq
 
 
 def test_exclusive_groups_declared_on_both_sides_restrict_the_traces(tltlc: Run, inside: Path) -> None:  # noqa: F811
-    declared = "signal a: bool\nsignal b: bool\nsignal c: bool\n"
-    Path("old.tltl").write_text(f"{declared}exclusive a, b, c\nspec s = b\n", encoding="utf-8")
-    Path("new.tltl").write_text(f"{declared}exclusive a, b\nspec s = !a\n", encoding="utf-8")
-    Path("free.tltl").write_text(f"{declared}exclusive a, c\nspec s = !a\n", encoding="utf-8")
+    signals = "signal a: bool\nsignal b: bool\nsignal c: bool\n"
+    Path("old.tltl").write_text(f"{signals}exclusive a, b, c\nspec s = b\n", encoding="utf-8")
+    Path("new.tltl").write_text(f"{signals}exclusive a, b\nspec s = !a\n", encoding="utf-8")
+    Path("free.tltl").write_text(f"{signals}exclusive a, c\nspec s = !a\n", encoding="utf-8")
 
     def relation_and_counterexample(old: str, new: str) -> tuple[str, list[list[str]] | None]:
         (spec,) = json.loads(tltlc("diff", old, new, "--format", "json").out)["specs"]
@@ -156,36 +158,36 @@ def test_exclusive_groups_declared_on_both_sides_restrict_the_traces(tltlc: Run,
 
 
 def test_exclusive_groups_of_a_source_apply_to_an_artefact(tltlc: Run, inside: Path) -> None:  # noqa: F811
-    declared = "signal a: bool\nsignal b: bool\nsignal x in [0, 9]\n"
+    signals = "signal a: bool\nsignal b: bool\nsignal x in [0, 9]\n"
 
-    def compared(spec: str, source: str) -> list[dict[str, object]]:
-        """Compare the spec, as an artefact, with the source; in both directions."""
+    def compare_both_ways(spec: str, source: str) -> list[dict[str, object]]:
+        """Compare the artefact of the spec with the source, and the source with the artefact."""
         Path("of.tltl").write_text(spec, encoding="utf-8")
         Path("new.tltl").write_text(source, encoding="utf-8")
         assert tltlc("compile", "of.tltl", "-t", "json").status == 0
         sides = ("s.fspa.json", "new.tltl"), ("new.tltl", "s.fspa.json")
         return [json.loads(tltlc("diff", *pair, "--format", "json").out)["specs"][0] for pair in sides]
 
-    exclusive = f"{declared}exclusive a, b\nspec s = !a\n"
-    there, back = compared(f"{declared}exclusive a, b\nspec s = b\n", exclusive)
-    assert (there["relation"], back["relation"]) == ("looser", "stricter")
-    assert there["exclusive"] == [{"atoms": ["a", "b"], "in_a": False, "in_b": True}]
-    assert back["exclusive"] == [{"atoms": ["a", "b"], "in_a": True, "in_b": False}]
+    exclusive = f"{signals}exclusive a, b\nspec s = !a\n"
+    forward, backward = compare_both_ways(f"{signals}exclusive a, b\nspec s = b\n", exclusive)
+    assert (forward["relation"], backward["relation"]) == ("looser", "stricter")
+    assert forward["exclusive"] == [{"atoms": ["a", "b"], "in_a": False, "in_b": True}]
+    assert backward["exclusive"] == [{"atoms": ["a", "b"], "in_a": True, "in_b": False}]
     judged_on = (
         "judged on traces in which at most one of these holds at a time:\n    `a` and `b` (exclusive in B alone)\n"
     )
     assert judged_on in tltlc("diff", "s.fspa.json", "new.tltl").out
 
     # An artefact that has both atoms but no such group was compiled without it.
-    there, _ = compared(f"{declared}spec s = b & (a | !a & X a)\n", exclusive)
-    assert (there["relation"], there["exclusive"]) == ("incomparable", [])
+    forward, _ = compare_both_ways(f"{signals}spec s = b & (a | !a & X a)\n", exclusive)
+    assert (forward["relation"], forward["exclusive"]) == ("incomparable", [])
 
     # Here the atom of that name is defined differently.
     of_x = "signal a: bool\nsignal x in [0, 9]\npredicate b = clamp(x - {}, -1, 1)\n"
-    there, _ = compared(f"{of_x.format(5)}spec s = b\n", f"{of_x.format(6)}exclusive a, b\nspec s = !a\n")
-    assert (there["relation"], there["exclusive"]) == ("incomparable", [])
-    there, _ = compared(f"{of_x.format(6)}spec s = b\n", f"{of_x.format(6)}exclusive a, b\nspec s = !a\n")
-    assert there["relation"] == "looser"
+    forward, _ = compare_both_ways(f"{of_x.format(5)}spec s = b\n", f"{of_x.format(6)}exclusive a, b\nspec s = !a\n")
+    assert (forward["relation"], forward["exclusive"]) == ("incomparable", [])
+    forward, _ = compare_both_ways(f"{of_x.format(6)}spec s = b\n", f"{of_x.format(6)}exclusive a, b\nspec s = !a\n")
+    assert forward["relation"] == "looser"
 
 
 def test_different_atoms_of_the_same_name_share_no_exclusive_group(tltlc: Run, inside: Path) -> None:  # noqa: F811
@@ -198,7 +200,7 @@ def test_different_atoms_of_the_same_name_share_no_exclusive_group(tltlc: Run, i
     assert tltlc("diff", "old.tltl", "new.tltl", "--by-name").out.count("B is looser") == 1
 
 
-def test_a_missing_relation_has_a_reason(tltlc: Run, inside: Path) -> None:  # noqa: F811
+def test_finite_and_infinite_specs_have_a_reason_in_place_of_a_relation(tltlc: Run, inside: Path) -> None:  # noqa: F811
     Path("ever.tltl").write_text("signal seen: bool\nspec hide { semantics infinite avoid seen }\n", encoding="utf-8")
     outcome = tltlc("diff", "hide.tltl", "ever.tltl", "--format", "json")
     (spec,) = json.loads(outcome.out)["specs"]
@@ -232,7 +234,7 @@ def test_a_spec_named_on_one_side_is_compared_on_both(tltlc: Run, inside: Path) 
     assert ambiguous.status == 2 and "TLT0721" in ambiguous.err
 
 
-def test_specs_are_named_as_on_the_command_line() -> None:
+def test_the_hint_names_specs_as_on_the_command_line() -> None:
     file_diff = FileDiff(STDIN_NAME, "b.tltl", (), ("one", "two"), ("other",))
     assert "name both, e.g. `-:one` and `b.tltl:other`" in text(file_diff)
 
@@ -249,15 +251,15 @@ def test_unreadable_files_are_reported(tltlc: Run, inside: Path) -> None:  # noq
 def test_diff_costs_less_than_three_times_compiling_both(names: tuple[str, str]) -> None:
     sources = [SourceFile(name, (ROOT / f"examples/{name}.tltl").read_text(encoding="utf-8")) for name in names]
 
-    def compiled() -> None:
+    def compile_both() -> None:
         for source in sources:
             compile_source(source)
 
     automata = [compile_source(source).automata for source in sources]
 
-    def both() -> None:
-        compiled()
+    def compile_and_compare() -> None:
+        compile_both()
         text(diff_files(("a", automata[0]), ("b", automata[1]), one_each=True))
 
-    both()  # Warm up: read the libraries.
-    assert calls(both) < 3 * calls(compiled)
+    compile_and_compare()  # Warm up: read the libraries.
+    assert calls(compile_and_compare) < 3 * calls(compile_both)

@@ -12,5 +12,5 @@ from tests.docs.sessions import Shell, run_page
 
 
 @pytest.mark.skipif(os.name == "nt", reason="the page speaks to a POSIX shell")
-def test_the_guide_runs(tmp_path: Path) -> None:
+def test_the_commands_of_the_guide_to_changes_print_what_it_shows(tmp_path: Path) -> None:
     assert run_page((DOCS / "guides" / "changes.md").read_text(encoding="utf-8"), Shell(tmp_path)) == 4

@@ -1,5 +1,4 @@
-"""How two specs relate: checked against the formulas on all short traces, and with atoms that
-differ."""
+"""The relation of two specs agrees with their formulas on all short traces."""
 
 from __future__ import annotations
 
@@ -42,7 +41,7 @@ def finite(formula: Formula) -> Fspa:
     return build(spec_from_formula(formula))
 
 
-def one(text: str) -> Fspa:
+def compile_one(text: str) -> Fspa:
     (fspa,) = compile_text(text)
     return fspa
 
@@ -78,7 +77,7 @@ def test_finite_relations_match_the_formulas(first: Formula, second: Formula) ->
 def test_exclusive_atoms_restrict_the_traces(first: Formula, second: Formula) -> None:
     never = always(not_(and_(atom("a"), atom("b"))))
     a, b = finite(first), finite(second)
-    sides = (not is_included(finite(and_(one, never)), other) for one, other in ((first, b), (second, a)))
+    sides = (not is_included(finite(and_(formula, never)), other) for formula, other in ((first, b), (second, a)))
     comparison = compare(a, b, exclusive=[ExclusiveGroup(("a", "b", "elsewhere"), True, True)])
     assert comparison.relation == relation_of(*sides)
     for trace in (comparison.only_a, comparison.only_b):
@@ -120,7 +119,7 @@ def test_a_spec_does_not_differ_from_itself(formula: Formula) -> None:
 
 def test_finite_and_infinite_specs_have_no_relation() -> None:
     comparison = compare(
-        one("signal a: bool spec p = F a"), one("signal a: bool spec p { semantics infinite reach a }")
+        compile_one("signal a: bool spec p = F a"), compile_one("signal a: bool spec p { semantics infinite reach a }")
     )
     assert (comparison.relation, comparison.only_a, comparison.only_b) == (None, None, None)
     assert comparison.beginnings is not None and comparison.beginnings.relation == "equivalent"
@@ -146,14 +145,14 @@ def test_beginnings_of_finite_and_infinite_specs_are_compared(first: Formula, se
 def is_broken(fspa: Fspa, letters: tuple[Letter, ...]) -> bool:
     state = 0
     for letter in letters:
-        state = after(fspa, state, letter)
+        state = successor(fspa, state, letter)
     return fspa.states[state].verdict == "violated"
 
 
 def test_an_atom_with_another_expression_is_another_atom() -> None:
-    a, b = one(NEAR), one(NEAR.replace("1 - distance(x) / close", "(1 - distance(x) / close)^2"))
+    a, b = compile_one(NEAR), compile_one(NEAR.replace("1 - distance(x) / close", "(1 - distance(x) / close)^2"))
     comparison = compare(a, b)
-    assert (comparison.relation, comparison.split) == ("incomparable", ("near(chest)",))
+    assert (comparison.relation, comparison.split_names) == ("incomparable", ("near(chest)",))
     assert comparison.only_a == Trace((frozenset({"near(chest) of A"}),))
     assert comparison.only_b == Trace((frozenset({"near(chest) of B"}),))
     assert compare(a, b, by_name=True).relation == "equivalent"
@@ -172,45 +171,45 @@ def test_an_atom_with_another_expression_is_another_atom() -> None:
 def test_params_and_ranges_split_an_atom_if_its_truth_changes(
     old: str, new: str, is_split: bool, differ: list[str]
 ) -> None:
-    a, b = one(NEAR), one(NEAR.replace(old, new))
+    a, b = compile_one(NEAR), compile_one(NEAR.replace(old, new))
     comparison = compare(a, b)
-    assert bool(comparison.split) == is_split
+    assert bool(comparison.split_names) == is_split
     assert (comparison.relation == "incomparable") == is_split
     assert [difference.name for difference in differences(a, b)] == differ
 
 
 def test_disjoint_ranges_split_an_atom() -> None:
     text = "signal x: number in [{}]  predicate high in [-1, 1] = clamp(x - 10, -1, 1)  spec up = F high"
-    assert compare(one(text.format("0, 9")), one(text.format("11, 20"))).split == ("high",)
+    assert compare(compile_one(text.format("0, 9")), compile_one(text.format("11, 20"))).split_names == ("high",)
 
 
 THRESHOLDS = {"a": "x > 0.75", "b": "x > 0.25", "c": "x < 0.5"}
-REAL = [
+FEASIBLE = [
     frozenset(THRESHOLDS[name] for name, holds in zip(THRESHOLDS, (x > 0.75, x > 0.25, x < 0.5), strict=True) if holds)
     for x in (0.0, 0.3, 0.6, 0.8)
 ]
-"""The letters over these atoms that samples of the one signal can give; four of eight."""
+"""The letters over these atoms that values of the one signal can produce: four of eight."""
 
 
 @settings(max_examples=80, deadline=None)
 @given(formulas(atoms=tuple(THRESHOLDS), max_leaves=4), formulas(atoms=tuple(THRESHOLDS), max_leaves=4))
-def test_only_letters_of_real_samples_count(first: Formula, second: Formula) -> None:
+def test_only_letters_that_samples_can_produce_count(first: Formula, second: Formula) -> None:
     lets = "".join(f"let {name} = {atom}\n" for name, atom in THRESHOLDS.items())
-    a, b = (one(f"signal x in [0, 1]\n{lets}spec s = {ascii_text(formula)}") for formula in (first, second))
-    comparison = compare(a, b, real=True)
-    sides = [has_real_counterexample(a, b), has_real_counterexample(b, a)]
+    a, b = (compile_one(f"signal x in [0, 1]\n{lets}spec s = {ascii_text(formula)}") for formula in (first, second))
+    comparison = compare(a, b, feasible_only=True)
+    sides = [has_feasible_counterexample(a, b), has_feasible_counterexample(b, a)]
     assert comparison.relation == relation_of(*sides)
     for trace in (comparison.only_a, comparison.only_b):
         known = {atom.name for atom in (*a.atoms, *b.atoms)}
-        assert trace is None or set(trace.prefix) <= {letter & known for letter in REAL}
+        assert trace is None or set(trace.prefix) <= {letter & known for letter in FEASIBLE}
 
 
-def has_real_counterexample(a: Fspa, b: Fspa) -> bool:
-    """Whether a word of real letters is accepted by ``a`` and rejected by ``b``."""
+def has_feasible_counterexample(a: Fspa, b: Fspa) -> bool:
+    """Whether ``a`` accepts a trace of feasible letters that ``b`` rejects."""
     queue = [(0, 0)]
     for pair in queue:
-        for letter in REAL:
-            target = after(a, pair[0], letter), after(b, pair[1], letter)
+        for letter in FEASIBLE:
+            target = successor(a, pair[0], letter), successor(b, pair[1], letter)
             if a.states[target[0]].accepting and not b.states[target[1]].accepting:
                 return True
             if target not in queue:
@@ -218,27 +217,27 @@ def has_real_counterexample(a: Fspa, b: Fspa) -> bool:
     return False
 
 
-def after(fspa: Fspa, state: int, letter: Letter) -> int:
+def successor(fspa: Fspa, state: int, letter: Letter) -> int:
     truth = values(fspa, letter)
     return next(edge.target for edge in fspa.edges_from(state) if guard_holds(edge.guard, truth))
 
 
 def test_a_higher_threshold_is_stricter() -> None:
     param = "signal fuel in [0, 100]  param low in [0, 50] = {}  spec s = G fuel > low"
-    comparison = compare(one(param.format(20)), one(param.format(30)), real=True)
+    comparison = compare(compile_one(param.format(20)), compile_one(param.format(30)), feasible_only=True)
     assert comparison.relation == "stricter"
     assert comparison.impossible == ((("fuel > low of B", True), ("fuel > low of A", False)),)
     # If the signal's range differs in B, nothing is known about the samples.
     other = param.replace("signal fuel in [0, 100]", "signal fuel in [200, 300]").replace("[0, 50]", "[200, 299]")
-    assert not compare(one(param.format(20)), one(other.format(250)), real=True).impossible
+    assert not compare(compile_one(param.format(20)), compile_one(other.format(250)), feasible_only=True).impossible
 
 
 def test_forty_thresholds_are_compared_within_the_work_limit() -> None:
     def keeps(least: float) -> Fspa:
         numbers = range(40)
         signals = "".join(f"signal x{number} in [0, 1]\n" for number in numbers)
-        return one(f"{signals}spec s {{ {' '.join(f'keep x{number} > {least}' for number in numbers)} }}")
+        return compile_one(f"{signals}spec s {{ {' '.join(f'keep x{number} > {least}' for number in numbers)} }}")
 
-    comparison = compare(keeps(0.1), keeps(0.2), real=True, work=200_000)
+    comparison = compare(keeps(0.1), keeps(0.2), feasible_only=True, work=200_000)
     assert comparison.relation == "stricter"
     assert len(comparison.impossible) == 40

@@ -1,5 +1,4 @@
-"""``tltlc diff REV:FILE``: a file as it was in a revision of git, with the imports of that
-revision."""
+"""``tltlc diff REV:FILE``: a file in a git revision, with the imports of that revision."""
 
 from __future__ import annotations
 
@@ -18,8 +17,8 @@ Run = Callable[..., Outcome]
 pytestmark = needs_git
 
 
-def relation(done: Outcome) -> str:
-    (spec,) = json.loads(done.out)["specs"]
+def relation(outcome: Outcome) -> str:
+    (spec,) = json.loads(outcome.out)["specs"]
     return str(spec["relation"])
 
 
@@ -74,7 +73,7 @@ def test_a_branch_named_like_a_file_is_a_revision(repository: Path, tltlc: Run) 
 
 
 @pytest.mark.parametrize(
-    ("name", "title", "way_out"),
+    ("name", "title", "help_text"),
     [
         ("^HEAD", "there is no revision and no folder `^HEAD`", "`git log` and `git tag` list revisions"),
         ("blob", "`blob` names something in git that is no commit", "name the commit that holds it"),
@@ -86,12 +85,12 @@ def test_an_object_that_is_no_commit_is_reported(
     tltlc: Run,  # noqa: F811
     name: str,
     title: str,
-    way_out: str,
+    help_text: str,
 ) -> None:
     git("tag", "blob", "HEAD:specs/leave.tltl")
     git("tag", "folder", "HEAD^{tree}")
     outcome = tltlc("breaking", "specs", "--against", name)
-    assert (outcome.status, outcome.err) == (3, f"error[TLT0751]: {title}\n  help: {way_out}\n")
+    assert (outcome.status, outcome.err) == (3, f"error[TLT0751]: {title}\n  help: {help_text}\n")
 
 
 @pytest.mark.parametrize("lost", [True, False])

@@ -1,8 +1,8 @@
-"""Find the changes between two versions of a file that a host or a recorded baseline notices.
+"""Find the changes between two versions of a file that affect a host or a recorded baseline.
 
-A host is a game that supplies signals and runs a monitor. A baseline is any earlier recording that
-a spec has judged. The findings are diagnostics: a change that breaks a host or a baseline is an
-error, a change of numbers alone is a warning, and a change that both can ignore is a note.
+A host is a game that supplies signals and runs a monitor. A baseline is an earlier recording that a
+spec has judged. Each change is a diagnostic: an error if it breaks a host or a baseline, a warning
+if it only changes numbers, and a note if hosts and baselines can ignore it.
 """
 
 from __future__ import annotations
@@ -14,25 +14,26 @@ from tltlc.automaton.work import DEFAULT_WORK
 from tltlc.core.record import EMPTY, record, replace
 from tltlc.diagnostics.diagnostic import Diagnostic, Label
 from tltlc.resolve.spec import Atom
-from tltlc.tools.diff import findings as say
-from tltlc.tools.diff.differences import Difference, renamed_params
+from tltlc.tools.diff import findings
+from tltlc.tools.diff.differences import Difference, new_param_names
 from tltlc.tools.diff.pairs import SpecPair, diff
-from tltlc.tools.diff.renaming import renamed_signals, with_names_of, with_signals
+from tltlc.tools.diff.renaming import new_signal_names, rename_signals, with_old_atom_names
 
 if TYPE_CHECKING:
     from tltlc.automaton.fspa import Fspa
     from tltlc.tools.diff.library import OfferedName
     from tltlc.tools.diff.rules import Rules
 
-_OF_ALL: Final = ("clock", "signal", "param", "atom")
+_SHARED: Final = ("clock", "signal", "param", "atom")
 """The kinds of differences that the specs of a file share."""
 
 
 @record
 class Version:
-    """A file at one time: its automata, the places of its specs, and its offers if it has no specs.
+    """One version of a file: its automata, and the labels of its specs by name.
 
-    ``rules`` is set only for a file that exists and has no specs.
+    If the file has no specs, it is a library. Then ``offers`` has the declarations that it offers to
+    importers, and ``rules`` what it sets for all specs that import it.
     """
 
     automata: tuple[Fspa, ...] = ()
@@ -43,19 +44,20 @@ class Version:
 
 @record
 class MovedSpec:
-    """A spec that moved to another file or has another name, with its old and new place."""
+    """A spec that moved to another file or was renamed, with its old and its new place."""
 
     old: Fspa
     new: Fspa
-    was_at: Label
-    is_at: Label
+    old_place: Label
+    new_place: Label
 
 
 @record
 class FileChange:
-    """Two versions of the file at a path. If the file does not exist, its version is empty.
+    """Two versions of the file at a path.
 
-    ``moves`` are the specs that moved into the file. Specs that moved are in neither version.
+    The version of a file that does not exist is empty. ``moves`` lists the specs that moved into the
+    file; these specs are in neither version.
     """
 
     path: str
@@ -64,18 +66,18 @@ class FileChange:
     moves: tuple[MovedSpec, ...] = ()
 
 
-def breaking(change: FileChange, work: int = DEFAULT_WORK) -> tuple[Diagnostic, ...]:
-    """Return everything that changed: first the specs, in order, then what they use.
+def version_changes(change: FileChange, work: int = DEFAULT_WORK) -> tuple[Diagnostic, ...]:
+    """Return the changes of the specs in order, then the changes of what the specs use.
 
     Error (:class:`~tltlc.diagnostics.diagnostic.TltlError`): TLT0750 if a comparison takes more
-    than ``work``.
+    than ``work`` steps.
     """
     old, new = change.old, change.new
     if not (old.automata or new.automata or change.moves):
         from tltlc.tools.diff.offers import changed_offers
 
         return (*changed_offers(old.offers, new.offers), *_changed_rules(old, new))
-    return tuple(_specs(old, new, change.moves, work))
+    return tuple(_spec_changes(old, new, change.moves, work))
 
 
 def _changed_rules(old: Version, new: Version) -> Iterator[Diagnostic]:
@@ -85,44 +87,44 @@ def _changed_rules(old: Version, new: Version) -> Iterator[Diagnostic]:
         yield from changed_rules(old.rules, new.rules)
 
 
-def _specs(old: Version, new: Version, moves: Sequence[MovedSpec], work: int) -> Iterator[Diagnostic]:
+def _spec_changes(old: Version, new: Version, moves: Sequence[MovedSpec], work: int) -> Iterator[Diagnostic]:
     before = {fspa.name: fspa for fspa in old.automata}
     after = {fspa.name: fspa for fspa in new.automata}
     for name in before:
         if name not in after:
-            yield say.spec_gone(name, old.places[name])
+            yield findings.spec_removed(name, old.places[name])
     for move in moves:
         if move.old.name == move.new.name:
-            yield say.spec_moved(move.new.name, move.was_at, move.is_at)
+            yield findings.spec_moved(move.new.name, move.old_place, move.new_place)
         else:
-            yield say.spec_renamed(move.old.name, move.new.name, move.was_at, move.is_at)
+            yield findings.spec_renamed(move.old.name, move.new.name, move.old_place, move.new_place)
     for name in after:
         if name not in before:
-            yield say.spec_added(name, new.places[name])
-    pairs = [compared(before[name], fspa, work) for name, fspa in after.items() if name in before]
-    pairs += [compared(move.old, move.new, work) for move in moves]
+            yield findings.spec_added(name, new.places[name])
+    pairs = [compare_versions(before[name], fspa, work) for name, fspa in after.items() if name in before]
+    pairs += [compare_versions(move.old, move.new, work) for move in moves]
     for pair in pairs:
         place = new.places[pair.b.name]
         if pair.comparison.relation not in ("equivalent", None):
-            yield say.other_traces(pair, place)
+            yield findings.traces_changed(pair, place)
         for difference in pair.differences:
-            if difference.what not in _OF_ALL:
-                yield say.judged_otherwise(pair.b.name, difference, place)
-    yield from _of_all(pairs, new.places)
+            if difference.kind not in _SHARED:
+                yield findings.setting_changed(pair.b.name, difference, place)
+    yield from _shared_changes(pairs, new.places)
 
 
-def compared(old: Fspa, new: Fspa, work: int) -> SpecPair:
+def compare_versions(old: Fspa, new: Fspa, work: int) -> SpecPair:
     """Return the differences between two versions of a spec.
 
-    Atoms with the same name are treated as the same atom, and changes of their values are
-    differences of their own. A renamed atom or signal is also a difference, under its old name.
-    Errors are as in :func:`breaking`.
+    Atoms with the same name count as the same atom, and changes of their values are differences of
+    their own. The rename of an atom or signal is a difference, under the old name.
+    Errors are as in :func:`version_changes`.
     """
-    renamed_atoms = with_names_of(old, new)
-    names = renamed_signals(old, renamed_atoms)
-    pair = diff(with_signals(old, names), renamed_atoms, True, work)
-    of_old, of_new = ({signal.name: signal for signal in fspa.signals} for fspa in (old, new))
-    renamings = [Difference("signal", name, of_old[name], of_new[now]) for name, now in names.items()]
+    renamed_atoms = with_old_atom_names(old, new)
+    names = new_signal_names(old, renamed_atoms)
+    pair = diff(rename_signals(old, names), renamed_atoms, True, work)
+    signals_old, signals_new = ({signal.name: signal for signal in fspa.signals} for fspa in (old, new))
+    renamings = [Difference("signal", name, signals_old[name], signals_new[now]) for name, now in names.items()]
     renamings += [
         Difference("atom", before.name, before, now)
         for before, now in zip(renamed_atoms.atoms, new.atoms, strict=True)
@@ -131,37 +133,37 @@ def compared(old: Fspa, new: Fspa, work: int) -> SpecPair:
     return replace(pair, differences=(*renamings, *pair.differences))
 
 
-def _of_all(pairs: Sequence[SpecPair], places: Mapping[str, Label]) -> Iterator[Diagnostic]:
+def _shared_changes(pairs: Sequence[SpecPair], places: Mapping[str, Label]) -> Iterator[Diagnostic]:
     """Yield the changes of the clock, signals, params and atoms.
 
-    Each change comes once for all specs that use it.
+    A change that affects several specs is yielded once.
     """
     users: dict[Difference, list[SpecPair]] = {}
     for pair in pairs:
         for difference in pair.differences:
-            if difference.what in _OF_ALL:
+            if difference.kind in _SHARED:
                 users.setdefault(difference, []).append(pair)
-    new_names = renamed_params(users)
+    new_names = new_param_names(users)
     by_predicate: dict[tuple[str, bool], list[Difference]] = {}
     renamed: dict[str, list[Difference]] = {}
     for difference, using in users.items():
         place, specs = places[using[0].b.name], [pair.b.name for pair in using]
-        if difference.what == "clock":
-            yield say.clock(difference, specs, place)
-        elif difference.what == "signal":
-            yield say.signal(difference, specs, place)
-        elif difference.what == "param" and difference.name not in new_names.values():
-            yield say.param(difference, new_names.get(difference.name), place)
+        if difference.kind == "clock":
+            yield findings.clock_changed(difference, specs, place)
+        elif difference.kind == "signal":
+            yield findings.signal_changed(difference, specs, place)
+        elif difference.kind == "param" and difference.name not in new_names.values():
+            yield findings.param_changed(difference, new_names.get(difference.name), place)
         elif isinstance(difference.a, Atom) and isinstance(difference.b, Atom):
             if difference.b.name != difference.name:
                 renamed.setdefault(difference.a.base, []).append(difference)
-            elif difference.apart is not None:
-                key = difference.a.base, difference.apart.is_judged_otherwise
+            elif difference.value_difference is not None:
+                key = difference.a.base, difference.value_difference.differs_in_truth
                 by_predicate.setdefault(key, []).append(difference)
     for same_predicate in renamed.values():
-        yield say.atoms_called(same_predicate, places[users[same_predicate[0]][0].b.name])
+        yield findings.atoms_renamed(same_predicate, places[users[same_predicate[0]][0].b.name])
     for first, *rest in by_predicate.values():
         using = users[first]
         # Specs with different names for signals have different samples for the same atom.
-        names = list(dict.fromkeys(other.name for other in rest if other.name != first.name))
-        yield say.atom(first, names, using[0], places[using[0].b.name])
+        names = list(dict.fromkeys(difference.name for difference in rest if difference.name != first.name))
+        yield findings.atom_changed(first, names, using[0], places[using[0].b.name])

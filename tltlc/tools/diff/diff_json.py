@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 from tltlc.automaton.compare import Trace
 from tltlc.expression.json import to_json
 from tltlc.resolve.spec import Atom, Param, Signal
-from tltlc.tools.diff.phrases import unrelated
-from tltlc.tools.diff.traces import in_order
+from tltlc.tools.diff.phrases import unrelated_reason
+from tltlc.tools.diff.traces import ordered_atoms
 
 if TYPE_CHECKING:
     from tltlc.tools.diff.differences import Difference
@@ -33,11 +33,11 @@ def _pair(pair: SpecPair) -> dict[str, Any]:
         "name_a": pair.a.name,
         "name_b": pair.b.name,
         "relation": comparison.relation,
-        "reason": unrelated(pair.a, pair.b) if comparison.relation is None else None,
+        "reason": unrelated_reason(pair.a, pair.b) if comparison.relation is None else None,
         "beginnings": _beginnings(pair),
         "only_a": _trace(pair, comparison.only_a),
         "only_b": _trace(pair, comparison.only_b),
-        "different_atoms": list(comparison.split),
+        "different_atoms": list(comparison.split_names),
         "left_out": [
             [{"atom": name, "holds": holds} for name, holds in literals] for literals in comparison.impossible
         ],
@@ -49,41 +49,41 @@ def _pair(pair: SpecPair) -> dict[str, Any]:
 
 
 def _beginnings(pair: SpecPair) -> dict[str, Any] | None:
-    """Return how the traces relate that do not break the specs for good; None if not compared.
+    """Return how the finite beginnings of traces that do not break the specs for good relate.
 
-    They are compared if one spec is over finite traces and the other over infinite traces.
+    Returns None unless one spec is over finite traces and the other over infinite traces.
     """
     comparison = pair.comparison.beginnings
     if comparison is None:
         return None
     only_a, only_b = (
-        trace and [in_order(pair, letter) for letter in trace.prefix]
+        trace and [ordered_atoms(pair, letter) for letter in trace.prefix]
         for trace in (comparison.only_a, comparison.only_b)
     )
     return {"relation": comparison.relation, "only_a": only_a, "only_b": only_b}
 
 
 def _trace(pair: SpecPair, trace: Trace | None) -> Any:
-    """Return a finite trace as a list of samples, an infinite one as its prefix and cycle.
+    """Return a finite trace as a list of samples, and an infinite trace as its prefix and cycle.
 
-    Each sample is the list of atoms that hold.
+    Each sample is the list of the atoms that hold.
     """
     if trace is None:
         return None
-    prefix, cycle = ([in_order(pair, letter) for letter in letters] for letters in (trace.prefix, trace.cycle))
+    prefix, cycle = ([ordered_atoms(pair, letter) for letter in letters] for letters in (trace.prefix, trace.cycle))
     return {"prefix": prefix, "cycle": cycle} if pair.a.semantics == "infinite" else prefix
 
 
 def _difference(difference: Difference) -> dict[str, Any]:
     fields: dict[str, Any] = {
-        "what": difference.what,
+        "what": difference.kind,
         "name": difference.name or None,
         "a": _value(difference.a),
         "b": _value(difference.b),
     }
-    if difference.apart is not None:
-        first, second = difference.apart.values
-        fields["sample"] = {"signals": dict(difference.apart.sample), "a": first, "b": second}
+    if difference.value_difference is not None:
+        first, second = difference.value_difference.values
+        fields["sample"] = {"signals": dict(difference.value_difference.sample), "a": first, "b": second}
     return fields
 
 

@@ -7,115 +7,117 @@ from typing import TYPE_CHECKING, Final, Literal, Union
 
 from tltlc.core.record import record
 from tltlc.resolve.spec import Atom, Param, Signal
-from tltlc.tools.diff.values import Apart, apart, meaning
+from tltlc.tools.diff.values import ValueDifference, meaning, value_difference
 
 if TYPE_CHECKING:
     from tltlc.automaton.fspa import Fspa
 
-What = Literal["semantics", "judge", "limit", "level", "clock", "exclusive", "atom", "signal", "param"]
+DifferenceKind = Literal["semantics", "judge", "limit", "level", "clock", "exclusive", "atom", "signal", "param"]
 Value = Union[Signal, Param, Atom, tuple[str, ...], str, int, float, None]
 
-_SETTINGS: Final[tuple[tuple[What, str], ...]] = (
+_SETTINGS: Final[tuple[tuple[DifferenceKind, str], ...]] = (
     ("semantics", "semantics"),
     ("judge", "judge"),
     ("limit", "limit_steps"),
     ("level", "level"),
     ("clock", "clock_s"),
 )
-"""The settings of a whole spec, each with its field."""
+"""The settings of a whole spec, each with the field of :class:`Fspa` that holds it."""
 
 
 @record
 class Difference:
-    """One difference between two automata: what differs, and the values in A and B.
+    """One difference between two automata: its kind, and the values in A and B.
 
-    ``name`` is empty if there is only one such thing. A value is None if that side has none. ``a``
-    and ``b`` are records for signals, params and atoms, the names of the atoms for an ``exclusive``
-    group, and plain values otherwise. ``apart`` is set only for atoms.
+    ``name`` is the name of the signal, param or atom, and empty for other kinds. ``a`` and ``b`` are
+    records for signals, params and atoms, the names of the atoms for an ``exclusive`` group, and
+    plain values otherwise. The value of a side that has no such thing is None.
+    ``value_difference`` is set only for atoms.
     """
 
-    what: What
+    kind: DifferenceKind
     name: str
     a: Value
     b: Value
-    apart: Apart | None = None
+    value_difference: ValueDifference | None = None
 
 
 def differences(a: Fspa, b: Fspa) -> tuple[Difference, ...]:
-    """Return all differences other than the traces.
+    """Return all differences between A and B other than the traces that they accept.
 
-    They concern how a spec is judged, what its atoms mean, and what it reads.
+    The differences are in how a spec is judged, what its atoms mean, and what it reads.
     """
-    return tuple(_all(a, b))
+    return tuple(_differences(a, b))
 
 
-def renamed_params(all_differences: Iterable[Difference]) -> dict[str, str]:
-    """Return the new names of params that are gone.
+def new_param_names(all_differences: Iterable[Difference]) -> dict[str, str]:
+    """Return the new names of renamed params, by their old names.
 
-    A gone param was renamed if a new one differs from it only in name and documentation.
+    A removed param counts as renamed if an added param differs from it only in name and
+    documentation.
     """
-    params = [difference for difference in all_differences if difference.what == "param"]
+    params = [difference for difference in all_differences if difference.kind == "param"]
     names: dict[str, str] = {}
-    for gone in params:
+    for removed in params:
         for added in params:
-            alike = gone.b is None and added.a is None and plain(gone.a) == plain(added.b)
-            if alike and gone.name not in names and added.name not in names.values():
-                names[gone.name] = added.name
+            is_alike = removed.b is None and added.a is None and type_and_range(removed.a) == type_and_range(added.b)
+            if is_alike and removed.name not in names and added.name not in names.values():
+                names[removed.name] = added.name
     return names
 
 
-def named(
-    what: What, ours: Iterable[Signal] | Iterable[Param], theirs: Iterable[Signal] | Iterable[Param]
+def declared_differences(
+    kind: DifferenceKind, in_a: Iterable[Signal] | Iterable[Param], in_b: Iterable[Signal] | Iterable[Param]
 ) -> Iterator[Difference]:
     """Yield the differences between two lists of signals or params, matched by name."""
-    one, other = ({value.name: value for value in values} for values in (ours, theirs))
-    for name in dict.fromkeys((*one, *other)):
-        before, after = one.get(name), other.get(name)
-        if plain(before) != plain(after):
-            yield Difference(what, name, before, after)
+    by_name_a, by_name_b = ({value.name: value for value in values} for values in (in_a, in_b))
+    for name in dict.fromkeys((*by_name_a, *by_name_b)):
+        a, b = by_name_a.get(name), by_name_b.get(name)
+        if type_and_range(a) != type_and_range(b):
+            yield Difference(kind, name, a, b)
 
 
 def are_exclusive(names: Collection[str], groups: Iterable[Collection[str]]) -> bool:
     """Whether ``exclusive`` groups imply that no two of these atoms hold together.
 
-    Each two atoms must share a group.
+    They do if every two of the atoms share a group.
     """
-    wanted = frozenset(names)
-    of_name: dict[str, set[frozenset[str]]] = {name: set() for name in wanted}
+    atoms = frozenset(names)
+    common_groups: dict[str, set[frozenset[str]]] = {name: set() for name in atoms}
     for group in groups:
-        shared = wanted.intersection(group)
-        for name in shared:
-            of_name[name].add(shared)
-    return all(wanted == frozenset((name,)).union(*shared) for name, shared in of_name.items())
+        common = atoms.intersection(group)
+        for name in common:
+            common_groups[name].add(common)
+    return all(atoms == frozenset((name,)).union(*common) for name, common in common_groups.items())
 
 
-def plain(value: Value) -> object:
-    """Return a signal or param as a tuple without its name and documentation."""
+def type_and_range(value: Value) -> object:
+    """Return the type, range and param value of a signal or param; None for other values."""
     if not isinstance(value, (Signal, Param)):
         return None
     return (value.type, value.low, value.high, value.value if isinstance(value, Param) else None)
 
 
-def _all(a: Fspa, b: Fspa) -> Iterator[Difference]:
-    for what, field in _SETTINGS:
-        one, other = getattr(a, field), getattr(b, field)
-        if one != other:
-            yield Difference(what, "", one, other)
-    groups, others = _groups(a), _groups(b)
-    yield from (Difference("exclusive", "", names, None) for names in groups if not are_exclusive(names, others))
-    yield from (Difference("exclusive", "", None, names) for names in others if not are_exclusive(names, groups))
+def _differences(a: Fspa, b: Fspa) -> Iterator[Difference]:
+    for kind, field in _SETTINGS:
+        value_a, value_b = getattr(a, field), getattr(b, field)
+        if value_a != value_b:
+            yield Difference(kind, "", value_a, value_b)
+    groups_a, groups_b = _groups(a), _groups(b)
+    yield from (Difference("exclusive", "", names, None) for names in groups_a if not are_exclusive(names, groups_b))
+    yield from (Difference("exclusive", "", None, names) for names in groups_b if not are_exclusive(names, groups_a))
     places = {atom.name: index for index, atom in enumerate(b.atoms)}
     for index, atom in enumerate(a.atoms):
         if atom.name in places:
             place = places[atom.name]
-            sample = apart(meaning(a, index), meaning(b, place))
-            if sample is not None or atom.expression != b.atoms[place].expression:
-                yield Difference("atom", atom.name, atom, b.atoms[place], sample)
-    yield from named("signal", a.signals, b.signals)
-    yield from named("param", a.params, b.params)
+            difference = value_difference(meaning(a, index), meaning(b, place))
+            if difference is not None or atom.expression != b.atoms[place].expression:
+                yield Difference("atom", atom.name, atom, b.atoms[place], difference)
+    yield from declared_differences("signal", a.signals, b.signals)
+    yield from declared_differences("param", a.params, b.params)
 
 
 def _groups(fspa: Fspa) -> list[tuple[str, ...]]:
-    """Return the ``exclusive`` groups without duplicates, as names in order."""
+    """Return the ``exclusive`` groups of an automaton as names, without duplicates."""
     names = [tuple(fspa.atoms[atom].name for atom in group) for group in fspa.exclusive]
     return list({frozenset(group): group for group in names}.values())

@@ -1,4 +1,4 @@
-"""Replace the signals, params and constants of expressions."""
+"""Replace the leaves of expressions: signals, params and constants."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from tltlc.expression.tree import Condition, Const, Expression, Op, ParamValue, 
 Leaf = Union[Const, SignalValue, ParamValue]
 
 
-def with_leaves(node: Expression, change: Callable[[Leaf], Leaf]) -> Expression:
+def replace_leaves(node: Expression, change: Callable[[Leaf], Leaf]) -> Expression:
     """Return the expression with ``change`` applied to each leaf."""
     match node:
         case Op():
-            return Op(node.op, tuple(with_leaves(arg, change) for arg in node.args))
+            return Op(node.op, tuple(replace_leaves(arg, change) for arg in node.args))
         case When():
-            cases = tuple((_condition(when, change), with_leaves(then, change)) for when, then in node.cases)
-            return When(cases, with_leaves(node.otherwise, change))
+            cases = tuple((_condition(when, change), replace_leaves(then, change)) for when, then in node.cases)
+            return When(cases, replace_leaves(node.otherwise, change))
         case _:
             return change(node)
 
@@ -25,5 +25,7 @@ def with_leaves(node: Expression, change: Callable[[Leaf], Leaf]) -> Expression:
 def _condition(node: Condition, change: Callable[[Leaf], Leaf]) -> Condition:
     return Condition(
         node.op,
-        tuple(_condition(arg, change) if isinstance(arg, Condition) else with_leaves(arg, change) for arg in node.args),
+        tuple(
+            _condition(arg, change) if isinstance(arg, Condition) else replace_leaves(arg, change) for arg in node.args
+        ),
     )

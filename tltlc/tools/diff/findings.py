@@ -1,4 +1,4 @@
-"""The findings of ``tltlc breaking`` as diagnostics, each with one suggestion."""
+"""The findings of ``tltlc breaking`` as diagnostics, each with a help text."""
 
 from __future__ import annotations
 
@@ -12,40 +12,40 @@ from tltlc.resolve.spec import Atom, Param, Signal, ValueType
 from tltlc.resolve.values import number_text
 from tltlc.tools.diff.differences import Difference
 from tltlc.tools.diff.pairs import SpecPair
-from tltlc.tools.diff.phrases import ends_text, listed, sample_text, type_text, value_text, values_text
+from tltlc.tools.diff.phrases import ends_text, name_list, sample_text, type_text, value_text, values_text
 from tltlc.tools.diff.traces import step_lines
-from tltlc.tools.diff.values import Apart
+from tltlc.tools.diff.values import ValueDifference
 
 BREAKING: Final[Severity] = "error"
-"""The host must be changed, or recordings are judged differently."""
+"""The host must be changed, or recordings are judged differently now."""
 CHANGED: Final[Severity] = "warning"
 """Numbers or behaviour differ, but everything still works."""
 COMPATIBLE: Final[Severity] = "note"
 """Nothing has to be done."""
 
 _MOST_LINES: Final = 8
-"""The most lines of a trace in a message."""
+"""The most lines that a trace takes in a message."""
 _ANEW: Final = "if this is meant, record baselines anew"
 
 
-def spec_gone(name: str, place: Label) -> Diagnostic:
+def spec_removed(name: str, place: Label) -> Diagnostic:
     """TLT0752: a spec was removed."""
-    suggestion = "keep it, or tell those who load its artefact or monitor"
-    return Diagnostic("TLT0752", f"the spec `{name}` is gone", (was(place),), suggestion, BREAKING)
+    help_ = "keep it, or tell those who load its artefact or monitor"
+    return Diagnostic("TLT0752", f"the spec `{name}` is gone", (at_old_place(place),), help_, BREAKING)
 
 
 def spec_renamed(old: str, new: str, before: Label, place: Label) -> Diagnostic:
     """TLT0752: a spec has another name, but accepts the same traces."""
     title = f"the spec `{old}` is called `{new}` now"
-    suggestion = "keep the old name, or tell those who load its artefact or monitor by it"
-    return Diagnostic("TLT0752", title, (place, was(before)), suggestion, BREAKING)
+    help_ = "keep the old name, or tell those who load its artefact or monitor by it"
+    return Diagnostic("TLT0752", title, (place, at_old_place(before)), help_, BREAKING)
 
 
 def spec_moved(name: str, before: Label, place: Label) -> Diagnostic:
     """TLT0752: a spec moved to another file."""
     title = f"the spec `{name}` has moved here from `{before.source.name}`"
-    suggestion = "name this file where that one is named; artefacts and monitors are called as before"
-    return Diagnostic("TLT0752", title, (place,), suggestion, COMPATIBLE)
+    help_ = "name this file where that one is named; artefacts and monitors are called as before"
+    return Diagnostic("TLT0752", title, (place,), help_, COMPATIBLE)
 
 
 def spec_added(name: str, place: Label) -> Diagnostic:
@@ -53,31 +53,31 @@ def spec_added(name: str, place: Label) -> Diagnostic:
     return Diagnostic("TLT0752", f"the spec `{name}` is new", (place,), "nothing needs to be done", COMPATIBLE)
 
 
-def other_traces(pair: SpecPair, place: Label) -> Diagnostic:
+def traces_changed(pair: SpecPair, place: Label) -> Diagnostic:
     """TLT0753: a spec accepts different traces than before."""
     name, comparison = pair.b.name, pair.comparison
     if comparison.only_a is None:
         assert comparison.only_b is not None
         title = f"`{name}` is looser: it accepts traces that it did not"
-        suggestion = f"if this is not meant, it must rule out:{_trace(pair, comparison.only_b)}"
-        return Diagnostic("TLT0753", title, (place,), suggestion, CHANGED)
+        help_ = f"if this is not meant, it must rule out:{_trace(pair, comparison.only_b)}"
+        return Diagnostic("TLT0753", title, (place,), help_, CHANGED)
     title = f"`{name}` is stricter: traces that it accepted are not accepted now"
     if comparison.relation == "incomparable":
         title = f"`{name}` accepts other traces: some that it accepted are not accepted now, and others are"
     if pair.b.states[0].verdict == "violated":
         title = f"`{name}` is stricter: no trace satisfies it any more"
-    suggestion = f"if this is not meant, it must accept:{_trace(pair, comparison.only_a)}"
-    return Diagnostic("TLT0753", title, (place,), suggestion, BREAKING)
+    help_ = f"if this is not meant, it must accept:{_trace(pair, comparison.only_a)}"
+    return Diagnostic("TLT0753", title, (place,), help_, BREAKING)
 
 
-def signal(difference: Difference, specs: Sequence[str], place: Label) -> Diagnostic:
-    """TLT0754 and TLT0755: a host must supply other signals to the monitors of some specs."""
-    name, used_by = difference.name, listed(specs)
+def signal_changed(difference: Difference, specs: Sequence[str], place: Label) -> Diagnostic:
+    """TLT0754 or TLT0755: a host must supply other signals to the monitors of ``specs``."""
+    name, used_by = difference.name, name_list(specs)
     if difference.a is None:
         assert isinstance(difference.b, Signal)
         title = f"the signal `{name}` must be supplied now, to {used_by}"
-        suggestion = f"have the game supply it: {type_text(difference.b)}"
-        return Diagnostic("TLT0754", title, (place,), suggestion, BREAKING)
+        help_ = f"have the game supply it: {type_text(difference.b)}"
+        return Diagnostic("TLT0754", title, (place,), help_, BREAKING)
     if difference.b is None:
         title = f"the signal `{name}` is no longer read, by {used_by}"
         return Diagnostic("TLT0754", title, (place,), "the game may stop supplying it", COMPATIBLE)
@@ -85,24 +85,24 @@ def signal(difference: Difference, specs: Sequence[str], place: Label) -> Diagno
     if difference.b.name != name:
         title = f"the signal `{difference.b.name}` must be supplied now in place of `{name}`, to {used_by}"
         return Diagnostic("TLT0754", title, (place,), f"have the game supply it: {type_text(difference.b)}", BREAKING)
-    return signal_type(difference.a, difference.b, place)
+    return signal_type_changed(difference.a, difference.b, place)
 
 
-def signal_type(old: Signal, new: Signal, place: Label) -> Diagnostic:
+def signal_type_changed(old: Signal, new: Signal, place: Label) -> Diagnostic:
     """TLT0755: a signal has another type, unit or range."""
     name = new.name
     if old.type != new.type:
-        title = f"the signal `{name}` is {_article(new.type)} now, and was {_article(old.type)}"
+        title = f"the signal `{name}` is {_with_article(new.type)} now, and was {_with_article(old.type)}"
         return Diagnostic("TLT0755", title, (place,), f"have the game supply it as {type_text(new)}", BREAKING)
     title = f"the signal `{name}` has the range {ends_text(new)} now, and had {ends_text(old)}"
     if _is_within(old, new):
-        suggestion = "nothing needs to be done for hosts; atoms that are scaled by the range are reported themselves"
-        return Diagnostic("TLT0755", title, (place,), suggestion, COMPATIBLE)
-    suggestion = "what the game supplies beyond an end counts as that end: look whether it does"
-    return Diagnostic("TLT0755", title, (place,), suggestion, BREAKING)
+        help_ = "nothing needs to be done for hosts; atoms that are scaled by the range are reported themselves"
+        return Diagnostic("TLT0755", title, (place,), help_, COMPATIBLE)
+    help_ = "what the game supplies beyond an end counts as that end: look whether it does"
+    return Diagnostic("TLT0755", title, (place,), help_, BREAKING)
 
 
-def param(difference: Difference, new_name: str | None, place: Label) -> Diagnostic:
+def param_changed(difference: Difference, new_name: str | None, place: Label) -> Diagnostic:
     """TLT0756: a param was removed, added or renamed, or has another value or range."""
     name, old, new = difference.name, difference.a, difference.b
     if not isinstance(old, Param):
@@ -116,135 +116,139 @@ def param(difference: Difference, new_name: str | None, place: Label) -> Diagnos
         title = f"the param `{name}` is gone"
         return Diagnostic("TLT0756", title, (place,), "no longer set it: to do so is an error", BREAKING)
     if old.type != new.type:
-        title = f"the param `{name}` is {_article(new.type)} now, and was {_article(old.type)}"
+        title = f"the param `{name}` is {_with_article(new.type)} now, and was {_with_article(old.type)}"
         return Diagnostic("TLT0756", title, (place,), f"set it as {type_text(new)}", BREAKING)
     if old.value != new.value:
         now, before = value_text(new.value, new.type), value_text(old.value, old.type)
         title = f"the param `{name}` is {now} now, and was {before}"
         if not _is_within(old, new):
             title += f", and its range is {ends_text(new)}, and was {ends_text(old)}"
-        suggestion = f"where the old value is needed, set it: `{name}={before}`"
-        return Diagnostic("TLT0756", title, (place,), suggestion, CHANGED if _is_within(old, new) else BREAKING)
+        help_ = f"where the old value is needed, set it: `{name}={before}`"
+        return Diagnostic("TLT0756", title, (place,), help_, CHANGED if _is_within(old, new) else BREAKING)
     title = f"the param `{name}` has the range {ends_text(new)} now, and had {ends_text(old)}"
     if _is_within(old, new):
         return Diagnostic("TLT0756", title, (place,), "nothing needs to be done", COMPATIBLE)
     return Diagnostic("TLT0756", title, (place,), "set it to a value inside: others are an error now", BREAKING)
 
 
-def atom(difference: Difference, others: Sequence[str], pair: SpecPair, place: Label) -> Diagnostic:
-    """TLT0757: an atom has other values, and so do ``others``, atoms of the same predicate."""
-    assert difference.apart is not None
+def atom_changed(difference: Difference, others: Sequence[str], pair: SpecPair, place: Label) -> Diagnostic:
+    """TLT0757: an atom has other values. So do ``others``, which are atoms of the same predicate."""
+    assert difference.value_difference is not None
     types: dict[str, ValueType] = {signal_.name: signal_.type for signal_ in (*pair.a.signals, *pair.b.signals)}
-    return values(f"`{difference.name}`", others, difference.apart, types, place)
+    return values_changed(f"`{difference.name}`", others, difference.value_difference, types, place)
 
 
-def atoms_called(renamings: Sequence[Difference], place: Label) -> Diagnostic:
+def atoms_renamed(renamings: Sequence[Difference], place: Label) -> Diagnostic:
     """TLT0757: atoms of a predicate have other names, but the same meaning."""
     names = [renaming.b.name for renaming in renamings if isinstance(renaming.b, Atom)]
     are = "is" if len(names) == 1 else "are"
-    title = f"{listed([renaming.name for renaming in renamings])} {are} called {listed(names)} now"
-    suggestion = "nothing needs to be done, unless the game looks for the name in what a monitor says"
-    return Diagnostic("TLT0757", title, (place,), suggestion, COMPATIBLE)
+    title = f"{name_list([renaming.name for renaming in renamings])} {are} called {name_list(names)} now"
+    help_ = "nothing needs to be done, unless the game looks for the name in what a monitor says"
+    return Diagnostic("TLT0757", title, (place,), help_, COMPATIBLE)
 
 
-def values(
-    subject: str, others: Sequence[str], apart: Apart, types: dict[str, ValueType], place: Label, kind: str = "atom"
+def values_changed(
+    subject: str,
+    others: Sequence[str],
+    difference: ValueDifference,
+    types: dict[str, ValueType],
+    place: Label,
+    kind: str = "atom",
 ) -> Diagnostic:
-    """TLT0757: an atom or predicate has other values; the message shows a sample."""
-    title = f"the {kind} {subject} is {'judged' if apart.is_judged_otherwise else 'scaled'} otherwise"
+    """TLT0757: an atom or predicate has other values. The help shows a sample at which it does."""
+    title = f"the {kind} {subject} is {'judged' if difference.differs_in_truth else 'scaled'} otherwise"
     if others:
-        title += f", as {'is' if len(others) == 1 else 'are'} {listed(others)}"
-    before, now = values_text(apart)
-    where = sample_text(apart.sample, types)
-    suggestion = f"{where} it is {now}, and was {before}; {_ANEW}"
-    if not apart.is_judged_otherwise:
-        suggestion = f"{where} it is {now}, and was {before}: progress and rewards differ, and no verdict does"
-    return Diagnostic("TLT0757", title, (place,), suggestion, BREAKING if apart.is_judged_otherwise else CHANGED)
+        title += f", as {'is' if len(others) == 1 else 'are'} {name_list(others)}"
+    before, now = values_text(difference)
+    where = sample_text(difference.sample, types)
+    help_ = f"{where} it is {now}, and was {before}; {_ANEW}"
+    if not difference.differs_in_truth:
+        help_ = f"{where} it is {now}, and was {before}: progress and rewards differ, and no verdict does"
+    return Diagnostic("TLT0757", title, (place,), help_, BREAKING if difference.differs_in_truth else CHANGED)
 
 
-def clock(difference: Difference, specs: Sequence[str], place: Label) -> Diagnostic:
-    """TLT0758: specs have another clock."""
+def clock_changed(difference: Difference, specs: Sequence[str], place: Label) -> Diagnostic:
+    """TLT0758: ``specs`` have another clock."""
     are, were = ("is", "was") if len(specs) == 1 else ("are", "were")
-    title = f"{listed(specs)} {are} sampled {_clock(difference.b)} now, and {were} sampled {_clock(difference.a)}"
-    return Diagnostic("TLT0758", title, (place,), _as_often(difference.b), BREAKING)
+    title = f"{name_list(specs)} {are} sampled {_clock(difference.b)} now, and {were} sampled {_clock(difference.a)}"
+    return Diagnostic("TLT0758", title, (place,), _clock_help(difference.b), BREAKING)
 
 
-def clock_of_all(old: float | None, new: float | None, place: Label) -> Diagnostic:
+def library_clock_changed(old: float | None, new: float | None, place: Label) -> Diagnostic:
     """TLT0758: a library declares another clock."""
     title = f"specs are sampled {_clock(new)} now, and were sampled {_clock(old)}"
-    return Diagnostic("TLT0758", title, (place,), _as_often(new), BREAKING)
+    return Diagnostic("TLT0758", title, (place,), _clock_help(new), BREAKING)
 
 
-def exclusive_now(names: Sequence[str], place: Label) -> Diagnostic:
+def exclusive_added(names: Sequence[str], place: Label) -> Diagnostic:
     """TLT0758: a library declares atoms to be exclusive."""
-    suggestion = (
-        "a sample in which two of them hold is an error to specs that name both: look whether the game has such"
-    )
-    return Diagnostic("TLT0758", f"{listed(names)} are exclusive now", (place,), suggestion, BREAKING)
+    help_ = "a sample in which two of them hold is an error to specs that name both: look whether the game has such"
+    return Diagnostic("TLT0758", f"{name_list(names)} are exclusive now", (place,), help_, BREAKING)
 
 
-def no_longer_exclusive(names: Sequence[str], place: Label) -> Diagnostic:
+def exclusive_removed(names: Sequence[str], place: Label) -> Diagnostic:
     """TLT0758: a library no longer declares atoms to be exclusive."""
-    title = f"{listed(names)} are no longer exclusive"
+    title = f"{name_list(names)} are no longer exclusive"
     return Diagnostic(
-        "TLT0758", title, (was(place),), "steps may be skipped, so progress and rewards may differ", CHANGED
+        "TLT0758", title, (at_old_place(place),), "steps may be skipped, so progress and rewards may differ", CHANGED
     )
 
 
-def judged_otherwise(name: str, difference: Difference, place: Label) -> Diagnostic:
+def setting_changed(name: str, difference: Difference, place: Label) -> Diagnostic:
     """TLT0758: a spec has another limit, judge, level, semantics, or ``exclusive`` group."""
     old, new = difference.a, difference.b
-    severity, suggestion = BREAKING, _ANEW
-    match difference.what:
+    severity, help_ = BREAKING, _ANEW
+    match difference.kind:
         case "semantics":
             title = f"`{name}` is about {_traces(new)} now, and was about {_traces(old)}"
         case "judge":
             title = f"`{name}` is judged at the {new} now, and was judged at the {old}"
-            suggestion = f"if this is not meant, write `judge at {old}`"
+            help_ = f"if this is not meant, write `judge at {old}`"
         case "limit":
             title = f"`{name}` has {_limit(new)} now, and had {_limit(old)}"
         case "level":
             title = f"`{name}` is about {_level(new)} now, and was about {_level(old)}"
-            severity, suggestion = CHANGED, "look whether what loads it picks the level by this"
+            severity, help_ = CHANGED, "look whether what loads it picks the level by this"
         case _:
             names = new if isinstance(new, tuple) else old if isinstance(old, tuple) else ()
             if old is None:
-                title = f"{listed(names)} are exclusive in `{name}` now"
-                suggestion = "a sample in which two of them hold is an error now: look whether the game has such"
+                title = f"{name_list(names)} are exclusive in `{name}` now"
+                help_ = "a sample in which two of them hold is an error now: look whether the game has such"
             else:
-                title = f"{listed(names)} are no longer exclusive in `{name}`"
-                severity, suggestion = CHANGED, "steps may be skipped, so progress and rewards may differ"
-    return Diagnostic("TLT0758", title, (place,), suggestion, severity)
+                title = f"{name_list(names)} are no longer exclusive in `{name}`"
+                severity, help_ = CHANGED, "steps may be skipped, so progress and rewards may differ"
+    return Diagnostic("TLT0758", title, (place,), help_, severity)
 
 
-def offer_gone(kind: str, name: str, place: Label) -> Diagnostic:
+def declaration_removed(kind: str, name: str, place: Label) -> Diagnostic:
     """TLT0759: a library no longer declares a name."""
-    suggestion = "keep it, at least as another name for what took its place"
-    return Diagnostic("TLT0759", f"the {kind} `{name}` is gone", (was(place),), suggestion, BREAKING)
+    help_ = "keep it, at least as another name for what took its place"
+    return Diagnostic("TLT0759", f"the {kind} `{name}` is gone", (at_old_place(place),), help_, BREAKING)
 
 
-def other_parameters(kind: str, name: str, place: Label, why: str) -> Diagnostic:
-    """TLT0759: existing uses of a library declaration are no longer valid."""
-    suggestion = "add parameters behind the others, with a default, and leave the others as they are"
-    return Diagnostic("TLT0759", f"the {kind} `{name}` takes other parameters: {why}", (place,), suggestion, BREAKING)
+def parameters_changed(kind: str, name: str, place: Label, why: str) -> Diagnostic:
+    """TLT0759: existing uses of a library declaration are no longer valid; ``why`` says why."""
+    help_ = "add parameters behind the others, with a default, and leave the others as they are"
+    return Diagnostic("TLT0759", f"the {kind} `{name}` takes other parameters: {why}", (place,), help_, BREAKING)
 
 
-def reads(predicate: str, signals: Sequence[str], place: Label) -> Diagnostic:
+def signals_added(predicate: str, signals: Sequence[str], place: Label) -> Diagnostic:
     """TLT0754: a predicate of a library reads additional signals."""
-    title = f"the predicate `{predicate}` reads {listed(signals)} now"
-    suggestion = f"have the game supply {'it' if len(signals) == 1 else 'them'} wherever the predicate is used"
-    return Diagnostic("TLT0754", title, (place,), suggestion, BREAKING)
+    title = f"the predicate `{predicate}` reads {name_list(signals)} now"
+    help_ = f"have the game supply {'it' if len(signals) == 1 else 'them'} wherever the predicate is used"
+    return Diagnostic("TLT0754", title, (place,), help_, BREAKING)
 
 
-def was(place: Label) -> Label:
-    """Return the label of something that was removed, with a message that says so."""
+def at_old_place(place: Label) -> Label:
+    """Return the label with the message that the removed thing was there."""
     return replace(place, message="it was here")
 
 
 def _trace(pair: SpecPair, trace: Trace) -> str:
-    """Return a trace after a colon.
+    """Return the text of a trace that follows a colon.
 
-    One line stays on the same line. Several lines get lines of their own, up to ``_MOST_LINES``.
+    A trace of one line stays on the line of the colon. A longer trace gets lines of its own, at most
+    ``_MOST_LINES``.
     """
     lines = step_lines(pair, trace.prefix)
     if trace.cycle:
@@ -264,7 +268,7 @@ def _is_within(old: Union[Signal, Param], new: Union[Signal, Param]) -> bool:
     return low and (new.high is None or (old.high is not None and old.high <= new.high))
 
 
-def _article(type_: str) -> str:
+def _with_article(type_: str) -> str:
     return f"{'an' if type_ == 'angle' else 'a'} {type_}"
 
 
@@ -280,7 +284,7 @@ def _level(level: object) -> str:
     return f"the level `{level}`" if level else "no level in particular"
 
 
-def _as_often(period: object) -> str:
+def _clock_help(period: object) -> str:
     if period is None:
         return "declare the old clock, if the game takes steps by it"
     return "have the game take a step as often"

@@ -27,9 +27,9 @@ _HOOK_VARIABLES: Final = {"GIT_DIR", "GIT_WORK_TREE", "GIT_INDEX_FILE", "GIT_PRE
 _PLAIN_FILES: Final = (b"100644", b"100755")
 _LINK: Final = b"120000"
 _NO_TARGET: Final = (b"symlink", b"dangling", b"loop", b"notdir")
-"""What git prints for a link that leads nowhere or out of the repository.
+"""DifferenceKind git prints for a link that leads nowhere or out of the repository.
 
-A size and a text of that size follow.
+After it, git prints a size and a text of that size.
 """
 
 _HASH: Final = re.compile("[0-9a-f]{40,64}")
@@ -37,15 +37,15 @@ _MOST_NAMES: Final = 1000
 _LONGEST_NAME: Final = 200
 """A misspelt revision is compared with up to ``_MOST_NAMES`` branches and tags.
 
-Longer names than this are left out.
+Branches and tags with longer names than ``_LONGEST_NAME`` are left out.
 """
 
 
 @record
 class _File:
-    """A file of a revision: the hash of its content in git, and its path.
+    """A file of a revision: the hash of its content in git (``name``), and its path.
 
-    The content of a link is its target.
+    The content of a link is the path of its target.
     """
 
     name: str
@@ -78,16 +78,16 @@ def repository(folder: Path) -> Path | None:
 
 
 def commit(repository: Path, revision: str) -> str:
-    """Return the commit that a revision names. Error TLT0751 if it names none."""
-    name = _object(repository, f"{revision}^{{commit}}")
+    """Return the hash of the commit that a revision names. Error TLT0751 if it names no commit."""
+    name = _object_hash(repository, f"{revision}^{{commit}}")
     if name is not None:
         return name
-    if _object(repository, revision) is not None:
+    if _object_hash(repository, revision) is not None:
         raise no_version(f"`{revision}` names something in git that is no commit", "name the commit that holds it")
-    raise no_version(f"there is no revision and no folder `{revision}`", _suggestion(repository, revision))
+    raise no_version(f"there is no revision and no folder `{revision}`", _revision_help(repository, revision))
 
 
-def _object(repository: Path, name: str) -> str | None:
+def _object_hash(repository: Path, name: str) -> str | None:
     """Return the hash of the object that a name refers to in git.
 
     Returns None if it refers to no object, like ``^HEAD``.
@@ -107,9 +107,9 @@ def write_out(repository: Path, commit: str, revision: str, is_wanted: Callable[
             :data:`tltlc.io.limits.REVISION` and the limits below it; TLT0009, a path cannot be
             a file below the folder; TLT0005, the system refuses to write.
     """
-    listed = _wanted(_files(repository, commit, revision), is_wanted, revision)
-    files = [file for file in listed if not file.is_link]
-    files += _followed(repository, commit, [file.path for file in listed if file.is_link])
+    wanted = _wanted_files(_files(repository, commit, revision), is_wanted, revision)
+    files = [file for file in wanted if not file.is_link]
+    files += _link_targets(repository, commit, [file.path for file in wanted if file.is_link])
     _check_sizes(repository, files, revision)
     unpack(folder, _contents(repository, files, revision), _archive(revision))
 
@@ -122,10 +122,10 @@ def _archive(revision: str) -> Archive:
     )
 
 
-def _wanted(files: Iterable[_File], is_wanted: Callable[[str], bool], revision: str) -> list[_File]:
-    """Return the wanted files.
+def _wanted_files(files: Iterable[_File], is_wanted: Callable[[str], bool], revision: str) -> list[_File]:
+    """Return the files for which ``is_wanted`` is true.
 
-    Errors: TLT0764 if there are too many, TLT0009 if a path is too long.
+    Errors: TLT0764 if there are too many of them, TLT0009 if a path is too long.
     """
     wanted: list[_File] = []
     for file in files:
@@ -147,12 +147,12 @@ def _files(repository: Path, commit: str, revision: str) -> Iterator[_File]:
     """
     from subprocess import DEVNULL, PIPE, Popen
 
-    # List folders, too (-t): else nested trees without files would keep git busy without any output.
+    # List folders, too (-t). Otherwise, nested trees without files would keep git busy without output.
     command = ["git", "-C", str(repository), "ls-tree", "-r", "-t", "-z", "--full-tree", commit]
     with Popen(command, stdin=DEVNULL, stdout=PIPE, stderr=DEVNULL, env=_environment()) as git:
         assert git.stdout is not None
         try:
-            yield from _listed(git.stdout, revision)
+            yield from _parse_listing(git.stdout, revision)
         except BaseException:
             git.kill()
             raise
@@ -161,14 +161,14 @@ def _files(repository: Path, commit: str, revision: str) -> Iterator[_File]:
             raise no_version(f"git cannot list the files of the revision `{revision}`", "repair it: `git fsck`")
 
 
-def _listed(stream: IO[bytes], revision: str) -> Iterator[_File]:
+def _parse_listing(stream: IO[bytes], revision: str) -> Iterator[_File]:
     """Yield the plain files and links in the output of ``git ls-tree -r -t -z``.
 
     Error TLT0764 if the output is too long.
     """
     for line in _lines(stream, revision):
-        about, _, path = line.partition(b"\t")
-        mode, kind, name = about.split()
+        attributes, _, path = line.partition(b"\t")
+        mode, kind, name = attributes.split()
         if (mode in _PLAIN_FILES or mode == _LINK) and kind == b"blob":
             yield _File(name.decode(), os.fsdecode(path), is_link=mode == _LINK)
 
@@ -197,7 +197,7 @@ def _lines(stream: IO[bytes], revision: str) -> Iterator[bytes]:
             yield from lines
 
 
-def _followed(repository: Path, commit: str, links: Iterable[str]) -> Iterator[_File]:
+def _link_targets(repository: Path, commit: str, links: Iterable[str]) -> Iterator[_File]:
     """Yield the files that links lead to within the commit, each at the path of its link."""
     # git reads one path from each line, so a path with a line feed cannot be looked up.
     paths = [path for path in links if "\n" not in path]
@@ -205,7 +205,7 @@ def _followed(repository: Path, commit: str, links: Iterable[str]) -> Iterator[_
         return
     request = b"".join(os.fsencode(f"{commit}:{path}\n") for path in paths)
     output = _run(
-        repository, "cat-file", "--batch-check=%(objecttype) %(objectname)", "--follow-symlinks", given=request
+        repository, "cat-file", "--batch-check=%(objecttype) %(objectname)", "--follow-symlinks", stdin=request
     )
     stream = io.BytesIO(output or b"")
     for path in paths:
@@ -217,12 +217,12 @@ def _followed(repository: Path, commit: str, links: Iterable[str]) -> Iterator[_
 
 
 def _check_sizes(repository: Path, files: Sequence[_File], revision: str) -> None:
-    """Check that the files are in the repository and not too large together.
+    """Check that the repository has the contents of the files, and that they are not too large.
 
-    Errors: TLT0751 if git lacks the content of a file, TLT0764 if the files are too large.
+    Errors: TLT0751 if git lacks the content of a file, TLT0764 if the total size is too large.
     """
     request = "".join(f"{file.name}\n" for file in files).encode()
-    lines = (_run(repository, "cat-file", "--batch-check=%(objectsize)", given=request) or b"").splitlines()
+    lines = (_run(repository, "cat-file", "--batch-check=%(objectsize)", stdin=request) or b"").splitlines()
     for file, line in zip(files, lines, strict=False):
         if not line.isdigit():
             raise _missing_content(file, revision)
@@ -233,9 +233,9 @@ def _check_sizes(repository: Path, files: Sequence[_File], revision: str) -> Non
 
 
 def _contents(repository: Path, files: Sequence[_File], revision: str) -> Iterator[tuple[str, bytes]]:
-    """Yield the path and content of each file. Error TLT0751 if git does not provide one."""
+    """Yield the path and content of each file. Error TLT0751 if git does not provide a content."""
     request = "".join(f"{file.name}\n" for file in files).encode()
-    contents = _run(repository, "cat-file", "--batch", given=request) or b""
+    contents = _run(repository, "cat-file", "--batch", stdin=request) or b""
     start = 0
     for file in files:
         end = contents.find(b"\n", start)
@@ -252,13 +252,13 @@ def _missing_content(file: _File, revision: str) -> TltlError:
     return no_version(title, "fetch it, or take it from another clone: `git fsck` tells if it is missing or damaged")
 
 
-def _run(folder: Path, *arguments: str, given: bytes = b"") -> bytes | None:
+def _run(folder: Path, *arguments: str, stdin: bytes = b"") -> bytes | None:
     """Return the output of a git command, or None if it fails. Errors are as in :func:`_git`."""
-    completed = _git(folder, *arguments, given=given)
+    completed = _git(folder, *arguments, stdin=stdin)
     return completed.stdout if completed.returncode == 0 else None
 
 
-def _git(folder: Path, *arguments: str, given: bytes = b"") -> CompletedProcess[bytes]:
+def _git(folder: Path, *arguments: str, stdin: bytes = b"") -> CompletedProcess[bytes]:
     """Run a git command in a folder and return the completed process.
 
     Raises:
@@ -269,11 +269,11 @@ def _git(folder: Path, *arguments: str, given: bytes = b"") -> CompletedProcess[
 
     command = ["git", "-C", str(folder), *arguments]
     try:
-        completed = run(command, input=given, capture_output=True, env=_environment(), check=False)
+        completed = run(command, input=stdin, capture_output=True, env=_environment(), check=False)
     except FileNotFoundError:
         title = "comparing with a revision needs `git`, which is not installed"
-        suggestion = "install git, or name a folder that holds the old files: `--against DIR`"
-        raise TltlError([Diagnostic("TLT0730", title, help=suggestion)]) from None
+        help_ = "install git, or name a folder that holds the old files: `--against DIR`"
+        raise TltlError([Diagnostic("TLT0730", title, help=help_)]) from None
     raise_if_interrupted(completed.returncode)
     return completed
 
@@ -286,14 +286,15 @@ def _environment() -> dict[str, str]:
     return {name: value for name, value in os.environ.items() if name not in _HOOK_VARIABLES} | {"LC_ALL": "C"}
 
 
-def _suggestion(repository: Path, revision: str) -> str:
+def _revision_help(repository: Path, revision: str) -> str:
+    """Return what to do about a revision that does not exist."""
     from difflib import get_close_matches
 
-    listed = _run(repository, "for-each-ref", f"--count={_MOST_NAMES}", "--format=%(refname:short)") or b""
-    known = [name for name in listed.decode(errors="replace").split() if len(name) <= _LONGEST_NAME]
-    close = get_close_matches(revision, known, n=1)
-    if close:
-        return f"did you mean `{close[0]}`?"
+    output = _run(repository, "for-each-ref", f"--count={_MOST_NAMES}", "--format=%(refname:short)") or b""
+    names = [name for name in output.decode(errors="replace").split() if len(name) <= _LONGEST_NAME]
+    matches = get_close_matches(revision, names, n=1)
+    if matches:
+        return f"did you mean `{matches[0]}`?"
     if (_run(repository, "rev-parse", "--is-shallow-repository") or b"").strip() == b"true":
         return "this clone is shallow: fetch the revision, e.g. `git fetch --unshallow`"
     return "`git log` and `git tag` list revisions"
@@ -304,6 +305,6 @@ def _too_large(revision: str, contents: str) -> TltlError:
     return TltlError([Diagnostic("TLT0764", f"the revision `{revision}` holds {contents}", help=help_)])
 
 
-def no_version(title: str, suggestion: str) -> TltlError:
-    """TLT0751: the earlier version of the files is not available."""
-    return TltlError([Diagnostic("TLT0751", title, help=suggestion)])
+def no_version(title: str, help_: str) -> TltlError:
+    """Return the error TLT0751: the earlier version of the files is not available."""
+    return TltlError([Diagnostic("TLT0751", title, help=help_)])

@@ -25,11 +25,11 @@ Kind = Literal["signal", "param", "predicate", "let", "entity"]
 class OfferedName:
     """The declaration behind a name that a library offers.
 
-    ``is_own`` is true if the library declares it itself instead of importing it. ``value`` is set
-    for a signal or param. ``meanings`` is set for a predicate of the library itself. It maps the
-    number of given parameters to the meaning of the predicate, where the other parameters have
-    their defaults. Given parameters that are numbers count as signals with the names of the
-    parameters.
+    ``is_own`` is true if the library itself declares the name, and false if it imports it. ``value``
+    is set for a signal or param. ``meanings`` is set for a predicate of the library itself. It maps
+    a number of arguments to the meaning of the predicate when that many are given; the other
+    parameters have their defaults. In a meaning, each parameter with an argument is a signal with
+    the name of the parameter, unless it is an entity.
     """
 
     name: str
@@ -42,7 +42,7 @@ class OfferedName:
 
 
 def offers(env: Env) -> Mapping[str, OfferedName]:
-    """Return what a module that resolved without errors offers, by name."""
+    """Return the names that a module offers to importers. It must have resolved without errors."""
     return {name: _offer(name, binding, env) for name, binding in env.scope.names.items()}
 
 
@@ -62,28 +62,30 @@ def _offer(name: str, binding: Binding, env: Env) -> OfferedName:
 
 
 def _meanings(binding: Binding, parameters: tuple[Parameter, ...], env: Env) -> Iterator[tuple[int, Meaning]]:
-    needed = max((place for place, parameter in enumerate(parameters, start=1) if parameter.default is None), default=0)
-    for count in range(needed, len(parameters) + 1):
+    required = max(
+        (place for place, parameter in enumerate(parameters, start=1) if parameter.default is None), default=0
+    )
+    for count in range(required, len(parameters) + 1):
         meaning = _meaning(binding, parameters[:count], env)
         if meaning is not None:
             yield count, meaning
 
 
-def _meaning(binding: Binding, given: tuple[Parameter, ...], env: Env) -> Meaning | None:
-    """Return the meaning of a predicate with these parameters left open.
+def _meaning(binding: Binding, open_parameters: tuple[Parameter, ...], env: Env) -> Meaning | None:
+    """Return the meaning of a predicate with these parameters as signals.
 
-    Returns None if the predicate has none, for example because of unknown units.
+    Returns None if the predicate does not resolve, for example because of unknown units.
     """
     local: dict[str, Value] = {}
-    open_: list[Signal] = []
-    for parameter in given:
+    signals: list[Signal] = []
+    for parameter in open_parameters:
         if parameter.type == "entity":
             local[parameter.name] = Entity(parameter.name)
             continue
         bounded = parameter.type in ("ratio", "bool")
         type_ = cast(ValueType, parameter.type or "number")
         signal = Signal(parameter.name, type_, 0.0 if bounded else None, 1.0 if bounded else None)
-        open_.append(signal)
+        signals.append(signal)
         # Without a type, the parameter accepts a number of any dimension.
         dimension = units.TYPES[type_] if parameter.type else None
         low, high = (0.0, 1.0) if bounded else (-inf, inf)
@@ -91,11 +93,11 @@ def _meaning(binding: Binding, given: tuple[Parameter, ...], env: Env) -> Meanin
             SignalNode(signal.name), dimension, low, high, signal.name, is_bool=type_ == "bool", call=(signal.base, ())
         )
     span = binding.span
-    arguments = tuple(Argument(parameter.name, NameExpr(parameter.name, span), span) for parameter in given)
+    arguments = tuple(Argument(parameter.name, NameExpr(parameter.name, span), span) for parameter in open_parameters)
     use = CallExpr(binding.name, arguments, span, span) if arguments else NameExpr(binding.name, span)
     try:
         value = predicate(use, binding, replace(env, local=local, symbolic=True)).value
     except ResolutionError:
         return None
-    signals = (*open_, *env.context.signals.values())
-    return meaning_of(value.expression, signals, tuple(env.context.params.values()))
+    all_signals = (*signals, *env.context.signals.values())
+    return meaning_of(value.expression, all_signals, tuple(env.context.params.values()))

@@ -1,4 +1,4 @@
-"""Find the changes in what a library offers to its importers."""
+"""Find the changes in the declarations that a library offers to its importers."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.resolve.spec import Param, Signal
-from tltlc.tools.diff import findings as say
-from tltlc.tools.diff.differences import named, plain, renamed_params
-from tltlc.tools.diff.values import apart
+from tltlc.tools.diff import findings
+from tltlc.tools.diff.differences import declared_differences, new_param_names, type_and_range
+from tltlc.tools.diff.values import value_difference
 
 if TYPE_CHECKING:
     from tltlc.resolve.spec import ValueType
@@ -17,65 +17,67 @@ if TYPE_CHECKING:
 
 
 def changed_offers(old: Mapping[str, OfferedName], new: Mapping[str, OfferedName]) -> Iterator[Diagnostic]:
-    """Yield the changes, in the order of the old declarations.
+    """Yield the changes of params, and then the other changes in the order of the old declarations.
 
-    New declarations break nothing. Changes of imported declarations are reported only for the file
-    that declares them.
+    New declarations break nothing, so they are left out. A changed declaration is reported only for
+    the file that declares it, not for files that import it.
     """
-    yield from _params(old, new)
+    yield from _param_changes(old, new)
     for name, before in old.items():
         after = new.get(name)
         if before.kind == "param":
             continue
         if after is None or after.kind != before.kind:
-            yield say.offer_gone(before.kind, name, before.place)
+            yield findings.declaration_removed(before.kind, name, before.place)
         elif before.is_own or after.is_own:
-            yield from _changed(before, after)
+            yield from _declaration_changes(before, after)
 
 
-def _params(old: Mapping[str, OfferedName], new: Mapping[str, OfferedName]) -> Iterator[Diagnostic]:
+def _param_changes(old: Mapping[str, OfferedName], new: Mapping[str, OfferedName]) -> Iterator[Diagnostic]:
     old_params, new_params = (
         [offer.value for offer in offers.values() if isinstance(offer.value, Param)] for offers in (old, new)
     )
-    params = tuple(named("param", old_params, new_params))
-    new_names = renamed_params(params)
+    params = tuple(declared_differences("param", old_params, new_params))
+    new_names = new_param_names(params)
     for difference in params:
         name = difference.name
         if difference.a is None:
             continue
         if difference.b is None:
-            yield say.param(difference, new_names.get(name), say.was(old[name].place))
+            yield findings.param_changed(difference, new_names.get(name), findings.at_old_place(old[name].place))
         elif old[name].is_own or new[name].is_own:
-            yield say.param(difference, None, new[name].place)
+            yield findings.param_changed(difference, None, new[name].place)
 
 
-def _changed(before: OfferedName, after: OfferedName) -> Iterator[Diagnostic]:
+def _declaration_changes(before: OfferedName, after: OfferedName) -> Iterator[Diagnostic]:
     """Yield the changes of a signal, predicate or let."""
-    why = _other_parameters(before, after)
+    why = _why_uses_break(before, after)
     if why:
-        yield say.other_parameters(after.kind, after.name, after.place, why)
+        yield findings.parameters_changed(after.kind, after.name, after.place, why)
         return
     old, new = before.value, after.value
-    if isinstance(old, Signal) and isinstance(new, Signal) and plain(old) != plain(new):
-        yield say.signal_type(old, new, after.place)
+    if isinstance(old, Signal) and isinstance(new, Signal) and type_and_range(old) != type_and_range(new):
+        yield findings.signal_type_changed(old, new, after.place)
     # Compare the uses with the fewest and with the most arguments.
     for count in (min(before.meanings, default=0), len(before.parameters)):
         if count in before.meanings and count in after.meanings:
-            one, other = before.meanings[count], after.meanings[count]
-            known = {signal.name for signal in one.signals}
-            needed = [signal.name for signal in other.signals if signal.name not in known]
-            if needed:
-                yield say.reads(after.name, needed, after.place)
-            sample = apart(one, other)
-            if sample is not None:
-                types: dict[str, ValueType] = {signal.name: signal.type for signal in (*one.signals, *other.signals)}
-                yield say.values(f"`{after.name}`", (), sample, types, after.place, "predicate")
-            if needed or sample is not None:
+            old_meaning, new_meaning = before.meanings[count], after.meanings[count]
+            old_signals = {signal.name for signal in old_meaning.signals}
+            new_signals = [signal.name for signal in new_meaning.signals if signal.name not in old_signals]
+            if new_signals:
+                yield findings.signals_added(after.name, new_signals, after.place)
+            difference = value_difference(old_meaning, new_meaning)
+            if difference is not None:
+                types: dict[str, ValueType] = {
+                    signal.name: signal.type for signal in (*old_meaning.signals, *new_meaning.signals)
+                }
+                yield findings.values_changed(f"`{after.name}`", (), difference, types, after.place, "predicate")
+            if new_signals or difference is not None:
                 return
 
 
-def _other_parameters(before: OfferedName, after: OfferedName) -> str | None:
-    """Return why a formerly valid use is no longer valid; None if all uses still are."""
+def _why_uses_break(before: OfferedName, after: OfferedName) -> str | None:
+    """Return why a use that was valid is no longer valid; None if all uses are still valid."""
     if before.kind == "signal":
         count, now = len(before.parameters), len(after.parameters)
         return None if count == now else f"{now} where there were {count}"

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from tltlc.automaton.work import DEFAULT_WORK, OutOfWork
 from tltlc.core.record import record
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.tools.diff.assumed_exclusive import Declared, assumed
+from tltlc.tools.diff.assumed_exclusive import DeclaredGroups, assumed_groups
 from tltlc.tools.diff.differences import Difference, differences
 from tltlc.tools.diff.relation import Comparison, ExclusiveGroup, compare
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 @record
 class SpecPair:
-    """A spec of A and a spec of B, and what is different in B."""
+    """A spec of A, a spec of B, and the differences between them."""
 
     a: Fspa
     b: Fspa
@@ -27,9 +27,9 @@ class SpecPair:
 
     @property
     def is_same(self) -> bool:
-        """Whether both accept the same traces and nothing else differs.
+        """Whether both specs accept the same traces and nothing else differs.
 
-        Traces count even if they need samples that were not found.
+        This includes traces that :attr:`Comparison.impossible` leaves out of the relation.
         """
         comparison = self.comparison
         return comparison.relation == "equivalent" and not comparison.impossible and not self.differences
@@ -37,7 +37,7 @@ class SpecPair:
 
 @record
 class FileDiff:
-    """The differences of file B from file A: the pairs of specs, and the specs in A or B alone."""
+    """The differences between files A and B: pairs of specs, and the names of specs in only one."""
 
     a: str
     b: str
@@ -58,32 +58,35 @@ def diff_files(
     one_each: bool = False,
     by_name: bool = False,
     work: int = DEFAULT_WORK,
-    declared: Declared = (None, None),
+    declared: DeclaredGroups = (None, None),
 ) -> FileDiff:
-    """Return the differences from the specs of A to those of B. Each file comes with its name.
+    """Return the differences between the specs of A and of B.
 
-    Specs are paired by name, in the order of A. ``one_each`` pairs the first spec of A with the
-    first of B regardless of their names. ``by_name`` is as in
+    ``a`` and ``b`` are the name of each file and its automata. Specs are paired by name, in the order
+    of A. ``one_each`` pairs the first spec of A with the first of B, whatever their names.
+    ``by_name`` is as in
     :func:`tltlc.tools.diff.relation.compare`, ``declared`` as in
-    :func:`tltlc.tools.diff.assumed_exclusive.assumed`.
+    :func:`tltlc.tools.diff.assumed_exclusive.assumed_groups`.
 
-    Errors: TLT0750 if a comparison takes more than ``work``.
+    Errors: TLT0750 if a comparison takes more than ``work`` steps.
     """
-    ours, theirs = a[1], b[1]
+    specs_a, specs_b = a[1], b[1]
 
-    def pair(one: Fspa, other: Fspa) -> SpecPair:
-        return diff(one, other, by_name, work, assumed(one, other, declared, by_name=by_name), real=True)
+    def pair(spec_a: Fspa, spec_b: Fspa) -> SpecPair:
+        return diff(
+            spec_a, spec_b, by_name, work, assumed_groups(spec_a, spec_b, declared, by_name=by_name), feasible_only=True
+        )
 
     if one_each:
-        return FileDiff(a[0], b[0], (pair(ours[0], theirs[0]),))
-    named = {fspa.name: fspa for fspa in theirs}
-    names = {fspa.name for fspa in ours}
+        return FileDiff(a[0], b[0], (pair(specs_a[0], specs_b[0]),))
+    by_name_b = {fspa.name: fspa for fspa in specs_b}
+    names_a = {fspa.name for fspa in specs_a}
     return FileDiff(
         a[0],
         b[0],
-        tuple(pair(fspa, named[fspa.name]) for fspa in ours if fspa.name in named),
-        tuple(fspa.name for fspa in ours if fspa.name not in named),
-        tuple(fspa.name for fspa in theirs if fspa.name not in names),
+        tuple(pair(fspa, by_name_b[fspa.name]) for fspa in specs_a if fspa.name in by_name_b),
+        tuple(fspa.name for fspa in specs_a if fspa.name not in by_name_b),
+        tuple(fspa.name for fspa in specs_b if fspa.name not in names_a),
     )
 
 
@@ -94,18 +97,18 @@ def diff(
     work: int = DEFAULT_WORK,
     exclusive: Sequence[ExclusiveGroup] = (),
     *,
-    real: bool = False,
+    feasible_only: bool = False,
 ) -> SpecPair:
-    """Return the differences from one spec to another, with the arguments of :func:`compare`.
+    """Return the differences between two specs. The arguments are those of :func:`compare`.
 
     Errors are as in :func:`diff_files`.
     """
     try:
-        comparison = compare(a, b, by_name=by_name, real=real, work=work, exclusive=exclusive)
+        comparison = compare(a, b, by_name=by_name, feasible_only=feasible_only, work=work, exclusive=exclusive)
         return SpecPair(a, b, comparison, differences(a, b))
     except OutOfWork:
         title = f"comparing the two versions of `{a.name}` takes too long"
         if a.name != b.name:
             title = f"comparing `{a.name}` with `{b.name}` takes too long"
-        suggestion = "allow more by a greater `--state-budget N` (by default 50000)"
-        raise TltlError([Diagnostic("TLT0750", title, help=suggestion)]) from None
+        help_ = "allow more by a greater `--state-budget N` (by default 50000)"
+        raise TltlError([Diagnostic("TLT0750", title, help=help_)]) from None

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final, Union
 from tltlc.resolve import units
 from tltlc.resolve.spec import Param, Signal, ValueType
 from tltlc.resolve.values import number_text, range_text
-from tltlc.tools.diff.values import Apart
+from tltlc.tools.diff.values import ValueDifference
 
 if TYPE_CHECKING:
     from tltlc.automaton.fspa import Fspa
@@ -17,10 +17,10 @@ if TYPE_CHECKING:
 _KINDS: Final = {"finite": "traces that end", "infinite": "traces that never end"}
 
 
-def unrelated(a: Fspa, b: Fspa) -> str:
+def unrelated_reason(a: Fspa, b: Fspa) -> str:
     """Return why a spec over finite traces and one over infinite traces cannot be compared.
 
-    The text includes a suggestion.
+    The text also says what to do.
     """
     return (
         f"B is of another kind than A: A is about {_KINDS[a.semantics]}, B about {_KINDS[b.semantics]}, so no trace is "
@@ -28,10 +28,10 @@ def unrelated(a: Fspa, b: Fspa) -> str:
     )
 
 
-def listed(names: Sequence[str], most: int = 4) -> str:
+def name_list(names: Sequence[str], most: int = 4) -> str:
     """Return names in backquotes, with ``and`` before the last one.
 
-    If there are more than ``most``, it has the first ones and the number of the others.
+    If there are more than ``most`` names, the text has the first ones and the number of the others.
     """
     quoted = [f"`{name}`" for name in names]
     if len(quoted) > most:
@@ -39,20 +39,20 @@ def listed(names: Sequence[str], most: int = 4) -> str:
     return quoted[0] if len(quoted) == 1 else f"{', '.join(quoted[:-1])} and {quoted[-1]}"
 
 
-def type_text(of: Union[Signal, Param]) -> str:
-    """Return the type of a signal or param: ``length in [0 m, inf]``.
+def type_text(value: Union[Signal, Param]) -> str:
+    """Return the type and range of a signal or param: ``length in [0 m, inf]``.
 
-    The range is left out if there is none.
+    Without a range, or for a bool, it is the type alone.
     """
-    if of.type == "bool" or (of.low is None and of.high is None):
-        return of.type
-    return f"{of.type} in {ends_text(of)}"
+    if value.type == "bool" or (value.low is None and value.high is None):
+        return value.type
+    return f"{value.type} in {ends_text(value)}"
 
 
-def ends_text(of: Union[Signal, Param]) -> str:
+def ends_text(value: Union[Signal, Param]) -> str:
     """Return the range of a signal or param: ``[0 m, inf]``."""
-    low, high = -inf if of.low is None else of.low, inf if of.high is None else of.high
-    return range_text(low, high, units.TYPES[of.type])
+    low, high = -inf if value.low is None else value.low, inf if value.high is None else value.high
+    return range_text(low, high, units.TYPES[value.type])
 
 
 def value_text(value: float, type_: ValueType) -> str:
@@ -66,25 +66,25 @@ def value_text(value: float, type_: ValueType) -> str:
 def sample_text(sample: Iterable[tuple[str, float]], types: Mapping[str, ValueType]) -> str:
     """Return a sample in words: ``at distance(s1) = 3 m, seen = true``.
 
-    If no signal is read, it is ``at every sample``.
+    For an empty sample, the text is ``at every sample``.
     """
-    shown = [f"{name} = {value_text(value, types.get(name, 'number'))}" for name, value in sample]
-    return f"at {', '.join(shown)}" if shown else "at every sample"
+    terms = [f"{name} = {value_text(value, types.get(name, 'number'))}" for name, value in sample]
+    return f"at {', '.join(terms)}" if terms else "at every sample"
 
 
-def values_text(apart: Apart) -> tuple[str, str]:
-    """Return the two values of an atom at a sample in words.
+def values_text(difference: ValueDifference) -> tuple[str, str]:
+    """Return the values of an atom in A and in B at a sample, in words.
 
-    They include whether the atom holds if it does so in only one version, and the reason if there
-    is no value.
+    If the atom holds in only one version, both texts say whether it holds. If it has no value, the
+    text says why.
     """
-    first, second = (_value(apart, side) for side in (0, 1))
+    first, second = (_value(difference, side) for side in (0, 1))
     return first, second
 
 
-def _value(apart: Apart, side: int) -> str:
-    value = apart.values[side]
+def _value(difference: ValueDifference, side: int) -> str:
+    value = difference.values[side]
     if value is None:
-        return f"no value (it {apart.reasons[side]})"
-    holds = f" (it {'holds' if value > 0.0 else 'does not hold'})" if apart.is_judged_otherwise else ""
+        return f"no value (it {difference.reasons[side]})"
+    holds = f" (it {'holds' if value > 0.0 else 'does not hold'})" if difference.differs_in_truth else ""
     return number_text(float(f"{value:.4g}")) + holds

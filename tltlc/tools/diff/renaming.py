@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 from tltlc.core.record import replace
 from tltlc.expression.tree import Condition, Const, Expression, ParamValue, SignalValue, When, nodes
-from tltlc.tools.diff.differences import plain
-from tltlc.tools.diff.expression_shapes import Leaf, with_leaves
+from tltlc.tools.diff.differences import type_and_range
+from tltlc.tools.diff.expression_shapes import Leaf, replace_leaves
 
 if TYPE_CHECKING:
     from tltlc.automaton.fspa import Fspa
@@ -16,52 +16,60 @@ if TYPE_CHECKING:
     from tltlc.resolve.spec import Param as SpecParam
 
 
-def with_names_of(old: Fspa, new: Fspa) -> Fspa:
-    """Return the new automaton in which renamed atoms have their old names.
+def with_old_atom_names(old: Fspa, new: Fspa) -> Fspa:
+    """Return the automaton ``new`` with the old names for renamed atoms.
 
-    An atom counts as renamed if its expression is the same except for the names of params.
+    A new atom counts as renamed if an atom that is gone has the same expression, except for the
+    names of params.
     """
     names, new_names = {atom.name for atom in old.atoms}, {atom.name for atom in new.atoms}
     removed: dict[object, Atom] = {}
     for atom in old.atoms:
         if atom.name not in new_names:
-            removed.setdefault(_form(atom.expression, old), atom)
+            removed.setdefault(_key(atom.expression, old), atom)
     atoms: list[Atom] = []
     for atom in new.atoms:
-        known = atom if atom.name in names else removed.pop(_form(atom.expression, new), atom)
+        known = atom if atom.name in names else removed.pop(_key(atom.expression, new), atom)
         atoms.append(replace(atom, base=known.base, arguments=known.arguments))
     return replace(new, atoms=tuple(atoms))
 
 
-def renamed_signals(old: Fspa, new: Fspa) -> dict[str, str]:
-    """Return the new names of signals that are gone.
+def new_signal_names(old: Fspa, new: Fspa) -> dict[str, str]:
+    """Return the new names of renamed signals, by their old names.
 
-    A signal was renamed if an atom that read it now reads a new signal of the same type, and is the
-    same except for the names of such signals and of params.
+    A signal that is gone counts as renamed if an atom that read it now reads a new signal of the same
+    type instead. Apart from the names of such signals and of params, the expression of the atom must
+    be the same.
     """
     types, new_types = ({signal.name: signal.type for signal in fspa.signals} for fspa in (old, new))
-    of_new = {atom.name: atom.expression for atom in new.atoms}
+    new_expressions = {atom.name: atom.expression for atom in new.atoms}
     names: dict[str, str] = {}
-    for was, now in [(atom.expression, of_new[atom.name]) for atom in old.atoms if atom.name in of_new]:
-        read = [
-            (one.name, two.name)
-            for one, two in zip(nodes(was), nodes(now), strict=False)
-            if isinstance(one, SignalValue) and isinstance(two, SignalValue)
+    for old_expression, new_expression in [
+        (atom.expression, new_expressions[atom.name]) for atom in old.atoms if atom.name in new_expressions
+    ]:
+        signal_pairs = [
+            (before.name, after.name)
+            for before, after in zip(nodes(old_expression), nodes(new_expression), strict=False)
+            if isinstance(before, SignalValue) and isinstance(after, SignalValue)
         ]
         likely = {
-            one: two for one, two in read if one not in new_types and two not in types and types[one] == new_types[two]
+            before: after
+            for before, after in signal_pairs
+            if before not in new_types and after not in types and types[before] == new_types[after]
         }
         is_one_to_one = len(set(likely.values())) == len(likely)
-        if likely and is_one_to_one and _form(_with_signals(was, likely), old) == _form(now, new):
-            names |= {one: two for one, two in likely.items() if one not in names and two not in names.values()}
+        if likely and is_one_to_one and _key(_rename_signals(old_expression, likely), old) == _key(new_expression, new):
+            names |= {
+                before: after for before, after in likely.items() if before not in names and after not in names.values()
+            }
     return names
 
 
-def with_signals(fspa: Fspa, names: Mapping[str, str]) -> Fspa:
-    """Return the automaton with signals renamed."""
+def rename_signals(fspa: Fspa, names: Mapping[str, str]) -> Fspa:
+    """Return the automaton with signals renamed; ``names`` maps old names to new names."""
     return replace(
         fspa,
-        atoms=tuple(replace(atom, expression=_with_signals(atom.expression, names)) for atom in fspa.atoms),
+        atoms=tuple(replace(atom, expression=_rename_signals(atom.expression, names)) for atom in fspa.atoms),
         signals=tuple(
             replace(signal, base=names[signal.name], arguments=()) if signal.name in names else signal
             for signal in fspa.signals
@@ -69,23 +77,23 @@ def with_signals(fspa: Fspa, names: Mapping[str, str]) -> Fspa:
     )
 
 
-def _with_signals(expression: Expression, names: Mapping[str, str]) -> Expression:
-    def renamed(leaf: Leaf) -> Leaf:
+def _rename_signals(expression: Expression, names: Mapping[str, str]) -> Expression:
+    def rename(leaf: Leaf) -> Leaf:
         return SignalValue(names.get(leaf.name, leaf.name)) if isinstance(leaf, SignalValue) else leaf
 
-    return with_leaves(expression, renamed)
+    return replace_leaves(expression, rename)
 
 
-def _form(expression: Expression, of: Fspa) -> object:
+def _key(expression: Expression, fspa: Fspa) -> object:
     """Return a key that is equal for expressions that differ only in the names of params."""
-    params = {param.name: param for param in of.params}
+    params = {param.name: param for param in fspa.params}
     return tuple(_token(node, params) for node in nodes(expression))
 
 
 def _token(node: Expression | Condition, params: Mapping[str, SpecParam]) -> object:
-    """Return a key for a node without its children, except for their number."""
+    """Return a key for a node that includes the number of its children, but not the children."""
     if isinstance(node, ParamValue):
-        return "param", plain(params[node.name])
+        return "param", type_and_range(params[node.name])
     if isinstance(node, (Const, SignalValue)):
         return node
     if isinstance(node, When):

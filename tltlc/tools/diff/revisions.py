@@ -23,24 +23,26 @@ _PROJECT: Final = "tltl.toml"
 
 
 @record
-class Tree:
-    """Old files below ``root``, next to the current files below ``here``.
+class EarlierTree:
+    """A folder ``root`` with earlier versions of the files below the folder ``current_root``.
 
-    Messages call ``root/x`` ``{shown}x``.
+    Messages call the file ``root/x`` ``{prefix}x``. ``is_revision`` is false if the user named the
+    folder.
     """
 
     root: Path
-    here: Path
-    shown: str
+    current_root: Path
+    prefix: str
     is_revision: bool
 
-    def at(self, path: str) -> str | None:
-        """Return the old file or folder for a current path, or None if there is none.
+    def old_path(self, path: str) -> str | None:
+        """Return the earlier version of a current file or folder, or None if there is none.
 
-        In a folder, it is at the same place or higher: ``OLD/specs/x.tltl`` or ``OLD/x.tltl`` for
-        ``specs/x.tltl``. Error TLT0001 if the system does not say whether the path exists.
+        In a revision, it has the same path. In a folder, the path may lack its first parts:
+        ``OLD/specs/x.tltl`` or ``OLD/x.tltl`` for ``specs/x.tltl``. Error TLT0001 if permissions hide
+        whether the path exists.
         """
-        inside = _inside(path, self.here)
+        inside = _relative_path(path, self.current_root)
         if inside is None and self.is_revision:
             return None
         parts = inside.parts if inside is not None else Path(path).absolute().parts[1:]
@@ -50,44 +52,49 @@ class Tree:
             (str(candidate) for candidate in candidates if _is_accessible(candidate) and is_there(candidate)), None
         )
 
-    def libraries(self, folders: Iterable[Path]) -> tuple[Path, ...]:
-        """Return the old library folders. Folders without an old version stay as they are."""
-        return tuple(Path(self.at(str(folder)) or folder) for folder in folders)
+    def old_libraries(self, folders: Iterable[Path]) -> tuple[Path, ...]:
+        """Return the earlier versions of library folders; a folder without one stays as it is."""
+        return tuple(Path(self.old_path(str(folder)) or folder) for folder in folders)
 
-    def holds(self, path: Path) -> bool:
+    def contains(self, path: Path) -> bool:
         """Whether a path is inside the tree."""
-        return _inside(str(path), self.root) is not None
+        return _relative_path(str(path), self.root) is not None
 
-    def placed(self, diagnostics: Iterable[Diagnostic], path: str, before: str | None) -> tuple[Diagnostic, ...]:
-        """Return diagnostics with labels on old files moved to the same current files.
+    def with_current_labels(
+        self, diagnostics: Iterable[Diagnostic], path: str, before: str | None
+    ) -> tuple[Diagnostic, ...]:
+        """Return the diagnostics with labels on old files moved to the current files.
 
-        Services know only current files. ``before`` is the old file of ``path``.
+        This is for services that know only the current files. ``before`` is the old file of ``path``.
         """
         return tuple(
-            replace(diagnostic, labels=tuple(self._placed(label, path, before) for label in diagnostic.labels))
+            replace(
+                diagnostic, labels=tuple(self._with_current_file(label, path, before) for label in diagnostic.labels)
+            )
             for diagnostic in diagnostics
         )
 
-    def _placed(self, label: Label, path: str, before: str | None) -> Label:
+    def _with_current_file(self, label: Label, path: str, before: str | None) -> Label:
         name = label.source.name
         if not name.startswith(f"{self.root}{os.sep}"):
             return label
-        now = path if name == before else os.path.relpath(self.here / Path(name).relative_to(self.root))
+        now = path if name == before else os.path.relpath(self.current_root / Path(name).relative_to(self.root))
         where = f"{name}:{label.source.position(label.span.start)[0]}"
         message = f"{label.message} ({where})" if label.message else f"in {where}"
         if not is_file(now):
             return Label(SourceFile(now, label.source.text), label.span, message)
         return Label(SourceFile(now, ""), Span(0, 0), message)
 
-    def renamed(self, diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
-        """Return diagnostics in which old files have the names that readers know."""
-        prefix = f"{self.root}{os.sep}"
+    def with_display_names(self, diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
+        """Return the diagnostics with the names of old files that messages use."""
+        root = f"{self.root}{os.sep}"
 
-        def text(of: str) -> str:
-            return of.replace(prefix, self.shown)
+        def text(original: str) -> str:
+            return original.replace(root, self.prefix)
 
-        def label(of: Label) -> Label:
-            return replace(of, source=SourceFile(text(of.source.name), of.source.text), message=text(of.message))
+        def label(original: Label) -> Label:
+            source = SourceFile(text(original.source.name), original.source.text)
+            return replace(original, source=source, message=text(original.message))
 
         return tuple(
             replace(
@@ -101,28 +108,28 @@ class Tree:
 
 
 @contextmanager
-def earlier(against: str, paths: Collection[str]) -> Iterator[Tree]:
-    """Yield the tree with the old files of ``paths``.
+def earlier_files(against: str, paths: Collection[str]) -> Iterator[EarlierTree]:
+    """Yield the tree with the earlier versions of ``paths``.
 
-    ``against`` names a folder or else a git revision. The revision is looked up in the repository
-    of the first path. Its specs, artefacts and project files are written to a temporary folder that
-    is removed at the end.
+    ``against`` names a folder or, if there is no such folder, a git revision. The revision is looked
+    up in the repository of the first path. Its specs, artefacts and project files are written to a
+    temporary folder, which is removed at the end.
 
     Errors: TLT0751 if ``against`` is neither a folder nor a revision, TLT0730 if git is not
     installed, TLT0005 if there is no temporary folder.
     """
     if is_dir(against):
-        yield Tree(Path(against), Path.cwd(), os.path.join(against, ""), is_revision=False)  # noqa: PTH118 (with a slash)
+        yield EarlierTree(Path(against), Path.cwd(), os.path.join(against, ""), is_revision=False)  # noqa: PTH118 (with a slash)
         return
-    repository, commit = _revision(against, _folder(next(iter(paths))))
-    inside_paths = {_inside_of(repository, path) for path in paths}
+    repository, commit = _revision(against, _nearest_folder(next(iter(paths))))
+    inside_paths = {_path_in_repository(repository, path) for path in paths}
 
     def is_wanted(path: str) -> bool:
         return path.endswith(SOURCE_ENDINGS) or path.rpartition("/")[2] == _PROJECT or path in inside_paths
 
     with temporary_folder() as root:
         git.write_out(repository, commit, against, is_wanted, root)
-        yield Tree(root, repository, f"{against}:", is_revision=True)
+        yield EarlierTree(root, repository, f"{against}:", is_revision=True)
 
 
 def _revision(name: str, folder: Path) -> tuple[Path, str]:
@@ -146,7 +153,10 @@ def _revision(name: str, folder: Path) -> tuple[Path, str]:
 
 
 def _is_accessible(path: Path) -> bool:
-    """Return True. Error TLT0001 if permissions hide whether the path exists."""
+    """Return True, whether or not the path exists.
+
+    Error TLT0001 if permissions hide whether it exists.
+    """
     try:
         os.stat(path)  # noqa: PTH116
     except PermissionError as error:
@@ -156,24 +166,24 @@ def _is_accessible(path: Path) -> bool:
     return True
 
 
-def _inside_of(repository: Path, path: str) -> str:
+def _path_in_repository(repository: Path, path: str) -> str:
     """Return a path relative to the repository, as git writes it.
 
-    Error TLT0751 if the path is outside.
+    Error TLT0751 if the path is outside the repository.
     """
-    inside = _inside(path, repository)
+    inside = _relative_path(path, repository)
     if inside is None:
         title = f"`{path}` does not lie in the repository `{repository}`"
         raise TltlError([Diagnostic("TLT0751", title, help="name files of one repository in one run")])
     return inside.as_posix()
 
 
-def _inside(path: str, folder: Path) -> Path | None:
-    """Return a path relative to a folder, or None if it is outside.
+def _relative_path(path: str, folder: Path) -> Path | None:
+    """Return a path relative to a folder, or None if the path is outside the folder.
 
-    A link to a file stands for itself, because it may have another target in another revision. A
-    link from outside stands for its target. So does a link to a folder, because links to folders
-    are left out of revisions.
+    A link to a file inside the folder is not resolved, because it may have another target in another
+    revision. A link from outside is resolved. So is a link to a folder, because links to folders are
+    left out of revisions.
     """
     parent, name = os.path.split(os.path.abspath(path))  # noqa: PTH100
     places = [os.path.realpath(path)]
@@ -183,7 +193,7 @@ def _inside(path: str, folder: Path) -> Path | None:
     return next((Path(place).relative_to(top) for place in places if Path(place).is_relative_to(top)), None)
 
 
-def _folder(path: str) -> Path:
+def _nearest_folder(path: str) -> Path:
     """Return the path itself if it is a folder that exists, else the nearest folder above it."""
     place = Path(os.path.realpath(path))
     return next(folder for folder in (place, *place.parents) if folder.is_dir())

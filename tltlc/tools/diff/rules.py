@@ -1,4 +1,4 @@
-"""Compare what a library sets for all specs that import it: exclusive atoms and the clock."""
+"""Compare the settings of a library for all specs that import it: exclusive atoms and clock."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from tltlc.core.record import EMPTY, record
 from tltlc.diagnostics.diagnostic import Label
 from tltlc.grammar.tree import ClockDecl, ExclusiveDecl
-from tltlc.tools.diff import findings as say
+from tltlc.tools.diff import findings
 from tltlc.tools.diff.differences import are_exclusive
 
 if TYPE_CHECKING:
@@ -19,9 +19,10 @@ if TYPE_CHECKING:
 
 @record
 class Rules:
-    """The ``exclusive`` groups that a file itself declares, with their places, and its clock.
+    """The ``exclusive`` groups that a file itself declares, and its clock, with their places.
 
-    ``clock_s`` is None if the file declares no clock.
+    ``exclusive`` maps the sorted names of each group to its label. ``clock_s`` is the period in
+    seconds. It and ``clock``, the label, are None if the file declares no clock.
     """
 
     exclusive: Mapping[tuple[str, ...], Label] = EMPTY
@@ -30,27 +31,27 @@ class Rules:
 
 
 def rules(module: Module, program: ResolvedFile) -> Rules:
-    """Return the rules of a module that resolved without errors."""
+    """Return the rules of a module, which must have resolved without errors."""
     own = [declaration for declaration in module.declarations if isinstance(declaration, ExclusiveDecl)]
-    words = program.exclusive
+    vocabulary = program.exclusive
     # The groups of imported files come first.
-    groups = words.exclusive[len(words.exclusive) - len(own) :]
-    names = [tuple(sorted(words.atoms[atom].name for atom in group)) for group in groups]
+    groups = vocabulary.exclusive[len(vocabulary.exclusive) - len(own) :]
+    names = [tuple(sorted(vocabulary.atoms[atom].name for atom in group)) for group in groups]
     places = {group: Label(module.source, declaration.span) for group, declaration in zip(names, own, strict=True)}
     clock = next((declaration for declaration in module.declarations if isinstance(declaration, ClockDecl)), None)
     if clock is None:
         return Rules(places)
-    return Rules(places, words.clock_s, Label(module.source, clock.span))
+    return Rules(places, vocabulary.clock_s, Label(module.source, clock.span))
 
 
 def changed_rules(old: Rules, new: Rules) -> Iterator[Diagnostic]:
-    """Yield the changes for all specs that import the file."""
+    """Yield the changes between the rules of two versions of a file."""
     for names, place in old.exclusive.items():
         if not are_exclusive(names, new.exclusive):
-            yield say.no_longer_exclusive(names, place)
+            yield findings.exclusive_removed(names, place)
     for names, place in new.exclusive.items():
         if not are_exclusive(names, old.exclusive):
-            yield say.exclusive_now(names, place)
-    clock = new.clock or (old.clock and say.was(old.clock))
+            yield findings.exclusive_added(names, place)
+    clock = new.clock or (old.clock and findings.at_old_place(old.clock))
     if clock is not None and old.clock_s != new.clock_s:
-        yield say.clock_of_all(old.clock_s, new.clock_s, clock)
+        yield findings.library_clock_changed(old.clock_s, new.clock_s, clock)

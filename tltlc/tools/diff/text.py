@@ -12,8 +12,8 @@ from tltlc.io.spec_file import STDIN, STDIN_NAME
 from tltlc.resolve.spec import Param, Signal
 from tltlc.resolve.values import number_text
 from tltlc.tools.diff.differences import Difference
-from tltlc.tools.diff.phrases import listed, sample_text, type_text, unrelated, value_text, values_text
-from tltlc.tools.diff.traces import block, step_lines, trace_description
+from tltlc.tools.diff.phrases import name_list, sample_text, type_text, unrelated_reason, value_text, values_text
+from tltlc.tools.diff.traces import difference_test, step_lines, trace_description
 
 if TYPE_CHECKING:
     from tltlc.automaton.fspa import Fspa, State
@@ -32,26 +32,26 @@ _BREAKING: Final[Mapping[Relation | None, str]] = {
     "looser": "Every beginning of a trace that breaks B for good breaks A, too, and others do.",
     "incomparable": "Each is broken for good by beginnings of traces that do not break the other.",
 }
-"""By the relation of the beginnings that do not break the specs."""
+"""What breaks the specs, by the relation of the beginnings that do not break them."""
 
 _WIDTH: Final = 100
 _MOST_LEFT_OUT: Final = 5
 _MOST_ATOMS: Final = 10
 _TITLES: Final = {"A": "no longer accepted", "B": "not accepted before"}
 _TITLES_OF_BEGINNINGS: Final = {"A": "broken now", "B": "broken before"}
-"""Titles of the tests that B passes.
+"""Titles of printed tests.
 
 The key is the spec that accepts the trace, or that the trace does not break.
 """
 
 
 def text(report: FileDiff) -> str:
-    """Return the whole report, which ends in a newline."""
+    """Return the whole report, with a newline at the end."""
     paragraphs = [f"A is {report.a}\nB is {report.b}"]
     paragraphs += ["\n\n".join(_pair(pair)) for pair in report.pairs]
     for side, names in (("A", report.only_a), ("B", report.only_b)):
         if names:
-            paragraphs.append(f"only in {side}: {listed(names, len(names))}")
+            paragraphs.append(f"only in {side}: {name_list(names, len(names))}")
     if report.only_a and report.only_b:
         a, b = (STDIN if name == STDIN_NAME else name for name in (report.a, report.b))
         both = f"`{a}:{report.only_a[0]}` and `{b}:{report.only_b[0]}`"
@@ -67,7 +67,7 @@ def _pair(pair: SpecPair) -> Iterator[str]:
     name = pair.a.name if pair.a.name == pair.b.name else f"{pair.a.name} and {pair.b.name}"
     if comparison.relation is None:
         assert comparison.beginnings is not None
-        yield f"{name}\n  {fill(unrelated(pair.a, pair.b), _WIDTH, subsequent_indent='  ')}"
+        yield f"{name}\n  {fill(unrelated_reason(pair.a, pair.b), _WIDTH, subsequent_indent='  ')}"
         yield f"  {_BREAKING[comparison.beginnings.relation]}"
     else:
         summary, meaning = _RELATIONS[comparison.relation]
@@ -77,15 +77,15 @@ def _pair(pair: SpecPair) -> Iterator[str]:
     one_sided = [group for group in comparison.exclusive if not (group.in_a and group.in_b)]
     if one_sided:
         yield _exclusive(one_sided)
-    if comparison.split:
-        yield _split(comparison.split)
+    if comparison.split_names:
+        yield _split(comparison.split_names)
     if comparison.impossible:
         yield _left_out(comparison.impossible)
-    shown = comparison.beginnings or comparison
-    if shown.only_a is not None:
-        yield from _trace(pair, shown.only_a, "A", "B")
-    if shown.only_b is not None:
-        yield from _trace(pair, shown.only_b, "B", "A")
+    trace_comparison = comparison.beginnings or comparison
+    if trace_comparison.only_a is not None:
+        yield from _trace(pair, trace_comparison.only_a, "A", "B")
+    if trace_comparison.only_b is not None:
+        yield from _trace(pair, trace_comparison.only_b, "B", "A")
     if pair.differences:
         lines = ["  what else differs:"] if comparison.relation != "equivalent" else ["  what differs:"]
         yield "\n".join([*lines, *(f"    {sentence(difference, pair)}" for difference in pair.differences)])
@@ -94,7 +94,8 @@ def _pair(pair: SpecPair) -> Iterator[str]:
 def _exclusive(groups: Sequence[ExclusiveGroup]) -> str:
     lines = ["  judged on traces in which at most one of these holds at a time:"]
     lines += [
-        f"    {listed(group.names, _MOST_ATOMS)} (exclusive in {'A' if group.in_a else 'B'} alone)" for group in groups
+        f"    {name_list(group.names, _MOST_ATOMS)} (exclusive in {'A' if group.in_a else 'B'} alone)"
+        for group in groups
     ]
     return "\n".join(lines)
 
@@ -103,7 +104,7 @@ def _split(names: tuple[str, ...]) -> str:
     first, other = names[0], "another atom" if len(names) == 1 else "other atoms"
     verb = "is" if len(names) == 1 else "are"
     return (
-        f"  {listed(names)} {verb} {other} in B than in A, and so called `{first} of A` and `{first} of B`\n"
+        f"  {name_list(names)} {verb} {other} in B than in A, and so called `{first} of A` and `{first} of B`\n"
         "  (--by-name takes atoms of one name for one)"
     )
 
@@ -119,8 +120,11 @@ def _left_out(impossible: Sequence[Literals]) -> str:
 
 
 def _trace(pair: SpecPair, trace: Trace, by: str, other: str) -> Iterator[str]:
-    """Yield a trace in words and, if a test can show the difference, as a ``test`` block."""
-    outcome = trace_description(pair, trace)
+    """Yield a trace in words and, if a test can show the difference, as a ``test`` block.
+
+    ``by`` is the spec that accepts the trace, and ``other`` the spec that does not.
+    """
+    description = trace_description(pair, trace)
     is_whole = pair.comparison.relation is not None
     heading = (
         f"a trace that {by} accepts and {other} does not"
@@ -132,14 +136,14 @@ def _trace(pair: SpecPair, trace: Trace, by: str, other: str) -> Iterator[str]:
     if trace.cycle:
         lines.append(f"    {'then ' if trace.prefix else ''}again and again:")
         lines += [f"      {line}" for line in step_lines(pair, trace.cycle)]
-    states = {"A": (pair.a, outcome.a), "B": (pair.b, outcome.b)}
+    states = {"A": (pair.a, description.a), "B": (pair.b, description.b)}
     after = "after one round" if trace.cycle else "after these" if len(trace.prefix) > 1 else "after it"
     lines += [f"    {after}, {side} is {_state(*states[side])}" for side in (by, other)]
     yield "\n".join(lines)
-    test = block(pair, outcome, (_TITLES if is_whole else _TITLES_OF_BEGINNINGS)[by])
+    test = difference_test(pair, description, (_TITLES if is_whole else _TITLES_OF_BEGINNINGS)[by])
     if test is not None:
         side, lines_of_test = test
-        yield f"  as a test of {side}:\n\n{_indented(lines_of_test)}"
+        yield f"  as a test of {side}:\n\n{_indent(lines_of_test)}"
 
 
 def _state(fspa: Fspa, state: State) -> str:
@@ -148,14 +152,14 @@ def _state(fspa: Fspa, state: State) -> str:
     return f"{state.verdict}; what remains: {label_text(fspa, state.id)}"
 
 
-def _indented(text: str) -> str:
+def _indent(text: str) -> str:
     return "\n".join(f"    {line}" if line else "" for line in text.rstrip("\n").splitlines())
 
 
 def sentence(difference: Difference, pair: SpecPair) -> str:
-    """Return one difference in words."""
+    """Return one difference in words, without a full stop."""
     a, b, name = difference.a, difference.b, difference.name
-    match difference.what:
+    match difference.kind:
         case "semantics":
             return f"semantics: {a} in A, {b} in B"
         case "judge":
@@ -171,18 +175,18 @@ def sentence(difference: Difference, pair: SpecPair) -> str:
         case "atom":
             return f"`{name}`: {_atom(difference, pair)}"
         case _:
-            return f"{difference.what} `{name}`: {_declared(a)} in A, {_declared(b)} in B"
+            return f"{difference.kind} `{name}`: {_declared_value(a)} in A, {_declared_value(b)} in B"
 
 
 def _atom(difference: Difference, pair: SpecPair) -> str:
-    if difference.apart is None:
+    if difference.value_difference is None:
         return "another expression in B; no sample was found at which its value differs"
     types = {signal.name: signal.type for signal in (*pair.a.signals, *pair.b.signals)}
-    first, second = values_text(difference.apart)
-    return f"{first} in A, {second} in B, {sample_text(difference.apart.sample, types)}"
+    first, second = values_text(difference.value_difference)
+    return f"{first} in A, {second} in B, {sample_text(difference.value_difference.sample, types)}"
 
 
-def _declared(value: object) -> str:
+def _declared_value(value: object) -> str:
     if isinstance(value, Param):
         return f"{type_text(value)} = {value_text(value.value, value.type)}"
     return type_text(value) if isinstance(value, Signal) else "none"

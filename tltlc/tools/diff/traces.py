@@ -20,9 +20,9 @@ if TYPE_CHECKING:
 
 @record
 class TraceDescription:
-    """A trace that only one spec accepts, and the state of each spec after it.
+    """A trace that only one spec accepts, and the states of A and B after the trace.
 
-    The cycle of an infinite trace is taken once.
+    For an infinite trace, these are the states after its prefix and one round of its cycle.
     """
 
     trace: Trace
@@ -31,40 +31,45 @@ class TraceDescription:
 
 
 def trace_description(pair: SpecPair, trace: Trace) -> TraceDescription:
-    """Return the states that the two specs of a pair reach by a trace over the atoms of both."""
+    """Return a trace with the states that the specs of a pair reach; it is over the atoms of both."""
     letters = (*trace.prefix, *trace.cycle)
-    split = pair.comparison.split
-    a = _state(pair.a, [own_letter(letter, split, pair.a, OF_A) for letter in letters])
-    return TraceDescription(trace, a, _state(pair.b, [own_letter(letter, split, pair.b, OF_B) for letter in letters]))
+    split_names = pair.comparison.split_names
+    a = _state(pair.a, [own_letter(letter, split_names, pair.a, OF_A) for letter in letters])
+    return TraceDescription(
+        trace, a, _state(pair.b, [own_letter(letter, split_names, pair.b, OF_B) for letter in letters])
+    )
 
 
-def block(pair: SpecPair, outcome: TraceDescription, title: str) -> tuple[str, str] | None:
-    """Return a ``test`` block for a trace, and which spec it tests.
+def difference_test(pair: SpecPair, description: TraceDescription, title: str) -> tuple[str, str] | None:
+    """Return the name of the spec that a test is for, ``A`` or ``B``, and its ``test`` block.
 
-    It tests B, or A if only A has all atoms of the trace. Returns None if no test can show the
-    difference: the verdicts are the same, or an atom has the same name but another expression. An
-    infinite trace is taken up to the end of its first cycle.
+    The test is for B, or for A if only A has all atoms of the trace. Returns None if no test can show
+    the difference: the verdicts are the same, or an atom has the same name but another expression.
+    Of an infinite trace, the test has the prefix and one round of the cycle.
     """
-    letters = (*outcome.trace.prefix, *outcome.trace.cycle)
+    letters = (*description.trace.prefix, *description.trace.cycle)
     named = frozenset[str]().union(*letters)
     atoms_a, atoms_b = ({atom.name for atom in fspa.atoms} for fspa in (pair.a, pair.b))
-    side, fspa, state = "B", pair.b, outcome.b
+    side, fspa, state = "B", pair.b, description.b
     if not atoms_b or (named <= atoms_a and not named <= atoms_b):
-        side, fspa, state = "A", pair.a, outcome.a
-    if outcome.a.verdict == outcome.b.verdict or not fspa.atoms or not named <= atoms_a | atoms_b:
+        side, fspa, state = "A", pair.a, description.a
+    if description.a.verdict == description.b.verdict or not fspa.atoms or not named <= atoms_a | atoms_b:
         return None
     return side, test_block(title, fspa, letters, {len(letters): (state.verdict,)})
 
 
-def own_letter(letter: Letter, split: Iterable[str], fspa: Fspa, ending: str) -> Letter:
-    """Return the atoms of one spec that hold, with the names that the spec uses."""
-    of_both = {name + ending: name for name in split}
-    known = {atom.name for atom in fspa.atoms} - set(split)
-    return frozenset(of_both.get(name, name) for name in letter if name in known or name in of_both)
+def own_letter(letter: Letter, split_names: Iterable[str], fspa: Fspa, suffix: str) -> Letter:
+    """Return the atoms of one spec that hold, under the names that the spec uses.
+
+    ``suffix`` is what the letter adds to the names in ``split_names`` for this spec.
+    """
+    own_names = {name + suffix: name for name in split_names}
+    common = {atom.name for atom in fspa.atoms} - set(split_names)
+    return frozenset(own_names.get(name, name) for name in letter if name in common or name in own_names)
 
 
 def step_lines(pair: SpecPair, letters: Sequence[Letter]) -> list[str]:
-    """Return lines with what holds at each step; equal consecutive steps share a line.
+    """Return lines that say what holds at each step; equal consecutive steps share a line.
 
     Lines look like ``step 1: alive`` and ``steps 2 to 9: nothing holds``.
     """
@@ -72,20 +77,20 @@ def step_lines(pair: SpecPair, letters: Sequence[Letter]) -> list[str]:
     for letter, run in groupby(enumerate(letters, start=1), lambda step: step[1]):
         numbers = [number for number, _ in run]
         steps = f"step {numbers[0]}" if len(numbers) == 1 else f"steps {numbers[0]} to {numbers[-1]}"
-        lines.append(f"{steps}: {', '.join(in_order(pair, letter)) or 'nothing holds'}")
+        lines.append(f"{steps}: {', '.join(ordered_atoms(pair, letter)) or 'nothing holds'}")
     return lines
 
 
-def in_order(pair: SpecPair, letter: Letter) -> list[str]:
+def ordered_atoms(pair: SpecPair, letter: Letter) -> list[str]:
     """Return the atoms of a letter: atoms of A in their order, then other atoms of B."""
-    split = pair.comparison.split
-    names = [atom.name + (OF_A if atom.name in split else "") for atom in pair.a.atoms]
-    names += [atom.name + (OF_B if atom.name in split else "") for atom in pair.b.atoms]
+    split_names = pair.comparison.split_names
+    names = [atom.name + (OF_A if atom.name in split_names else "") for atom in pair.a.atoms]
+    names += [atom.name + (OF_B if atom.name in split_names else "") for atom in pair.b.atoms]
     return [name for name in dict.fromkeys(names) if name in letter]
 
 
 def _state(fspa: Fspa, letters: Iterable[Letter]) -> State:
-    """Return the state after a trace that respects all ``exclusive`` groups."""
+    """Return the state after a trace, which must respect the ``exclusive`` groups of the automaton."""
     leaving = tables(fspa).edges
     state = 0
     for letter in letters:

@@ -22,7 +22,7 @@ _ROUNDING: Final = 1e-9
 
 @record
 class Meaning:
-    """What the value of an atom is computed from.
+    """DifferenceKind determines the value of an atom: its expression, signals and params.
 
     ``signals`` and ``params`` are those that the expression uses.
     """
@@ -31,8 +31,11 @@ class Meaning:
     signals: tuple[Signal, ...]
     params: tuple[Param, ...]
 
-    def at(self, sample: Mapping[str, float]) -> tuple[float | None, str]:
-        """Return the value at a sample, as a monitor computes it, or None and the reason."""
+    def value_at(self, sample: Mapping[str, float]) -> tuple[float | None, str]:
+        """Return the value at a sample in [-1, 1], as a monitor computes it, and an empty text.
+
+        If the expression has no value there, return None and the reason.
+        """
         from tltlc.resolve.range_proof.witness import value_at
 
         point: dict[Variable, float] = {ParamNode(param.name): param.value for param in self.params}
@@ -45,10 +48,11 @@ class Meaning:
 
 
 @record
-class Apart:
+class ValueDifference:
     """A sample at which two atoms have different values.
 
-    If one of the atoms has no value there, its reason says why.
+    ``sample`` has pairs of a signal and its value. ``values`` are those of the two atoms. If an atom
+    has no value at the sample, its value is None, and its entry of ``reasons`` says why.
     """
 
     sample: tuple[tuple[str, float], ...]
@@ -56,22 +60,19 @@ class Apart:
     reasons: tuple[str, str] = ("", "")
 
     @property
-    def is_judged_otherwise(self) -> bool:
+    def differs_in_truth(self) -> bool:
         """Whether one of the atoms holds at the sample and the other does not."""
         one, other = (None if value is None else value > 0.0 for value in self.values)
         return one != other
 
 
-def meaning(of: Fspa | Vocabulary, atom: int) -> Meaning:
-    """Return what the value of an atom of an automaton or vocabulary is computed from."""
-    return meaning_of(of.atoms[atom].expression, of.signals, of.params)
+def meaning(vocabulary: Fspa | Vocabulary, atom: int) -> Meaning:
+    """Return the meaning of an atom; ``atom`` is its index in an automaton or vocabulary."""
+    return meaning_of(vocabulary.atoms[atom].expression, vocabulary.signals, vocabulary.params)
 
 
 def meaning_of(expression: Expression, signals: tuple[Signal, ...], params: tuple[Param, ...]) -> Meaning:
-    """Return what the value of an expression is computed from.
-
-    It has only those of the signals and params that the expression uses.
-    """
+    """Return the meaning of an expression, with those signals and params that it uses."""
     used = {(type(node), node.name) for node in nodes(expression) if isinstance(node, (SignalNode, ParamNode))}
     return Meaning(
         expression,
@@ -80,32 +81,32 @@ def meaning_of(expression: Expression, signals: tuple[Signal, ...], params: tupl
     )
 
 
-def apart(one: Meaning, other: Meaning) -> Apart | None:
-    """Return a sample at which the two have different values, or None if none was found.
+def value_difference(one: Meaning, other: Meaning) -> ValueDifference | None:
+    """Return a sample at which two atoms have different values, or None if none was found.
 
-    A sample at which only one of them holds is preferred. The search is deterministic and its work
-    is bounded, so it may miss a sample.
+    The search prefers samples at which only one of the atoms holds. It is deterministic, and its
+    work is bounded, so it may miss a sample.
     """
-    if _is_computed_alike(one, other):
+    if _have_same_meaning(one, other):
         return None
     from tltlc.resolve.range_proof.witness import points
 
-    box, bools = _shared(one, other)
+    box, bools = _common_box(one, other)
     values = [Const(param.value) for param in (*one.params, *other.params)]
-    fallback: Apart | None = None
+    fallback: ValueDifference | None = None
     for point in points(Op("+", (one.expression, other.expression, *values)), box, bools):
-        difference = _at({variable.name: value for variable, value in point.items()}, one, other)
-        if difference is not None and difference.is_judged_otherwise:
-            return _shortened(difference, one, other, box)
+        difference = _difference_at({variable.name: value for variable, value in point.items()}, one, other)
+        if difference is not None and difference.differs_in_truth:
+            return _shorten(difference, one, other, box)
         fallback = fallback or difference
-    return fallback and _shortened(fallback, one, other, box)
+    return fallback and _shorten(fallback, one, other, box)
 
 
-def _shared(one: Meaning, other: Meaning) -> tuple[dict[Variable, tuple[float, float]], frozenset[Variable]]:
-    """Return the signal values in the ranges of both, and which signals are bools.
+def _common_box(one: Meaning, other: Meaning) -> tuple[dict[Variable, tuple[float, float]], frozenset[Variable]]:
+    """Return the interval of each signal to search, and the signals that are bools.
 
-    If two ranges do not overlap, the values between them are used: there, each of the two clamps a
-    value to its own end.
+    The interval is the intersection of the two ranges. If the ranges do not overlap, it is the gap
+    between them: there, each atom clamps the value to an end of its own range.
     """
     ends: dict[SignalNode, list[tuple[float, float]]] = {}
     numbers: set[SignalNode] = set()
@@ -123,30 +124,30 @@ def _shared(one: Meaning, other: Meaning) -> tuple[dict[Variable, tuple[float, f
     return box, frozenset(node for node in ends if node not in numbers)
 
 
-def _shortened(difference: Apart, one: Meaning, other: Meaning, box: Box) -> Apart:
-    """Return the same result with shorter numbers, if they are in the box and show the same."""
+def _shorten(difference: ValueDifference, one: Meaning, other: Meaning, box: Box) -> ValueDifference:
+    """Return a difference of the same kind with fewer digits in its sample, if there is one."""
     for digits in (2, 3, 4, 6):
         sample = {name: float(f"{value:.{digits}g}") for name, value in difference.sample}
         is_inside = all(low <= sample[node.name] <= high for node, (low, high) in box.items())
-        shorter = _at(sample, one, other) if is_inside else None
-        if shorter is not None and shorter.is_judged_otherwise == difference.is_judged_otherwise:
+        shorter = _difference_at(sample, one, other) if is_inside else None
+        if shorter is not None and shorter.differs_in_truth == difference.differs_in_truth:
             return shorter
     return difference
 
 
-def _at(sample: Mapping[str, float], one: Meaning, other: Meaning) -> Apart | None:
-    (first, why), (second, why_other) = one.at(sample), other.at(sample)
-    difference = Apart(tuple(sample.items()), (first, second), (why, why_other))
+def _difference_at(sample: Mapping[str, float], one: Meaning, other: Meaning) -> ValueDifference | None:
+    (first, why), (second, why_other) = one.value_at(sample), other.value_at(sample)
+    difference = ValueDifference(tuple(sample.items()), (first, second), (why, why_other))
     if first is None or second is None:
         return None if first is second else difference
-    return difference if difference.is_judged_otherwise or abs(first - second) > _ROUNDING else None
+    return difference if difference.differs_in_truth or abs(first - second) > _ROUNDING else None
 
 
-def _is_computed_alike(one: Meaning, other: Meaning) -> bool:
-    """Whether the two have the same expression, ranges and param values."""
+def _have_same_meaning(one: Meaning, other: Meaning) -> bool:
+    """Whether two atoms have the same expression, ranges and param values."""
 
-    def computed(of: Meaning) -> object:
-        ranges = {signal.name: (signal.low, signal.high) for signal in of.signals}
-        return of.expression, ranges, {param.name: param.value for param in of.params}
+    def key(meaning: Meaning) -> object:
+        ranges = {signal.name: (signal.low, signal.high) for signal in meaning.signals}
+        return meaning.expression, ranges, {param.name: param.value for param in meaning.params}
 
-    return computed(one) == computed(other)
+    return key(one) == key(other)

@@ -1,4 +1,4 @@
-"""Build the version of a file that ``tltlc breaking`` compares."""
+"""Build the versions of files that ``tltlc breaking`` compares."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ if TYPE_CHECKING:
     from tltlc.resolve.spec import ResolvedFile
 
 
-def of_specs(program: ResolvedFile, automata: tuple[Fspa, ...]) -> Version:
+def version_of_specs(program: ResolvedFile, automata: tuple[Fspa, ...]) -> Version:
     """Return the version of a compiled source."""
     return Version(automata, {spec.name: Label(spec.source, spec.name_span) for spec in program.specs})
 
 
-def of_artefact(path: str, automata: tuple[Fspa, ...]) -> Version:
-    """Return the version of an artefact; messages point at the name of its spec."""
+def version_of_artefact(path: str, automata: tuple[Fspa, ...]) -> Version:
+    """Return the version of an artefact. Labels are on the name of its spec."""
     from tltlc.artefact.locations import span_of
 
     source = read_source(path, max_bytes=MAX_ARTEFACT_BYTES)
@@ -28,8 +28,8 @@ def of_artefact(path: str, automata: tuple[Fspa, ...]) -> Version:
     return Version(automata, {fspa.name: place for fspa in automata})
 
 
-def of_library(session: Session) -> Version:
-    """Return the version of a source that compiles and has no specs."""
+def version_of_library(session: Session) -> Version:
+    """Return the version of a source without specs. It must compile without errors."""
     from tltlc.tools.diff.library import offers
     from tltlc.tools.diff.rules import rules
 

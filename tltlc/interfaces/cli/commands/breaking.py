@@ -16,7 +16,7 @@ from tltlc.io.spec_file import STDIN, split
 
 if TYPE_CHECKING:
     from tltlc.tools.diff.breaking import FileChange, Version
-    from tltlc.tools.diff.revisions import Tree
+    from tltlc.tools.diff.revisions import EarlierTree
 
 _OF_SERVICES: Final = ("github", "sarif")
 """Formats for services that only know the current files."""
@@ -46,19 +46,23 @@ def command(paths: tuple[str, ...], against: str, settings: CompileSettings, for
     done.  The exit status is 1 where there is an error.  Imports of the old files are the old ones.
     """
     from tltlc.interfaces.cli.report import Report
-    from tltlc.tools.diff.breaking import breaking
-    from tltlc.tools.diff.renamed_specs import followed
-    from tltlc.tools.diff.revisions import earlier
+    from tltlc.tools.diff.breaking import version_changes
+    from tltlc.tools.diff.renamed_specs import follow_moves
+    from tltlc.tools.diff.revisions import earlier_files
 
     for path in paths:
         if path == STDIN or split(path)[1] is not None:
             raise click.UsageError(f"`{path}` is no path: name files and folders")
     diagnostics: list[Diagnostic] = []
-    with Report(format) as report, earlier(against, paths) as old:
+    with Report(format) as report, earlier_files(against, paths) as old:
 
         def shown(diagnostics: Iterable[Diagnostic], path: str) -> tuple[Diagnostic, ...]:
-            placed = old.placed(diagnostics, path, old.at(path)) if format in _OF_SERVICES else diagnostics
-            return old.renamed(placed)
+            placed = (
+                old.with_current_labels(diagnostics, path, old.old_path(path))
+                if format in _OF_SERVICES
+                else diagnostics
+            )
+            return old.with_display_names(placed)
 
         changes: list[FileChange] = []
         for path in dict.fromkeys(path for argument in paths for path in _files(argument, old)):
@@ -66,9 +70,9 @@ def command(paths: tuple[str, ...], against: str, settings: CompileSettings, for
                 changes.append(_change(path, old, settings))
             except TltlError as error:
                 report.add(shown(error.diagnostics, path))
-        for change in followed(changes, work_of(settings)):
+        for change in follow_moves(changes, work_of(settings)):
             try:
-                file_diagnostics = shown(breaking(change, work_of(settings)), change.path)
+                file_diagnostics = shown(version_changes(change, work_of(settings)), change.path)
             except TltlError as error:
                 report.add(error.diagnostics)
                 continue
@@ -84,7 +88,7 @@ def command(paths: tuple[str, ...], against: str, settings: CompileSettings, for
     return report.status
 
 
-def _files(argument: str, old: Tree) -> list[str]:
+def _files(argument: str, old: EarlierTree) -> list[str]:
     """Return the argument itself, or the spec files that a folder holds or held.
 
     Raise TLT0722 if there are none.
@@ -92,38 +96,38 @@ def _files(argument: str, old: Tree) -> list[str]:
     from tltlc.interfaces.cli.folders import below
     from tltlc.tools.diff.revisions import SOURCE_ENDINGS
 
-    folders = [folder for folder in (argument, old.at(argument)) if folder is not None and os.path.isdir(folder)]  # noqa: PTH112
+    folders = [folder for folder in (argument, old.old_path(argument)) if folder is not None and os.path.isdir(folder)]  # noqa: PTH112
     if not folders:
         return [argument]
     # The old folder may lie inside the new one.
     candidates = {path for folder in folders for path in below(Path(folder), SOURCE_ENDINGS)}
-    spec_files = [path for path in sorted(candidates) if not old.holds(Path(argument, path))]
+    spec_files = [path for path in sorted(candidates) if not old.contains(Path(argument, path))]
     if not spec_files:
         title = f"there is no spec, library or artefact in `{argument}`"
         raise TltlError([Diagnostic("TLT0722", title, help="name another folder")])
     return [str(Path(argument, path)) for path in spec_files]
 
 
-def _change(path: str, old: Tree, settings: CompileSettings) -> FileChange:
+def _change(path: str, old: EarlierTree, settings: CompileSettings) -> FileChange:
     """Compile the old and the new version of a file; raise the errors of either."""
     from tltlc.tools.diff.breaking import FileChange, Version
 
-    before = old.at(path)
+    before = old.old_path(path)
     is_there = os.path.exists(path)  # noqa: PTH110 (pathlib raises where a name is too long)
     new = _version(path, settings) if is_there or before is None else Version()
     if before is None:
         return FileChange(path, Version(), new)
-    return FileChange(path, _version(before, replace(settings, libraries=old.libraries(settings.libraries))), new)
+    return FileChange(path, _version(before, replace(settings, libraries=old.old_libraries(settings.libraries))), new)
 
 
 def _version(path: str, settings: CompileSettings) -> Version:
     """Compile a file in its current state."""
     from tltlc.interfaces.cli.inputs import open_input
-    from tltlc.tools.diff.versions import of_artefact, of_library, of_specs
+    from tltlc.tools.diff.versions import version_of_artefact, version_of_library, version_of_specs
 
     opened = open_input(path, settings)
     if opened.session is None:
-        return of_artefact(path, opened.automata)
+        return version_of_artefact(path, opened.automata)
     if opened.session.program.specs:
-        return of_specs(opened.session.program, opened.automata)
-    return of_library(opened.session)
+        return version_of_specs(opened.session.program, opened.automata)
+    return version_of_library(opened.session)

@@ -16,7 +16,7 @@ from tltlc.io.spec_file import STDIN, split
 
 if TYPE_CHECKING:
     from tltlc.interfaces.cli.inputs import Input
-    from tltlc.tools.diff.assumed_exclusive import Declared
+    from tltlc.tools.diff.assumed_exclusive import DeclaredGroups
     from tltlc.tools.diff.pairs import FileDiff
 
 
@@ -90,7 +90,7 @@ def _open(argument: str, settings: CompileSettings) -> Input:
 
     Other arguments are opened by :func:`~tltlc.interfaces.cli.inputs.open_input`.
 
-    Raises the errors of :func:`~tltlc.tools.diff.revisions.earlier`, and TLT0751 if the revision
+    Raises the errors of :func:`~tltlc.tools.diff.revisions.earlier_files`, and TLT0751 if the revision
     has no such file.
     """
     from tltlc.interfaces.cli.inputs import open_input
@@ -99,18 +99,18 @@ def _open(argument: str, settings: CompileSettings) -> Input:
     revision, file = _split_revision(path)
     if not revision:
         return open_input(argument, settings)
-    from tltlc.tools.diff.revisions import earlier
+    from tltlc.tools.diff.revisions import earlier_files
 
-    with earlier(revision, [file]) as old:
-        before = old.at(file)
+    with earlier_files(revision, [file]) as old:
+        before = old.old_path(file)
         if before is None:
             help_ = "name a file that was there, by its path from the current folder"
             raise TltlError([Diagnostic("TLT0751", f"there is no file `{file}` in `{revision}`", help=help_)])
-        old_settings = replace(settings, libraries=old.libraries(settings.libraries))
+        old_settings = replace(settings, libraries=old.old_libraries(settings.libraries))
         try:
             opened = open_input(before if name is None else f"{before}:{name}", old_settings)
         except TltlError as error:
-            raise TltlError(old.renamed(error.diagnostics)) from None
+            raise TltlError(old.with_display_names(error.diagnostics)) from None
         return replace(opened, name=path)
 
 
@@ -125,7 +125,7 @@ def _split_revision(path: str) -> tuple[str, str]:
     return revision, file
 
 
-def _declared(a: Input, b: Input) -> Declared:
+def _declared(a: Input, b: Input) -> DeclaredGroups:
     """Return the ``exclusive`` declarations of both files.
 
     An artefact has None, because it does not store them.
