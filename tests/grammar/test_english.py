@@ -20,7 +20,7 @@ from tltlc.grammar.parser import parse
 from tltlc.monitor.guards import holds
 from tltlc.monitor.tables import tables
 from tltlc.tools.lint.scopes import apply_edits
-from tltlc.tools.witness.blocks import values
+from tltlc.tools.witness.blocks import letter_values
 
 Letter = frozenset[str]
 Trace = tuple[Letter, ...]
@@ -292,7 +292,7 @@ def compile_spec(text: str) -> Fspa:
 
 def verdicts(fspa: Fspa) -> Iterator[tuple[Trace, bool]]:
     """Yield every trace of up to ``LONGEST`` samples, and whether the automaton accepts it."""
-    edges, values_of = tables(fspa).edges, {letter: values(fspa, letter) for letter in LETTERS}
+    edges, values_of = tables(fspa).edges, {letter: letter_values(fspa, letter) for letter in LETTERS}
     following = {
         (state.id, letter): next(edge.target for edge in edges[state.id] if holds(edge.guard, values_of[letter]))
         for state in fspa.states

@@ -21,7 +21,7 @@ from tltlc.monitor.guards import holds as guard_holds
 from tltlc.tools.diff.differences import differences
 from tltlc.tools.diff.pairs import diff
 from tltlc.tools.diff.relation import ExclusiveGroup, Relation, compare
-from tltlc.tools.witness.blocks import values
+from tltlc.tools.witness.blocks import letter_values
 
 SMALL = formulas(atoms=("a", "b"), max_leaves=4)
 SAMPLES = [frozenset(names) for names in ((), ("a",), ("b",), ("a", "b"))]
@@ -218,7 +218,7 @@ def has_feasible_counterexample(a: Fspa, b: Fspa) -> bool:
 
 
 def successor(fspa: Fspa, state: int, letter: Letter) -> int:
-    truth = values(fspa, letter)
+    truth = letter_values(fspa, letter)
     return next(edge.target for edge in fspa.edges_from(state) if guard_holds(edge.guard, truth))
 
 

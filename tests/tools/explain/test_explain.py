@@ -125,7 +125,7 @@ def is_looser(fspa: Fspa, source: int, target: int) -> bool:
 
 def is_accepted(fspa: Fspa, state: int, letters: Iterable[Letter]) -> bool:
     for letter in letters:
-        truth = blocks.values(fspa, letter)
+        truth = blocks.letter_values(fspa, letter)
         state = next(edge.target for edge in fspa.edges_from(state) if holds(edge.guard, truth))
     return fspa.states[state].accepting
 

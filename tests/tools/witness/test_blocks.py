@@ -1,4 +1,4 @@
-"""Traces as ``test`` blocks, which are valid in the file of any spec."""
+"""``test`` blocks of traces, which are valid in the file of the spec."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ spec q {
 """
 
 
-def test_names_of_every_kind_are_written_so_that_they_parse() -> None:
+def test_a_block_with_atoms_of_every_kind_parses_and_passes() -> None:
     (fspa,) = tltlc.compile_text(NAMES)
     names = [atom.name for atom in fspa.atoms]
     assert {"near(s1, close=3)", "above(x, 0.1, 2e-07)", "alive", "(x + y) * 2 > y - x"} <= set(names)
@@ -42,7 +42,7 @@ def test_names_of_every_kind_are_written_so_that_they_parse() -> None:
     assert all(len(line) <= 100 for line in text.splitlines() if "expect state" not in line)
 
 
-def test_each_letter_is_read_back() -> None:
+def test_the_steps_of_a_block_have_the_letters_of_the_trace() -> None:
     (fspa,) = tltlc.compile_text(NAMES)
     names = [atom.name for atom in fspa.atoms]
     letters = [frozenset(n for n, on in zip(names, bits, strict=False) if on) for bits in product((0, 1), repeat=5)]

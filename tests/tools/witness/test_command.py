@@ -1,4 +1,4 @@
-"""``tltlc witness`` on the command line: the printed blocks can be pasted, and pass."""
+"""``tltlc witness`` on the command line: the printed blocks pass when pasted into the file."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ def test_two_blocks_that_pass_are_printed_by_default(tltlc: Run, inside: Path) -
     assert outcome.out.count('test "') == 2
     assert "    step not alive\n    expect violated\n" in outcome.out
     Path("pasted.tltl").write_text(EXAMPLE.read_text() + "\n" + outcome.out)
-    tested = tltlc("test", "pasted.tltl")
-    assert tested.status == 0, tested.err
-    assert tested.out.endswith("5 passed, 0 failed\n")
+    result = tltlc("test", "pasted.tltl")
+    assert result.status == 0, result.err
+    assert result.out.endswith("5 passed, 0 failed\n")
 
 
 def test_monitor_reads_a_cover_written_as_csv(tltlc: Run, inside: Path) -> None:
@@ -79,7 +79,7 @@ def test_a_spec_without_signals_has_no_csv(tltlc: Run, inside: Path) -> None:
     assert 'test "s: a shortest trace that is rejected"' in tltlc("witness", "constant.tltl").out
 
 
-def test_traces_that_were_not_found_are_not_called_impossible(tltlc: Run, inside: Path) -> None:
+def test_the_warning_says_that_values_were_not_found_not_that_there_are_none(tltlc: Run, inside: Path) -> None:
     Path("never.tltl").write_text("signal x in [0, 1]\nspec s = F (x > 0.7 & x < 0.3)\n")
     message = tltlc("witness", "never.tltl").err
     assert "no values of the signals were found that give `x > 0.7` and `x < 0.3`" in message
@@ -87,7 +87,7 @@ def test_traces_that_were_not_found_are_not_called_impossible(tltlc: Run, inside
 
 @pytest.mark.parametrize("size", ["1e12", "1e150", "1e308"])
 @pytest.mark.parametrize("sign", ["", "-"])
-def test_very_large_values_are_found(tltlc: Run, inside: Path, size: str, sign: str) -> None:
+def test_values_between_very_large_thresholds_are_found(tltlc: Run, inside: Path, size: str, sign: str) -> None:
     Path("far.tltl").write_text(
         "signal x: number\n"
         f"predicate p in [-1, 1] = clamp({sign}x / {size} - 1, -1, 1)\n"

@@ -1,4 +1,4 @@
-"""Values of signals that make atoms true or false."""
+"""Samples at which atoms are true or false."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from hypothesis import strategies as st
 
 import tltlc
 from tltlc.monitor import Monitor
-from tltlc.tools.witness.samples import Realiser, Unrealised, UnsatisfiedLiterals, csv_text, samples
+from tltlc.tools.witness.samples import MissingSample, SampleFinder, UnsatisfiedLiterals, csv_text, samples
 
 
 @pytest.mark.parametrize(
-    ("declared", "formula"),
+    ("declarations", "formula"),
     [
         ("import spatial  entity e", "F near(e) & G !near(e, close = 3 m) | F facing(e, 2 deg)"),
         ("import spatial", "F inside_box(1 m, 2 m, 3 m, 4 m, 5 m, 5.5 m)"),
@@ -29,14 +29,14 @@ from tltlc.tools.witness.samples import Realiser, Unrealised, UnsatisfiedLiteral
         ),
     ],
 )
-def test_each_atom_is_made_true_and_false(declared: str, formula: str) -> None:
-    (fspa,) = tltlc.compile_text(f"{declared}\nspec s = {formula}")
-    realiser = Realiser(fspa)
+def test_each_atom_is_made_true_and_false(declarations: str, formula: str) -> None:
+    (fspa,) = tltlc.compile_text(f"{declarations}\nspec s = {formula}")
+    finder = SampleFinder(fspa)
     for index, atom in enumerate(fspa.atoms):
         for holds in (True, False):
-            sample = realiser.literals(((index, holds),))
+            sample = finder.sample_for_literals(((index, holds),))
             assert isinstance(sample, dict), atom.name
-            assert (atom.name in realiser.letter_of(sample)) == holds
+            assert (atom.name in finder.letter_of(sample)) == holds
 
 
 @settings(max_examples=150, deadline=None)
@@ -47,7 +47,7 @@ def test_values_between_thresholds_are_found(thresholds: list[int], data: st.Dat
     literals = tuple((index, data.draw(st.booleans())) for index in range(len(thresholds)))
     above = [threshold for threshold, (_, holds) in zip(thresholds, literals, strict=True) if holds]
     below = [threshold for threshold, (_, holds) in zip(thresholds, literals, strict=True) if not holds]
-    sample = Realiser(fspa).literals(literals)
+    sample = SampleFinder(fspa).sample_for_literals(literals)
     if max(above, default=0) < min(below, default=100):
         assert isinstance(sample, dict)
         monitor = Monitor(fspa)
@@ -55,25 +55,25 @@ def test_values_between_thresholds_are_found(thresholds: list[int], data: st.Dat
         assert [value > 0 for value in monitor.values] == [holds for _, holds in literals]
     else:
         assert isinstance(sample, UnsatisfiedLiterals)
-        (low, holds), (high, other) = sorted(sample.literals, key=lambda literal: thresholds[literal[0]])
-        assert not holds and other and thresholds[low] < thresholds[high]
+        (low, low_holds), (high, high_holds) = sorted(sample.literals, key=lambda literal: thresholds[literal[0]])
+        assert not low_holds and high_holds and thresholds[low] < thresholds[high]
 
 
 def test_exclusive_atoms_do_not_hold_together() -> None:
     text = "signal a: bool  signal b: bool  exclusive a, b  spec s = F a & F b"
     (fspa,) = tltlc.compile_text(text)
-    realiser = Realiser(fspa)
-    assert isinstance(realiser.letter(frozenset({"a", "b"})), UnsatisfiedLiterals)
-    assert realiser.letter(frozenset({"a"})) == {"a": 1.0, "b": 0.0}
+    finder = SampleFinder(fspa)
+    assert isinstance(finder.sample_for_letter(frozenset({"a", "b"})), UnsatisfiedLiterals)
+    assert finder.sample_for_letter(frozenset({"a"})) == {"a": 1.0, "b": 0.0}
 
 
-def test_letters_become_csv_or_an_obstacle() -> None:
+def test_a_trace_of_letters_becomes_csv_or_names_an_obstacle() -> None:
     (fspa,) = tltlc.compile_text("signal x in [0, 1]  signal seen: bool  spec s = F x > 0.5 & F x > 0.25 & F seen")
     low, high = frozenset({"x > 0.25"}), frozenset({"x > 0.5", "x > 0.25", "seen"})
-    realised = samples(fspa, (low, high))
-    assert not isinstance(realised, Unrealised)
-    assert csv_text(fspa, realised).splitlines()[0] == "x,seen"
-    assert [line.split(",")[1] for line in csv_text(fspa, realised).splitlines()[1:]] == ["false", "true"]
-    unrealised = samples(fspa, (low, frozenset({"x > 0.5"})))
-    assert isinstance(unrealised, Unrealised)
-    assert (unrealised.step, unrealised.obstacle.text(fspa)) == (2, "`x > 0.5` and not `x > 0.25`")
+    trace_samples = samples(fspa, (low, high))
+    assert not isinstance(trace_samples, MissingSample)
+    assert csv_text(fspa, trace_samples).splitlines()[0] == "x,seen"
+    assert [line.split(",")[1] for line in csv_text(fspa, trace_samples).splitlines()[1:]] == ["false", "true"]
+    missing = samples(fspa, (low, frozenset({"x > 0.5"})))
+    assert isinstance(missing, MissingSample)
+    assert (missing.step, missing.obstacle.text(fspa)) == (2, "`x > 0.5` and not `x > 0.25`")

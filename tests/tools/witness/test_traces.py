@@ -24,10 +24,10 @@ from tltlc.monitor.guards import holds as guard_holds
 from tltlc.monitor.traces import read_trace
 from tltlc.pipeline import compile_source
 from tltlc.tools.witness import blocks
-from tltlc.tools.witness import text as written
+from tltlc.tools.witness import text as witness_text
 from tltlc.tools.witness.cover import Cover, cover
 from tltlc.tools.witness.nearest import NearestEdges
-from tltlc.tools.witness.traces import Witness, accepting, rejecting
+from tltlc.tools.witness.traces import Witness, accepting_trace, rejecting_trace
 from tltlc.tools.witness.transitions import Moves, SampledEdge
 
 ROOT = Path(__file__).parents[3]
@@ -46,7 +46,7 @@ def finite(formula: Formula) -> Fspa:
 @settings(max_examples=200, deadline=None)
 @given(SMALL)
 def test_an_accepting_trace_is_accepted_and_shortest(formula: Formula) -> None:
-    witness = accepting(Moves(finite(formula)))
+    witness = accepting_trace(Moves(finite(formula)))
     accepted = [trace for trace in all_traces(("a", "b"), LONGEST) if holds(formula, trace)]
     if witness is None:
         assert not accepted
@@ -58,9 +58,9 @@ def test_an_accepting_trace_is_accepted_and_shortest(formula: Formula) -> None:
 
 @settings(max_examples=100, deadline=None)
 @given(SMALL)
-def test_a_rejecting_trace_is_shortest_and_final(formula: Formula) -> None:
+def test_a_rejecting_trace_is_shortest_and_no_suffix_is_accepted(formula: Formula) -> None:
     fspa = finite(formula)
-    witness = rejecting(Moves(fspa))
+    witness = rejecting_trace(Moves(fspa))
     rejected = [trace for trace in all_traces(("a", "b"), 3) if not holds(formula, trace)]
     if witness is None:
         assert not rejected
@@ -78,15 +78,15 @@ def test_a_rejecting_trace_is_shortest_and_final(formula: Formula) -> None:
 
 def run(fspa: Fspa, letters: tuple[Letter, ...]) -> str:
     monitor = Monitor(fspa)
-    return [monitor.step_atoms(blocks.values(fspa, letter)).verdict for letter in letters][-1]
+    return [monitor.step_atoms(blocks.letter_values(fspa, letter)).verdict for letter in letters][-1]
 
 
 @settings(max_examples=100, deadline=None)
 @given(SMALL)
-def test_lassos_are_accepted_or_rejected_for_ever(formula: Formula) -> None:
+def test_an_infinite_witness_is_accepted_or_rejected_by_the_formula(formula: Formula) -> None:
     text = f"{SIGNALS}spec s {{ semantics infinite  require {ascii_text(formula)} }}"
     (fspa,) = tltlc.compile_text(text)
-    for search, is_accepted in ((accepting, True), (rejecting, False)):
+    for search, is_accepted in ((accepting_trace, True), (rejecting_trace, False)):
         witness = search(Moves(fspa))
         if witness is not None:
             assert witness.cycle is not None
@@ -114,9 +114,9 @@ def test_a_cover_takes_every_edge(formula: Formula) -> None:
     st.sampled_from(["", "require F[0,2] c", "require G[0,2] (a -> F[0,1] b)"]),
 )
 def test_covers_and_tests_of_all_kinds_of_specs_are_valid(
-    formula: Formula, exclusive: str, how: str, more: str
+    formula: Formula, exclusive: str, setting: str, clause: str
 ) -> None:
-    text = f"{SIGNALS}signal c: bool\n{exclusive}spec s {{ {how}  require {ascii_text(formula)}  {more} }}\n"
+    text = f"{SIGNALS}signal c: bool\n{exclusive}spec s {{ {setting}  require {ascii_text(formula)}  {clause} }}\n"
     source = SourceFile("s.tltl", text)
     (fspa,) = compile_source(source).automata
     moves = Moves(fspa)
@@ -124,7 +124,10 @@ def test_covers_and_tests_of_all_kinds_of_specs_are_valid(
     assert not covering.untaken
     check_cover(fspa, covering)
     if fspa.atoms:
-        traces = [*covering.traces, *(witness for witness in (accepting(moves), rejecting(moves)) if witness)]
+        traces = [
+            *covering.traces,
+            *(witness for witness in (accepting_trace(moves), rejecting_trace(moves)) if witness),
+        ]
         check_blocks(source, fspa, traces)
         for trace in traces:
             check_csv(fspa, trace)
@@ -138,7 +141,7 @@ def test_witnesses_of_the_examples_are_valid(path: Path) -> None:
         covering = cover(moves)
         assert not covering.untaken
         check_cover(fspa, covering)
-        witnesses = [accepting(moves), rejecting(moves), *covering.traces]
+        witnesses = [accepting_trace(moves), rejecting_trace(moves), *covering.traces]
         traces = [trace for trace in witnesses if trace is not None]
         check_blocks(source, fspa, traces)
         for trace in traces:
@@ -147,14 +150,13 @@ def test_witnesses_of_the_examples_are_valid(path: Path) -> None:
 
 
 def check_cover(fspa: Fspa, covering: Cover) -> None:
-    """Assert that the letters take every edge in the monitor, and that there are no more traces
-    than edges."""
+    """Assert that the traces take every edge, are sorted by length, and are no more than the edges."""
     taken = set()
     for trace in covering.traces:
         monitor = Monitor(fspa)
         for letter in trace.letters:
             source = monitor.state
-            taken.add((source, monitor.step_atoms(blocks.values(fspa, letter)).state))
+            taken.add((source, monitor.step_atoms(blocks.letter_values(fspa, letter)).state))
     assert taken == {(edge.source, edge.target) for edge in fspa.edges}
     assert [len(trace.moves) for trace in covering.traces] == sorted(len(trace.moves) for trace in covering.traces)
     assert len(covering.traces) <= len(fspa.edges)
@@ -164,7 +166,7 @@ def check_blocks(source: SourceFile, fspa: Fspa, traces: list[Witness]) -> None:
     """Assert that the blocks pass when pasted into the file."""
     from tltlc.monitor.spec_tests import run_tests
 
-    texts = [written.as_test(fspa, trace, f"witness {number}") for number, trace in enumerate(traces)]
+    texts = [witness_text.as_test(fspa, trace, f"witness {number}") for number, trace in enumerate(traces)]
     compiled = compile_source(SourceFile(source.name, "\n".join([source.text, *texts])))
     results = [
         result for result in run_tests(compiled.program, compiled.automata) if result.test.title.startswith("witness")
@@ -174,14 +176,15 @@ def check_blocks(source: SourceFile, fspa: Fspa, traces: list[Witness]) -> None:
 
 
 def check_csv(fspa: Fspa, trace: Witness) -> None:
-    """Assert that the signals give the letters, and that the monitor judges both alike."""
-    text = written.as_csv(fspa, trace)
+    """Assert that the samples produce the letters, and that a monitor judges both alike."""
+    text = witness_text.as_csv(fspa, trace)
     by_signals, by_atoms = Monitor(fspa), Monitor(fspa)
     samples = list(read_trace(io.BytesIO(text.encode()), "trace", fspa.signals))
     assert len(samples) == len(trace.letters)
     for sample, letter in zip(samples, trace.letters, strict=True):
-        one, other = by_signals.step(sample), by_atoms.step_atoms(blocks.values(fspa, letter))
-        assert (one.state, one.verdict, one.accepting) == (other.state, other.verdict, other.accepting)
+        signal_step, atom_step = by_signals.step(sample), by_atoms.step_atoms(blocks.letter_values(fspa, letter))
+        assert (signal_step.state, signal_step.verdict) == (atom_step.state, atom_step.verdict)
+        assert signal_step.accepting == atom_step.accepting
         assert {atom.name for atom, value in zip(fspa.atoms, by_signals.values, strict=True) if value > 0} == letter
     assert not by_signals.notices
 
@@ -192,19 +195,21 @@ def check_csv(fspa: Fspa, trace: Witness) -> None:
     st.sampled_from(["", "exclusive a, b\n"]),
     st.sampled_from(["", "semantics infinite"]),
 )
-def test_a_cover_equals_a_search_from_each_state(formula: Formula, exclusive: str, how: str) -> None:
-    text = f"{SIGNALS}signal c: bool\n{exclusive}spec s {{ {how}  require {ascii_text(formula)} }}"
+def test_a_cover_equals_that_of_a_breadth_first_search_per_path(formula: Formula, exclusive: str, setting: str) -> None:
+    text = f"{SIGNALS}signal c: bool\n{exclusive}spec s {{ {setting}  require {ascii_text(formula)} }}"
     (fspa,) = tltlc.compile_text(text)
     moves = Moves(fspa)
     assert [trace.moves for trace in cover(moves).traces] == searched_cover(moves)
 
 
 def searched_cover(moves: Moves) -> list[tuple[SampledEdge, ...]]:
-    """Compute the traces of a cover with one breadth-first search per path: slow and simple."""
+    """Return the traces of a cover, computed with one breadth-first search per path."""
     untaken, traces = set(range(len(moves.fspa.edges))), []
     while True:
         trace: list[SampledEdge] = []
-        while path := moves.way(moves.fspa.edges[trace[-1].edge].target if trace else 0, untaken.__contains__):
+        while path := moves.shortest_path(
+            moves.fspa.edges[trace[-1].edge].target if trace else 0, untaken.__contains__
+        ):
             trace += path
             untaken.difference_update(move.edge for move in path)
         if not trace:
@@ -231,29 +236,29 @@ def test_a_cover_visits_few_edges_per_step(spec: str) -> None:
         steps += len(path)
         state = fspa.edges[path[-1]].target
     # A search from each state would visit the edges of most states again for each trace.
-    assert nearest.looks <= 5 * (steps + len(fspa.edges))
+    assert nearest.visited_edges <= 5 * (steps + len(fspa.edges))
 
 
 @pytest.mark.parametrize("bound", [20, 80])
-def test_the_tests_of_a_cover_are_short_and_share_their_runs(bound: int) -> None:
+def test_the_tests_of_a_cover_are_short_and_share_steps_of_the_monitor(bound: int) -> None:
     (fspa,) = tltlc.compile_text(f"signal a: bool  spec s = F[0,{bound}] a")
     covering = cover(Moves(fspa))
-    shared_blocks, runs = blocks.Blocks(fspa), []
+    writer, steps_so_far = blocks.BlockWriter(fspa), []
     for trace in covering.traces:
-        text = written.as_test(fspa, trace, "t", shared_blocks)
-        assert text == written.as_test(fspa, trace, "t")
+        text = witness_text.as_test(fspa, trace, "t", writer)
+        assert text == witness_text.as_test(fspa, trace, "t")
         assert len(text.splitlines()) <= 10
-        runs.append(shared_blocks.runs)
+        steps_so_far.append(writer.monitor_steps)
     assert sum(len(trace.moves) for trace in covering.traces) > bound**2 / 2
     # The traces of a bound share their beginnings.
-    assert runs[-1] <= 4 * bound
+    assert steps_so_far[-1] <= 4 * bound
 
 
-def test_the_news_of_a_cover_list_every_edge_once() -> None:
+def test_the_new_steps_of_a_cover_take_every_edge_once() -> None:
     (fspa,) = tltlc.compile_text("signal a: bool  signal b: bool  spec s = G(a -> F[0,3] b)")
     covering = cover(Moves(fspa))
-    news = [trace.moves[number - 1].edge for trace in covering.traces for number in trace.news]
-    assert sorted(news) == list(range(len(fspa.edges)))
+    edges = [trace.moves[number - 1].edge for trace in covering.traces for number in trace.new_steps]
+    assert sorted(edges) == list(range(len(fspa.edges)))
 
 
 def test_an_edge_of_exclusive_atoms_is_reported_and_left_out() -> None:
@@ -264,21 +269,21 @@ def test_an_edge_of_exclusive_atoms_is_reported_and_left_out() -> None:
     assert untaken == ["(fuel > 80) & (fuel < 20)"]
     assert [obstacle.text(fspa) for obstacle in covering.untaken[0].obstacles] == ["`fuel > 80` and `fuel < 20`"]
     # By letters alone, the shortest trace would have one step.
-    trace = accepting(Moves(fspa))
+    trace = accepting_trace(Moves(fspa))
     assert trace is not None and len(trace.letters) == 2
 
 
 def test_edges_behind_an_impossible_edge_are_not_taken() -> None:
     (fspa,) = tltlc.compile_text("signal n in [0, 1]  signal a: bool  spec s { reach n > 0.8 and n < 0.2 then a }")
     moves = Moves(fspa)
-    assert accepting(moves) is None
+    assert accepting_trace(moves) is None
     reasons = {(fspa.edges[edge.edge].source, bool(edge.obstacles)) for edge in cover(moves).untaken}
     assert reasons == {(0, True), (1, False), (2, False)}
 
 
 THRESHOLDS = {"a": "x > 0.75", "b": "x > 0.25", "c": "x < 0.5"}
-"""Atoms of one signal. Of the eight letters over them, samples can give four."""
-REAL = {
+"""Atoms of one signal. Samples can produce four of the eight letters over them."""
+FEASIBLE = {
     frozenset(name for name, holds in zip(THRESHOLDS, (x > 0.75, x > 0.25, x < 0.5), strict=True) if holds)
     for x in (0.0, 0.25, 0.3, 0.5, 0.6, 0.75, 0.8)
 }
@@ -289,13 +294,13 @@ REAL = {
 def test_a_cover_takes_exactly_the_edges_that_samples_take(formula: Formula) -> None:
     text = "".join(f"let {name} = {atom}\n" for name, atom in THRESHOLDS.items())
     (fspa,) = tltlc.compile_text(f"signal x in [0, 1]\n{text}spec s = {ascii_text(formula)}")
-    letters = [frozenset(THRESHOLDS[name] for name in letter) for letter in REAL]
+    letters = [frozenset(THRESHOLDS[name] for name in letter) for letter in FEASIBLE]
     reached, possible = {0}, set()
     queue = [0]
     for state in queue:
         for letter in letters:
-            given = blocks.values(fspa, letter)
-            edge = next(edge for edge in fspa.edges_from(state) if guard_holds(edge.guard, given))
+            truth = blocks.letter_values(fspa, letter)
+            edge = next(edge for edge in fspa.edges_from(state) if guard_holds(edge.guard, truth))
             possible.add((edge.source, edge.target))
             if edge.target not in reached:
                 reached.add(edge.target)

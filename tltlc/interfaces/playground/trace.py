@@ -10,9 +10,9 @@ from tltlc.automaton.text import label_text
 from tltlc.automaton.work import OutOfWork
 from tltlc.monitor import Monitor
 from tltlc.monitor.samples import MonitorError
-from tltlc.tools.witness.blocks import values
-from tltlc.tools.witness.samples import Realiser
-from tltlc.tools.witness.traces import Witness, accepting, rejecting
+from tltlc.tools.witness.blocks import letter_values
+from tltlc.tools.witness.samples import SampleFinder
+from tltlc.tools.witness.traces import Witness, accepting_trace, rejecting_trace
 from tltlc.tools.witness.transitions import Moves, SampledEdge
 
 Letter = Union[Sequence[str], Mapping[str, float]]
@@ -32,7 +32,7 @@ def rows(fspa: Fspa, letters: Iterable[Letter]) -> list[dict[str, Any]]:
     ``from`` is the state before the step, ``values`` are the values of the atoms in order, and
     ``signals`` is a sample of signal values for the letter, or None if none was found.
     """
-    monitor, realiser = Monitor(fspa), Realiser(fspa)
+    monitor, finder = Monitor(fspa), SampleFinder(fspa)
     result: list[dict[str, Any]] = []
     for letter in letters:
         before = monitor.state
@@ -41,8 +41,8 @@ def rows(fspa: Fspa, letters: Iterable[Letter]) -> list[dict[str, Any]]:
                 step = monitor.step(letter)
                 sample: object = {signal.name: float(letter[signal.name]) for signal in fspa.signals}
             else:
-                step = monitor.step_atoms(values(fspa, frozenset(letter)))
-                sample = realiser.letter(frozenset(letter))
+                step = monitor.step_atoms(letter_values(fspa, frozenset(letter)))
+                sample = finder.sample_for_letter(frozenset(letter))
         except MonitorError as error:
             result.append({"error": error.diagnostics[0].title, "help": error.diagnostics[0].help})
             break
@@ -75,12 +75,12 @@ def idle(fspa: Fspa) -> dict[str, Any]:
 
     leaving = fspa.edges_from(0)
     edge = min(leaving, key=lambda edge: (edge.target != 0, fspa.states[edge.target].verdict == "violated"))
-    realiser = Realiser(fspa)
+    finder = SampleFinder(fspa)
     primes = sorted(edge.guard.primes, key=cost)
     for prime in primes:
-        sample = realiser.literals(prime)
+        sample = finder.sample_for_literals(prime)
         if isinstance(sample, dict):
-            letter = realiser.letter_of(sample)
+            letter = finder.letter_of(sample)
             return {"atoms": _in_order(fspa, letter), "signals": sample}
     return {"atoms": [fspa.atoms[atom].name for atom, polarity in primes[0] if polarity], "signals": None}
 
@@ -89,7 +89,7 @@ def shortest(fspa: Fspa) -> dict[str, Any]:
     """Return shortest traces that succeed and that fail, or None: ``{"succeed": …, "fail": …}``."""
     moves = Moves(fspa)
     try:
-        witnesses = accepting(moves, _MOST_WORK), rejecting(moves, _MOST_WORK)
+        witnesses = accepting_trace(moves, _MOST_WORK), rejecting_trace(moves, _MOST_WORK)
     except OutOfWork:
         witnesses = None, None
     return {"succeed": _letters(fspa, witnesses[0]), "fail": _letters(fspa, witnesses[1])}

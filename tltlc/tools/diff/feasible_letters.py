@@ -11,7 +11,7 @@ from tltlc.automaton.compare import Literals, Trace, separating
 from tltlc.core.record import replace
 from tltlc.expression.tree import Const, ParamValue
 from tltlc.tools.diff.expression_shapes import Leaf, replace_leaves
-from tltlc.tools.witness.samples import Realiser
+from tltlc.tools.witness.samples import SampleFinder
 
 if TYPE_CHECKING:
     from tltlc.automaton.fspa import Fspa
@@ -33,7 +33,7 @@ class FeasibleLetters:
         self.impossible: dict[Literals, None] = {}
         self._searches_left = _MOST
         self._joint = _joint_automaton(a, b)
-        self._realiser = None if self._joint is None else Realiser(self._joint)
+        self._finder = None if self._joint is None else SampleFinder(self._joint)
 
     def feasible_trace(self, trace: Trace | None, accepting: Fspa, rejecting: Fspa, work: int) -> Trace | None:
         """Return ``trace``, which only ``accepting`` accepts, if samples are found for it.
@@ -53,11 +53,11 @@ class FeasibleLetters:
 
     def _obstacles(self, trace: Trace) -> list[Literals]:
         """Return conjunctions of literals of the letters for which no sample was found."""
-        if self._joint is None or self._realiser is None:
+        if self._joint is None or self._finder is None:
             return []
         obstacles = []
         for letter in dict.fromkeys((*trace.prefix, *trace.cycle)):
-            for obstacle in self._realiser.obstacles(letter):
+            for obstacle in self._finder.obstacles(letter):
                 literals = [(self._joint.atoms[atom].name, holds) for atom, holds in obstacle.literals]
                 obstacles.append(tuple(sorted(literals, key=lambda literal: not literal[1])))
         return obstacles

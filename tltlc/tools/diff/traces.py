@@ -11,7 +11,7 @@ from tltlc.core.record import record
 from tltlc.monitor.guards import holds
 from tltlc.monitor.tables import tables
 from tltlc.tools.diff.relation import OF_A, OF_B
-from tltlc.tools.witness.blocks import test_block, values
+from tltlc.tools.witness.blocks import letter_values, test_block
 
 if TYPE_CHECKING:
     from tltlc.automaton.fspa import Fspa, State
@@ -94,6 +94,6 @@ def _state(fspa: Fspa, letters: Iterable[Letter]) -> State:
     leaving = tables(fspa).edges
     state = 0
     for letter in letters:
-        atom_values = values(fspa, letter)
+        atom_values = letter_values(fspa, letter)
         state = next(edge.target for edge in leaving[state] if holds(edge.guard, atom_values))
     return fspa.states[state]

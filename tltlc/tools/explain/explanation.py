@@ -17,7 +17,7 @@ from tltlc.logic.text.outline import Outline, outline
 from tltlc.logic.text.phrases import phrase
 from tltlc.tools.explain.ending import ending
 from tltlc.tools.explain.next_steps import edges_leading_on
-from tltlc.tools.witness.traces import Witness, accepting, rejecting
+from tltlc.tools.witness.traces import Witness, accepting_trace, rejecting_trace
 from tltlc.tools.witness.transitions import Moves
 
 ANYTHING: Final = "anything"
@@ -218,7 +218,7 @@ def _witness(moves: Moves, accept: bool) -> Witness | None:
     A finite trace that fails must end in a violated state.
     """
     try:
-        witness = accepting(moves, _MOST_WORK) if accept else rejecting(moves, _MOST_WORK)
+        witness = accepting_trace(moves, _MOST_WORK) if accept else rejecting_trace(moves, _MOST_WORK)
     except OutOfWork:
         return None
     if witness is None or accept or witness.cycle is not None:

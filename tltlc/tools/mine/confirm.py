@@ -17,7 +17,7 @@ from tltlc.tools.mine.clause import Conjunction
 from tltlc.tools.mine.evidence import Evidence, LabelledTrace
 from tltlc.tools.mine.measure import Support
 from tltlc.tools.mine.vocabulary import MiningVocabulary
-from tltlc.tools.witness.blocks import values
+from tltlc.tools.witness.blocks import letter_values
 
 _NAME: Final = "mined_candidate_"
 """The name prefix of specs that are only compiled."""
@@ -104,7 +104,7 @@ class _Run:
         key = (self.state.id, letter)
         target = self._known.get(key)
         if target is None:
-            truth = values(self._fspa, letter)
+            truth = letter_values(self._fspa, letter)
             taken: Edge = next(edge for edge in self._edges[self.state.id] if holds(edge.guard, truth))
             target = self._known[key] = taken.target
         self.state = self._fspa.states[target]

@@ -22,7 +22,7 @@ from tltlc.tools.mine.bits import Bits, Samples, Verdicts, count
 from tltlc.tools.mine.clause import MinedClause
 from tltlc.tools.mine.measure import figures
 from tltlc.tools.mine.templates import clause
-from tltlc.tools.witness.blocks import bracketed
+from tltlc.tools.witness.blocks import atom_operand
 
 BEAM: Final = 60
 """The most sequences of one length that are extended: this many of atoms alone, and this many others."""
@@ -140,7 +140,7 @@ def _material(bits: Bits, atoms: Collection[str]) -> Generator[list[MinedClause]
 
     Yields empty portions many times, so that the caller may stop.
     """
-    single = [SequenceStep(bracketed(name), 1, bits.holds[name]) for name in atoms]
+    single = [SequenceStep(atom_operand(name), 1, bits.holds[name]) for name in atoms]
     single = [step for step in single if bits.some(step.samples) & bits.traces]
     known = {step.samples for step in single}
     pairs: list[tuple[int, str, Samples]] = []

@@ -10,7 +10,7 @@ from typing import Final
 
 from tltlc.tools.mine.bits import Bits, Verdicts, count
 from tltlc.tools.mine.clause import MinedClause
-from tltlc.tools.witness.blocks import bracketed
+from tltlc.tools.witness.blocks import atom_operand
 
 BOUNDED: Final = "bounded response"
 KINDS: Final = ("reach", "keep", "avoid", "invariant", "precedence", "until", "response", BOUNDED)
@@ -54,7 +54,7 @@ def _candidates(forwards: Bits, backwards: Bits, events: Collection[str], least:
 
 
 def _pair(first: str, second: str, forwards: Bits, backwards: Bits, occurs: dict[str, int]) -> Iterator[MinedClause]:
-    a, b = bracketed(first), bracketed(second)
+    a, b = atom_operand(first), atom_operand(second)
     here, there = forwards.holds[first], forwards.holds[second]
     asked = occurs[first]
     together = forwards.none(here & ~there)
@@ -99,5 +99,5 @@ def _bounded(first: str, second: str, bits: Bits, least: int) -> Iterator[MinedC
         low, high = (low, middle) if is_enough(middle) else (middle + 1, high)
     if low:
         steps = f"{low} step{'s' * (low > 1)}"
-        text = f"require always ({bracketed(first)} implies eventually within {steps} {bracketed(second)})"
+        text = f"require always ({atom_operand(first)} implies eventually within {steps} {atom_operand(second)})"
         yield clause(BOUNDED, text, 3, answered(low), bits.some(here))

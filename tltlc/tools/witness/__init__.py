@@ -1,4 +1,4 @@
 """Find traces that show what a spec means, as ``test`` blocks or as samples of signals.
 
-The traces are shortest ones, or together take every edge.
+These are a shortest accepted trace, a shortest rejected trace, or traces that take every edge.
 """

@@ -20,9 +20,9 @@ if TYPE_CHECKING:
     from tltlc.automaton.compare import Letter
 
 Expectations = Mapping[int, Sequence[str]]
-"""What to ``expect`` after a step: ``pending``, ``progress >= 0.5``, ``state "G a"``.
+"""Maps steps, numbered from 1, to the texts after ``expect``.
 
-Steps are numbered from 1.
+Such a text is ``pending``, ``progress >= 0.5`` or ``state "G a"``.
 """
 
 _WIDTH = 100
@@ -30,31 +30,30 @@ _INDENT = "    "
 _LONGEST_LABEL = 300
 
 
-class Blocks:
-    """Writes the ``test`` blocks of one spec.
+class BlockWriter:
+    """Writes ``test`` blocks of one spec.
 
-    If a trace begins like the trace before it, only the rest is run. The words for each letter are
-    computed once for each state. So many traces with long common beginnings need few steps of the
-    monitor. ``runs`` counts these steps.
+    If a trace begins like the trace before it, the monitor only runs the rest. So many traces with
+    long common beginnings need few steps of the monitor, which ``monitor_steps`` counts. The
+    literals of a letter are computed once for each state.
     """
 
     def __init__(self, spec: Fspa) -> None:
-        self.runs = 0
+        self.monitor_steps = 0
         self._spec = spec
         self._fresh = Monitor(spec)
-        self._ran: list[_Ran] = []
-        self._worded: dict[tuple[int, Letter], tuple[int, tuple[str, ...]]] = {}
+        self._last_trace: list[_MonitoredStep] = []
+        self._literals_cache: dict[tuple[int, Letter], tuple[int, tuple[str, ...]]] = {}
 
     def block(self, title: str, letters: Iterable[Letter], expects: Expectations) -> str:
-        """Return the text of a ``test`` block, which ends with a newline.
+        """Return the text of a ``test`` block, with a newline at the end.
 
-        It has a step for each letter, and equal consecutive letters share one step. Letters contain
-        names of atoms. Names that are not atoms of the spec are left out. For the test to pass, the
-        letters must respect the spec's ``exclusive`` groups.
+        The block has a step for each letter; equal consecutive letters share a step. Names in
+        letters that are not atoms of the spec are left out. The test passes only if the letters
+        respect the ``exclusive`` groups of the spec.
 
         Raises:
-            ValueError: there is no letter or no expectation, or the spec has no atoms, so it can
-                have no test.
+            ValueError: there is no letter or no expectation, or the spec has no atoms.
         """
         steps = list(enumerate(letters, start=1))
         if not self._spec.atoms or not steps or not any(expects.get(number) for number, _ in steps):
@@ -72,52 +71,52 @@ class Blocks:
         return "\n".join([*lines, "}", ""])
 
     def expectations(self, letters: Iterable[Letter], steps: Iterable[int] | None = None) -> Expectations:
-        """Return what the monitor reports after some steps of a trace, by step number from 1.
+        """Return what the monitor reports after these steps of a trace, by step number from 1.
 
-        By default this is only the last step. The report is the verdict, the progress, rounded down
-        to four decimals, and the state unless its label is very long.
+        By default, only the last step is included. The report has the verdict, the progress rounded
+        down to four decimals if it is above 0, and the label of the state unless it is very long.
         """
         results = self.results(letters)
-        wanted = {len(results)} if steps is None else set(steps)
-        return {number: _expected(results[number - 1]) for number in sorted(wanted) if 1 <= number <= len(results)}
+        numbers = {len(results)} if steps is None else set(steps)
+        return {number: _report(results[number - 1]) for number in sorted(numbers) if 1 <= number <= len(results)}
 
     def results(self, letters: Iterable[Letter]) -> list[Step]:
         """Return what the monitor reports after each step of a trace."""
         letters = list(letters)
-        shared = 0
-        for ran, letter in zip(self._ran, letters, strict=False):
-            if ran.letter != letter:
+        common = 0
+        for step, letter in zip(self._last_trace, letters, strict=False):
+            if step.letter != letter:
                 break
-            shared += 1
-        del self._ran[shared:]
-        monitor = copy(self._ran[-1].monitor if self._ran else self._fresh)
-        for letter in letters[shared:]:
-            self.runs += 1
-            result = monitor.step_atoms(values(self._spec, letter))
-            self._ran.append(_Ran(letter, result, copy(monitor)))
-        return [ran.result for ran in self._ran]
+            common += 1
+        del self._last_trace[common:]
+        monitor = copy(self._last_trace[-1].monitor if self._last_trace else self._fresh)
+        for letter in letters[common:]:
+            self.monitor_steps += 1
+            result = monitor.step_atoms(letter_values(self._spec, letter))
+            self._last_trace.append(_MonitoredStep(letter, result, copy(monitor)))
+        return [step.result for step in self._last_trace]
 
     def _literals(self, letters: Sequence[Letter]) -> list[tuple[str, ...]]:
-        """Return the atoms of each letter that hold.
+        """Return, for each letter, the atoms that hold.
 
-        If none holds, return one atom that does not, because a step must name an atom.
+        A letter in which no atom holds gets one negated atom, because a step must name an atom.
         """
         all_literals: list[tuple[str, ...]] = []
         state = 0
         for letter in letters:
-            worded = self._worded.get((state, letter))
-            if worded is None:
-                worded = self._worded[state, letter] = self._word(state, letter)
-            state, letter_literals = worded
+            entry = self._literals_cache.get((state, letter))
+            if entry is None:
+                entry = self._literals_cache[state, letter] = self._successor_and_literals(state, letter)
+            state, letter_literals = entry
             all_literals.append(letter_literals)
         return all_literals
 
-    def _word(self, state: int, letter: Letter) -> tuple[int, tuple[str, ...]]:
+    def _successor_and_literals(self, state: int, letter: Letter) -> tuple[int, tuple[str, ...]]:
         """Return the state after a letter, and the literals of the letter.
 
-        A letter without atoms gets the first atom that the edge requires not to hold.
+        A letter in which no atom holds gets the negation of the first atom that the edge forbids.
         """
-        spec, atom_values = self._spec, values(self._spec, letter)
+        spec, atom_values = self._spec, letter_values(self._spec, letter)
         taken = (
             (edge, prime)
             for edge in self._leaving[state]
@@ -127,7 +126,7 @@ class Blocks:
         # A letter that breaks `exclusive` may take no edge: the monitor rejects it, and so does the test.
         target, prime = next(((edge.target, prime) for edge, prime in taken), (state, ()))
         atom_names = tuple(atom.name for atom in spec.atoms if atom.name in letter)
-        return target, atom_names or (f"not {bracketed(spec.atoms[prime[0][0] if prime else 0].name)}",)
+        return target, atom_names or (f"not {atom_operand(spec.atoms[prime[0][0] if prime else 0].name)}",)
 
     @cached_property
     def _leaving(self) -> list[list[Edge]]:
@@ -137,11 +136,8 @@ class Blocks:
         return leaving
 
 
-class _Ran(NamedTuple):
-    """A step of the last trace that was run.
-
-    It has the letter, the report of the monitor, and the monitor after the step.
-    """
+class _MonitoredStep(NamedTuple):
+    """A step of the last trace: the letter, the output of the monitor, and the monitor after it."""
 
     letter: Letter
     result: Step
@@ -149,44 +145,44 @@ class _Ran(NamedTuple):
 
 
 def test_block(title: str, spec: Fspa, letters: Iterable[Letter], expects: Expectations) -> str:
-    """Return the text of one ``test`` block, as in :meth:`Blocks.block`."""
-    return Blocks(spec).block(title, letters, expects)
+    """Return the text of one ``test`` block, as in :meth:`BlockWriter.block`."""
+    return BlockWriter(spec).block(title, letters, expects)
 
 
 def expectations(fspa: Fspa, letters: Iterable[Letter], steps: Iterable[int] | None = None) -> Expectations:
-    """Return what to expect of one trace, as in :meth:`Blocks.expectations`."""
-    return Blocks(fspa).expectations(letters, steps)
+    """Return the expectations of one trace, as in :meth:`BlockWriter.expectations`."""
+    return BlockWriter(fspa).expectations(letters, steps)
 
 
-def _expected(step: Step) -> tuple[str, ...]:
+def _report(step: Step) -> tuple[str, ...]:
     progress = floor(step.progress * 10_000 + 1e-6) / 10_000
-    so_far = (f"progress >= {progress:.4g}",) if progress > 0 else ()
-    return (step.verdict, *so_far, *_state(step.label))
+    progress_expectation = (f"progress >= {progress:.4g}",) if progress > 0 else ()
+    return (step.verdict, *progress_expectation, *_state_expectation(step.label))
 
 
-def values(fspa: Fspa, letter: Letter) -> tuple[float, ...]:
-    """Return a letter as the values of the atoms, in order, as tests give them.
+def letter_values(fspa: Fspa, letter: Letter) -> tuple[float, ...]:
+    """Return the values of the atoms of an automaton for a letter, in order, as in tests.
 
     The value is 1 for atoms that hold and -1 for the others.
     """
     return tuple(1.0 if atom.name in letter else -1.0 for atom in fspa.atoms)
 
 
-def _state(label: str) -> tuple[str, ...]:
-    """Return the expectation of a state.
+def _state_expectation(label: str) -> tuple[str, ...]:
+    """Return the expectation of the state with this label.
 
-    It is empty if the label is too long to read, or contains characters that a text cannot have.
+    It is empty if the label is too long to read, or contains a quote or a line break.
     """
     return () if len(label) > _LONGEST_LABEL or '"' in label or "\n" in label else (f'state "{label}"',)
 
 
-def bracketed(name: str) -> str:
-    """Return the name of an atom as an operand: a comparison gets brackets."""
+def atom_operand(name: str) -> str:
+    """Return the name of an atom as an operand of ``not``: a comparison gets brackets."""
     return operand_text(atom(name))
 
 
 def _step(literals: Sequence[str], times: int) -> list[str]:
-    """Return the lines of a ``step``, broken after commas."""
+    """Return the lines of a ``step``; long lines are broken after commas."""
     lines = [f"{_INDENT}step {f'{times}x ' if times > 1 else ''}{literals[0]}"]
     for literal in literals[1:]:
         if len(lines[-1]) + len(literal) + 3 > _WIDTH:

@@ -1,4 +1,4 @@
-"""The titles of witnesses, and diagnostics for traces that do not exist."""
+"""The titles of witnesses, and the diagnostics about traces that do not exist."""
 
 from __future__ import annotations
 
@@ -8,18 +8,21 @@ from contextlib import contextmanager
 from tltlc.automaton.fspa import Fspa
 from tltlc.automaton.work import OutOfWork
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.tools.witness.cover import Untaken
+from tltlc.tools.witness.cover import UntakenEdge
 from tltlc.tools.witness.traces import Witness
 from tltlc.tools.witness.transitions import Moves
 
 _MOST_NAMED = 10
-"""The most edges that are named one by one."""
+"""The most untaken edges that get a warning of their own."""
 
 
-def title(fspa: Fspa, witness: Witness, number: int = 1, of: int = 1) -> str:
-    """Return the title of a witness's test; ``number`` counts the tests of a cover from 1."""
+def title(fspa: Fspa, witness: Witness, number: int = 1, count: int = 1) -> str:
+    """Return the title of the test of a witness.
+
+    For a trace of a cover, ``number`` is its number from 1, and ``count`` the number of traces.
+    """
     if witness.kind == "cover":
-        return f"{fspa.name}: way {number} of {of} through its automaton"
+        return f"{fspa.name}: way {number} of {count} through its automaton"
     if witness.cycle is not None:
         return f"{fspa.name}: a trace that is {'accepted' if witness.kind == 'accepting' else 'rejected'}"
     if witness.kind == "accepting":
@@ -28,27 +31,27 @@ def title(fspa: Fspa, witness: Witness, number: int = 1, of: int = 1) -> str:
     return f"{fspa.name}: a shortest trace that {'breaks it' if last.verdict == 'violated' else 'is rejected'}"
 
 
-def no_trace(moves: Moves, outcome: str) -> Diagnostic:
-    """Return the warning that no trace is accepted, or rejected.
+def no_trace_warning(moves: Moves, outcome: str) -> Diagnostic:
+    """Return the warning that no trace has the ``outcome`` ``accepted`` or ``rejected``.
 
-    If that is because no samples were found, the warning says so.
+    If the reason is that no samples were found, the warning says so.
     """
     fspa = moves.fspa
     if moves.obstacles:
         edge, obstacles = min(moves.obstacles.items())
-        suggestion = (
+        help_ = (
             f"edge {_edge(fspa, edge)}: {_none_found(' or '.join(obstacle.text(fspa) for obstacle in obstacles[:2]))}"
         )
         return Diagnostic(
-            "TLT0741", f"no samples were found that `{fspa.name}` would have {outcome}", (), suggestion, "warning"
+            "TLT0741", f"no samples were found that `{fspa.name}` would have {outcome}", (), help_, "warning"
         )
-    suggestion = f"`tltlc explain` says what it asks for; weaken it where it should be {outcome} at times"
+    help_ = f"`tltlc explain` says what it asks for; weaken it where it should be {outcome} at times"
     if outcome == "rejected":
-        suggestion = "it asks nothing of the game, or nothing that can fail"
-    return Diagnostic("TLT0741", f"no trace is {outcome} by `{fspa.name}`", (), suggestion, "warning")
+        help_ = "it asks nothing of the game, or nothing that can fail"
+    return Diagnostic("TLT0741", f"no trace is {outcome} by `{fspa.name}`", (), help_, "warning")
 
 
-def untaken(fspa: Fspa, edges: Sequence[Untaken]) -> list[Diagnostic]:
+def untaken_warnings(fspa: Fspa, edges: Sequence[UntakenEdge]) -> list[Diagnostic]:
     """Return the warnings about edges that no trace takes."""
     warnings = []
     for untaken_edge in edges[:_MOST_NAMED]:
@@ -56,15 +59,15 @@ def untaken(fspa: Fspa, edges: Sequence[Untaken]) -> list[Diagnostic]:
         name = f"the edge {_edge(fspa, untaken_edge.edge)} of `{fspa.name}` (`{guard}`)"
         if untaken_edge.obstacles:
             reasons = " or ".join(obstacle.text(fspa) for obstacle in untaken_edge.obstacles[:2])
-            text, suggestion = "no samples were found that take", f"{_none_found(reasons)} at once"
+            text, help_ = "no samples were found that take", f"{_none_found(reasons)} at once"
             if all(len(obstacle.literals) == 1 for obstacle in untaken_edge.obstacles):
-                suggestion = _none_found(reasons)
+                help_ = _none_found(reasons)
         else:
-            text, suggestion = (
+            text, help_ = (
                 "no way was found to",
                 "the state that it leaves is reached by edges alone that none takes",
             )
-        warnings.append(Diagnostic("TLT0740", f"{text} {name}", (), suggestion, "warning"))
+        warnings.append(Diagnostic("TLT0740", f"{text} {name}", (), help_, "warning"))
     if len(edges) > _MOST_NAMED:
         rest = len(edges) - _MOST_NAMED
         text = f"no trace takes {rest} more edge{'s' * (rest > 1)} of `{fspa.name}`"
@@ -72,36 +75,36 @@ def untaken(fspa: Fspa, edges: Sequence[Untaken]) -> list[Diagnostic]:
     return warnings
 
 
-def no_atoms(fspa: Fspa) -> Diagnostic:
-    """Return the error about a spec without atoms, for which no trace can be written."""
+def no_atoms_error(fspa: Fspa) -> Diagnostic:
+    """Return the error about a spec without atoms, for which no test can be written."""
     return Diagnostic(
         "TLT0742", f"`{fspa.name}` has no atoms, so a trace of it says nothing", help="name an atom in it"
     )
 
 
-def no_signals(fspa: Fspa) -> Diagnostic:
+def no_signals_error(fspa: Fspa) -> Diagnostic:
     """Return the error about a spec that reads no signal, for which no CSV can be written."""
     title = f"`{fspa.name}` reads no signal, so a CSV trace of it has no columns"
     return Diagnostic("TLT0742", title, help="ask for `--as test`, or name a signal in it")
 
 
-def _none_found(wanted: str) -> str:
-    """Return why there is no sample.
+def _none_found(literals: str) -> str:
+    """Return the text that no sample was found for some literals.
 
-    The search proves nothing, so this does not say that no sample exists.
+    The search is incomplete, so the text does not say that no sample exists.
     """
-    return f"no values of the signals were found that give {wanted}"
+    return f"no values of the signals were found that give {literals}"
 
 
 @contextmanager
-def out_of_work(fspa: Fspa) -> Iterator[None]:
-    """Raise TLT0743 if the search for an infinite trace takes too long."""
+def reporting_out_of_work(fspa: Fspa) -> Iterator[None]:
+    """Raise TLT0743 in place of ``OutOfWork``, when the search for an infinite trace takes too long."""
     try:
         yield
     except OutOfWork:
         text = f"the search for an infinite trace of `{fspa.name}` takes too many steps"
-        suggestion = "raise `--state-budget`, or ask for `--cover`"
-        raise TltlError([Diagnostic("TLT0743", text, help=suggestion)]) from None
+        help_ = "raise `--state-budget`, or ask for `--cover`"
+        raise TltlError([Diagnostic("TLT0743", text, help=help_)]) from None
 
 
 def _edge(fspa: Fspa, index: int) -> str:

@@ -12,10 +12,11 @@ from tltlc.tools.witness.transitions import Moves, SampledEdge
 
 
 @record
-class Untaken:
+class UntakenEdge:
     """An edge, by index, that no trace takes.
 
-    If there are no obstacles, its source cannot be reached. Otherwise no sample takes the edge.
+    If there are no obstacles, no trace reaches the source of the edge. Otherwise the obstacles are the
+    literals for which no sample was found.
     """
 
     edge: int
@@ -24,17 +25,17 @@ class Untaken:
 
 @record
 class Cover:
-    """The traces, shortest first, and the edges that none of them takes, in order."""
+    """Traces, shortest first, and the edges that no trace takes, in order."""
 
     traces: tuple[Witness, ...]
-    untaken: tuple[Untaken, ...]
+    untaken: tuple[UntakenEdge, ...]
 
 
 def cover(moves: Moves) -> Cover:
     """Return traces that take every edge that samples can take.
 
-    Each trace continues to the nearest edge that is not taken yet, and ends if it can reach no such
-    edge. Over infinite traces, these are beginnings of traces.
+    Each trace goes on to the nearest edge that is not taken yet, and ends when it can reach no such
+    edge. Over infinite traces, the result has beginnings of traces.
     """
     edges = moves.fspa.edges
     nearest = NearestEdges(
@@ -45,31 +46,31 @@ def cover(moves: Moves) -> Cover:
         traces.append(trace)
     traces.sort(key=len)
     taken = {move.edge for trace in traces for move in trace}
-    untaken = [Untaken(edge, moves.obstacles.get(edge, ())) for edge in range(len(edges)) if edge not in taken]
-    return Cover(tuple(_with_news(traces)), tuple(untaken))
+    untaken = [UntakenEdge(edge, moves.obstacles.get(edge, ())) for edge in range(len(edges)) if edge not in taken]
+    return Cover(tuple(_witnesses(traces)), tuple(untaken))
 
 
 def _trace(moves: Moves, nearest: NearestEdges) -> Iterator[SampledEdge]:
-    """Yield the moves of a trace from the initial state that takes edges which no trace has taken.
+    """Yield the moves of a trace from the initial state that takes edges that no trace has taken.
 
-    It yields nothing if there is no such trace.
+    Nothing is yielded if there is no such trace.
     """
     state = 0
-    while way := nearest.take(state):
-        for edge in way:
+    while path := nearest.take(state):
+        for edge in path:
             move = moves.move(edge)
             assert move is not None
             yield move
-        state = moves.fspa.edges[way[-1]].target
+        state = moves.fspa.edges[path[-1]].target
 
 
-def _with_news(traces: Iterable[tuple[SampledEdge, ...]]) -> Iterator[Witness]:
-    """Yield the traces as witnesses, each with the steps that are the first to take their edge."""
-    seen: set[int] = set()
+def _witnesses(traces: Iterable[tuple[SampledEdge, ...]]) -> Iterator[Witness]:
+    """Yield the traces as witnesses; ``new_steps`` has the steps that first take their edge."""
+    taken: set[int] = set()
     for trace in traces:
-        news = []
+        new_steps = []
         for number, move in enumerate(trace, start=1):
-            if move.edge not in seen:
-                seen.add(move.edge)
-                news.append(number)
-        yield Witness("cover", trace, news=tuple(news))
+            if move.edge not in taken:
+                taken.add(move.edge)
+                new_steps.append(number)
+        yield Witness("cover", trace, new_steps=tuple(new_steps))

@@ -1,4 +1,4 @@
-"""Find the nearest edge that no trace has taken, without searching the automaton anew each time."""
+"""Find the nearest edge that no trace has taken, without a new search for each path."""
 
 from __future__ import annotations
 
@@ -8,55 +8,56 @@ from tltlc.automaton.infinite.graphs import components
 
 
 class NearestEdges:
-    """Finds paths to the nearest wanted edge. Edges can only stop being wanted.
+    """Finds paths to the nearest wanted edge.
 
-    ``leaving`` has for each state its edges as pairs of an index and a target, in the order in
-    which they are tried. Initially every edge is wanted. The paths are the same as those of a
-    breadth-first search.
+    At first every edge is wanted; an edge at the end of a path is no longer wanted. ``leaving`` has
+    the edges of each state as pairs of an index and a target, in the order in which they are tried.
+    The paths are those that a breadth-first search finds. ``visited_edges`` counts the edges that
+    the searches have visited.
 
-    ``_bound`` is a lower bound on the number of edges between a state and the nearest state that a
-    wanted edge leaves. It never decreases, so what one search learns stays true in all later
-    searches. ``_next`` is the index of the first edge of a state whose target may be nearer than
-    the state. ``looks`` counts the edges that searches have looked at.
+    ``_bound`` has, for each state, a lower bound on the number of edges to the nearest state that a
+    wanted edge leaves. Bounds never decrease, so they remain valid for later searches. ``_next`` is
+    the position of the first edge of a state whose target may be nearer to a wanted edge.
     """
 
     def __init__(self, leaving: Sequence[Sequence[tuple[int, int]]]) -> None:
-        self.looks = 0
+        self.visited_edges = 0
         self._leaving = leaving
         self._wanted = [[edge for edge, _ in reversed(edges)] for edges in leaving]
         self._bound = [0] * len(leaving)
         self._next = [0] * len(leaving)
         self._targets = [tuple(target for _, target in edges) for edges in leaving]
         self._component = [0] * len(leaving)
-        self._hopes: list[int] = []
-        self._into: list[list[int]] = []
+        self._live_edges: list[int] = []
+        self._predecessors: list[list[int]] = []
         self._find_components()
 
     def _find_components(self) -> None:
-        """Count the hopes of each strongly connected component.
+        """Count the live edges of each strongly connected component.
 
-        These are its wanted edges, and its edges to other components with hopes.
+        An edge is live if it is wanted, or if it leads to another component with live edges.
         """
         for group in components(range(len(self._leaving)), self._targets.__getitem__):
-            number = len(self._hopes)
+            number = len(self._live_edges)
             for state in group:
                 self._component[state] = number
-            self._into.append([])
-            self._hopes.append(0)
+            self._predecessors.append([])
+            self._live_edges.append(0)
             for state in group:
-                self._hopes[number] += len(self._wanted[state])
+                self._live_edges[number] += len(self._wanted[state])
                 for target in self._targets[state]:
-                    other = self._component[target]
-                    if other != number and self._hopes[other]:
-                        self._into[other].append(number)
-                        self._hopes[number] += 1
+                    successor = self._component[target]
+                    if successor != number and self._live_edges[successor]:
+                        self._predecessors[successor].append(number)
+                        self._live_edges[number] += 1
 
     def take(self, start: int) -> tuple[int, ...]:
-        """Return the edges of a path from a state to a wanted edge, which is then no longer wanted.
+        """Return the edges of a path from a state to the nearest wanted edge.
 
-        The path ends with the wanted edge. It is empty if no wanted edge can be reached.
+        The path ends with that edge, which is then no longer wanted. It is empty if no wanted edge
+        can be reached.
         """
-        if not self._has_hope(start):
+        if not self._is_live(start):
             return ()
         states = [start]
         while not self._wanted[states[-1]]:
@@ -70,31 +71,32 @@ class NearestEdges:
             if state != start:
                 states.pop()
         last = self._wanted[states[-1]].pop()
-        self._lose_hope(self._component[states[-1]])
+        self._remove_live_edge(self._component[states[-1]])
         return (*(self._leaving[state][self._next[state]][0] for state in states[:-1]), last)
 
     def _nearer(self, state: int) -> int | None:
         """Return the target of the first edge that may lead nearer, or None if no edge does."""
         targets, bound = self._targets[state], self._bound[state]
         for place in range(self._next[state], len(targets)):
-            self.looks += 1
+            self.visited_edges += 1
             target = targets[place]
-            if self._bound[target] < bound and self._has_hope(target):
+            if self._bound[target] < bound and self._is_live(target):
                 self._next[state] = place
                 return target
         return None
 
-    def _has_hope(self, state: int) -> bool:
-        return self._hopes[self._component[state]] > 0
+    def _is_live(self, state: int) -> bool:
+        """Whether a wanted edge can be reached from a state."""
+        return self._live_edges[self._component[state]] > 0
 
-    def _lose_hope(self, component: int) -> None:
-        """Remove one hope of a component.
+    def _remove_live_edge(self, component: int) -> None:
+        """Remove a live edge from a component.
 
-        If none is left, each component that leads to it loses a hope, too.
+        If the component has no live edge left, its predecessors lose a live edge, too.
         """
-        lost = [component]
-        while lost:
-            number = lost.pop()
-            self._hopes[number] -= 1
-            if not self._hopes[number]:
-                lost += self._into[number]
+        pending = [component]
+        while pending:
+            number = pending.pop()
+            self._live_edges[number] -= 1
+            if not self._live_edges[number]:
+                pending += self._predecessors[number]

@@ -1,7 +1,7 @@
-"""Find samples for letters: values of signals that give atoms the wanted truth values.
+"""Find samples for letters: values of signals at which atoms have given truth values.
 
-The search does a bounded amount of work. Atoms that share no signal are searched separately
-(:mod:`tltlc.tools.witness.search`). If nothing is found, that proves nothing.
+Atoms that share no signal are searched separately (:mod:`tltlc.tools.witness.search`). The work is
+bounded, so the search may find no sample although there is one.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from tltlc.core.record import record
 from tltlc.monitor import MonitorError
 from tltlc.monitor.samples import Samples, check_exclusive, shown
 from tltlc.resolve.spec import Signal
-from tltlc.tools.witness.search import AtomGroup, Point, groups
+from tltlc.tools.witness.search import AtomGroup, Point, atom_groups
 
 if TYPE_CHECKING:
     from tltlc.automaton.compare import Letter
@@ -25,56 +25,56 @@ Sample = dict[str, float]
 
 @record
 class UnsatisfiedLiterals:
-    """The reason why there is no sample: literals that no sample was found to make true together.
+    """Literals for which no sample was found that makes them all true.
 
-    ``literals`` are indices of atoms with the wanted truth value. There are as few as could be
-    found.
+    Each literal is the index of an atom and its truth value. No literal can be left out: the search
+    finds samples for the others.
     """
 
     literals: Implicant
 
     def text(self, fspa: Fspa) -> str:
-        """Return the literals in words, such as ```near(s1)` and not `near(s1, close=3)```."""
+        """Return the literals in words, for example ```near(s1)` and not `near(s1, close=3)```."""
         terms = [f"{'' if holds else 'not '}`{fspa.atoms[atom].name}`" for atom, holds in self.literals]
         return terms[0] if len(terms) == 1 else f"{', '.join(terms[:-1])} and {terms[-1]}"
 
 
 @record
-class Unrealised:
-    """The first step of a trace, from 1, for which no sample was found, and the reason."""
+class MissingSample:
+    """The first step of a trace, from 1, for which no sample was found, and its obstacle."""
 
     step: int
     obstacle: UnsatisfiedLiterals
 
 
-class Realiser:
-    """Finds samples for an automaton with its params at their values, and caches them."""
+class SampleFinder:
+    """Finds samples for the atoms of an automaton, and caches them. Params have their values."""
 
     def __init__(self, fspa: Fspa) -> None:
         self._fspa = fspa
         self._samples = Samples(fspa, None, [])
-        self._groups = groups(fspa)
-        self._known: dict[Implicant, Sample | UnsatisfiedLiterals] = {}
+        self._groups = atom_groups(fspa)
+        self._cache: dict[Implicant, Sample | UnsatisfiedLiterals] = {}
 
-    def letter(self, letter: Letter) -> Sample | UnsatisfiedLiterals:
-        """Return a sample at which exactly the atoms of a letter hold."""
-        return self.literals(tuple((i, atom.name in letter) for i, atom in enumerate(self._fspa.atoms)))
+    def sample_for_letter(self, letter: Letter) -> Sample | UnsatisfiedLiterals:
+        """Return a sample at which exactly the atoms of a letter hold, or why there is none."""
+        return self.sample_for_literals(tuple((i, atom.name in letter) for i, atom in enumerate(self._fspa.atoms)))
 
-    def literals(self, wanted: Implicant) -> Sample | UnsatisfiedLiterals:
-        """Return a sample at which the literals are true.
+    def sample_for_literals(self, literals: Implicant) -> Sample | UnsatisfiedLiterals:
+        """Return a sample at which the literals are true, or why there is none.
 
-        Other atoms do not hold if possible.
+        If possible, no other atom holds at the sample.
         """
-        if wanted not in self._known:
-            self._known[wanted] = self._found(wanted)
-        return self._known[wanted]
+        if literals not in self._cache:
+            self._cache[literals] = self._search(literals)
+        return self._cache[literals]
 
     def obstacles(self, letter: Letter) -> tuple[UnsatisfiedLiterals, ...]:
-        """Return why a letter has no sample; empty if it has one.
+        """Return why no sample was found for a letter; empty if one was found.
 
-        There is an obstacle for each group of atoms that share signals and have no solution.
+        Each group of atoms that share signals has an obstacle if no point was found for it.
         """
-        sample = self.letter(letter)
+        sample = self.sample_for_letter(letter)
         if not isinstance(sample, UnsatisfiedLiterals):
             return ()
         polarity = {i: atom.name in letter for i, atom in enumerate(self._fspa.atoms)}
@@ -82,14 +82,14 @@ class Realiser:
         return tuple(point for point in points if isinstance(point, UnsatisfiedLiterals)) or (sample,)
 
     def letter_of(self, sample: Mapping[str, float]) -> Letter:
-        """Return the letter of a sample."""
+        """Return the letter of a sample: the atoms that hold at it."""
         return self._letter(self._samples.atom_values(sample, 1))
 
     def _letter(self, values: tuple[float, ...]) -> Letter:
         return frozenset(atom.name for atom, value in zip(self._fspa.atoms, values, strict=True) if value > 0.0)
 
-    def _found(self, wanted: Implicant) -> Sample | UnsatisfiedLiterals:
-        polarity = dict(wanted)
+    def _search(self, literals: Implicant) -> Sample | UnsatisfiedLiterals:
+        polarity = dict(literals)
         sample: Sample = {}
         for group in self._groups:
             point = _point(group, polarity)
@@ -99,26 +99,26 @@ class Realiser:
         try:
             check_exclusive(self._fspa, self._samples.atom_values(sample, 1), 1)
         except MonitorError:
-            return UnsatisfiedLiterals(wanted)
+            return UnsatisfiedLiterals(literals)
         return {signal.name: sample[signal.name] for signal in self._fspa.signals}
 
 
-def samples(fspa: Fspa, letters: Iterable[Letter]) -> tuple[Sample, ...] | Unrealised:
-    """Return the samples of a trace of letters, or the first letter without a sample."""
-    realiser = Realiser(fspa)
+def samples(fspa: Fspa, letters: Iterable[Letter]) -> tuple[Sample, ...] | MissingSample:
+    """Return a sample for each letter of a trace, or the first step for which none was found."""
+    finder = SampleFinder(fspa)
     trace_samples: list[Sample] = []
     for step, letter in enumerate(letters, start=1):
-        sample = realiser.letter(letter)
+        sample = finder.sample_for_letter(letter)
         if isinstance(sample, UnsatisfiedLiterals):
-            return Unrealised(step, sample)
+            return MissingSample(step, sample)
         trace_samples.append(sample)
     return tuple(trace_samples)
 
 
 def csv_text(fspa: Fspa, samples: Iterable[Sample]) -> str:
-    """Return the samples as CSV with the names of the signals as columns.
+    """Return samples as CSV, with a column for each signal and its name in the first row.
 
-    ``tltlc monitor`` and generated monitors accept this format.
+    ``tltlc monitor`` and generated monitors read this format.
     """
     import csv
     import io
@@ -138,19 +138,20 @@ def _cell(signal: Signal, value: float) -> str:
 
 
 def _point(group: AtomGroup, polarity: Mapping[int, bool]) -> Point | UnsatisfiedLiterals:
-    """Return values of a group's signals at which its atoms have the wanted truth values.
+    """Return values of the signals of a group at which its atoms have these truth values.
 
-    Atoms without a wanted truth value do not hold if possible.
+    If possible, atoms that are not in ``polarity`` do not hold. Returns a minimal set of
+    unsatisfied literals if no point is found.
     """
-    wanted = tuple((atom, polarity[atom]) for atom in group.atoms if atom in polarity)
-    point = group.find(tuple((atom, polarity.get(atom, False)) for atom in group.atoms)) or group.find(wanted)
-    return UnsatisfiedLiterals(_least(wanted, group)) if point is None else point
+    literals = tuple((atom, polarity[atom]) for atom in group.atoms if atom in polarity)
+    point = group.find(tuple((atom, polarity.get(atom, False)) for atom in group.atoms)) or group.find(literals)
+    return UnsatisfiedLiterals(_minimal(literals, group)) if point is None else point
 
 
-def _least(literals: Implicant, group: AtomGroup) -> Implicant:
-    """Return literals for which nothing is found, without those that are not needed."""
+def _minimal(literals: Implicant, group: AtomGroup) -> Implicant:
+    """Return a minimal subset of literals for which no point is found."""
     for literal in literals:
-        fewer = tuple(other for other in literals if other != literal)
+        fewer = tuple(candidate for candidate in literals if candidate != literal)
         if fewer and group.find(fewer) is None:
             literals = fewer
     return literals

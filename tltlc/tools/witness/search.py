@@ -1,6 +1,7 @@
-"""Search for points at which atoms have wanted truth values.
+"""Search for points at which atoms have given truth values.
 
-The search tries simple points, then points between the borders of atoms, and then climbs.
+A point assigns a value to each signal. The search tries simple points, then points between the
+borders of atoms, and then climbs. The border of an atom is where its truth value changes.
 """
 
 from __future__ import annotations
@@ -24,26 +25,26 @@ from tltlc.resolve.spec import Signal
 Point = Mapping[str, float]
 
 Candidate = tuple[Point, tuple[float, ...]]
-"""A point with the values of the atoms at it."""
+"""A point, and the values of the atoms at this point."""
 
 _CLEAR = 0.05
-"""A point with this margin is taken at once. The first such point is the simplest."""
+"""The search stops at the first point with at least this margin, which is the simplest one."""
 _STARTS = 3
 _ROUNDS = 100
 _HALVINGS = 60
 _FAR = tuple(
     sign * size for size in (1e9, 1e12, 1e20, 1e50, 1e100, 1e200, 1e300, 1e308, float_info.max) for sign in (1.0, -1.0)
 )
-"""Values along a signal without a range, tried if simple points lead nowhere."""
+"""Values of a signal without a range that are tried if simple points and climbs fail."""
 _LARGE = 1e6
-"""From this size on, plain bisection would take too long to find the order of magnitude."""
+"""From this size on, bisection uses geometric means: arithmetic means would take too long."""
 _UNDEFINED = (ZeroDivisionError, OverflowError, ValueError)
 
 
 class AtomGroup:
     """Atoms that share signals, directly or through other atoms.
 
-    ``atoms`` and the literals use indices into the atoms of the automaton.
+    ``atoms`` and all literals have indices into the atoms of the automaton.
     """
 
     def __init__(self, fspa: Fspa, atoms: Sequence[int], signals: Sequence[Signal]) -> None:
@@ -57,32 +58,35 @@ class AtomGroup:
         self._functions = compile_expressions(self._expressions, self._names, self._params)
         self._goals: dict[tuple[int, bool], list[tuple[Callable[[Sequence[float]], float], bool]]] = {}
         self._exclusive = [[self._place[atom] for atom in group if atom in self._place] for group in fspa.exclusive]
-        self._known: dict[Implicant, Point | None] = {}
+        self._cache: dict[Implicant, Point | None] = {}
 
     def find(self, literals: Implicant) -> Point | None:
-        """Return signal values at which the literals are true, or None.
+        """Return a point at which the literals are true, or None if none is found.
 
-        No two exclusive atoms of the group hold there.
+        No two exclusive atoms of the group hold at the point.
         """
-        if literals not in self._known:
-            self._known[literals] = self._find(literals)
-        return self._known[literals]
+        if literals not in self._cache:
+            self._cache[literals] = self._find(literals)
+        return self._cache[literals]
 
     def _find(self, literals: Implicant) -> Point | None:
-        """Return a point at which the literals are true, or None.
+        """Return the best simple candidate, else the end of a climb, else the best far candidate.
 
-        It is the best simple candidate, else the result of a climb, else the best far candidate.
+        Returns None if there is none.
         """
         inside = self._best(self._candidates, literals)
         if inside is not None:
             return inside
         outside = [(self._margin(values, literals), point) for point, values in self._candidates]
         starts = sorted(outside, key=lambda candidate: -candidate[0])[:_STARTS]
-        climbed = next((end for _, start in starts if (end := self._climb(start, literals))), None)
-        return climbed or self._best(self._far_candidates, literals)
+        summit = next((end for _, start in starts if (end := self._climb(start, literals))), None)
+        return summit or self._best(self._far_candidates, literals)
 
     def _best(self, candidates: Sequence[Candidate], literals: Implicant) -> Point | None:
-        """Return the first candidate that is clearly inside, else the one furthest inside."""
+        """Return the first candidate with a margin of ``_CLEAR``, else the one with the largest.
+
+        Returns None if the literals are true at no candidate.
+        """
         inside: list[tuple[float, Point]] = []
         for point, values in candidates:
             if self._are_true(values, literals):
@@ -109,6 +113,7 @@ class AtomGroup:
         )
 
     def _margin(self, values: Sequence[float], literals: Implicant) -> float:
+        """Return by how much the literals are true: the least distance of a value from 0."""
         sides = (values[self._place[atom]] if holds else -values[self._place[atom]] for atom, holds in literals)
         return min(sides, default=1.0)
 
@@ -124,7 +129,7 @@ class AtomGroup:
 
     @cached_property
     def _simple(self) -> list[Point]:
-        """Simple points; empty if there are no signals."""
+        """The simple points; empty if there are no signals."""
         whole = Op("min", (*self._expressions, *map(Const, self._params.values())))
         box: Box = {Variable(name): self._ranges[name] for name in self._names}
         bools: frozenset[AnyVariable] = frozenset(Variable(name) for name in self._bools)
@@ -139,7 +144,7 @@ class AtomGroup:
                 yield from self._between_borders(self._simple[0], name, ladder)
 
     def _far_points(self) -> Iterator[Point]:
-        """Yield points along each signal whose range is unbounded, up to the largest numbers."""
+        """Yield points along each signal without a finite range, up to the largest numbers."""
         for name in self._names:
             low, high = self._ranges[name]
             far = [value for value in _FAR if low <= value <= high]
@@ -152,7 +157,8 @@ class AtomGroup:
     def _between_borders(self, start: Point, name: str, ladder: Sequence[float]) -> Iterator[Point]:
         """Yield points around the borders of atoms along one signal.
 
-        These are both sides of each border, and the middles between one border and the next.
+        There is a point on each side of a border, and one in the middle between two borders. Borders
+        are found between the values of ``ladder``, which is sorted.
         """
         borders: list[float] = []
         for index in range(len(self._functions)):
@@ -165,7 +171,7 @@ class AtomGroup:
             yield {**start, name: value}
 
     def _border(self, start: dict[str, float], name: str, index: int, low: float, high: float) -> tuple[float, float]:
-        """Return two values, adjacent or nearly so, between which an atom's truth changes."""
+        """Return two values, adjacent or almost, between which the truth of an atom changes."""
         below = self._sign({**start, name: low}, index)
         for _ in range(_HALVINGS):
             middle = _middle(low, high)
@@ -183,12 +189,13 @@ class AtomGroup:
         return value > 0.0
 
     def _climb(self, start: Point, literals: Implicant) -> Point | None:
-        """Return a point where the literals are true, or None.
+        """Return a point at which the literals are true, or None.
 
-        The climb takes steps along the signals. After a step that helps, the next one is longer.
+        The climb takes steps along single signals. After a step that helps, the step along that
+        signal gets longer; after another, it gets shorter.
         """
-        goals = [goal for literal in literals for goal in self._slopes(literal)]
-        best, lack = dict(start), self._lack(start, goals)
+        goals = [goal for literal in literals for goal in self._sign_functions(literal)]
+        best, deficit = dict(start), self._deficit(start, goals)
         sides = {name: side for name, side in self._ranges.items() if name not in self._bools}
         steps = {name: (high - low) / 8 if isfinite(high - low) else 1.0 for name, (low, high) in sides.items()}
         for _ in range(_ROUNDS):
@@ -197,15 +204,15 @@ class AtomGroup:
                 steps[name] = step / 2
                 for value in (min(best[name] + step, high), max(best[name] - step, low)):
                     point = {**best, name: value}
-                    values, here = self._values(point), self._lack(point, goals)
+                    values, point_deficit = self._values(point), self._deficit(point, goals)
                     if values is not None and self._are_true(values, literals):
                         return point
-                    if here < lack:
-                        best, lack, steps[name] = point, here, step * 2
+                    if point_deficit < deficit:
+                        best, deficit, steps[name] = point, point_deficit, step * 2
         return None
 
-    def _lack(self, point: Point, goals: Sequence[tuple[Callable[[Sequence[float]], float], bool]]) -> float:
-        """Return by how much, in total, a point misses the wanted signs."""
+    def _deficit(self, point: Point, goals: Sequence[tuple[Callable[[Sequence[float]], float], bool]]) -> float:
+        """Return the sum of the amounts by which functions miss their required signs at a point."""
         inputs = [point[name] for name in self._names]
         try:
             # Aim beyond the border: at the border the value is 0 and the atom does not hold.
@@ -213,34 +220,32 @@ class AtomGroup:
         except _UNDEFINED:
             return inf
 
-    def _slopes(self, literal: tuple[int, bool]) -> Sequence[tuple[Callable[[Sequence[float]], float], bool]]:
+    def _sign_functions(self, literal: tuple[int, bool]) -> Sequence[tuple[Callable[[Sequence[float]], float], bool]]:
         """Return the functions that decide whether a literal is true.
 
-        Each comes with whether it must be positive. They leave out the plateaus that `clamp` makes.
+        Each comes with whether it must be positive. Unlike the atom itself, the functions have no
+        plateaus from ``clamp``, so a climb sees in which direction they grow.
         """
         if literal not in self._goals:
             atom, holds = literal
-            parts = list(_slopes(self._expressions[self._place[atom]], holds))
+            parts = list(_sign_parts(self._expressions[self._place[atom]], holds))
             functions = compile_expressions([expression for expression, _ in parts], self._names, self._params)
             self._goals[literal] = [(function, part[1]) for function, part in zip(functions, parts, strict=True)]
         return self._goals[literal]
 
 
 def _middle(low: float, high: float) -> float:
-    """Return the middle of two numbers.
-
-    For large numbers of different sizes, this is their geometric mean.
-    """
+    """Return the middle of two numbers; for large numbers, their geometric mean."""
     least, most = sorted((abs(low), abs(high)))
     if (low > 0) != (high > 0) or least < _LARGE or most / least < 4:
         return midpoint(low, high)
     return copysign(sqrt(least) * sqrt(most), low)
 
 
-def _slopes(expression: Expression, holds: bool) -> Iterator[tuple[Expression, bool]]:
-    """Yield the parts of an expression that decide its sign.
+def _sign_parts(expression: Expression, holds: bool) -> Iterator[tuple[Expression, bool]]:
+    """Yield the subexpressions that decide the sign of an expression.
 
-    Each comes with whether it must be positive.
+    Each comes with whether it must be positive. ``holds`` is whether the expression must be.
     """
     stack = [(expression, holds)]
     while stack:
@@ -259,19 +264,19 @@ def _is_positive(node: Expression) -> bool:
     return isinstance(node, Const) and node.value > 0
 
 
-def groups(fspa: Fspa) -> tuple[AtomGroup, ...]:
-    """Return the atoms of an automaton in groups that share no signal, in order of the atoms."""
-    used = [_signals(atom.expression) for atom in fspa.atoms]
+def atom_groups(fspa: Fspa) -> tuple[AtomGroup, ...]:
+    """Return the atoms of an automaton in groups that share no signals, in order of the atoms."""
+    signal_names = [_signals(atom.expression) for atom in fspa.atoms]
     merged: list[tuple[list[int], set[str]]] = []
-    for index, names in enumerate(used):
+    for index, names in enumerate(signal_names):
         joined: tuple[list[int], set[str]] = ([index], set(names))
-        apart = []
-        for other in merged:
-            if other[1] & joined[1]:
-                joined = ([*other[0], *joined[0]], other[1] | joined[1])
+        disjoint = []
+        for group in merged:
+            if group[1] & joined[1]:
+                joined = ([*group[0], *joined[0]], group[1] | joined[1])
             else:
-                apart.append(other)
-        merged = [*apart, joined]
+                disjoint.append(group)
+        merged = [*disjoint, joined]
     merged.sort(key=lambda group: min(group[0]))
     signals = fspa.signals
     return tuple(

@@ -1,4 +1,4 @@
-"""Write witnesses as ``test`` blocks and CSV. The monitor runs each one before it is returned."""
+"""Write witnesses as ``test`` blocks and CSV. The monitor first runs each text."""
 
 from __future__ import annotations
 
@@ -7,35 +7,36 @@ import io
 from tltlc.automaton.fspa import Fspa
 from tltlc.monitor import Monitor
 from tltlc.monitor.traces import read_trace
-from tltlc.tools.witness.blocks import Blocks
+from tltlc.tools.witness.blocks import BlockWriter
 from tltlc.tools.witness.samples import csv_text
 from tltlc.tools.witness.traces import Witness
 
 
-def as_test(fspa: Fspa, witness: Witness, title: str, blocks: Blocks | None = None) -> str:
+def as_test(fspa: Fspa, witness: Witness, title: str, blocks: BlockWriter | None = None) -> str:
     """Return a ``test`` block that passes.
 
-    It expects what the monitor reports at the end and, in a trace of a cover, after each new change
-    of state. ``blocks`` writes several blocks of one automaton in fewer steps.
+    It expects what the monitor reports at the end. For a trace of a cover, it also expects what the
+    monitor reports after each step that changes the state and takes an edge for the first time. Pass
+    ``blocks`` to share work between several blocks of one automaton.
 
     Raises:
         ValueError: the spec has no atoms.
     """
-    blocks = Blocks(fspa) if blocks is None else blocks
+    blocks = BlockWriter(fspa) if blocks is None else blocks
     letters = witness.letters
     _check(fspa, witness, [step.state for step in blocks.results(letters)])
     edges = [fspa.edges[move.edge] for move in witness.moves]
-    changes = [number for number in witness.news if edges[number - 1].source != edges[number - 1].target]
+    changes = [number for number in witness.new_steps if edges[number - 1].source != edges[number - 1].target]
     block = blocks.block(title, letters, blocks.expectations(letters, {*changes, len(letters)}))
     caption = cycle_text(witness)
     return f"// {caption[0].upper()}{caption[1:]}.\n{block}" if caption else block
 
 
 def as_csv(fspa: Fspa, witness: Witness, monitor: Monitor | None = None) -> str:
-    """Return a trace of samples that takes the edges of the witness; a cycle is taken once.
+    """Return the samples of a witness as CSV, with one round of its cycle.
 
-    Pass ``monitor`` to share one monitor between several traces of an automaton: making one visits
-    every edge.
+    Pass ``monitor`` to share one monitor between several traces of an automaton, because creating a
+    monitor visits every edge.
     """
     text = csv_text(fspa, witness.samples)
     monitor = Monitor(fspa) if monitor is None else monitor
@@ -46,7 +47,7 @@ def as_csv(fspa: Fspa, witness: Witness, monitor: Monitor | None = None) -> str:
 
 
 def cycle_text(witness: Witness) -> str:
-    """Return which steps of an infinite trace repeat; empty if none do."""
+    """Return a text about which steps of an infinite trace repeat; empty for a finite trace."""
     if witness.cycle is None:
         return ""
     first, last = witness.cycle + 1, len(witness.moves)
@@ -56,6 +57,7 @@ def cycle_text(witness: Witness) -> str:
 
 
 def _check(fspa: Fspa, witness: Witness, states: list[int]) -> None:
-    wanted = [fspa.edges[move.edge].target for move in witness.moves]
-    if states != wanted:
-        raise AssertionError(f"a witness of `{fspa.name}` takes the states {states}, not {wanted}")
+    """Raise AssertionError if the monitor does not visit the states of the witness."""
+    expected = [fspa.edges[move.edge].target for move in witness.moves]
+    if states != expected:
+        raise AssertionError(f"a witness of `{fspa.name}` takes the states {states}, not {expected}")

@@ -1,4 +1,4 @@
-"""Find shortest traces that a spec accepts and rejects, as samples of its signals."""
+"""Find a shortest trace that a spec accepts, and one that it rejects, as samples of its signals."""
 
 from __future__ import annotations
 
@@ -21,31 +21,31 @@ Kind = Literal["accepting", "rejecting", "cover"]
 class Witness:
     """A trace, as a sequence of moves.
 
-    The moves from index ``cycle`` on repeat for ever. ``cycle`` is None over finite traces.
-    ``news`` are the steps of a cover's trace, from 1, that are the first of the whole cover to take
-    their edge.
+    The moves from index ``cycle`` on repeat for ever; ``cycle`` is None for a finite trace. For a
+    trace of a cover, ``new_steps`` has the steps, from 1, that take an edge that no earlier step of
+    the cover takes.
     """
 
     kind: Kind
     moves: tuple[SampledEdge, ...]
     cycle: int | None = None
-    news: tuple[int, ...] = ()
+    new_steps: tuple[int, ...] = ()
 
     @property
     def letters(self) -> tuple[Letter, ...]:
-        """The letters, with the cycle once."""
+        """The letters of the moves, with one round of the cycle."""
         return tuple(move.letter for move in self.moves)
 
     @property
     def samples(self) -> tuple[Sample, ...]:
-        """The samples, with the cycle once."""
+        """The samples of the moves, with one round of the cycle."""
         return tuple(move.sample for move in self.moves)
 
 
-def accepting(moves: Moves, work: int = DEFAULT_WORK) -> Witness | None:
-    """Return a shortest trace of samples that is accepted, or None if there is none.
+def accepting_trace(moves: Moves, work: int = DEFAULT_WORK) -> Witness | None:
+    """Return a shortest accepted trace that has samples, or None if none is found.
 
-    Over infinite traces it is any accepted trace.
+    Over infinite traces, it is any accepted trace.
 
     Raises:
         OutOfWork: over infinite traces, the search takes more than ``work`` steps.
@@ -53,50 +53,53 @@ def accepting(moves: Moves, work: int = DEFAULT_WORK) -> Witness | None:
     fspa = moves.fspa
     if fspa.semantics == "infinite":
         return _lasso(moves, "accepting", work)
-    return _to(moves, "accepting", [state.accepting for state in fspa.states])
+    return _shortest_to(moves, "accepting", [state.accepting for state in fspa.states])
 
 
-def rejecting(moves: Moves, work: int = DEFAULT_WORK) -> Witness | None:
-    """Return a shortest trace of samples after which success is no longer possible.
+def rejecting_trace(moves: Moves, work: int = DEFAULT_WORK) -> Witness | None:
+    """Return a shortest trace that has samples and after which success is no longer possible.
 
-    If there is none, return a shortest rejected trace. Over infinite traces this is any rejected
-    trace. Errors are as in :func:`accepting`.
+    If there is no such trace, return a shortest rejected trace, or any rejected trace over infinite
+    traces. Returns None if none is found. Errors are as in :func:`accepting_trace`.
     """
     fspa = moves.fspa
-    broken = _to(moves, "rejecting", [state.verdict == "violated" for state in fspa.states])
+    violating = _shortest_to(moves, "rejecting", [state.verdict == "violated" for state in fspa.states])
     if fspa.semantics == "infinite":
-        return _lasso(moves, "rejecting", work) if broken is None else _for_ever(moves, broken)
-    return broken or _to(moves, "rejecting", [not state.accepting for state in fspa.states])
+        return _lasso(moves, "rejecting", work) if violating is None else _with_loop(moves, violating)
+    return violating or _shortest_to(moves, "rejecting", [not state.accepting for state in fspa.states])
 
 
-def _to(moves: Moves, kind: Kind, is_wanted: list[bool]) -> Witness | None:
-    """Return a shortest trace to one of the wanted states."""
+def _shortest_to(moves: Moves, kind: Kind, is_target: list[bool]) -> Witness | None:
+    """Return a shortest trace to a state for which ``is_target`` is true, or None."""
     edges = moves.fspa.edges
-    way = moves.way(0, lambda edge: is_wanted[edges[edge].target])
-    return None if way is None else Witness(kind, way)
+    path = moves.shortest_path(0, lambda edge: is_target[edges[edge].target])
+    return None if path is None else Witness(kind, path)
 
 
-def _for_ever(moves: Moves, trace: Witness) -> Witness | None:
-    """Return the trace, which ends in a trap, with a loop in the trap as its cycle."""
+def _with_loop(moves: Moves, trace: Witness) -> Witness | None:
+    """Return a trace that ends in a trap, extended by a loop in the trap as its cycle."""
     trap = moves.fspa.edges[trace.moves[-1].edge].target
-    loop = moves.way(trap, lambda edge: moves.fspa.edges[edge].target == trap)
+    loop = moves.shortest_path(trap, lambda edge: moves.fspa.edges[edge].target == trap)
     return None if loop is None else Witness(trace.kind, (*trace.moves, *loop), len(trace.moves))
 
 
 def _lasso(moves: Moves, kind: Literal["accepting", "rejecting"], work: int) -> Witness | None:
-    """Return a lasso of edges that samples take.
+    """Return a lasso of edges that samples take, or None.
 
-    Edges that no sample takes are closed one by one as they are found.
+    If a lasso has edges for which no sample is found, these edges are closed, and the search starts
+    again.
     """
     from tltlc.automaton.compare import separating
 
-    everything = _constant(moves.fspa, accepts=True)
+    all_traces = _constant(moves.fspa, accepts=True)
     closed: set[int] = set()
     while True:
         if kind == "accepting":
-            trace = separating(_without(moves.fspa, closed, accepts=False), _constant(moves.fspa, accepts=False), work)
+            trace = separating(
+                _with_closed_edges(moves.fspa, closed, accepts=False), _constant(moves.fspa, accepts=False), work
+            )
         else:
-            trace = separating(everything, _without(moves.fspa, closed, accepts=True), work)
+            trace = separating(all_traces, _with_closed_edges(moves.fspa, closed, accepts=True), work)
         if trace is None:
             return None
         edges = _edges(moves.fspa, (*trace.prefix, *trace.cycle))
@@ -108,7 +111,7 @@ def _lasso(moves: Moves, kind: Literal["accepting", "rejecting"], work: int) -> 
 
 
 def _edges(fspa: Fspa, letters: tuple[Letter, ...]) -> list[int]:
-    """Return the edges that a trace takes."""
+    """Return the indices of the edges that a trace takes."""
     state, indices = 0, []
     for letter in letters:
         holds = [atom.name in letter for atom in fspa.atoms]
@@ -123,17 +126,17 @@ def _edges(fspa: Fspa, letters: tuple[Letter, ...]) -> list[int]:
 
 
 def _constant(fspa: Fspa, accepts: bool) -> Fspa:
-    """Return an automaton over the same atoms that accepts every infinite trace, or none."""
+    """Return an automaton over the same atoms that accepts every infinite trace, or no trace."""
     state = replace(fspa.states[0], id=0)
     edge = Edge(0, 0, Guard(TRUE, ((),)))
     pairs = (Pair((), (0,)),) if accepts else ()
     return replace(fspa, states=(state,), edges=(edge,), acceptance=pairs)
 
 
-def _without(fspa: Fspa, closed: set[int], accepts: bool) -> Fspa:
+def _with_closed_edges(fspa: Fspa, closed: set[int], accepts: bool) -> Fspa:
     """Return the automaton with the closed edges redirected to a new state.
 
-    From that state on, everything is accepted, or nothing is.
+    A trace that takes a closed edge is accepted if ``accepts``, and otherwise rejected.
     """
     if not closed:
         return fspa

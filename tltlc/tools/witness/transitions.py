@@ -1,4 +1,4 @@
-"""Find the edges of an automaton that samples can take, each with a letter and a sample."""
+"""Find the edges of an automaton that samples can take, with a sample for each."""
 
 from __future__ import annotations
 
@@ -9,20 +9,20 @@ from typing import TYPE_CHECKING
 
 from tltlc.automaton.fspa import Fspa, Implicant
 from tltlc.core.record import record
-from tltlc.tools.witness.samples import Realiser, Sample, UnsatisfiedLiterals
+from tltlc.tools.witness.samples import Sample, SampleFinder, UnsatisfiedLiterals
 
 if TYPE_CHECKING:
     from tltlc.automaton.compare import Letter
 
 _MOST_PRIMES = 500
-"""The most primes of a guard that are tried."""
+"""The most prime implicants of a guard that are tried."""
 
 
 @record
 class SampledEdge:
-    """An edge, by index, with a sample that takes it.
+    """A move: an edge, by index, with a sample that takes it and the letter of the sample.
 
-    ``prime`` is the prime of the edge's guard that the sample satisfies.
+    ``prime`` is the prime implicant of the guard that the sample satisfies.
     """
 
     edge: int
@@ -32,66 +32,67 @@ class SampledEdge:
 
 
 class Moves:
-    """The possible moves in each state of an automaton. Edges are examined on demand."""
+    """The moves of an automaton: its edges with samples that take them, searched on demand."""
 
     def __init__(self, fspa: Fspa) -> None:
         self.fspa = fspa
         self.obstacles: dict[int, tuple[UnsatisfiedLiterals, ...]] = {}
-        """For each examined edge that no sample was found to take, the obstacles."""
-        self._realiser = Realiser(fspa)
-        self._known: dict[int, SampledEdge | None] = {}
+        """The obstacles of each edge for which the search found no sample."""
+        self._finder = SampleFinder(fspa)
+        self._cache: dict[int, SampledEdge | None] = {}
 
     @cached_property
     def leaving(self) -> tuple[tuple[int, ...], ...]:
-        """For each state, the indices of the edges that leave it."""
+        """The indices of the edges that leave each state."""
         leaving: list[list[int]] = [[] for _ in self.fspa.states]
         for index, edge in enumerate(self.fspa.edges):
             leaving[edge.source].append(index)
         return tuple(map(tuple, leaving))
 
     def move(self, edge: int) -> SampledEdge | None:
-        """Return the simplest sample that takes an edge, or None.
+        """Return an edge with a sample that takes it, or None if no sample is found.
 
-        It satisfies the first prime of the guard, in order, for which a sample is found.
+        The sample satisfies the first prime implicant of the guard for which one is found.
         """
-        if edge not in self._known:
-            self._known[edge] = self._found(edge)
-        return self._known[edge]
+        if edge not in self._cache:
+            self._cache[edge] = self._search(edge)
+        return self._cache[edge]
 
-    def _found(self, edge: int) -> SampledEdge | None:
+    def _search(self, edge: int) -> SampledEdge | None:
         obstacles: list[UnsatisfiedLiterals] = []
         for prime in self.fspa.edges[edge].guard.primes[:_MOST_PRIMES]:
-            sample = self._realiser.literals(prime)
+            sample = self._finder.sample_for_literals(prime)
             if not isinstance(sample, UnsatisfiedLiterals):
-                return SampledEdge(edge, prime, self._realiser.letter_of(sample), sample)
+                return SampledEdge(edge, prime, self._finder.letter_of(sample), sample)
             obstacles.append(sample)
         self.obstacles[edge] = tuple(dict.fromkeys(obstacles))
         return None
 
-    def way(self, start: int, is_last: Callable[[int], bool]) -> tuple[SampledEdge, ...] | None:
-        """Return the moves of a shortest path from a state to a wanted last edge, or None.
+    def shortest_path(self, start: int, is_last: Callable[[int], bool]) -> tuple[SampledEdge, ...] | None:
+        """Return the moves of a shortest path from a state that ends with a certain edge, or None.
 
-        ``is_last`` decides by index which edges are wanted. The path has at least one move.
+        ``is_last`` says for the index of an edge whether the path may end with it. The path has at
+        least one move.
         """
-        before: dict[int, tuple[int, SampledEdge] | None] = {start: None}
+        predecessors: dict[int, tuple[int, SampledEdge] | None] = {start: None}
         queue = deque([start])
         while queue:
             state = queue.popleft()
-            # Wanted edges are checked before edges that only lead on.
+            # Check the edges that can end the path first.
             for edge in self.leaving[state]:
                 if is_last(edge) and (move := self.move(edge)) is not None:
-                    return (*_moves_to(state, before), move)
+                    return (*_moves_to(state, predecessors), move)
             for edge in self.leaving[state]:
                 target = self.fspa.edges[edge].target
-                if target not in before and (move := self.move(edge)) is not None:
-                    before[target] = state, move
+                if target not in predecessors and (move := self.move(edge)) is not None:
+                    predecessors[target] = state, move
                     queue.append(target)
         return None
 
 
-def _moves_to(state: int, before: dict[int, tuple[int, SampledEdge] | None]) -> tuple[SampledEdge, ...]:
+def _moves_to(state: int, predecessors: dict[int, tuple[int, SampledEdge] | None]) -> tuple[SampledEdge, ...]:
     moves: list[SampledEdge] = []
-    while (step := before[state]) is not None:
+    while (step := predecessors[state]) is not None:
         state, move = step
         moves.append(move)
     return tuple(reversed(moves))

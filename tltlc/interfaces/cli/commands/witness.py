@@ -88,20 +88,20 @@ def _traces(
     fspa = moves.fspa
     work = work_of(settings)
     witnesses: list[Witness] = []
-    with remarks.out_of_work(fspa):
+    with remarks.reporting_out_of_work(fspa):
         for wanted, search, outcome in (
-            (accepting, traces.accepting, "accepted"),
-            (rejecting, traces.rejecting, "rejected"),
+            (accepting, traces.accepting_trace, "accepted"),
+            (rejecting, traces.rejecting_trace, "rejected"),
         ):
             trace = search(moves, work) if wanted else None
             if trace is not None:
                 witnesses.append(trace)
             elif wanted:
-                report.add([remarks.no_trace(moves, outcome)])
+                report.add([remarks.no_trace_warning(moves, outcome)])
     if cover:
         all_edges = covering.cover(moves)
         witnesses += all_edges.traces
-        report.add(remarks.untaken(fspa, all_edges.untaken))
+        report.add(remarks.untaken_warnings(fspa, all_edges.untaken))
     return witnesses
 
 
@@ -110,17 +110,17 @@ def _written(fspa: Fspa, traces: list[Witness], kind: Literal["test", "csv"], re
     from tltlc.monitor import Monitor
     from tltlc.tools.witness import captions as remarks
     from tltlc.tools.witness import text as written
-    from tltlc.tools.witness.blocks import Blocks
+    from tltlc.tools.witness.blocks import BlockWriter
 
     if traces and not fspa.atoms:
-        report.add([remarks.no_atoms(fspa)])
+        report.add([remarks.no_atoms_error(fspa)])
         return {}
     if traces and kind == "csv" and not fspa.signals:
-        report.add([remarks.no_signals(fspa)])
+        report.add([remarks.no_signals_error(fspa)])
         return {}
     covers = sum(trace.kind == "cover" for trace in traces)
     texts: dict[str, str] = {}
-    number, blocks, monitor = 0, Blocks(fspa), Monitor(fspa)
+    number, blocks, monitor = 0, BlockWriter(fspa), Monitor(fspa)
     for trace in traces:
         number += trace.kind == "cover"
         suffix = f"cover_{number}" if trace.kind == "cover" else trace.kind
