@@ -15,10 +15,10 @@ from tltlc.automaton.compare import are_equivalent
 from tltlc.automaton.fspa import Fspa
 from tltlc.core.source import SourceFile
 from tltlc.pipeline import CompileOptions, compile_source
-from tltlc.tools.mine.confirm import confirmed
+from tltlc.tools.mine.confirm import confirm
 from tltlc.tools.mine.evidence import Evidence
 from tltlc.tools.mine.search import MiningOptions, SpecSearch
-from tltlc.tools.mine.vocabulary import of_columns
+from tltlc.tools.mine.vocabulary import vocabulary_of_columns
 
 SECTION = "mine"
 TRACES, COUNTEREXAMPLES = 40, 80
@@ -66,14 +66,14 @@ def _measured(spec: Planted, peer_s: float) -> Record:
 def _ours(given: Evidence, wanted: Fspa, min_support: float) -> Record:
     """The time from letters in memory to proposals that automata have confirmed, and the rank of the planted spec."""
     begun = time.perf_counter()
-    words = of_columns(dict.fromkeys(given.atoms(), True))
+    words = vocabulary_of_columns(dict.fromkeys(given.atoms(), True))
     search = SpecSearch(given, MiningOptions(min_support=min_support))
     for _ in search.run():
         pass
-    found = confirmed(search.ranked(), given, words, CompileOptions(), _TOP)
+    found = confirm(search.ranking(), given, words, CompileOptions(), _TOP)
     seconds = time.perf_counter() - begun
     ranks = [rank for rank, proposal in enumerate(found, start=1) if are_equivalent(proposal.fspa, wanted)]
-    return {"seconds": seconds, "rank": ranks[0] if ranks else None, "tried": search.tried}
+    return {"seconds": seconds, "rank": ranks[0] if ranks else None, "tried": search.tried_count}
 
 
 def _peer(learned: Learned, spec: Planted, wanted: Fspa) -> Record:

@@ -29,7 +29,7 @@ from tltlc.pipeline import CompileOptions, compile_source, read_artefact
 from tltlc.resolve.options import ResolveOptions
 from tltlc.tools.hoa.load import ImportOptions
 from tltlc.tools.hoa.load import load as load_hoa
-from tltlc.tools.mine.evidence_reader import gathered
+from tltlc.tools.mine.evidence_reader import read_evidence
 from tltlc.tools.mine.reading import TraceFile
 
 LIBRARY: Final = SourceFile(
@@ -123,7 +123,7 @@ def test_traces_to_be_mined_are_read_or_rejected(seed: int) -> None:
     random = Random(seed)
     good, bad = (TraceFile(name, _trace(random)) for name in ("good", "bad"))
     library = random.choice((LIBRARY, None))
-    check(lambda: gathered([good], [bad], library, ResolveOptions()))
+    check(lambda: read_evidence([good], [bad], library, ResolveOptions()))
 
 
 @given(seed=SEEDS)

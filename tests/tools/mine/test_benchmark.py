@@ -1,5 +1,4 @@
-"""Parts of the benchmark: the competing learners return formulas that separate the traces; the
-report of records."""
+"""Parts of the benchmark: the competing learners, the generated evidence, and the report."""
 
 from __future__ import annotations
 
@@ -8,7 +7,7 @@ import pytest
 from benchmarks import mine
 from benchmarks.mine_peers import enumerated, has_scarlet, scarlet
 from benchmarks.mine_traces import Planted, evidence, of_the_paper, planted
-from tests.tools.mine.conftest import words
+from tests.tools.mine.conftest import vocabulary
 from tests.waiting import HANG_S
 from tltlc.automaton.compare import are_equivalent
 from tltlc.automaton.fspa import Fspa
@@ -21,13 +20,13 @@ SHORT = Planted("short", ("reach p0 then p1",), dict.fromkeys(("p0", "p1", "p2")
 
 
 def learned(formula: str, spec: Planted) -> Fspa:
-    text = words(tuple(spec.likely)).library.text + f"spec found = {formula}\n"
+    text = vocabulary(tuple(spec.likely)).library.text + f"spec found = {formula}\n"
     return compile_source(SourceFile("found.tltl", text)).automata[0]
 
 
-def separates(fspa: Fspa, given: Evidence) -> bool:
-    return all(judge(fspa, trace).accepted for trace in given.traces) and not any(
-        judge(fspa, trace).accepted for trace in given.counterexamples
+def separates(fspa: Fspa, given_evidence: Evidence) -> bool:
+    return all(judge(fspa, trace).accepted for trace in given_evidence.traces) and not any(
+        judge(fspa, trace).accepted for trace in given_evidence.counterexamples
     )
 
 
@@ -36,10 +35,10 @@ def separates(fspa: Fspa, given: Evidence) -> bool:
 )
 def test_enumeration_finds_a_formula_that_separates_the_traces(clauses: tuple[str, ...]) -> None:
     spec = Planted("tiny", clauses, SHORT.likely)
-    given = evidence(spec, 20, 40, seed=1)
-    result = enumerated(given, timeout_s=HANG_S)
+    given_evidence = evidence(spec, 20, 40, seed=1)
+    result = enumerated(given_evidence, timeout_s=HANG_S)
     assert result.formula is not None
-    assert separates(learned(result.formula, spec), given)
+    assert separates(learned(result.formula, spec), given_evidence)
 
 
 def test_enumeration_stops_at_the_timeout() -> None:
@@ -49,28 +48,28 @@ def test_enumeration_stops_at_the_timeout() -> None:
 
 
 @pytest.mark.skipif(not has_scarlet(), reason="Scarlet is not installed")
-def test_formulas_of_scarlet_are_translated_correctly() -> None:
-    given = evidence(SHORT, 20, 40, seed=1)
-    result = scarlet(given, timeout_s=HANG_S)
+def test_the_translated_formula_of_scarlet_separates_the_traces() -> None:
+    given_evidence = evidence(SHORT, 20, 40, seed=1)
+    result = scarlet(given_evidence, timeout_s=HANG_S)
     assert result.formula is not None
-    assert separates(learned(result.formula, SHORT), given)
+    assert separates(learned(result.formula, SHORT), given_evidence)
 
 
 @pytest.mark.parametrize("spec", [*of_the_paper(), *map(planted, range(10))], ids=lambda spec: spec.name)
-def test_generated_evidence_is_labelled_correctly(spec: Planted) -> None:
-    given = evidence(spec, 6, 8, seed=2)
-    assert separates(spec.automaton(), given)
-    assert given == evidence(spec, 6, 8, seed=2)
+def test_the_planted_spec_separates_the_generated_evidence(spec: Planted) -> None:
+    given_evidence = evidence(spec, 6, 8, seed=2)
+    assert separates(spec.automaton(), given_evidence)
+    assert given_evidence == evidence(spec, 6, 8, seed=2)
     noisy = evidence(spec, 6, 8, seed=2, noise=0.5)
     assert sum(not judge(spec.automaton(), trace).accepted for trace in noisy.traces) == 3
 
 
-def test_random_specs_differ() -> None:
+def test_two_random_specs_are_not_equivalent() -> None:
     automata = [planted(number).automaton() for number in range(0, 20, 10)]
     assert not are_equivalent(*automata)
 
 
-def test_the_report_summarizes_the_records() -> None:
+def test_the_report_has_a_row_and_a_summary_of_the_records() -> None:
     ours = {"seconds": 0.1, "rank": 1, "tried": 100}
     records = {
         name: {

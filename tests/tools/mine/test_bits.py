@@ -1,3 +1,5 @@
+"""Sets of samples and traces as integers agree with a naive implementation."""
+
 from __future__ import annotations
 
 from hypothesis import given
@@ -9,7 +11,7 @@ from tltlc.tools.mine.evidence import Evidence, LabelledTrace
 
 
 def places(bits: Bits, samples: int, evidence: Evidence) -> list[set[int]]:
-    """For each trace, the samples in a set, decoded bit by bit."""
+    """Return the samples of each trace in a set, decoded bit by bit."""
     decoded = []
     width = bits.all.bit_length() // len(evidence.all) + 8
     size = next(size for size in range(1, width) if _fits(bits, size, evidence))
@@ -33,37 +35,41 @@ def test_operations_match_a_naive_implementation(evidence: Evidence, steps: int)
     bits = Bits(evidence)
     for name, samples in bits.holds.items():
         naive = [{place for place, letter in enumerate(trace.letters) if name in letter} for trace in evidence.all]
-        every = [set(range(len(trace.letters))) for trace in evidence.all]
+        all_places = [set(range(len(trace.letters))) for trace in evidence.all]
         assert places(bits, samples, evidence) == naive
-        assert members(bits, bits.some(samples), evidence) == [bool(places_of_trace) for places_of_trace in naive]
-        assert members(bits, bits.none(samples), evidence) == [not places_of_trace for places_of_trace in naive]
+        assert members(bits, bits.traces_with(samples), evidence) == [
+            bool(places_of_trace) for places_of_trace in naive
+        ]
+        assert members(bits, bits.traces_without(samples), evidence) == [
+            not places_of_trace for places_of_trace in naive
+        ]
         assert places(bits, bits.complement(samples), evidence) == [
-            all_ - places_of_trace for all_, places_of_trace in zip(every, naive, strict=True)
+            all_ - places_of_trace for all_, places_of_trace in zip(all_places, naive, strict=True)
         ]
         firsts = [min(places_of_trace, default=None) for places_of_trace in naive]
         assert places(bits, bits.after_first(samples), evidence) == [
             {place for place in all_ if first is not None and place > first}
-            for all_, first in zip(every, firsts, strict=True)
+            for all_, first in zip(all_places, firsts, strict=True)
         ]
         assert places(bits, bits.before_first(samples), evidence) == [
             {place for place in all_ if first is None or place < first}
-            for all_, first in zip(every, firsts, strict=True)
+            for all_, first in zip(all_places, firsts, strict=True)
         ]
         assert places(bits, bits.within(samples, steps), evidence) == [
-            {place for place in all_ if any(place <= other <= place + steps for other in places_of_trace)}
-            for all_, places_of_trace in zip(every, naive, strict=True)
+            {place for place in all_ if any(place <= later <= place + steps for later in places_of_trace)}
+            for all_, places_of_trace in zip(all_places, naive, strict=True)
         ]
 
 
 @given(evidences())
 def test_backwards_reverses_every_trace(evidence: Evidence) -> None:
-    turned = Evidence(
+    reversed_evidence = Evidence(
         *(
             tuple(LabelledTrace(trace.name, trace.letters[::-1]) for trace in part)
             for part in (evidence.traces, evidence.counterexamples)
         )
     )
-    assert Bits(evidence, backwards=True).holds == Bits(turned).holds
+    assert Bits(evidence, backwards=True).holds == Bits(reversed_evidence).holds
 
 
 @given(evidences())

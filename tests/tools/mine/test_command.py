@@ -1,3 +1,5 @@
+"""``tltlc mine`` on the command line: its output, its source file, and its messages."""
+
 from __future__ import annotations
 
 import json
@@ -23,7 +25,7 @@ SPEC = Planted(
     {"near(s1)": 0.1, "near(s2)": 0.1, "near(exit)": 0.1, "alive": 0.985, "seen": 0.3},
 )
 SCHEMA = json.loads((ROOT / "tltlc/tools/mine/mine.schema.json").read_text(encoding="utf-8"))
-DECLARED = """\
+DECLARATIONS = """\
 signal alive: bool
 signal seen: bool
 entity s1, s2, exit
@@ -33,20 +35,20 @@ signal near(place: entity): bool
 Run = Callable[..., Outcome]
 
 
-class Named(Planted):
+class PlantedWithEntities(Planted):
     """A planted spec whose source declares the predicates with arguments."""
 
     @property
     def source(self) -> str:
         clauses = "".join(f"    {clause}\n" for clause in self.clauses)
-        return f"{DECLARED}spec planted {{\n{clauses}}}\n"
+        return f"{DECLARATIONS}spec planted {{\n{clauses}}}\n"
 
 
 @pytest.fixture
 def recorded(inside: Path) -> Path:
-    """The folder with subfolders `good` and `bad`, which contain traces of a planted spec."""
-    made = evidence(Named(SPEC.name, SPEC.clauses, SPEC.likely), 12, 24, seed=4)
-    for folder, traces in (("good", made.traces), ("bad", made.counterexamples)):
+    """Write traces of a planted spec to the subfolders `good` and `bad`, and return the folder."""
+    planted = evidence(PlantedWithEntities(SPEC.name, SPEC.clauses, SPEC.likely), 12, 24, seed=4)
+    for folder, traces in (("good", planted.traces), ("bad", planted.counterexamples)):
         (inside / folder).mkdir()
         for number, trace in enumerate(traces):
             (inside / folder / f"run_{number:02}.csv").write_text(_csv(trace))
@@ -60,11 +62,11 @@ def _csv(trace: LabelledTrace) -> str:
     return "\n".join(rows) + "\n"
 
 
-def proposals(done: Outcome) -> list[dict[str, Any]]:
-    document = json.loads(done.out)
+def proposals(outcome: Outcome) -> list[dict[str, Any]]:
+    document = json.loads(outcome.out)
     jsonschema.validate(document, SCHEMA)
-    listed: list[dict[str, Any]] = document["proposals"]
-    return listed
+    all_proposals: list[dict[str, Any]] = document["proposals"]
+    return all_proposals
 
 
 def test_the_text_output_matches_the_golden_file(tltlc: Run, recorded: Path) -> None:
@@ -76,7 +78,7 @@ def test_the_text_output_matches_the_golden_file(tltlc: Run, recorded: Path) -> 
     assert max(map(len, outcome.out.splitlines())) <= 100
 
 
-def test_the_document_describes_the_proposals(tltlc: Run, recorded: Path) -> None:
+def test_the_first_proposal_of_the_json_document_is_the_planted_spec(tltlc: Run, recorded: Path) -> None:
     jsonschema.Draft202012Validator.check_schema(SCHEMA)
     outcome = tltlc("mine", "good", "--against", "bad", "--json")
     document = json.loads(outcome.out)
@@ -112,21 +114,23 @@ def test_the_source_file_compiles_and_its_tests_pass(tltlc: Run, recorded: Path)
     assert format_text(text) == text
     assert tltlc("test", "mined.tltl").status == 0
     assert tltlc("check", "mined.tltl").status == 0
-    Path("planted.tltl").write_text(f"{DECLARED}spec planted {{ {' '.join(SPEC.clauses)} }}\n")
+    Path("planted.tltl").write_text(f"{DECLARATIONS}spec planted {{ {' '.join(SPEC.clauses)} }}\n")
     (planted,) = compile_file("planted.tltl")
     (mined,) = compile_file("mined.tltl", CompileOptions(specs=("mined_1",)))
     assert are_equivalent(planted, mined)
 
 
 @pytest.mark.parametrize(
-    ("predicates", "declared"),
+    ("predicates", "declarations"),
     [
         (None, "entity s1\nsignal at(x1: entity): bool\n"),
         ("stealth", "import stealth\n\nentity s1\n"),
         ("game.tltl", 'import "game.tltl"\n\nentity s1\n'),
     ],
 )
-def test_the_source_file_declares_what_it_uses(tltlc: Run, inside: Path, predicates: str | None, declared: str) -> None:
+def test_the_source_file_declares_what_it_uses(
+    tltlc: Run, inside: Path, predicates: str | None, declarations: str
+) -> None:
     Path("game.tltl").write_text("import stealth\n")
     header = "distance(s1),distance(s2),at(s1),at(s2),idle\n"
     Path("good.csv").write_text(header + "0.5,9,1,0,0\n9,9,0,0,1\n")
@@ -135,7 +139,7 @@ def test_the_source_file_declares_what_it_uses(tltlc: Run, inside: Path, predica
     tltlc("mine", "good.csv", "--against", "bad.csv", "--top", "1", "-o", "mined.tltl", *library)
     text = Path("mined.tltl").read_text(encoding="utf-8")
     assert "s2" not in text and "idle" not in text
-    assert declared in text
+    assert declarations in text
     assert tltlc("lint", "mined.tltl").status == 0
     assert tltlc("test", "mined.tltl").status == 0
 
@@ -186,7 +190,7 @@ def test_a_shipped_library_can_be_given_by_name(tltlc: Run, inside: Path) -> Non
     assert "error[TLT0010]: there is no library `stelth`" in outcome.err
 
 
-def test_no_limit_is_invented(tltlc: Run, recorded: Path) -> None:
+def test_mined_specs_have_no_limit(tltlc: Run, recorded: Path) -> None:
     tltlc("mine", "good", "--against", "bad", "-o", "mined.tltl")
     text = Path("mined.tltl").read_text(encoding="utf-8")
     longest = max(len(path.read_text().splitlines()) - 1 for path in Path("good").iterdir())
@@ -309,13 +313,13 @@ def test_an_interrupt_prints_the_best_proposals_so_far(
 
     original_run = SpecSearch.run
 
-    def interrupted(self: SpecSearch) -> Iterator[str]:
+    def interrupted_run(self: SpecSearch) -> Iterator[str]:
         for stage in original_run(self):
             yield stage
-            if stage == "conjunctions" and len(self.ranked()[0]) > 1:
+            if stage == "conjunctions" and len(self.ranking()[0]) > 1:
                 raise KeyboardInterrupt
 
-    monkeypatch.setattr(SpecSearch, "run", interrupted)
+    monkeypatch.setattr(SpecSearch, "run", interrupted_run)
     outcome = tltlc("mine", "good", "--against", "bad", "--json")
     assert outcome.status == 130
     assert "interrupted" in outcome.err

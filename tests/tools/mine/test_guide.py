@@ -1,3 +1,5 @@
+"""The commands and constants of the guide to mining."""
+
 from __future__ import annotations
 
 import os
@@ -14,7 +16,7 @@ GUIDE = (DOCS / "guides" / "mining.md").read_text(encoding="utf-8")
 
 
 @pytest.mark.skipif(os.name == "nt", reason="the page speaks to a POSIX shell")
-def test_the_commands_of_the_guide_run(tmp_path: Path) -> None:
+def test_the_commands_of_the_guide_print_what_it_shows(tmp_path: Path) -> None:
     assert run_page(GUIDE, Shell(tmp_path)) == 9
 
 

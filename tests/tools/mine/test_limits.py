@@ -1,4 +1,4 @@
-"""Traces with thousands of columns: the work is limited, and a warning lists what is left out."""
+"""Traces with thousands of columns: the work is limited, and a warning says what is left out."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ from tltlc.tools.mine import candidates
 from tltlc.tools.mine.bits import Bits
 from tltlc.tools.mine.candidates import Candidates
 from tltlc.tools.mine.clause import Conjunction, MinedClause
-from tltlc.tools.mine.conjunctions import best
+from tltlc.tools.mine.conjunctions import best_candidates
 from tltlc.tools.mine.events import MOST_EVENTS, best_events
 from tltlc.tools.mine.evidence import Evidence, LabelledTrace
-from tltlc.tools.mine.evidence_reader import gathered
+from tltlc.tools.mine.evidence_reader import read_evidence
 from tltlc.tools.mine.reading import TraceFile
 from tltlc.tools.mine.search import MiningOptions, SpecSearch
 from tltlc.tools.mine.sequences import sequences
@@ -32,12 +32,12 @@ Run = Callable[..., Outcome]
 
 
 def letters(*names: str) -> tuple[frozenset[str], ...]:
-    """Return a trace from one string per sample, which lists the atoms that hold."""
+    """Return the letters of a trace; each string lists the atoms that hold at a sample."""
     return tuple(frozenset(sample.split()) for sample in names)
 
 
-def noisy(columns: int, rows: int, seed: int, steps: tuple[str, ...] = ()) -> tuple[frozenset[str], ...]:
-    """A trace of columns that hold at random, followed by the ``steps`` in this order."""
+def random_trace(columns: int, rows: int, seed: int, steps: tuple[str, ...] = ()) -> tuple[frozenset[str], ...]:
+    """Return a trace in which columns hold at random, followed by a sample for each of ``steps``."""
     random = Random(seed)
     names = [f"c{number}" for number in range(columns)]
     samples = [{name for name in names if random.random() < 0.5} for _ in range(rows)]
@@ -51,7 +51,7 @@ def csv(trace: tuple[frozenset[str], ...], columns: int) -> str:
 
 
 def random_evidence(columns: int) -> Evidence:
-    good, bad = (LabelledTrace(f"t{seed}", noisy(columns, 10, seed)) for seed in (1, 2))
+    good, bad = (LabelledTrace(f"t{seed}", random_trace(columns, 10, seed)) for seed in (1, 2))
     return Evidence((good,), (bad,))
 
 
@@ -60,38 +60,38 @@ def test_the_work_does_not_grow_with_the_columns() -> None:
     for columns in (1_000, 2_000):
         search = SpecSearch(random_evidence(columns), MiningOptions())
         list(search.run())
-        work.append(search.tried - 2 * columns)
-        assert search.ranked()
+        work.append(search.tried_count - 2 * columns)
+        assert search.ranking()
     pairs = MOST_EVENTS**2
     assert max(work) <= 8 * pairs + WORK["mined sequences"] + 500_000
     assert abs(work[0] - work[1]) < max(work) / 5
 
 
 def test_the_search_can_be_stopped_every_few_candidates() -> None:
-    """This keeps ``--time`` precise: the search tries few candidates between two points at which it
-    can stop."""
+    """Between two points at which the search can stop, it tries few candidates, so ``--time`` is
+    precise."""
     search = SpecSearch(random_evidence(1_000), MiningOptions())
     previous = largest = 0
     for _ in search.run():
-        largest = max(largest, search.tried - previous)
-        previous = search.tried
+        largest = max(largest, search.tried_count - previous)
+        previous = search.tried_count
     assert largest <= 20_000
 
 
 def test_the_events_that_separate_best_are_combined() -> None:
     planted = ("key", "door")
-    good = [LabelledTrace(f"g{seed}", noisy(300, 10, seed, planted)) for seed in range(20)]
-    bad = [LabelledTrace(f"b{seed}", noisy(300, 10, 100 + seed, planted[::-1])) for seed in range(20)]
-    given = Evidence(tuple(good), tuple(bad))
-    assert set(planted) <= set(best_events(given, given.atoms()))
-    search = SpecSearch(given, MiningOptions())
+    good = [LabelledTrace(f"g{seed}", random_trace(300, 10, seed, planted)) for seed in range(20)]
+    bad = [LabelledTrace(f"b{seed}", random_trace(300, 10, 100 + seed, planted[::-1])) for seed in range(20)]
+    given_evidence = Evidence(tuple(good), tuple(bad))
+    assert set(planted) <= set(best_events(given_evidence, given_evidence.atoms()))
+    search = SpecSearch(given_evidence, MiningOptions())
     list(search.run())
-    assert [clause.text for clause in search.ranked()[0]] == ["require (not door) weak_until key"]
+    assert [clause.text for clause in search.ranking()[0]] == ["require (not door) weak_until key"]
 
 
 def test_all_events_are_combined_if_there_are_few() -> None:
-    given = random_evidence(50)
-    assert best_events(given, given.atoms()) == list(given.atoms())
+    given_evidence = random_evidence(50)
+    assert best_events(given_evidence, given_evidence.atoms()) == list(given_evidence.atoms())
 
 
 def test_sequences_stop_at_the_work_limit() -> None:
@@ -106,7 +106,7 @@ def every_clause(bits: Bits) -> list[MinedClause]:
     return [clause for portion in clauses(bits, backwards, tuple(bits.holds), 1) for clause in portion]
 
 
-def test_pruned_candidates_would_not_have_been_chosen() -> None:
+def test_candidates_that_were_dropped_are_not_among_the_best() -> None:
     bits = Bits(random_evidence(30))
     conjunctions: dict[Conjunction, int] = {(clause,): clause.accepts for clause in every_clause(bits)}
     conjunctions |= {(a, b): a.accepts & b.accepts for a, b in combinations(every_clause(bits)[:60], 2)}
@@ -114,7 +114,7 @@ def test_pruned_candidates_would_not_have_been_chosen() -> None:
     for conjunction, accepts in conjunctions.items():
         kept.add(conjunction, accepts)
     assert len(list(kept.items())) < len(conjunctions) / 10
-    assert best(kept.items(), bits) == best(conjunctions.items(), bits)
+    assert best_candidates(kept.items(), bits) == best_candidates(conjunctions.items(), bits)
     assert not kept.is_cut
 
 
@@ -135,7 +135,7 @@ def test_the_best_candidates_are_kept_if_there_are_too_many(monkeypatch: pytest.
 
 def test_many_columns_are_mined_with_a_warning(tltlc: Run, inside: Path) -> None:
     for name, seed in (("good.csv", 1), ("bad.csv", 2)):
-        (inside / name).write_text(csv(noisy(1_000, 10, seed), 1_000))
+        (inside / name).write_text(csv(random_trace(1_000, 10, seed), 1_000))
     outcome = tltlc("mine", "good.csv", "--against", "bad.csv", "--json")
     assert outcome.status == 0
     document = json.loads(outcome.out)
@@ -146,7 +146,7 @@ def test_many_columns_are_mined_with_a_warning(tltlc: Run, inside: Path) -> None
 
 def test_few_columns_are_mined_without_a_warning(tltlc: Run, inside: Path) -> None:
     for name, seed in (("good.csv", 1), ("bad.csv", 2)):
-        (inside / name).write_text(csv(noisy(12, 10, seed), 12))
+        (inside / name).write_text(csv(random_trace(12, 10, seed), 12))
     outcome = tltlc("mine", "good.csv", "--against", "bad.csv", "--json", "--max-length", "3")
     assert json.loads(outcome.out)["complete"] is True
     assert "TLT0624" not in outcome.err
@@ -154,11 +154,11 @@ def test_few_columns_are_mined_without_a_warning(tltlc: Run, inside: Path) -> No
 
 def test_the_first_columns_are_read_if_there_are_too_many() -> None:
     columns = WORK["mined columns"] + 7
-    files = [TraceFile(f"t{seed}", csv(noisy(columns, 2, seed), columns).encode()) for seed in (1, 2)]
-    words, evidence, _ = gathered(files[:1], files[1:], None, ResolveOptions((), {}))
-    assert words.unread == 7
-    assert not words.left_out
-    assert len(words.reader.atoms) == WORK["mined columns"]
+    files = [TraceFile(f"t{seed}", csv(random_trace(columns, 2, seed), columns).encode()) for seed in (1, 2)]
+    vocabulary, evidence, _ = read_evidence(files[:1], files[1:], None, ResolveOptions((), {}))
+    assert vocabulary.unread_count == 7
+    assert not vocabulary.left_out
+    assert len(vocabulary.reader.atoms) == WORK["mined columns"]
     assert f"c{WORK['mined columns']}" not in evidence.atoms()
 
 
@@ -166,5 +166,5 @@ def test_the_first_instances_are_read_if_a_predicate_has_too_many() -> None:
     library = SourceFile("lib.tltl", "signal at(x: entity, y: entity): bool\n")
     data = "".join(f'"at(e{a}, e{a + 1})",' for a in range(49)) + "time\n" + "0," * 49 + "1\n"
     file = TraceFile("t", data.encode())
-    words, _, _ = gathered([file], [], library, ResolveOptions((), {}))
-    assert words.unread == 50 * 50 - WORK["mined instances"]
+    vocabulary, _, _ = read_evidence([file], [], library, ResolveOptions((), {}))
+    assert vocabulary.unread_count == 50 * 50 - WORK["mined instances"]

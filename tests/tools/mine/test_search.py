@@ -1,3 +1,5 @@
+"""The search for specs: it recovers planted specs, and its masks agree with the automata."""
+
 from __future__ import annotations
 
 from itertools import chain, islice
@@ -8,13 +10,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from benchmarks.mine_traces import ATOMS, Planted, evidence, of_the_paper, planted
-from tests.tools.mine.conftest import evidences, words
+from tests.tools.mine.conftest import evidences, vocabulary
 from tltlc.automaton.compare import are_equivalent
 from tltlc.core.source import SourceFile
 from tltlc.pipeline import CompileOptions, compile_source
 from tltlc.tools.mine.bits import Bits
-from tltlc.tools.mine.clause import Conjunction, accepted_by, atoms_of
-from tltlc.tools.mine.confirm import Proposal, confirmed, judge
+from tltlc.tools.mine.clause import Conjunction, accepted_traces, count_atoms
+from tltlc.tools.mine.confirm import Proposal, confirm, judge
 from tltlc.tools.mine.evidence import Evidence, LabelledTrace
 from tltlc.tools.mine.measure import figures
 from tltlc.tools.mine.search import MiningOptions, SpecSearch
@@ -22,37 +24,41 @@ from tltlc.tools.mine.sequences import sequences
 from tltlc.tools.mine.templates import KINDS, clauses
 
 
-def proposals(given_: Evidence, options: MiningOptions | None = None, top: int = 5) -> tuple[Proposal, ...]:
-    search = SpecSearch(given_, options or MiningOptions())
+def proposals(given_evidence: Evidence, options: MiningOptions | None = None, top: int = 5) -> tuple[Proposal, ...]:
+    search = SpecSearch(given_evidence, options or MiningOptions())
     list(search.run())
-    atoms = given_.atoms() or ("a",)
-    return confirmed(search.ranked(), given_, words(atoms), CompileOptions(), top)
+    atoms = given_evidence.atoms() or ("a",)
+    return confirm(search.ranking(), given_evidence, vocabulary(atoms), CompileOptions(), top)
 
 
-def verdicts(given_: Evidence, accepts: int) -> list[bool]:
-    return [bool(accepts >> (8 * number) & 0x80) for number in range(len(given_.all))]
+def verdicts(given_evidence: Evidence, accepts: int) -> list[bool]:
+    return [bool(accepts >> (8 * number) & 0x80) for number in range(len(given_evidence.all))]
 
 
 @settings(max_examples=25, deadline=None)
 @given(evidences())
-def test_bit_masks_agree_with_the_automata(given_: Evidence) -> None:
-    forwards, backwards = Bits(given_), Bits(given_, backwards=True)
+def test_bit_masks_agree_with_the_automata(given_evidence: Evidence) -> None:
+    forwards, backwards = Bits(given_evidence), Bits(given_evidence, backwards=True)
     atoms = list(forwards.holds)
-    found_clauses = [
+    mined_clauses = [
         *chain.from_iterable(clauses(forwards, backwards, atoms, 1)),
         *(clause for portion in islice(sequences(forwards, atoms, 1, 4), 6) for clause in portion[:10]),
     ]
-    text = words().library.text + "".join(f"spec s{i} {{ {clause.text} }}\n" for i, clause in enumerate(found_clauses))
-    automata = compile_source(SourceFile("all.tltl", text)).automata if found_clauses else ()
-    for clause, fspa in zip(found_clauses, automata, strict=True):
-        assert [judge(fspa, trace).accepted for trace in given_.all] == verdicts(given_, clause.accepts), clause.text
+    text = vocabulary().library.text + "".join(
+        f"spec s{i} {{ {clause.text} }}\n" for i, clause in enumerate(mined_clauses)
+    )
+    automata = compile_source(SourceFile("all.tltl", text)).automata if mined_clauses else ()
+    for clause, fspa in zip(mined_clauses, automata, strict=True):
+        assert [judge(fspa, trace).accepted for trace in given_evidence.all] == verdicts(
+            given_evidence, clause.accepts
+        ), clause.text
 
 
-def test_every_template_is_tried() -> None:
+def test_every_template_has_an_instance_in_some_evidence() -> None:
     kinds = {"reach"}
     for number in (1, 4, 8):
-        given_ = evidence(planted(number), 10, 10, seed=3)
-        forwards, backwards = Bits(given_), Bits(given_, backwards=True)
+        given_evidence = evidence(planted(number), 10, 10, seed=3)
+        forwards, backwards = Bits(given_evidence), Bits(given_evidence, backwards=True)
         portions = clauses(forwards, backwards, list(forwards.holds), 10)
         kinds |= {clause.kind for clause in chain.from_iterable(portions)}
     assert kinds == set(KINDS)
@@ -60,23 +66,23 @@ def test_every_template_is_tried() -> None:
 
 @settings(max_examples=12, deadline=None)
 @given(evidences(longest=8))
-def test_figures_agree_with_automata_and_masks(given_: Evidence) -> None:
-    search = SpecSearch(given_, MiningOptions(min_support=0.5))
+def test_figures_agree_with_automata_and_masks(given_evidence: Evidence) -> None:
+    search = SpecSearch(given_evidence, MiningOptions(min_support=0.5))
     list(search.run())
-    for proposal in confirmed(search.ranked(), given_, words(), CompileOptions(), 5):
-        accepts = accepted_by(proposal.clauses, search.bits)
+    for proposal in confirm(search.ranking(), given_evidence, vocabulary(), CompileOptions(), 5):
+        accepts = accepted_traces(proposal.clauses, search.bits)
         accepted = [judgement.accepted for judgement in (*proposal.traces, *proposal.counterexamples)]
-        assert accepted == verdicts(given_, accepts)
+        assert accepted == verdicts(given_evidence, accepts)
         assert proposal.figures.support >= 0.5
         assert proposal.figures.rejected >= 1
 
 
 @settings(max_examples=12, deadline=None)
 @given(evidences(longest=8))
-def test_a_support_of_one_means_that_all_traces_are_accepted(given_: Evidence) -> None:
-    for proposal in proposals(given_):
+def test_a_support_of_one_means_that_all_traces_are_accepted(given_evidence: Evidence) -> None:
+    for proposal in proposals(given_evidence):
         assert proposal.figures.support == 1.0
-        assert all(judge(proposal.fspa, trace).accepted for trace in given_.traces)
+        assert all(judge(proposal.fspa, trace).accepted for trace in given_evidence.traces)
 
 
 @settings(max_examples=15, deadline=None)
@@ -89,7 +95,7 @@ def test_a_planted_sequence_of_any_length_is_recovered(length: int, seed: int) -
     assert are_equivalent(proposed[0].fspa, spec.automaton())
 
 
-def _with_all_orders(spec: Planted, steps: list[str], given_: Evidence) -> Evidence:
+def _with_all_orders(spec: Planted, steps: list[str], given_evidence: Evidence) -> Evidence:
     wrong_orders = [steps[:place] + steps[place + 1 :] for place in range(len(steps))]
     wrong_orders += [
         [*steps[:place], steps[place + 1], steps[place], *steps[place + 2 :]] for place in range(len(steps) - 1)
@@ -103,7 +109,7 @@ def _with_all_orders(spec: Planted, steps: list[str], given_: Evidence) -> Evide
         )
         for number, letters_of_trace in enumerate(letters)
     )
-    return Evidence(given_.traces, (*given_.counterexamples, *missed))
+    return Evidence(given_evidence.traces, (*given_evidence.counterexamples, *missed))
 
 
 @pytest.mark.parametrize("spec", of_the_paper(), ids=lambda spec: spec.name)
@@ -112,19 +118,19 @@ def test_the_plans_of_the_paper_are_recovered(spec: Planted) -> None:
     assert are_equivalent(proposed[0].fspa, spec.automaton())
 
 
-def test_wrong_labels_are_tolerated_on_request() -> None:
+def test_a_planted_spec_is_recovered_despite_wrong_labels_if_support_is_below_one() -> None:
     spec = planted(0)
-    given_ = evidence(spec, 40, 80, seed=1, noise=0.05)
-    proposed = proposals(given_, MiningOptions(min_support=0.9))
+    given_evidence = evidence(spec, 40, 80, seed=1, noise=0.05)
+    proposed = proposals(given_evidence, MiningOptions(min_support=0.9))
     assert are_equivalent(proposed[0].fspa, spec.automaton())
-    assert all(proposal.figures.support == 1.0 for proposal in proposals(given_))
+    assert all(proposal.figures.support == 1.0 for proposal in proposals(given_evidence))
 
 
-def test_the_order_is_deterministic() -> None:
-    given_ = evidence(planted(3), 20, 30, seed=5)
-    first, second = ([proposal.clauses for proposal in proposals(given_)] for _ in range(2))
+def test_the_order_of_proposals_does_not_depend_on_the_order_of_traces() -> None:
+    given_evidence = evidence(planted(3), 20, 30, seed=5)
+    first, second = ([proposal.clauses for proposal in proposals(given_evidence)] for _ in range(2))
     assert _texts(first) == _texts(second)
-    reversed_evidence = Evidence(given_.traces[::-1], given_.counterexamples[::-1])
+    reversed_evidence = Evidence(given_evidence.traces[::-1], given_evidence.counterexamples[::-1])
     assert _texts([proposal.clauses for proposal in proposals(reversed_evidence)]) == _texts(first)
 
 
@@ -133,29 +139,29 @@ def _texts(conjunctions: list[Conjunction]) -> list[list[str]]:
 
 
 def test_the_best_proposal_so_far_is_available_at_any_time() -> None:
-    given_ = evidence(planted(1), 20, 30, seed=5)
-    search = SpecSearch(given_, MiningOptions())
+    given_evidence = evidence(planted(1), 20, 30, seed=5)
+    search = SpecSearch(given_evidence, MiningOptions())
     best = -2.0
-    assert search.ranked() == []
+    assert search.ranking() == []
     for _ in search.run():
-        ranked = search.ranked()
+        ranked = search.ranking()
         if ranked:
-            score = figures(search.bits, accepted_by(ranked[0], search.bits)).score(atoms_of(ranked[0]))
+            score = figures(search.bits, accepted_traces(ranked[0], search.bits)).score(count_atoms(ranked[0]))
             assert score >= best
             best = score
     assert best > 0.9
 
 
 def test_no_proposal_is_longer_than_allowed() -> None:
-    given_ = evidence(planted(1), 20, 30, seed=5)
-    search = SpecSearch(given_, MiningOptions(max_length=3))
+    given_evidence = evidence(planted(1), 20, 30, seed=5)
+    search = SpecSearch(given_evidence, MiningOptions(max_length=3))
     list(search.run())
-    assert search.ranked()
-    assert max(map(atoms_of, search.ranked())) <= 3
+    assert search.ranking()
+    assert max(map(count_atoms, search.ranking())) <= 3
 
 
-def test_proposals_are_sorted_by_falling_size() -> None:
+def test_a_later_proposal_never_has_more_atoms() -> None:
     proposed = [proposal.clauses for proposal in proposals(evidence(planted(2), 20, 40, seed=2))]
-    sizes = [atoms_of(conjunction) for conjunction in proposed]
+    sizes = [count_atoms(conjunction) for conjunction in proposed]
     assert sizes == sorted(sizes, reverse=True)
     assert len(proposed) > 1

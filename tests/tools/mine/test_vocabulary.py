@@ -1,3 +1,5 @@
+"""The atoms of traces, from columns and from libraries."""
+
 from __future__ import annotations
 
 import pytest
@@ -5,9 +7,9 @@ import pytest
 from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.resolve.options import ResolveOptions
-from tltlc.tools.mine.columns import columns, shared
-from tltlc.tools.mine.reading import TraceFile, read
-from tltlc.tools.mine.vocabulary import of_columns, of_library
+from tltlc.tools.mine.columns import columns, common_columns
+from tltlc.tools.mine.reading import TraceFile, read_traces
+from tltlc.tools.mine.vocabulary import vocabulary_of_columns, vocabulary_of_library
 
 LIBRARY = """\
 import spatial
@@ -22,16 +24,16 @@ spec careful = G health > 0.2
 
 
 def names(text: str, columns_of_traces: set[str]) -> list[str]:
-    words = of_library(SourceFile("game.tltl", text), columns_of_traces, ResolveOptions())
-    return [atom.name for atom in words.reader.atoms]
+    vocabulary = vocabulary_of_library(SourceFile("game.tltl", text), columns_of_traces, ResolveOptions())
+    return [atom.name for atom in vocabulary.reader.atoms]
 
 
 def test_columns_of_truth_values_are_atoms() -> None:
     kinds = columns(b"alive,health,near(s1)\ntrue,1,0\nfalse,0.5,1\n", "run.csv")
     assert kinds == {"alive": True, "health": False, "near(s1)": True}
-    words = of_columns(kinds)
-    assert [atom.name for atom in words.reader.atoms] == ["alive", "near(s1)"]
-    assert (words.left_out, words.misnamed) == (("health",), frozenset())
+    vocabulary = vocabulary_of_columns(kinds)
+    assert [atom.name for atom in vocabulary.reader.atoms] == ["alive", "near(s1)"]
+    assert (vocabulary.left_out, vocabulary.misnamed) == (("health",), frozenset())
 
 
 def test_json_lines_are_read_like_csv() -> None:
@@ -47,27 +49,27 @@ def test_json_lines_are_read_like_csv() -> None:
 
 
 def test_only_columns_of_all_traces_count() -> None:
-    assert shared([{"a": True, "b": True, "c": True}, {"c": True, "b": False}]) == {"b": False, "c": True}
+    assert common_columns([{"a": True, "b": True, "c": True}, {"c": True, "b": False}]) == {"b": False, "c": True}
 
 
 @pytest.mark.parametrize("column", ["reach", "F", "2fast", "a b", "near(s1", "near()", "near(2)", "s1 > 2", ""])
 def test_columns_that_cannot_name_an_atom_are_left_out(column: str) -> None:
-    words = of_columns({"alive": True, column: True})
-    assert [atom.name for atom in words.reader.atoms] == ["alive"]
-    assert (words.left_out, words.misnamed) == ((column,), {column})
+    vocabulary = vocabulary_of_columns({"alive": True, column: True})
+    assert [atom.name for atom in vocabulary.reader.atoms] == ["alive"]
+    assert (vocabulary.left_out, vocabulary.misnamed) == ((column,), {column})
 
 
 def test_a_duplicate_column_is_reported() -> None:
     kinds = columns(b"a,a\ntrue,false\n", "run.csv")
     assert kinds == {"a": True}
     with pytest.raises(TltlError) as raised:
-        read([TraceFile("run.csv", b"a,a\ntrue,false\n")], of_columns(kinds))
+        read_traces([TraceFile("run.csv", b"a,a\ntrue,false\n")], vocabulary_of_columns(kinds))
     (diagnostic,) = raised.value.diagnostics
     assert (diagnostic.code, diagnostic.labels[0].message) == ("TLT0622", "two columns are called `a`")
 
 
 @pytest.mark.parametrize(
-    ("there", "said"),
+    ("columns_of_traces", "title"),
     [
         ({"F": True, "then": True, "x y": True, "speed": False}, "the columns `F`, `then` and `x y` hold"),
         ({"F": True}, "the column `F` holds"),
@@ -75,16 +77,18 @@ def test_a_duplicate_column_is_reported() -> None:
         ({}, "no column of the traces holds"),
     ],
 )
-def test_the_error_says_why_there_is_no_atom(there: dict[str, bool], said: str) -> None:
+def test_the_error_says_why_there_is_no_atom(columns_of_traces: dict[str, bool], title: str) -> None:
     with pytest.raises(TltlError) as raised:
-        of_columns(there)
+        vocabulary_of_columns(columns_of_traces)
     (diagnostic,) = raised.value.diagnostics
-    assert diagnostic.code == "TLT0760" and diagnostic.title.startswith(said)
+    assert diagnostic.code == "TLT0760" and diagnostic.title.startswith(title)
 
 
 def test_columns_that_cannot_be_declared_together_are_left_out() -> None:
-    words = of_columns(dict.fromkeys(("s1", "near(s1)", "at(a)", "at(a, b)", "to(a, b)", "a(c)", "b"), True))
-    assert [atom.name for atom in words.reader.atoms] == ["s1", "at(a)", "b"]
+    vocabulary = vocabulary_of_columns(
+        dict.fromkeys(("s1", "near(s1)", "at(a)", "at(a, b)", "to(a, b)", "a(c)", "b"), True)
+    )
+    assert [atom.name for atom in vocabulary.reader.atoms] == ["s1", "at(a)", "b"]
 
 
 def test_predicates_are_instantiated_with_the_entities_of_the_traces() -> None:
@@ -96,9 +100,11 @@ def test_predicates_are_instantiated_with_the_entities_of_the_traces() -> None:
 
 def test_entities_of_the_traces_are_declared() -> None:
     text = LIBRARY.replace("exclusive near(exit), near(s1)\n", "")
-    words = of_library(SourceFile("game.tltl", text), {"distance(s1)", "distance(s2)"}, ResolveOptions())
-    assert set(words.entities) == {"s1", "s2"}
-    assert words.library.text.startswith(text)
+    vocabulary = vocabulary_of_library(
+        SourceFile("game.tltl", text), {"distance(s1)", "distance(s2)"}, ResolveOptions()
+    )
+    assert set(vocabulary.entities) == {"s1", "s2"}
+    assert vocabulary.library.text.startswith(text)
 
 
 def test_a_library_with_errors_is_reported() -> None:
@@ -111,24 +117,24 @@ def test_traces_are_read_as_letters() -> None:
     text = (
         "signal health in [0, 1]\npredicate alive in [-1, 1] = health - 0.1\npredicate well in [-1, 1] = health - 0.9\n"
     )
-    words = of_library(SourceFile("game.tltl", text), {"health"}, ResolveOptions())
-    (trace,), notices = read([TraceFile("run.csv", b"health\n0\n0.5\n1.5\n")], words)
+    vocabulary = vocabulary_of_library(SourceFile("game.tltl", text), {"health"}, ResolveOptions())
+    (trace,), notices = read_traces([TraceFile("run.csv", b"health\n0\n0.5\n1.5\n")], vocabulary)
     assert trace.letters == (frozenset(), frozenset({"alive"}), frozenset({"alive", "well"}))
     assert [(notice.code, notice.title[:17]) for notice in notices] == [("TLT0615", "`run.csv`, step 3")]
 
 
-def test_repeated_samples_give_the_same_letters() -> None:
+def test_a_repeated_sample_has_the_same_letter_in_every_trace() -> None:
     text = "signal health in [0, 1]\npredicate alive in [-1, 1] = health - 0.1\n"
-    words = of_library(SourceFile("game.tltl", text), {"health"}, ResolveOptions())
+    vocabulary = vocabulary_of_library(SourceFile("game.tltl", text), {"health"}, ResolveOptions())
     messages: list[str] = []
     files = [TraceFile(f"{name}.csv", b"health\n0\n0.5\n0\n0.5\n") for name in "ab"]
-    traces, _ = read(files, words, messages.append)
+    traces, _ = read_traces(files, vocabulary, messages.append)
     assert [trace.letters for trace in traces] == [(frozenset(), frozenset({"alive"})) * 2] * 2
     assert messages == ["reading a.csv", "reading b.csv"]
 
 
 def test_an_error_in_a_step_names_its_trace() -> None:
     text = "signal a: bool\nsignal b: bool\nexclusive a, b\n"
-    words = of_library(SourceFile("game.tltl", text), {"a", "b"}, ResolveOptions())
+    vocabulary = vocabulary_of_library(SourceFile("game.tltl", text), {"a", "b"}, ResolveOptions())
     with pytest.raises(TltlError, match=r"`two.csv`, step 2: `a` and `b` hold at once"):
-        read([TraceFile("one.csv", b"a,b\n0,1\n"), TraceFile("two.csv", b"a,b\n0,1\n1,1\n")], words)
+        read_traces([TraceFile("one.csv", b"a,b\n0,1\n"), TraceFile("two.csv", b"a,b\n0,1\n1,1\n")], vocabulary)

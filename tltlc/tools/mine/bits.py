@@ -1,9 +1,9 @@
-"""All traces at once, as one integer: a bit per sample, with the traces of the evidence in a row.
+"""Sets of samples of all traces, as integers with a bit for each sample.
 
-Each trace has a segment of the same number of whole bytes. Its samples are the lowest bits, the
-first sample lowest. The highest bit is spare: carries and borrows of additions end there. So a
-question about every trace, such as "where does `a` hold for the first time?", takes a few
-operations on one number.
+Each trace of the evidence has a segment of the same number of whole bytes. Its samples are the
+lowest bits of the segment, the first sample lowest. The highest bit of a segment is spare, so that
+carries and borrows end there. So a question about every trace, such as "where does `a` hold for the
+first time?", takes a few operations on one integer.
 """
 
 from __future__ import annotations
@@ -13,13 +13,17 @@ from collections.abc import Sequence
 from tltlc.tools.mine.evidence import Evidence, LabelledTrace
 
 Samples = int
-"""A set of samples of all traces."""
+"""A set of samples of the traces: one bit for each sample."""
 Verdicts = int
-"""A set of traces: one byte per trace, 0x80 if it is in the set."""
+"""A set of traces: one byte for each trace, 0x80 if the trace is in the set, else 0."""
 
 
 class Bits:
-    """The evidence as masks. ``backwards`` reverses the order of samples in each trace."""
+    """The evidence as masks. With ``backwards``, the samples of each trace are in reverse order.
+
+    ``all`` has all samples, and ``holds`` the samples at which each atom holds. ``traces`` and
+    ``counterexamples`` are the two parts of the evidence, and ``all_traces`` is both.
+    """
 
     def __init__(self, evidence: Evidence, *, backwards: bool = False) -> None:
         traces = evidence.all
@@ -35,43 +39,49 @@ class Bits:
         accepted = len(evidence.traces)
         self.traces: Verdicts = _set(0, accepted)
         self.counterexamples: Verdicts = _set(accepted, len(traces))
-        self.everything: Verdicts = self.traces | self.counterexamples
+        self.all_traces: Verdicts = self.traces | self.counterexamples
 
     def _mask(self, traces: Sequence[LabelledTrace], name: str | None, backwards: bool) -> Samples:
         """Return the samples at which an atom holds, or all samples for None."""
-        pieces = []
+        segments = []
         for trace in traces:
             letters = reversed(trace.letters) if backwards else trace.letters
             # The first digit of a number is the highest one.
             digits = "".join("1" if name is None or name in letter else "0" for letter in letters)[::-1]
-            pieces.append(int(digits, 2).to_bytes(self._bytes, "little"))
-        return int.from_bytes(b"".join(pieces), "little")
+            segments.append(int(digits, 2).to_bytes(self._bytes, "little"))
+        return int.from_bytes(b"".join(segments), "little")
 
-    def some(self, samples: Samples) -> Verdicts:
-        """Return the traces that contain some of the samples."""
+    def traces_with(self, samples: Samples) -> Verdicts:
+        """Return the traces that contain at least one of the samples."""
         tops = (samples + self._carry) & self._top
         return int.from_bytes(
             tops.to_bytes(self._bytes * self._length, "little")[self._bytes - 1 :: self._bytes], "little"
         )
 
-    def none(self, samples: Samples) -> Verdicts:
+    def traces_without(self, samples: Samples) -> Verdicts:
         """Return the traces that contain none of the samples."""
-        return self.everything & ~self.some(samples)
+        return self.all_traces & ~self.traces_with(samples)
 
     def complement(self, samples: Samples) -> Samples:
-        """Return all other samples."""
+        """Return all samples that are not in the set."""
         return self.all & ~samples
 
     def after_first(self, samples: Samples) -> Samples:
-        """Return the samples strictly after the first given one; none in a trace without a given one."""
+        """Return the samples after the first one of ``samples`` in each trace.
+
+        A trace without any of ``samples`` has none.
+        """
         return self.all & ~self._up_to_first(samples)
 
     def before_first(self, samples: Samples) -> Samples:
-        """Return the samples strictly before the first given one; all in a trace without a given one."""
+        """Return the samples before the first one of ``samples`` in each trace.
+
+        Of a trace without any of ``samples``, all samples are returned.
+        """
         return self.all & self._up_to_first(samples) & ~samples
 
     def within(self, samples: Samples, steps: int) -> Samples:
-        """Return the samples that are at most ``steps`` before one of the given samples, or equal to one."""
+        """Return ``samples`` and those that are at most ``steps`` before one of them."""
         result = samples
         reached = 0
         while reached < steps:
@@ -81,7 +91,7 @@ class Bits:
         return result
 
     def _earlier(self, samples: Samples, steps: int) -> Samples:
-        """Return the samples that are ``steps`` before the given ones."""
+        """Return the samples that are exactly ``steps`` before one of ``samples``."""
         start = self._start(steps)
         return (samples & ~start) >> steps
 
@@ -91,8 +101,9 @@ class Bits:
         return self._low * ((1 << min(steps, width)) - 1)
 
     def _up_to_first(self, samples: Samples) -> Samples:
-        marked = samples | self._top
-        return marked ^ (marked - self._low)
+        """Return the bits of each segment up to its first sample in ``samples``, or up to its end."""
+        with_end = samples | self._top
+        return with_end ^ (with_end - self._low)
 
 
 def count(verdicts: Verdicts) -> int:
@@ -101,4 +112,5 @@ def count(verdicts: Verdicts) -> int:
 
 
 def _set(first: int, end: int) -> Verdicts:
+    """Return the set of the traces with numbers from ``first`` up to, but not including, ``end``."""
     return int.from_bytes(b"\0" * first + b"\x80" * (end - first), "little")

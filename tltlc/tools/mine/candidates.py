@@ -8,7 +8,7 @@ from typing import Final
 
 from tltlc.io.limits import WORK
 from tltlc.tools.mine.bits import Bits, Verdicts
-from tltlc.tools.mine.clause import Conjunction, atoms_of
+from tltlc.tools.mine.clause import Conjunction, count_atoms
 from tltlc.tools.mine.measure import figures
 
 ALIKE: Final = 3
@@ -17,11 +17,11 @@ _MOST: Final = WORK["mined candidates"]
 
 
 class Candidates:
-    """Conjunctions with the traces that they accept.
+    """A container of conjunctions, each with the traces that it accepts.
 
-    Keeps the conjunctions that :func:`~tltlc.tools.mine.conjunctions.best` would choose from all
-    that were added, so the size depends on the number of different sets of accepted traces. If
-    there are too many sets, it keeps those with the best scores and sets ``is_cut``.
+    It keeps those conjunctions that :func:`~tltlc.tools.mine.conjunctions.best_candidates` would
+    choose from all that were added, so its size depends on the number of different sets of accepted
+    traces. If there are too many sets, it keeps those with the best scores and sets ``is_cut``.
     """
 
     def __init__(self, bits: Bits) -> None:
@@ -30,18 +30,18 @@ class Candidates:
         self.is_cut = False
 
     def add(self, conjunction: Conjunction, accepts: Verdicts) -> None:
-        """Keep a conjunction if it is among the shortest that accept these traces.
+        """Add a conjunction, unless a shorter one accepts the same traces.
 
-        At most ALIKE conjunctions are kept for one set of traces.
+        At most ``ALIKE`` conjunctions are kept for one set of traces.
         """
         alike = self._groups.setdefault(accepts, [])
         if alike:
-            size, shortest = atoms_of(conjunction), atoms_of(alike[0])
+            size, shortest = count_atoms(conjunction), count_atoms(alike[0])
             if size > shortest or conjunction in alike:
                 return
             if size < shortest:
                 alike.clear()
-        insort(alike, conjunction, key=length)
+        insort(alike, conjunction, key=sort_key)
         del alike[ALIKE:]
         if len(self._groups) > 2 * _MOST:
             self._cut()
@@ -51,20 +51,20 @@ class Candidates:
         return ((conjunction, accepts) for accepts, alike in self._groups.items() for conjunction in alike)
 
     def _cut(self) -> None:
-        """Keep the groups with the best scores."""
+        """Drop all groups but those with the best scores."""
 
         def score(group: tuple[Verdicts, list[Conjunction]]) -> float:
             accepts, alike = group
-            return -figures(self._bits, accepts).score(atoms_of(alike[0]))
+            return -figures(self._bits, accepts).score(count_atoms(alike[0]))
 
         self._groups = dict(sorted(self._groups.items(), key=score)[:_MOST])
         self.is_cut = True
 
 
-def length(conjunction: Conjunction) -> tuple[int, int, list[int], list[tuple[int, str]]]:
-    """Return the sort key for conjunctions that accept the same traces.
+def sort_key(conjunction: Conjunction) -> tuple[int, int, list[int], list[tuple[int, str]]]:
+    """Return a sort key for conjunctions that accept the same traces.
 
-    The shortest come first, then the order is by template and text.
+    The shortest comes first. Conjunctions of equal length are sorted by templates and texts.
     """
     ranks, texts = [clause.rank for clause in conjunction], [(clause.atoms, clause.text) for clause in conjunction]
-    return (atoms_of(conjunction), len(conjunction), ranks, texts)
+    return (count_atoms(conjunction), len(conjunction), ranks, texts)

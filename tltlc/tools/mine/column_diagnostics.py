@@ -1,6 +1,6 @@
-"""Diagnostics about columns that cannot be atoms.
+"""Diagnostics about columns that cannot be atoms because of a few traces.
 
-They name the traces that differ from the others, or say that a column holds numbers.
+These traces lack the column, or have values other than `true` and `false` in it.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ _MOST_NAMED: Final = 4
 
 @record
 class Columns:
-    """The columns of a trace, each with whether it holds only `true` and `false`.
+    """The columns of a trace: each name with whether all its values are `true` or `false`.
 
     ``trace`` is the name of the trace.
     """
@@ -29,34 +29,35 @@ class Columns:
 
 @record
 class OddColumns:
-    """Columns that some traces lack, or that hold values other than `true` and `false` there.
+    """Columns (``names``) that the same ``traces`` lack.
 
-    ``names`` are the columns, ``traces`` the traces; ``others`` selects the second case.
+    With ``has_other_values``, the traces do not lack them, but have other values than `true` and
+    `false` in them.
     """
 
     traces: tuple[str, ...]
-    others: bool
+    has_other_values: bool
     names: tuple[str, ...]
 
     def warning(self) -> Diagnostic:
-        """Return the warning TLT0763; it names the first of the traces."""
+        """Return the warning TLT0763. It names the first of the traces."""
         is_one = len(self.names) == 1
-        listed_names, consequence = some(self.names), "it is left out" if is_one else "they are left out"
-        if not self.others:
+        listed_names, consequence = name_list(self.names), "it is left out" if is_one else "they are left out"
+        if not self.has_other_values:
             lack = "lacks" if len(self.traces) == 1 else "lack"
             title = f"{_first(self.traces)} {lack} the column{'s' * (not is_one)} {listed_names}, so {consequence}"
             return Diagnostic("TLT0763", title, help="record all traces with the same columns", severity="warning")
         hold = "holds" if is_one else "hold"
         title = f"{listed_names} {hold} other values than `true` and `false` in {_first(self.traces)}, so {consequence}"
-        suggestion = "write `true` and `false` there, too, or compute atoms from numbers with `--predicates LIB`"
-        return Diagnostic("TLT0763", title, help=suggestion, severity="warning")
+        help_ = "write `true` and `false` there, too, or compute atoms from numbers with `--predicates LIB`"
+        return Diagnostic("TLT0763", title, help=help_, severity="warning")
 
 
-def uneven(traces: Sequence[Columns], *, truths: bool) -> tuple[OddColumns, ...]:
+def odd_columns(traces: Sequence[Columns], *, truths: bool) -> tuple[OddColumns, ...]:
     """Return the columns that at most half of the traces lack, grouped by these traces.
 
-    ``truths``: also return columns with values other than `true` and `false` in fewer than half of
-    them.
+    With ``truths``, also return the columns with values other than `true` and `false` in fewer than
+    half of the traces.
     """
     groups: dict[tuple[tuple[str, ...], bool], list[str]] = {}
     for name in dict.fromkeys(name for trace in traces for name in trace.columns):
@@ -69,15 +70,15 @@ def uneven(traces: Sequence[Columns], *, truths: bool) -> tuple[OddColumns, ...]
     return tuple(OddColumns(*key, tuple(names)) for key, names in groups.items())
 
 
-def some(names: Sequence[str]) -> str:
-    """Return the names as a list; of many, the first ones and the number of the rest."""
+def name_list(names: Sequence[str]) -> str:
+    """Return the names in words. If there are many, list the first ones and count the others."""
     if len(names) <= _MOST_NAMED:
         return listed(names)
-    shown = names[: _MOST_NAMED - 1]
-    return f"{', '.join(f'`{name}`' for name in shown)} and {len(names) - len(shown)} more"
+    first = names[: _MOST_NAMED - 1]
+    return f"{', '.join(f'`{name}`' for name in first)} and {len(names) - len(first)} more"
 
 
 def _first(traces: Sequence[str]) -> str:
-    """Return the first trace, and the number of further ones."""
+    """Return the name of the first trace, and the number of the others, in words."""
     remaining = len(traces) - 1
     return f"`{traces[0]}`" + (f" and {remaining} other trace{'s' * (remaining > 1)}" if remaining else "")

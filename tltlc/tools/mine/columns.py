@@ -1,4 +1,4 @@
-"""Find the columns of traces before it is known which of them are needed."""
+"""Find the columns of traces. This comes first, because the columns decide which atoms exist."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ Row = Sequence[tuple[str, bool]]
 
 
 def columns(data: bytes, name: str) -> dict[str, bool]:
-    """Return the columns of a trace in order, each with whether all its values are true or false.
+    """Return the columns of a trace in order, each with whether all its values are 0, 1, true or false.
 
     ``name`` is the name of the trace in messages.
 
@@ -20,22 +20,22 @@ def columns(data: bytes, name: str) -> dict[str, bool]:
     """
     truths: dict[str, bool] = {}
     count = 0
-    seen: dict[str, int] = {}
+    row_counts: dict[str, int] = {}
     for row in _rows(TraceLines(io.BytesIO(data), name)):
         count += 1
         for column, is_truth in row:
             truths[column] = truths.get(column, True) and is_truth
         # A repeated column is an error only if a signal is read from it.
         for column in {column for column, _ in row}:
-            seen[column] = seen.get(column, 0) + 1
+            row_counts[column] = row_counts.get(column, 0) + 1
     # A line of JSON may leave a signal out. Then the signal is not a column of the trace.
-    return {column: is_truth for column, is_truth in truths.items() if seen[column] == count}
+    return {column: is_truth for column, is_truth in truths.items() if row_counts[column] == count}
 
 
-def shared(all_columns: Iterable[Mapping[str, bool]]) -> dict[str, bool]:
+def common_columns(all_columns: Iterable[Mapping[str, bool]]) -> dict[str, bool]:
     """Return the columns that all traces have, in the order of the first trace.
 
-    The value is true if the column holds only truths in all traces.
+    Each comes with whether all its values in all traces are true or false.
     """
     first, *rest = all_columns
     return {

@@ -20,14 +20,14 @@ from tltlc.tools.mine.vocabulary import MiningVocabulary
 from tltlc.tools.witness.blocks import letter_values
 
 _NAME: Final = "mined_candidate_"
-"""The name prefix of specs that are only compiled."""
+"""The prefix of the names of candidates, which are compiled but not written to a file."""
 
 
 @record
 class TraceVerdict:
     """The verdict of an automaton on a trace.
 
-    It says whether the automaton accepts the trace, and at which sample (from 1) it was violated.
+    ``violated_at`` is the first sample, from 1, after which the verdict is ``violated``, or None.
     """
 
     trace: LabelledTrace
@@ -37,7 +37,7 @@ class TraceVerdict:
 
 @record
 class Proposal:
-    """A spec with its automaton and the judgements on traces and counterexamples, in order."""
+    """A spec with its automaton, and the verdicts on the traces and counterexamples, in order."""
 
     clauses: Conjunction
     fspa: Fspa
@@ -46,7 +46,7 @@ class Proposal:
 
     @property
     def figures(self) -> Support:
-        """Its figures according to the automaton."""
+        """How many traces and counterexamples the automaton accepts and rejects."""
         return Support(
             sum(judgement.accepted for judgement in self.traces),
             len(self.traces),
@@ -55,13 +55,13 @@ class Proposal:
         )
 
 
-def confirmed(
-    ranked: Sequence[Conjunction], evidence: Evidence, words: MiningVocabulary, options: CompileOptions, top: int
+def confirm(
+    ranked: Sequence[Conjunction], evidence: Evidence, vocabulary: MiningVocabulary, options: CompileOptions, top: int
 ) -> tuple[Proposal, ...]:
-    """Return the first ``top`` conjunctions that differ in meaning, judged by their automata.
+    """Return proposals for the first ``top`` conjunctions of ``ranked`` that differ in meaning.
 
-    A conjunction is left out if it accepts the same traces as an earlier one, considering all
-    possible traces and not only the evidence.
+    A conjunction is left out if an earlier one is equivalent: both accept the same traces, not only
+    among those of the evidence.
 
     Raises:
         TltlError: an automaton is too large, or the library has an error.
@@ -69,10 +69,10 @@ def confirmed(
     proposals: list[Proposal] = []
     for first in range(0, len(ranked), 2 * top):
         batch = ranked[first : first + 2 * top]
-        for clauses, fspa in zip(batch, _compiled(batch, words, options), strict=True):
+        for clauses, fspa in zip(batch, _compile(batch, vocabulary, options), strict=True):
             if len(proposals) == top:
                 return tuple(proposals)
-            if not any(_same(fspa, proposal.fspa) for proposal in proposals):
+            if not any(_are_equivalent(fspa, proposal.fspa) for proposal in proposals):
                 good, bad = (
                     tuple(judge(fspa, trace) for trace in part) for part in (evidence.traces, evidence.counterexamples)
                 )
@@ -81,7 +81,7 @@ def confirmed(
 
 
 def judge(fspa: Fspa, trace: LabelledTrace) -> TraceVerdict:
-    """Return the judgement of the automaton on a trace of atoms."""
+    """Return the verdict of an automaton on a trace."""
     run = _Run(fspa)
     violated_at = None
     for number, letter in enumerate(trace.letters, start=1):
@@ -92,39 +92,39 @@ def judge(fspa: Fspa, trace: LabelledTrace) -> TraceVerdict:
 
 
 class _Run:
-    """A run of an automaton on letters; it caches the transition of each state and letter."""
+    """A run of an automaton on letters. It caches the target of each state and letter."""
 
     def __init__(self, fspa: Fspa) -> None:
         self._fspa = fspa
         self._edges = tables(fspa).edges
-        self._known: dict[tuple[int, Letter], int] = {}
+        self._targets: dict[tuple[int, Letter], int] = {}
         self.state = fspa.states[0]
 
     def step(self, letter: Letter) -> None:
         key = (self.state.id, letter)
-        target = self._known.get(key)
+        target = self._targets.get(key)
         if target is None:
             truth = letter_values(self._fspa, letter)
-            taken: Edge = next(edge for edge in self._edges[self.state.id] if holds(edge.guard, truth))
-            target = self._known[key] = taken.target
+            enabled: Edge = next(edge for edge in self._edges[self.state.id] if holds(edge.guard, truth))
+            target = self._targets[key] = enabled.target
         self.state = self._fspa.states[target]
 
 
-def _compiled(batch: Sequence[Conjunction], words: MiningVocabulary, options: CompileOptions) -> tuple[Fspa, ...]:
-    text = words.library.text + "".join(
+def _compile(batch: Sequence[Conjunction], vocabulary: MiningVocabulary, options: CompileOptions) -> tuple[Fspa, ...]:
+    text = vocabulary.library.text + "".join(
         f"\nspec {_NAME}{number} {{\n" + "".join(f"    {clause.text}\n" for clause in clauses) + "}\n"
         for number, clauses in enumerate(batch)
     )
-    source = SourceFile(words.library.name, text)
+    source = SourceFile(vocabulary.library.name, text)
     names = tuple(f"{_NAME}{number}" for number in range(len(batch)))
     return compile_source(source, replace(options, specs=names)).automata
 
 
-def _same(one: Fspa, other: Fspa) -> bool:
+def _are_equivalent(first: Fspa, second: Fspa) -> bool:
     """Whether two automata accept the same traces; False if the comparison takes too long."""
-    if one.spec_size != other.spec_size or len(one.states) != len(other.states):
+    if first.spec_size != second.spec_size or len(first.states) != len(second.states):
         return False
     try:
-        return are_equivalent(one, other)
+        return are_equivalent(first, second)
     except OutOfWork:
         return False

@@ -6,8 +6,8 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import Final
 
 from tltlc.tools.mine.bits import Bits, Verdicts, count
-from tltlc.tools.mine.candidates import ALIKE, length
-from tltlc.tools.mine.clause import Conjunction, MinedClause, accepted_by, atoms_of
+from tltlc.tools.mine.candidates import ALIKE, sort_key
+from tltlc.tools.mine.clause import Conjunction, MinedClause, accepted_traces, count_atoms
 from tltlc.tools.mine.measure import figures
 from tltlc.tools.mine.templates import BOUNDED
 
@@ -21,16 +21,17 @@ POOL: Final = 60
 def conjunctions(
     clauses: Sequence[MinedClause], bits: Bits, least: int, most_atoms: int
 ) -> Iterator[list[Conjunction]]:
-    """Yield conjunctions of two or more clauses, in portions; each portion takes a short time.
+    """Yield conjunctions of two or more clauses, in portions, many of which are empty.
 
-    Many portions are empty. ``least`` and ``most_atoms`` are as for sequences.
+    Each portion takes a short time, so that the caller can stop. At least ``least`` traces satisfy
+    each conjunction, and it has at most ``most_atoms`` atoms.
     """
     pool = _pool(clauses)
     beam: list[tuple[Conjunction, Verdicts]] = [((addition,), addition.accepts) for addition in pool]
     for _ in range(1, MOST_CLAUSES):
         accepted_by_longer: dict[Conjunction, Verdicts] = {}
         for conjunction, accepts in beam[:BEAM]:
-            room = most_atoms - atoms_of(conjunction)
+            room = most_atoms - count_atoms(conjunction)
             for addition in pool:
                 both = accepts & addition.accepts
                 if addition.atoms > room or both == accepts or count(both & bits.traces) < least:
@@ -42,37 +43,40 @@ def conjunctions(
                 if longer not in accepted_by_longer and _all_needed(longer, both, bits):
                     accepted_by_longer[longer] = both
             yield []
-        beam = best(accepted_by_longer.items(), bits)
+        beam = best_candidates(accepted_by_longer.items(), bits)
         yield [conjunction for conjunction, _ in beam]
 
 
 def _pool(clauses: Sequence[MinedClause]) -> list[MinedClause]:
     """Return the first clauses of each template, in order.
 
-    The limit per template keeps many good clauses of one template from crowding out the others.
+    Without a limit for each template, many good clauses of one template would leave no room for
+    others.
     """
-    taken: dict[str, int] = {}
+    counts: dict[str, int] = {}
     pool = []
     for clause in clauses:
-        taken[clause.kind] = taken.get(clause.kind, 0) + 1
-        if taken[clause.kind] <= POOL:
+        counts[clause.kind] = counts.get(clause.kind, 0) + 1
+        if counts[clause.kind] <= POOL:
             pool.append(clause)
     return pool
 
 
-def best(candidates: Iterable[tuple[Conjunction, Verdicts]], bits: Bits) -> list[tuple[Conjunction, Verdicts]]:
-    """Return the candidates by score, with a few of the shortest for each set of accepted traces."""
+def best_candidates(
+    candidates: Iterable[tuple[Conjunction, Verdicts]], bits: Bits
+) -> list[tuple[Conjunction, Verdicts]]:
+    """Return the candidates by score; only a few of the shortest for each set of accepted traces."""
 
-    def worth(item: tuple[Conjunction, Verdicts]) -> tuple[float, int, list[int], list[tuple[int, str]]]:
+    def score_key(item: tuple[Conjunction, Verdicts]) -> tuple[float, int, list[int], list[tuple[int, str]]]:
         conjunction, accepts = item
-        size, clauses, ranks, texts = length(conjunction)
+        size, clauses, ranks, texts = sort_key(conjunction)
         return (-figures(bits, accepts).score(size), clauses, ranks, texts)
 
     shortest: dict[Verdicts, int] = {}
     alike: dict[Verdicts, int] = {}
     chosen = []
-    for conjunction, accepts in sorted(candidates, key=worth):
-        size = atoms_of(conjunction)
+    for conjunction, accepts in sorted(candidates, key=score_key):
+        size = count_atoms(conjunction)
         # Among candidates with the same traces, the shortest have the best score and come first.
         if shortest.setdefault(accepts, size) == size:
             alike[accepts] = alike.get(accepts, 0) + 1
@@ -82,8 +86,8 @@ def best(candidates: Iterable[tuple[Conjunction, Verdicts]], bits: Bits) -> list
 
 
 def _all_needed(conjunction: Conjunction, accepts: Verdicts, bits: Bits) -> bool:
-    """Whether dropping any clause would accept a further counterexample."""
-    without_one = (
-        accepted_by((clause for clause in conjunction if clause is not dropped), bits) for dropped in conjunction
+    """Whether the conjunction would accept a further counterexample without any of its clauses."""
+    accepted_by_rest = (
+        accepted_traces((clause for clause in conjunction if clause is not dropped), bits) for dropped in conjunction
     )
-    return all(accepted & ~accepts & bits.counterexamples for accepted in without_one)
+    return all(accepted & ~accepts & bits.counterexamples for accepted in accepted_by_rest)

@@ -11,14 +11,14 @@ from tltlc.io.limits import WORK
 from tltlc.tools.mine.evidence import Evidence, LabelledTrace
 
 MOST_EVENTS: Final = isqrt(WORK["mined pairs"])
-"""The most atoms that are related to each other: every ordered pair is tried."""
+"""The most atoms that are related to each other, because every ordered pair is tried."""
 
 
 def best_events(evidence: Evidence, events: Sequence[str], most: int = MOST_EVENTS) -> list[str]:
-    """Return at most ``most`` of the events, in their order: those that best separate the evidence.
+    """Return the ``most`` events that best separate traces from counterexamples, in their order.
 
-    An event separates traces from counterexamples by the sample at which it first holds, or by
-    whether it holds at every sample.
+    What counts is how well a threshold on the sample at which the event first holds separates them,
+    or whether the event holds at every sample.
     """
     if len(events) <= most:
         return list(events)
@@ -26,17 +26,17 @@ def best_events(evidence: Evidence, events: Sequence[str], most: int = MOST_EVEN
     always = [frozenset.intersection(*trace.letters) for trace in evidence.all]
     good = len(evidence.traces)
 
-    def worth(name: str) -> tuple[float, str]:
+    def sort_key(name: str) -> tuple[float, str]:
         first = _separation([samples.get(name, inf) for samples in firsts], good)
         throughout = _separation([float(name in names) for names in always], good)
         return (-max(first, throughout), name)
 
-    chosen = set(sorted(events, key=worth)[:most])
+    chosen = set(sorted(events, key=sort_key)[:most])
     return [name for name in events if name in chosen]
 
 
 def _first_samples(trace: LabelledTrace) -> dict[str, float]:
-    """Return the sample (from 0) at which each atom first holds."""
+    """Return the first sample, from 0, at which each atom holds."""
     firsts: dict[str, float] = {}
     for number, letter in enumerate(trace.letters):
         for name in letter:
@@ -45,9 +45,9 @@ def _first_samples(trace: LabelledTrace) -> dict[str, float]:
 
 
 def _separation(values: Sequence[float], good: int) -> float:
-    """Return how well a threshold separates the first ``good`` values from the others, in [0, 1].
+    """Return Youden's index, in [0, 1], of the best threshold on the values.
 
-    This is Youden's index.
+    The threshold is to separate the first ``good`` values from the others. 1 means that it does.
     """
     bad = len(values) - good
     if not bad:

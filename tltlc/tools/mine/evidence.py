@@ -8,10 +8,7 @@ from tltlc.core.record import record
 
 @record
 class LabelledTrace:
-    """A trace: its name, and the set of atoms that hold at each sample.
-
-    There is at least one sample.
-    """
+    """A trace: its name, and for each of its samples, at least one, the atoms that hold."""
 
     name: str
     letters: tuple[Letter, ...]
@@ -19,9 +16,9 @@ class LabelledTrace:
 
 @record
 class Evidence:
-    """The traces to satisfy, at least one, and the counterexamples to violate.
+    """The traces, at least one, that a proposal should accept, and counterexamples that it should not.
 
-    ``made_up``: the counterexamples are not recordings, but generated from the traces
+    ``made_up`` is true if the counterexamples are not recordings, but generated from the traces
     (:mod:`tltlc.tools.mine.mutants`).
     """
 
@@ -35,5 +32,5 @@ class Evidence:
         return (*self.traces, *self.counterexamples)
 
     def atoms(self) -> tuple[str, ...]:
-        """Return the atoms that hold somewhere, sorted by name."""
+        """Return the atoms that hold at some sample, sorted by name."""
         return tuple(sorted({name for trace in self.all for letter in trace.letters for name in letter}))

@@ -3,9 +3,9 @@
     score = support + separation - 1 - PRICE * atoms
 
 ``support`` is the share of the traces that satisfy the proposal. ``separation`` is the share of the
-counterexamples that violate it. ``atoms`` is the number of atoms in it, plus one for a bound. Without
-the last term this is Youden's index (Cancer 3, 1950): 1 for a spec that separates all traces from all
-counterexamples, 0 for one that is no better than chance.
+counterexamples that violate it. ``atoms`` is its number of atoms, plus one for a bound. Without the
+last term, the score is Youden's index (Cancer 3, 1950): 1 for a spec that separates all traces from
+all counterexamples, 0 for a spec that is no better than chance.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from tltlc.core.record import record
 from tltlc.tools.mine.bits import Bits, Verdicts, count
 
 PRICE: Final = 0.01
-"""The price of an atom: an atom that separates less than one trace in a hundred is not worth it."""
+"""What an atom costs: an atom that separates less than one trace in a hundred is not worth it."""
 
 
 @record
@@ -30,20 +30,20 @@ class Support:
 
     @property
     def support(self) -> float:
-        """The share of the traces that satisfy it, in [0, 1]."""
+        """The share of the traces that satisfy the proposal, in [0, 1]."""
         return self.accepted / self.traces
 
     @property
     def separation(self) -> float:
-        """The share of the counterexamples that violate it, in [0, 1]; 0 without counterexamples."""
+        """The share of the counterexamples that violate the proposal, in [0, 1]; 0 if there are none."""
         return self.rejected / self.counterexamples if self.counterexamples else 0.0
 
     def score(self, atoms: int) -> float:
-        """Return the score, at most 1; it is rounded so that equal scores compare equal."""
+        """Return the score, at most 1. It is rounded, so that equal scores compare equal."""
         return round(self.support + self.separation - 1.0 - PRICE * atoms, 9)
 
 
 def figures(bits: Bits, accepted: Verdicts) -> Support:
-    """Return the figures of a proposal that accepts these traces."""
+    """Return the figures of a proposal that accepts the traces in ``accepted``."""
     traces, counterexamples = count(bits.traces), count(bits.counterexamples)
     return Support(count(accepted & bits.traces), traces, count(bits.counterexamples & ~accepted), counterexamples)

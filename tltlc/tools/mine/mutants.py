@@ -1,8 +1,7 @@
 """Generate counterexamples if none were recorded: mutated traces that are most likely wrong.
 
-Without counterexamples, every formula that holds is as good as any other. A spec that captures what
-happened in the traces, and in which order, rejects them once they are cut short, reordered, or
-broken.
+Without counterexamples, all formulas that hold would have the same score. A spec that captures what
+happens in the traces, and in which order, rejects traces that are cut short, reordered or broken.
 """
 
 from __future__ import annotations
@@ -17,18 +16,18 @@ from tltlc.tools.mine.evidence import Evidence, LabelledTrace
 
 _SEED: Final = 1
 _ROUNDS: Final = 10
-"""The least number of mutation rounds: if there are few traces, each is mutated several times."""
+"""The least number of rounds. If there are fewer traces, each is mutated several times."""
 
 Run = tuple[Letter, int]
-"""A letter and the number of samples in a row at which it holds."""
+"""A letter, and the number of consecutive samples that have it."""
 
 
 def with_mutants(traces: Sequence[LabelledTrace]) -> Evidence:
-    """Return the traces with generated counterexamples, the same ones for any order of the traces.
+    """Return the traces with generated counterexamples, which do not depend on the order of traces.
 
-    Each trace is mutated in these ways: it is cut before the last sample at which an atom becomes
-    true; its stretches of equal samples are reordered; two of them are swapped; an atom that held
-    somewhere never holds; an atom that holds throughout all traces fails once.
+    A trace is mutated in these ways: it is cut before the last sample at which an atom becomes true;
+    its runs of equal samples are shuffled; two of the runs are swapped; an atom that holds somewhere
+    never holds; an atom that holds at every sample of all traces fails at one sample.
     """
     random = Random(_SEED)
     good = {trace.letters for trace in traces}
@@ -44,9 +43,8 @@ def with_mutants(traces: Sequence[LabelledTrace]) -> Evidence:
 
 
 def _throughout(traces: Sequence[LabelledTrace]) -> list[str]:
-    """Return the atoms that hold at every sample of every trace."""
-    every = frozenset.intersection(*(letter for trace in traces for letter in trace.letters))
-    return sorted(every)
+    """Return the atoms that hold at every sample of every trace, sorted."""
+    return sorted(frozenset.intersection(*(letter for trace in traces for letter in trace.letters)))
 
 
 def _mutants(
@@ -56,9 +54,9 @@ def _mutants(
     runs: list[Run] = [(letter, len(list(group))) for letter, group in groupby(letters)]
     yield "in another order", _samples(random.sample(runs, len(runs)))
     if len(runs) > 1:
-        one, other = random.sample(range(len(runs)), 2)
+        first, second = random.sample(range(len(runs)), 2)
         swapped = list(runs)
-        swapped[one], swapped[other] = runs[other], runs[one]
+        swapped[first], swapped[second] = runs[second], runs[first]
         yield "with two stretches swapped", _samples(swapped)
     passing = sorted({name for letter in letters for name in letter}.difference(throughout))
     if passing:
@@ -75,6 +73,6 @@ def _samples(runs: Sequence[Run]) -> tuple[Letter, ...]:
 
 
 def _last_rise(letters: Sequence[Letter]) -> int:
-    """Return the last sample at which an atom becomes true; 0 if there is none."""
+    """Return the index of the last sample at which an atom becomes true; 0 if there is none."""
     rises = [place for place in range(1, len(letters)) if letters[place] - letters[place - 1]]
     return rises[-1] if rises else 0

@@ -8,7 +8,7 @@ from typing import Final
 
 from tltlc.automaton.text import formula_text
 from tltlc.tools.mine.bits import Bits
-from tltlc.tools.mine.clause import atoms_of
+from tltlc.tools.mine.clause import count_atoms
 from tltlc.tools.mine.confirm import Proposal
 from tltlc.tools.mine.evidence import Evidence
 from tltlc.tools.mine.measure import PRICE
@@ -22,10 +22,10 @@ _MEASURE: Final = (
 )
 
 
-def shown(proposals: Sequence[Proposal], evidence: Evidence, bits: Bits) -> str:
-    """Return each proposal with its rank, figures, clauses, English sentence and reasons.
+def proposals_text(proposals: Sequence[Proposal], evidence: Evidence, bits: Bits) -> str:
+    """Return a text with the rank, figures, clauses, English sentence and reasons of each proposal.
 
-    The text ends with an explanation of the score. Lines are at most 100 columns wide.
+    It ends with an explanation of the score. Lines are at most 100 columns wide.
     """
     parts = ["\n".join(_proposal(rank, proposal, evidence, bits)) for rank, proposal in enumerate(proposals, start=1)]
     if evidence.made_up:
@@ -36,15 +36,15 @@ def shown(proposals: Sequence[Proposal], evidence: Evidence, bits: Bits) -> str:
 
 def _proposal(rank: int, proposal: Proposal, evidence: Evidence, bits: Bits) -> Iterator[str]:
     figures = proposal.figures
-    score = figures.score(atoms_of(proposal.clauses))
+    score = figures.score(count_atoms(proposal.clauses))
     yield f"{rank:3}  score {score:.2f}  support {figures.support:.2f}  separation {figures.separation:.2f}"
     yield ""
     yield from (f"{_INDENT}    {clause.text}" for clause in proposal.clauses)
     yield ""
-    yield _wrapped(formula_text(proposal.fspa))
-    yield from (_wrapped(reason, "- ") for reason in reasons(proposal, evidence, bits))
+    yield _wrap(formula_text(proposal.fspa))
+    yield from (_wrap(reason, "- ") for reason in reasons(proposal, evidence, bits))
 
 
-def _wrapped(text: str, mark: str = "") -> str:
+def _wrap(text: str, mark: str = "") -> str:
     indent = _INDENT + " " * len(mark)
     return fill(text, _WIDTH, initial_indent=_INDENT + mark, subsequent_indent=indent)

@@ -15,11 +15,11 @@ from tltlc.resolve.spec import Signal
 from tltlc.tools.mine.evidence import LabelledTrace
 from tltlc.tools.mine.vocabulary import MiningVocabulary
 
-Tell = Callable[[str], None]
-"""A callback for progress messages, called at least once per file."""
+ProgressCallback = Callable[[str], None]
+"""A callback for progress messages, called at least once for each file."""
 
 
-def silent(_: str) -> None:
+def ignore_progress(_: str) -> None:
     """Ignore a progress message."""
 
 
@@ -31,10 +31,10 @@ class TraceFile:
     data: bytes
 
 
-def read(
-    files: Sequence[TraceFile], words: MiningVocabulary, tell: Tell = silent
+def read_traces(
+    files: Sequence[TraceFile], vocabulary: MiningVocabulary, report_progress: ProgressCallback = ignore_progress
 ) -> tuple[tuple[LabelledTrace, ...], tuple[Diagnostic, ...]]:
-    """Return the traces, and warnings about values that had to be clamped, each once.
+    """Return the traces in the files, and warnings about values that were clamped to their range.
 
     Raises:
         TltlError: the errors of :func:`tltlc.monitor.traces.read_trace` and of the monitor, with the
@@ -42,13 +42,13 @@ def read(
     """
     notices: list[Diagnostic] = []
     warnings: list[Diagnostic] = []
-    samples = Samples(words.reader, None, notices)
-    known: dict[tuple[float, ...], Letter] = {}
+    samples = Samples(vocabulary.reader, None, notices)
+    cache: dict[tuple[float, ...], Letter] = {}
     traces = []
     for file in files:
-        tell(f"reading {file.name}")
+        report_progress(f"reading {file.name}")
         try:
-            traces.append(LabelledTrace(file.name, tuple(_letters(file, samples, words, known))))
+            traces.append(LabelledTrace(file.name, tuple(_letters(file, samples, vocabulary, cache))))
         except MonitorError as error:
             raise MonitorError(_in_trace(file, error.diagnostics)) from None
         warnings += _in_trace(file, notices)
@@ -56,7 +56,7 @@ def read(
     return tuple(traces), tuple(warnings)
 
 
-def check(file: TraceFile) -> None:
+def check_trace(file: TraceFile) -> None:
     """Read a trace only for the errors that :func:`tltlc.monitor.traces.read_trace` raises."""
     for _ in _rows(file, ()):
         pass
@@ -67,25 +67,22 @@ def _rows(file: TraceFile, signals: Sequence[Signal]) -> Iterator[Sample]:
 
 
 def _letters(
-    file: TraceFile, samples: Samples, words: MiningVocabulary, known: dict[tuple[float, ...], Letter]
+    file: TraceFile, samples: Samples, vocabulary: MiningVocabulary, cache: dict[tuple[float, ...], Letter]
 ) -> Iterator[Letter]:
-    """Yield the letters of a trace.
-
-    ``known`` caches the letters of samples seen before, because samples often repeat.
-    """
-    reader = words.reader
+    """Yield the letters of a trace. ``cache`` maps samples to letters, because samples often repeat."""
+    reader = vocabulary.reader
     names = [signal.name for signal in reader.signals]
     for number, row in enumerate(_rows(file, reader.signals), start=1):
         sample = tuple([row.get(name, nan) for name in names])
-        letter = known.get(sample)
+        letter = cache.get(sample)
         if letter is None:
             values = samples.atom_values(row, number)
             check_exclusive(reader, values, number)
             letter = frozenset(atom.name for atom, value in zip(reader.atoms, values, strict=True) if value > 0.0)
-            known[sample] = letter
+            cache[sample] = letter
         yield letter
 
 
 def _in_trace(file: TraceFile, diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
-    """Add the name of the trace to the diagnostics of a monitor."""
+    """Return the diagnostics of a monitor with the name of the trace in their titles."""
     return [replace(diagnostic, title=f"`{file.name}`, {diagnostic.title}") for diagnostic in diagnostics]

@@ -1,6 +1,6 @@
-"""Search for specs: templates, sequences, conjunctions.
+"""Search for specs: instances of templates, then sequences, then conjunctions.
 
-You can stop the search at any moment and take the best results so far.
+The caller can stop the search at any time and use the best results so far.
 """
 
 from __future__ import annotations
@@ -13,8 +13,8 @@ from tltlc.core.record import record
 from tltlc.io.limits import WORK
 from tltlc.tools.mine.bits import Bits, count
 from tltlc.tools.mine.candidates import Candidates
-from tltlc.tools.mine.clause import Conjunction, MinedClause, accepted_by, atoms_of
-from tltlc.tools.mine.conjunctions import best, conjunctions
+from tltlc.tools.mine.clause import Conjunction, MinedClause, accepted_traces, count_atoms
+from tltlc.tools.mine.conjunctions import best_candidates, conjunctions
 from tltlc.tools.mine.events import MOST_EVENTS, best_events
 from tltlc.tools.mine.evidence import Evidence
 from tltlc.tools.mine.measure import figures
@@ -27,7 +27,7 @@ class MiningOptions:
     """Options of a search.
 
     ``min_support`` is the least share of the traces that must satisfy a proposal, in (0, 1].
-    ``max_length`` is the most atoms that a proposal may name; a bound counts as one.
+    ``max_length`` is the most atoms that a proposal may have; a bound counts as one.
     """
 
     min_support: float = 1.0
@@ -35,25 +35,28 @@ class MiningOptions:
 
 
 class SpecSearch:
-    """Searches for specs that the traces satisfy and the counterexamples violate."""
+    """Searches for specs that the traces satisfy and the counterexamples violate.
+
+    ``tried_count`` is the number of candidates so far.
+    """
 
     def __init__(self, evidence: Evidence, options: MiningOptions) -> None:
         self.bits = Bits(evidence)
         self._backwards = Bits(evidence, backwards=True)
-        # Atoms that change at random still have some order, which generated counterexamples always break.
+        # Even atoms that change at random have some order, and generated counterexamples always break it.
         # Sequences with repeated steps would only fit that order.
-        self._again = not evidence.made_up
+        self._allow_repeats = not evidence.made_up
         # Round first, so that a rounding error does not require one trace more than the share.
         self._least = max(1, ceil(round(options.min_support * len(evidence.traces), 9)))
         self._most_atoms = options.max_length
-        self._found = Candidates(self.bits)
+        self._candidates = Candidates(self.bits)
         self._evidence = evidence
         self._work = Work(WORK["mined sequences"])
         self._unrelated = 0
-        self.tried = 0
+        self.tried_count = 0
 
     def run(self) -> Iterator[str]:
-        """Run the search; yield the name of the current phase many times a second.
+        """Run the search, and yield the name of the current phase many times a second.
 
         The caller may stop the iteration at any time.
         """
@@ -62,33 +65,35 @@ class SpecSearch:
             self._add_all(clause for clause in portion if clause.atoms <= self._most_atoms)
             if number % 20 == 0:
                 yield "templates"
-        for portion in sequences(self.bits, events, self._least, self._most_atoms, again=self._again, work=self._work):
+        for portion in sequences(
+            self.bits, events, self._least, self._most_atoms, allow_repeats=self._allow_repeats, work=self._work
+        ):
             self._add_all(portion)
             yield "sequences"
-        singles = [conjunction[0] for conjunction, _ in best(self._found.items(), self.bits)]
+        singles = [conjunction[0] for conjunction, _ in best_candidates(self._candidates.items(), self.bits)]
         for batch in conjunctions(singles, self.bits, self._least, self._most_atoms):
-            self.tried += len(batch)
+            self.tried_count += len(batch)
             for conjunction in batch:
-                self._found.add(conjunction, accepted_by(conjunction, self.bits))
+                self._candidates.add(conjunction, accepted_traces(conjunction, self.bits))
             yield "conjunctions"
 
-    def ranked(self) -> list[Conjunction]:
+    def ranking(self) -> list[Conjunction]:
         """Return the conjunctions found so far, the best first.
 
-        Each one is the best of all that are not longer. A conjunction is left out if no
-        counterexample violates it, or if a shorter one is better.
+        Each is the best of all that are not longer than it. A conjunction is left out if no
+        counterexample violates it, or if a shorter one is at least as good.
         """
-        kept: list[tuple[float, int, Conjunction]] = []
-        for conjunction, accepts in best(self._found.items(), self.bits):
-            size = atoms_of(conjunction)
-            measured = figures(self.bits, accepts)
-            rank = (measured.score(size), size)
-            if measured.rejected and (not kept or size < kept[-1][1] or rank == kept[-1][:2]):
-                kept.append((*rank, conjunction))
-        return [conjunction for _, _, conjunction in kept]
+        ranked: list[tuple[float, int, Conjunction]] = []
+        for conjunction, accepts in best_candidates(self._candidates.items(), self.bits):
+            size = count_atoms(conjunction)
+            support = figures(self.bits, accepts)
+            rank = (support.score(size), size)
+            if support.rejected and (not ranked or size < ranked[-1][1] or rank == ranked[-1][:2]):
+                ranked.append((*rank, conjunction))
+        return [conjunction for _, _, conjunction in ranked]
 
-    def left_out(self) -> list[str]:
-        """Return what the limits on work left out, one sentence each."""
+    def omissions(self) -> list[str]:
+        """Return a sentence for each limit on work that left something out."""
         sentences = []
         if self._unrelated:
             sentences.append(
@@ -96,24 +101,24 @@ class SpecSearch:
             )
         if self._work.left < 0:
             sentences.append(f"only sequences of {WORK['mined sequences']:,} steps together are tried, others are not")
-        if self._found.is_cut:
+        if self._candidates.is_cut:
             sentences.append(f"only the {WORK['mined candidates']:,} candidates with the best scores are kept")
         return sentences
 
     def _chosen_events(self) -> list[str]:
-        """Return the events that are related to each other."""
+        """Return the events to relate to each other, and count the others."""
         events = self._events()
         chosen = best_events(self._evidence, events)
         self._unrelated = len(events) - len(chosen)
         return chosen
 
     def _events(self) -> list[str]:
-        """Return the atoms that hold throughout fewer traces than a proposal needs."""
+        """Return the atoms that fail at some sample of so many traces that `keep` lacks support."""
         bits = self.bits
         return [
             name
             for name, samples in bits.holds.items()
-            if count(bits.none(bits.complement(samples)) & bits.traces) < self._least
+            if count(bits.traces_without(bits.complement(samples)) & bits.traces) < self._least
         ]
 
     def _add_all(self, portion: Iterable[MinedClause]) -> None:
@@ -121,6 +126,6 @@ class SpecSearch:
             self._add(clause)
 
     def _add(self, clause: MinedClause) -> None:
-        self.tried += 1
+        self.tried_count += 1
         if count(clause.accepts & self.bits.traces) >= self._least and self.bits.counterexamples & ~clause.accepts:
-            self._found.add((clause,), clause.accepts)
+            self._candidates.add((clause,), clause.accepts)

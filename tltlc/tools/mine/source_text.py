@@ -14,27 +14,27 @@ from tltlc.tools.mine.bits import Bits
 from tltlc.tools.mine.confirm import Proposal, TraceVerdict
 from tltlc.tools.mine.evidence import Evidence
 from tltlc.tools.mine.reasons import reasons
-from tltlc.tools.mine.vocabulary import MiningVocabulary, of_columns
+from tltlc.tools.mine.vocabulary import MiningVocabulary, vocabulary_of_columns
 from tltlc.tools.witness.blocks import expectations, test_block
 
 _WIDTH: Final = 96
 _LONGEST_TEST: Final = 40
-"""The most changes of the atoms in a trace for which a test is written; longer ones are unreadable."""
+"""The most lines of a test. Longer tests are unreadable, so they are not written."""
 
 
 def source_text(proposals: Sequence[Proposal], evidence: Evidence, bits: Bits, preamble: str) -> str:
-    """Return a file with the proposals as specs `mined_1` and so on.
+    """Return a source text with the proposals as specs `mined_1`, `mined_2` and so on.
 
     ``preamble`` declares the names that they use. Each spec is documented by its English sentence
     and its reasons. Its tests are the simplest trace that it accepts and the simplest
-    counterexample that it rejects. It has no limit, because the traces show how long play took, not
-    how long it may take.
+    counterexample that it rejects. It has no limit: the traces show how long play took, not how long
+    it may take.
     """
-    origin = _counted(len(evidence.traces), "trace")
+    origin = _count_text(len(evidence.traces), "trace")
     if evidence.counterexamples:
         kind = "made-up counterexample" if evidence.made_up else "counterexample"
-        origin += f" and {_counted(len(evidence.counterexamples), kind)}"
-    longest = _counted(max(len(trace.letters) for trace in evidence.traces), "step")
+        origin += f" and {_count_text(len(evidence.counterexamples), kind)}"
+    longest = _count_text(max(len(trace.letters) for trace in evidence.traces), "step")
     parts = [
         f"// Proposed by `tltlc mine` from {origin}: read before use.\n"
         f"// Limits are yours to set: the longest of the traces takes {longest}.\n{preamble}"
@@ -45,11 +45,11 @@ def source_text(proposals: Sequence[Proposal], evidence: Evidence, bits: Bits, p
     return "\n".join(parts)
 
 
-def declarations(proposals: Sequence[Proposal], words: MiningVocabulary, imported: str | None) -> str:
-    """Return the declarations of the names in proposals, and of nothing else.
+def declarations(proposals: Sequence[Proposal], vocabulary: MiningVocabulary, import_text: str | None) -> str:
+    """Return the declarations of the names that the proposals use, and no others.
 
-    Without a library, these are the columns. With a library, ``imported`` is the line that imports
-    it, followed by further entities.
+    Without a library, these are the columns as signals. With a library, they are ``import_text``,
+    the line that imports it, and the entities that the library does not declare.
     """
     texts = [clause.text for proposal in proposals for clause in proposal.clauses]
     texts += [atom.name for proposal in proposals for atom in proposal.fspa.atoms]
@@ -58,10 +58,12 @@ def declarations(proposals: Sequence[Proposal], words: MiningVocabulary, importe
     def is_used(name: str) -> bool:
         return re.search(rf"(?<![\w.]){re.escape(name)}(?![\w.(])", text, re.ASCII) is not None
 
-    if imported is None:
-        return of_columns({atom.name: True for atom in words.reader.atoms if is_used(atom.name)}).library.text
-    entities = [name for name in words.entities if is_used(name)]
-    return imported + (f"\nentity {', '.join(entities)}\n" if entities else "")
+    if import_text is None:
+        return vocabulary_of_columns(
+            {atom.name: True for atom in vocabulary.reader.atoms if is_used(atom.name)}
+        ).library.text
+    entities = [name for name in vocabulary.entities if is_used(name)]
+    return import_text + (f"\nentity {', '.join(entities)}\n" if entities else "")
 
 
 def _spec(proposal: Proposal, evidence: Evidence, bits: Bits) -> str:
@@ -83,20 +85,20 @@ def _sentence(text: str) -> str:
 def _tests(proposal: Proposal) -> Iterator[str]:
     atoms = {atom.name for atom in proposal.fspa.atoms}
 
-    def changes(judged: TraceVerdict) -> tuple[int, int]:
-        """Return how many lines a trace takes, and how many samples."""
-        letters = judged.trace.letters
+    def lengths(verdict: TraceVerdict) -> tuple[int, int]:
+        """Return how many lines a trace takes in a test, and how many samples it has."""
+        letters = verdict.trace.letters
         return sum(1 for _ in groupby(letter & atoms for letter in letters)), len(letters)
 
     good = [judgement for judgement in proposal.traces if judgement.accepted]
     bad = [judgement for judgement in proposal.counterexamples if not judgement.accepted]
-    for chosen in (good, bad):
-        if chosen:
-            simplest = min(chosen, key=changes)
-            if changes(simplest)[0] <= _LONGEST_TEST:
+    for verdicts in (good, bad):
+        if verdicts:
+            simplest = min(verdicts, key=lengths)
+            if lengths(simplest)[0] <= _LONGEST_TEST:
                 letters = simplest.trace.letters
                 yield test_block(simplest.trace.name, proposal.fspa, letters, expectations(proposal.fspa, letters))
 
 
-def _counted(number: int, thing: str) -> str:
+def _count_text(number: int, thing: str) -> str:
     return f"{number} {thing}{'' if number == 1 else 's'}"

@@ -1,6 +1,6 @@
-"""The templates of one and two atoms: keep, avoid, until, precedence, response.
+"""The templates with one or two atoms: keep, avoid, invariants, until, precedence, response.
 
-Sequences are in :mod:`tltlc.tools.mine.sequences`.
+:mod:`tltlc.tools.mine.sequences` has the sequences.
 """
 
 from __future__ import annotations
@@ -18,34 +18,34 @@ KINDS: Final = ("reach", "keep", "avoid", "invariant", "precedence", "until", "r
 
 LONGEST_BOUND: Final = 30
 """The most steps of a bounded response, because its automaton counts them."""
-_LEAST_ASKED: Final = 3
-"""The least number of traces in which a response must be triggered before its delay is meaningful."""
+_LEAST_TRIGGERED: Final = 3
+"""A bounded response must be triggered in at least this many traces."""
 
 
 def clauses(forwards: Bits, backwards: Bits, events: Collection[str], least: int) -> Iterator[list[MinedClause]]:
-    """Yield every instance over the atoms, in small portions, except those vacuous in all traces.
+    """Yield every instance of the templates that is not vacuous in all traces, in small portions.
 
-    Two atoms are related only if both are ``events``: an atom that holds throughout is covered by
-    `keep` and causes nothing. The work grows with the square of ``events``, so the caller limits
-    them. A bound is the smallest one that ``least`` of the traces keep to.
+    Only ``events`` are related to each other: `keep` covers an atom that holds throughout. The work
+    grows with the square of the number of events, so the caller limits it. A bound is the smallest
+    that at least ``least`` traces keep.
     """
     for portion in _candidates(forwards, backwards, events, least):
         # A clause that is only vacuously true says nothing about the game.
-        yield [instance for instance in portion if instance.asked & instance.accepts & forwards.traces]
+        yield [instance for instance in portion if instance.not_vacuous & instance.accepts & forwards.traces]
 
 
-def clause(kind: str, text: str, atoms: int, accepts: int, asked: int) -> MinedClause:
-    """Return a clause of a template."""
-    return MinedClause(kind, KINDS.index(kind), text, atoms, accepts, asked)
+def template_clause(kind: str, text: str, atoms: int, accepts: int, not_vacuous: int) -> MinedClause:
+    """Return an instance of the template ``kind``. The fields are those of :class:`MinedClause`."""
+    return MinedClause(kind, KINDS.index(kind), text, atoms, accepts, not_vacuous)
 
 
 def _candidates(forwards: Bits, backwards: Bits, events: Collection[str], least: int) -> Iterator[list[MinedClause]]:
-    """Yield the instances, in portions of one atom or one pair."""
-    occurs = {name: forwards.some(samples) for name, samples in forwards.holds.items()}
+    """Yield all instances, in portions of one atom or one pair of atoms."""
+    occurs = {name: forwards.traces_with(samples) for name, samples in forwards.holds.items()}
     for name, samples in forwards.holds.items():
-        every = forwards.everything
-        keep = clause("keep", f"keep {name}", 1, forwards.none(forwards.complement(samples)), every)
-        yield [keep, clause("avoid", f"avoid {name}", 1, every & ~occurs[name], every)]
+        every = forwards.all_traces
+        keep = template_clause("keep", f"keep {name}", 1, forwards.traces_without(forwards.complement(samples)), every)
+        yield [keep, template_clause("avoid", f"avoid {name}", 1, every & ~occurs[name], every)]
     for first in events:
         for second in events:
             if first != second:
@@ -55,44 +55,46 @@ def _candidates(forwards: Bits, backwards: Bits, events: Collection[str], least:
 
 def _pair(first: str, second: str, forwards: Bits, backwards: Bits, occurs: dict[str, int]) -> Iterator[MinedClause]:
     a, b = atom_operand(first), atom_operand(second)
-    here, there = forwards.holds[first], forwards.holds[second]
-    asked = occurs[first]
-    together = forwards.none(here & ~there)
-    yield clause("invariant", f"keep {a} implies {b}", 2, together, asked)
+    a_samples, b_samples = forwards.holds[first], forwards.holds[second]
+    triggered = occurs[first]
+    together = forwards.traces_without(a_samples & ~b_samples)
+    yield template_clause("invariant", f"keep {a} implies {b}", 2, together, triggered)
     if first < second:
-        never = forwards.none(here & there)
-        yield clause("invariant", f"avoid {a} and {b}", 2, never, asked & occurs[second])
-        either = forwards.none(forwards.complement(here | there))
-        yield clause("invariant", f"keep {a} or {b}", 2, either, forwards.everything)
+        never = forwards.traces_without(a_samples & b_samples)
+        yield template_clause("invariant", f"avoid {a} and {b}", 2, never, triggered & occurs[second])
+        either = forwards.traces_without(forwards.complement(a_samples | b_samples))
+        yield template_clause("invariant", f"keep {a} or {b}", 2, either, forwards.all_traces)
 
-    precedes = forwards.none(there & forwards.before_first(here))
-    yield clause("precedence", f"require (not {b}) weak_until {a}", 2, precedes, occurs[second])
-    yield clause("until", f"require (not {b}) until {a}", 2, precedes & occurs[first], occurs[first])
-    keeps = forwards.none(forwards.before_first(there) & ~here) & occurs[second]
-    yield clause("until", f"require {a} until {b}", 2, keeps, keeps & forwards.some(forwards.before_first(there)))
+    precedes = forwards.traces_without(b_samples & forwards.before_first(a_samples))
+    yield template_clause("precedence", f"require (not {b}) weak_until {a}", 2, precedes, occurs[second])
+    yield template_clause("until", f"require (not {b}) until {a}", 2, precedes & occurs[first], occurs[first])
+    keeps = forwards.traces_without(forwards.before_first(b_samples) & ~a_samples) & occurs[second]
+    yield template_clause(
+        "until", f"require {a} until {b}", 2, keeps, keeps & forwards.traces_with(forwards.before_first(b_samples))
+    )
 
     # Backwards in time, the answer comes before the trigger.
     last = backwards.before_first(backwards.holds[second])
-    answered = backwards.none(backwards.holds[first] & last)
-    yield clause("response", f"require always ({a} implies eventually {b})", 2, answered, asked)
+    answered = backwards.traces_without(backwards.holds[first] & last)
+    yield template_clause("response", f"require always ({a} implies eventually {b})", 2, answered, triggered)
 
 
 def _bounded(first: str, second: str, bits: Bits, least: int) -> Iterator[MinedClause]:
-    """Yield a response within the smallest bound that enough of the traces keep to.
+    """Yield the response within the smallest bound that at least ``least`` traces keep.
 
-    Yields nothing if that bound is 0 or above LONGEST_BOUND, or if too few traces trigger the
+    Nothing is yielded if the bound is 0 or above ``LONGEST_BOUND``, or if too few traces trigger the
     response.
     """
-    here, there = bits.holds[first], bits.holds[second]
+    a_samples, b_samples = bits.holds[first], bits.holds[second]
 
     def answered(steps: int) -> Verdicts:
-        return bits.none(here & ~bits.within(there, steps))
+        return bits.traces_without(a_samples & ~bits.within(b_samples, steps))
 
     def is_enough(steps: int) -> bool:
         return count(answered(steps) & bits.traces) >= least
 
     low, high = 0, LONGEST_BOUND
-    if count(bits.some(here) & bits.traces) < _LEAST_ASKED or not is_enough(high):
+    if count(bits.traces_with(a_samples) & bits.traces) < _LEAST_TRIGGERED or not is_enough(high):
         return
     while low < high:
         middle = (low + high) // 2
@@ -100,4 +102,4 @@ def _bounded(first: str, second: str, bits: Bits, least: int) -> Iterator[MinedC
     if low:
         steps = f"{low} step{'s' * (low > 1)}"
         text = f"require always ({atom_operand(first)} implies eventually within {steps} {atom_operand(second)})"
-        yield clause(BOUNDED, text, 3, answered(low), bits.some(here))
+        yield template_clause(BOUNDED, text, 3, answered(low), bits.traces_with(a_samples))

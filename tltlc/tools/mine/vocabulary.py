@@ -1,6 +1,6 @@
-"""The atoms of traces: predicates of a library over entities, or true/false columns.
+"""Find the atoms of traces: predicates of a library over entities, or columns of true and false.
 
-In both cases a source text declares the atoms, and the compiler does the rest.
+In both cases, the atoms are declared in a source text, which the compiler resolves.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from tltlc.resolve.problem import Log
 from tltlc.resolve.resolution import resolve_atoms
 from tltlc.resolve.scope import Binding, build_scopes
 from tltlc.resolve.spec import Vocabulary
-from tltlc.tools.mine.column_diagnostics import some
+from tltlc.tools.mine.column_diagnostics import name_list
 
 _CALL: Final = re.compile(r"([A-Za-z_][\w.]*)\s*\(([^()]*)\)\Z", re.ASCII)
 _WORD: Final = re.compile(r"[A-Za-z_][\w.]*\Z", re.ASCII)
@@ -40,11 +40,11 @@ _MOST_INSTANCES: Final = WORK["mined instances"]
 class MiningVocabulary:
     """The vocabulary for reading traces and writing specs.
 
-    ``library`` declares everything; ``entities`` are those that the original library did not
-    declare. ``reader`` is an automaton that accepts everything and has all atoms: their
-    expressions, signals and params. ``left_out`` are columns that are not atoms. Those of them in
-    ``misnamed`` are true or false, but have names that no atom can have. ``unread`` counts possible
-    atoms beyond the limits on work.
+    ``library`` is a source text that declares all names. ``entities`` are those that the original
+    library does not declare. ``reader`` is an automaton that accepts every trace and has all atoms.
+    ``left_out`` lists the columns that are not atoms. Those in ``misnamed`` are true or false, but
+    have names that no atom can have. ``unread_count`` is the number of possible atoms beyond the
+    limits on work.
     """
 
     library: SourceFile
@@ -52,59 +52,60 @@ class MiningVocabulary:
     reader: Fspa
     left_out: tuple[str, ...] = ()
     misnamed: frozenset[str] = frozenset()
-    unread: int = 0
+    unread_count: int = 0
 
 
-def of_library(library: SourceFile, columns: Collection[str], options: ResolveOptions) -> MiningVocabulary:
-    """Return the atoms of a library whose signals are all among the columns of the traces.
+def vocabulary_of_library(library: SourceFile, columns: Collection[str], options: ResolveOptions) -> MiningVocabulary:
+    """Return the vocabulary of the atoms that can be computed from the columns of the traces.
 
-    These are predicates and `bool` signals of entities, and the atoms of the library's own specs.
+    These are predicates and `bool` signals of the library with entities as arguments, and the atoms
+    of the library's own specs.
 
     Raises:
         TltlError: the library has an error; TLT0760, none of its atoms can be read.
     """
     session = Session(library, CompileOptions(library_dirs=options.library_dirs, params=options.params))
     stop_at_errors(session.syntax_errors)
-    names = _visible(session.module, options)
+    names = _visible_names(session.module, options)
     missing = tuple(name for name in _entities(columns) if name not in names and _declares(f"entity {name}\n"))
     own = [name for name, binding in names.items() if binding.kind == "entity"]
     stop_at_errors(session.resolution.diagnostics)
-    used = [atom.name for spec in session.resolution.program.specs for atom in spec.atoms]
+    spec_atoms = [atom.name for spec in session.resolution.program.specs for atom in spec.atoms]
 
     extended = _with_entities(library, missing)
-    plain = _parsed(extended)
-    plain = replace(
-        plain,
+    module = _parse(extended)
+    module = replace(
+        module,
         declarations=tuple(
-            declaration for declaration in plain.declarations if not isinstance(declaration, (SpecDecl, TestDecl))
+            declaration for declaration in module.declarations if not isinstance(declaration, (SpecDecl, TestDecl))
         ),
     )
-    every = dict.fromkeys((*own, *missing))
-    instances, unread = _instances(names.values(), every)
-    texts = list(dict.fromkeys((*used, *instances)))
-    # The search does not depend on the order of the atoms.
-    texts, unread = texts[:_MOST], unread + len(texts[_MOST:])
-    readable = _readable(plain, texts, columns, options)
+    entities = dict.fromkeys((*own, *missing))
+    instances, unread_count = _instances(names.values(), entities)
+    texts = list(dict.fromkeys((*spec_atoms, *instances)))
+    # The order of the atoms does not matter to the search.
+    texts, unread_count = texts[:_MOST], unread_count + len(texts[_MOST:])
+    readable = _readable_atoms(module, texts, columns, options)
     if readable is None:
-        raise _unreadable(library, _resolved(plain, texts, options), columns)
-    return MiningVocabulary(extended, missing, _reader(readable), unread=unread)
+        raise _no_readable_atom(library, _resolve(module, texts, options), columns)
+    return MiningVocabulary(extended, missing, _reader(readable), unread_count=unread_count)
 
 
-def _unreadable(library: SourceFile, words: Vocabulary | None, columns: Collection[str]) -> TltlError:
-    """Return the error for a library none of whose atoms can be computed."""
+def _no_readable_atom(library: SourceFile, vocabulary: Vocabulary | None, columns: Collection[str]) -> TltlError:
+    """Return the error TLT0760 for a library if none of its atoms can be computed."""
     title = f"no predicate of `{library.name.strip('<>')}` can be computed from the columns of the traces"
-    missing = [signal.name for signal in words.signals if signal.name not in columns] if words else []
-    suggestion = f"record what its predicates use: {listed(missing[:3])}" if missing else "declare a predicate in it"
-    return TltlError([Diagnostic("TLT0760", title, help=suggestion)])
+    missing = [signal.name for signal in vocabulary.signals if signal.name not in columns] if vocabulary else []
+    help_ = f"record what its predicates use: {listed(missing[:3])}" if missing else "declare a predicate in it"
+    return TltlError([Diagnostic("TLT0760", title, help=help_)])
 
 
-def of_columns(columns: Mapping[str, bool]) -> MiningVocabulary:
-    """Return the columns that are true or false, as atoms.
+def vocabulary_of_columns(columns: Mapping[str, bool]) -> MiningVocabulary:
+    """Return the vocabulary whose atoms are the columns of true and false.
 
-    ``left_out`` are the other columns, including those that are ``misnamed``.
+    ``columns`` maps each name to whether all values of the column are true or false.
 
     Raises:
-        TltlError: TLT0760, there is no such column.
+        TltlError: TLT0760, no column is an atom.
     """
     truths = [name for name, is_truth in columns.items() if is_truth]
     names, unread = truths[:_MOST], frozenset(truths[_MOST:])
@@ -116,35 +117,34 @@ def of_columns(columns: Mapping[str, bool]) -> MiningVocabulary:
     text += "".join(_signal(name, number) for name, number in signals.items())
     text += "".join(f"signal {name}: bool\n" for name in simple)
     library = SourceFile("<traces>", text)
-    readable = _readable(_parsed(library), [name for name in names if name in simple or name in calls], columns)
+    readable = _readable_atoms(_parse(library), [name for name in names if name in simple or name in calls], columns)
     if readable is None:
         raise _no_columns(names)
     reader = _reader(readable)
-    read = {atom.name for atom in reader.atoms}
-    left_out = tuple(name for name in columns if name not in read and name not in unread)
+    atom_names = {atom.name for atom in reader.atoms}
+    left_out = tuple(name for name in columns if name not in atom_names and name not in unread)
     return MiningVocabulary(library, (), reader, left_out, frozenset(left_out).intersection(names), len(unread))
 
 
 def _no_columns(truths: Sequence[str]) -> TltlError:
-    """Return the error if no column is an atom.
+    """Return the error TLT0760 if no column is an atom.
 
-    ``truths`` are the columns that are true or false, but have names that no atom can have.
+    ``truths`` lists the columns of true and false, whose names no atom can have.
     """
     title = "no column of the traces holds `true` and `false` alone"
-    suggestion = "with `--predicates LIB` atoms are computed from columns of numbers"
+    help_ = "with `--predicates LIB` atoms are computed from columns of numbers"
     if truths:
-        columns = f"column {some(truths)} holds" if len(truths) == 1 else f"columns {some(truths)} hold"
+        columns = f"column {name_list(truths)} holds" if len(truths) == 1 else f"columns {name_list(truths)} hold"
         title = f"the {columns} `true` and `false` alone, but no atom can be called so"
-        suggestion = (
-            "call it as atoms are, e.g. `seen` or `at(key)`: letters, digits and `_`, and no word of the language"
-        )
-    return TltlError([Diagnostic("TLT0760", title, help=suggestion)])
+        help_ = "call it as atoms are, e.g. `seen` or `at(key)`: letters, digits and `_`, and no word of the language"
+    return TltlError([Diagnostic("TLT0760", title, help=help_)])
 
 
 def _calls(names: Iterable[str], taken: Collection[str]) -> dict[str, tuple[str, tuple[str, ...]]]:
     """Return the columns such as `near(s1)`, each with its signal and its entities.
 
-    Columns whose declarations would conflict with others are left out.
+    ``taken`` has the names of other signals. A column is left out if its declarations would conflict
+    with others.
     """
     lengths: dict[str, int] = {}
     entities: set[str] = set()
@@ -158,37 +158,37 @@ def _calls(names: Iterable[str], taken: Collection[str]) -> dict[str, tuple[str,
             continue
         if any(argument in taken or argument in lengths for argument in arguments):
             continue
-        declared = "".join(f"entity {argument}\n" for argument in dict.fromkeys(arguments)) + _signal(
+        text = "".join(f"entity {argument}\n" for argument in dict.fromkeys(arguments)) + _signal(
             signal, len(arguments)
         )
-        if lengths.get(signal, len(arguments)) == len(arguments) and _declares(declared):
+        if lengths.get(signal, len(arguments)) == len(arguments) and _declares(text):
             lengths[signal] = len(arguments)
             entities.update(arguments)
             calls[name] = call
     return calls
 
 
-def _reader(words: Vocabulary) -> Fspa:
-    """Return an automaton that accepts everything and has these atoms."""
+def _reader(vocabulary: Vocabulary) -> Fspa:
+    """Return an automaton that accepts every trace and has these atoms."""
     spec = replace(
         spec_from_formula(TRUE, "reader"),
-        atoms=words.atoms,
-        signals=words.signals,
-        params=words.params,
-        exclusive=words.exclusive,
-        clock_s=words.clock_s,
+        atoms=vocabulary.atoms,
+        signals=vocabulary.signals,
+        params=vocabulary.params,
+        exclusive=vocabulary.exclusive,
+        clock_s=vocabulary.clock_s,
     )
     return build(spec)
 
 
-def _parsed(source: SourceFile) -> Module:
+def _parse(source: SourceFile) -> Module:
     module, diagnostics = parse(source)
     stop_at_errors(diagnostics)
     return module
 
 
-def _visible(module: Module, options: ResolveOptions) -> dict[str, Binding]:
-    """Return the names that a module sees: its own and those of its imports."""
+def _visible_names(module: Module, options: ResolveOptions) -> dict[str, Binding]:
+    """Return the names that a module can use: its own and those of its imports."""
     log = Log()
     names = build_scopes(load(module, options, log), log)[-1].names
     stop_at_errors(log.diagnostics())
@@ -196,7 +196,7 @@ def _visible(module: Module, options: ResolveOptions) -> dict[str, Binding]:
 
 
 def _with_entities(library: SourceFile, names: Sequence[str]) -> SourceFile:
-    """Return the library with more entities, declared after its own text so that positions stay valid."""
+    """Return the library with further entities. They come last, so that positions stay valid."""
     return SourceFile(library.name, f"{library.text}\nentity {', '.join(names)}\n") if names else library
 
 
@@ -204,9 +204,9 @@ def _with_entities(library: SourceFile, names: Sequence[str]) -> SourceFile:
 
 
 def _instances(bindings: Iterable[Binding], entities: Collection[str]) -> tuple[list[str], int]:
-    """Return the predicates and `bool` signals over all entities, as they are written.
+    """Return the texts of all predicates and `bool` signals with entities as arguments.
 
-    Also returns how many instances the limit left out.
+    Also returns how many of them the limit left out.
     """
     instances: list[str] = []
     left_out = 0
@@ -223,7 +223,7 @@ def _instances(bindings: Iterable[Binding], entities: Collection[str]) -> tuple[
 def _predicates(bindings: Iterable[Binding]) -> Iterator[tuple[str, int]]:
     """Yield the predicates and `bool` signals whose required parameters are all entities.
 
-    Each comes with the number of these parameters.
+    Each comes with its number of required parameters.
     """
     for binding in bindings:
         declaration = binding.declaration
@@ -236,11 +236,11 @@ def _predicates(bindings: Iterable[Binding]) -> Iterator[tuple[str, int]]:
             yield binding.name, len(required)
 
 
-def _readable(
+def _readable_atoms(
     module: Module, texts: Sequence[str], columns: Collection[str], options: ResolveOptions | None = None
 ) -> Vocabulary | None:
     """Return the atoms of these texts whose signals are all columns, or None if there are none."""
-    resolved = _resolved(module, texts, options)
+    resolved = _resolve(module, texts, options)
     if resolved is None:
         return None
     names = [
@@ -250,21 +250,24 @@ def _readable(
     ]
     if names == list(texts):
         return resolved
-    return _resolved(module, names, options) if names else None
+    return _resolve(module, names, options) if names else None
 
 
-def _resolved(module: Module, texts: Sequence[str], options: ResolveOptions | None) -> Vocabulary | None:
-    """Return the atoms of these texts, leaving out texts that are not atoms or that repeat an atom."""
-    written = [SourceFile("<atom>", text) for text in texts]
-    while written:
-        words, _, problems = resolve_atoms(module, written, options)
-        if words is not None and not any(problem.severity == "error" for problem in problems):
-            return words
+def _resolve(module: Module, texts: Sequence[str], options: ResolveOptions | None) -> Vocabulary | None:
+    """Return the atoms of these texts, or None if there are none.
+
+    Texts that are not atoms or that repeat an atom are left out.
+    """
+    sources = [SourceFile("<atom>", text) for text in texts]
+    while sources:
+        vocabulary, _, problems = resolve_atoms(module, sources, options)
+        if vocabulary is not None and not any(problem.severity == "error" for problem in problems):
+            return vocabulary
         wrong = [label.source for problem in problems if problem.severity == "error" for label in problem.labels[:1]]
-        remaining = [source for source in written if not any(source is rejected for rejected in wrong)]
-        if len(remaining) == len(written):
+        remaining = [source for source in sources if not any(source is rejected for rejected in wrong)]
+        if len(remaining) == len(sources):
             raise TltlError(problems)
-        written = remaining
+        sources = remaining
     return None
 
 
@@ -293,6 +296,6 @@ def _signal(name: str, entities: int) -> str:
 
 
 def _declares(text: str) -> bool:
-    """Whether a text is a valid declaration; it is not if a column is named like a keyword."""
+    """Whether a text parses as a declaration. It does not if a name in it is a keyword."""
     _, problems = parse(SourceFile("<column>", text))
     return not any(problem.severity == "error" for problem in problems)

@@ -114,9 +114,9 @@ def command(
 
     from tltlc.io.writing import check_not_read
     from tltlc.resolve.options import ResolveOptions
-    from tltlc.tools.mine.confirm import confirmed
-    from tltlc.tools.mine.evidence_reader import gathered
-    from tltlc.tools.mine.proposal_text import shown
+    from tltlc.tools.mine.confirm import confirm
+    from tltlc.tools.mine.evidence_reader import read_evidence
+    from tltlc.tools.mine.proposal_text import proposals_text
     from tltlc.tools.mine.proposals_json import document
     from tltlc.tools.mine.search import MiningOptions, SpecSearch
 
@@ -130,7 +130,7 @@ def command(
         library = None if predicates is None else _library(predicates)
         imported = _import(library, predicates, output) if library and predicates and output else None
         resolve = ResolveOptions(options.library_dirs, options.params)
-        words, evidence, diagnostics = gathered(
+        words, evidence, diagnostics = read_evidence(
             _files(traces), _files(counterexamples), library, resolve, _every_second(report)
         )
         if output is not None and not is_stdout(output):
@@ -140,9 +140,9 @@ def command(
         report.add(diagnostics)
         search = SpecSearch(evidence, MiningOptions(min_support, max_length))
         whole, interrupted = _run_search(search, seconds, report)
-        left_out = (*_unread(words), *search.left_out())
+        left_out = (*_unread(words), *search.omissions())
         report.add(tuple(_beyond_the_limits(title, predicates) for title in left_out))
-        proposals = confirmed(search.ranked(), evidence, words, options, top)
+        proposals = confirm(search.ranking(), evidence, words, options, top)
         if not proposals:
             report.add((_nothing(evidence, whole=whole),))
         elif output is not None:
@@ -150,11 +150,11 @@ def command(
         if as_json:
             print(
                 json.dumps(
-                    document(proposals, evidence, search, whole=whole and not left_out), indent=2, ensure_ascii=False
+                    document(proposals, evidence, search, complete=whole and not left_out), indent=2, ensure_ascii=False
                 )
             )
         elif proposals and not is_stdout(output):
-            print(shown(proposals, evidence, search.bits))
+            print(proposals_text(proposals, evidence, search.bits))
     return exits.interrupted() if interrupted else report.status
 
 
@@ -241,11 +241,11 @@ def _run_search(search: SpecSearch, seconds: float | None, report: Report) -> tu
         for stage in search.run():
             now = monotonic()
             if seconds is not None and now - begun >= seconds:
-                report.say(f"time is up; candidates so far: {search.tried}")
+                report.say(f"time is up; candidates so far: {search.tried_count}")
                 return False, False
-            tell(f"{stage}; candidates so far: {search.tried}, in {now - begun:.0f} s")
+            tell(f"{stage}; candidates so far: {search.tried_count}, in {now - begun:.0f} s")
     except KeyboardInterrupt:
-        report.say(f"interrupted; candidates so far: {search.tried}")
+        report.say(f"interrupted; candidates so far: {search.tried_count}")
         return False, True
     return True, False
 
@@ -267,10 +267,10 @@ def _unread(words: MiningVocabulary) -> Iterator[str]:
     """Yield a message if there are more atoms than the limit allows to read."""
     from tltlc.io.limits import WORK
 
-    if words.unread:
+    if words.unread_count:
         most, instances = WORK["mined columns"], WORK["mined instances"]
         of_each = f", {instances:,} of one predicate" if words.entities else ""
-        yield f"only the first {most:,} atoms are read{of_each}, and {words.unread:,} others are not"
+        yield f"only the first {most:,} atoms are read{of_each}, and {words.unread_count:,} others are not"
 
 
 def _beyond_the_limits(title: str, predicates: str | None) -> Diagnostic:
