@@ -1,5 +1,4 @@
-"""Properties of the layout that hold for any text; and trees without the parts that the layout may
-change."""
+"""Properties of the layout that hold for every text without errors."""
 
 from __future__ import annotations
 
@@ -15,13 +14,13 @@ STEPS = (None, "step", "steps")
 
 
 def check(text: str, style: str) -> str:
-    """Assert all properties for a text without errors, and return the formatted text."""
+    """Assert all properties for a text, which must have no errors, and return the formatted text."""
     before = read(text)
     formatted = format_text(text, style)
     after = read(formatted)
     assert shape(after.declarations) == shape(before.declarations)
     assert [comment.text for comment in after.comments] == [comment.text for comment in before.comments]
-    assert spoken_of(after) == spoken_of(before)
+    assert comment_targets(after) == comment_targets(before)
     assert format_text(formatted, style) == formatted
     lines = formatted.split("\n")
     assert lines[-1] == ""
@@ -41,10 +40,10 @@ def read(text: str) -> tree.Module:
     return module
 
 
-def spoken_of(module: tree.Module) -> list[set[int] | None]:
-    """For each allow comment, the clauses and declarations that it applies to, without nested ones.
+def comment_targets(module: tree.Module) -> list[set[int] | None]:
+    """Return, for each allow comment, the numbers of the outermost statements that it applies to.
 
-    They are given by their numbers; None stands for the whole file.
+    None stands for the whole file.
     """
     numbers = {span: number for number, span in enumerate(allowed.statements(module))}
     blocks = [declaration.span for declaration in module.declarations if isinstance(declaration, tree.SpecDecl)]
@@ -61,18 +60,18 @@ def spoken_of(module: tree.Module) -> list[set[int] | None]:
 
 
 def shape(node: object) -> object:
-    """A tree without spans, in which a bound is replaced by the samples that it covers."""
+    """Return a tree without spans, in which a bound is replaced by the samples that it covers."""
     if isinstance(node, tuple):
         return tuple(shape(item) for item in node)
     if not hasattr(node, "__match_args__"):
         return node
     fields = {name: getattr(node, name) for name in node.__match_args__}
     if isinstance(node, tree.Unary) and node.bound:
-        fields["bound"] = tuple(_covered(node.op, node.bound))
+        fields["bound"] = tuple(_covered_samples(node.op, node.bound))
     return type(node).__name__, {name: shape(value) for name, value in fields.items() if not isinstance(value, Span)}
 
 
-def _covered(op: str, bound: tree.TemporalInterval) -> Iterator[object]:
+def _covered_samples(op: str, bound: tree.TemporalInterval) -> Iterator[object]:
     high = bound.high
     steps = high.unit in STEPS
     if bound.low is not None and (bound.low.value or bound.low.unit not in STEPS):

@@ -1,4 +1,4 @@
-"""Random texts of the language, generated word by word along the grammar."""
+"""Random texts of the language, generated word by word from the grammar."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from random import Random
 
 NAMES = ["a", "b", "near", "x", "in", "at", "as", "step", "expect", "within", "for", "after", "s", "m", "position.x"]
-"""Names, most of which are keywords or units in other places."""
+"""Names. Most of them are keywords or units in other places."""
 
 PREFIXES = {
     **dict.fromkeys(("not", "!", "¬"), ()),
@@ -21,7 +21,7 @@ INFIXES = (
 ARITHMETIC = ("+", "-", "*", "/", "^")
 NUMBERS = ["1", "0.5", "2e-3", "20 m", "5%", "20 m / s", "3 km/h", "9.81 m/s^2"]
 GAPS = [" "] * 24 + ["\n", "\n\n\n\n", "\t", " // a remark\n", "\n  // alone\n", "\n/// said\n", " /// behind\r\n"]
-ALLOWING = [*GAPS, " // tltlc: allow TLT0412\n", "\n// tltlc: allow TLT0425\n"]
+GAPS_WITH_ALLOW = [*GAPS, " // tltlc: allow TLT0412\n", "\n// tltlc: allow TLT0425\n"]
 
 
 def module(random: Random, gaps: Sequence[str] = GAPS) -> str:
@@ -30,7 +30,7 @@ def module(random: Random, gaps: Sequence[str] = GAPS) -> str:
 
 
 def join(random: Random, words: list[str], gaps: Sequence[str] = GAPS) -> str:
-    """Join the words with blanks, line breaks and comments; a word may contain a blank itself."""
+    """Join words with blanks, line breaks and comments from ``gaps``. A word may contain blanks."""
     return "".join(random.choice(gaps) + word for word in words) + random.choice(gaps)
 
 
@@ -95,7 +95,7 @@ def item(random: Random) -> list[str]:
 
 
 def formula(random: Random, depth: int) -> list[str]:
-    """Return a formula that fits anywhere: a part that could end differently is in brackets."""
+    """Return the words of a formula, with brackets around each part that could be read differently."""
     match random.randrange(9) if depth else 0:
         case 0:
             return atom(random)

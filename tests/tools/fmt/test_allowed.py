@@ -19,7 +19,7 @@ from tltlc.grammar.lexer import tokenize
 from tltlc.grammar.parser import parse
 from tltlc.pipeline import CompileOptions
 from tltlc.tools.fmt import STYLES, format_text
-from tltlc.tools.fmt.allowed import NOTHING, keeping
+from tltlc.tools.fmt.allowed import NO_CONSTRAINTS, required_constraints
 from tltlc.tools.lint.run import findings, view_of
 
 ALLOW = "// tltlc: allow"
@@ -29,7 +29,7 @@ CLAUSES = (
 )
 CODES = ("TLT0410", "TLT0412", "TLT0413", "TLT0418", "TLT0419", "TLT0421", "TLT0424", "TLT0425", "TLT0429", "TLT0433")
 GAPS = [*[" "] * 12, *["\n"] * 2, "\n\n", " // a remark\n", *(f" {ALLOW} {code}\n" for code in CODES)]
-GAPS += [f"\n{ALLOW} {one}, {two} as it is\n" for one, two in pairwise(CODES)]
+GAPS += [f"\n{ALLOW} {first}, {second} as it is\n" for first, second in pairwise(CODES)]
 
 
 def _declarations(random: Random) -> Iterator[str]:
@@ -43,7 +43,7 @@ def _declarations(random: Random) -> Iterator[str]:
 
 
 def _reported(text: str) -> list[tuple[str, int]]:
-    """The codes that the linter reports, each with the number of the clause or declaration."""
+    """Return the codes that the linter reports, each with the number of its statement."""
     view = view_of(SourceFile("a.tltl", text), CompileOptions())
     spans = statements(view.module)
     reported = [(finding.diagnostic.code, finding.diagnostic.labels[0].span.start) for finding in findings(view)]
@@ -82,7 +82,7 @@ def test_allow_comments_keep_their_targets(text: str, expected: str) -> None:
     assert check(f"signal x: bool\n{text}", "words") == f"signal x: bool\n{expected}"
 
 
-def test_a_text_that_cannot_be_formatted_safely_is_kept() -> None:
+def test_a_declaration_that_cannot_be_formatted_safely_is_copied() -> None:
     long = "a_name_of_forty_characters_it_has_indeed"
     text = f"spec s {{\n   keep {long} keep {long} and !{long}  {ALLOW} TLT0412\n  keep !e\n\n\n }}"
     rest = "signal e: bool\nspec t = not e\n"
@@ -96,7 +96,7 @@ def test_the_work_for_comments_above_one_line_is_linear() -> None:
         lets = " ".join(f"let l{index} = F a" for index in range(number))
         text = f"signal a: bool\nspec s = F a\n{comments}{lets}\n"
         module, _ = parse(SourceFile("example.tltl", text))
-        return calls(lambda: keeping(module, text, NOTHING))
+        return calls(lambda: required_constraints(module, text, NO_CONSTRAINTS))
 
     assert work(400) < 2.5 * work(200)
 

@@ -44,19 +44,19 @@ def test_diff_prints_changes_and_writes_nothing(tltlc, inside: Path) -> None:  #
         "--- rough.tltl\n+++ rough.tltl\n@@ -1,2 +1,2 @@\n-signal seen:bool\n-spec hide=G !seen // ◇\n"
         "\\ No newline at end of file\n+signal seen: bool\n+spec hide = always not seen  // ◇\n"
     )
-    both = tltlc("fmt", "--diff", "--check", "rough.tltl")
-    assert (both.status, both.out) == (1, outcome.out)
+    checked = tltlc("fmt", "--diff", "--check", "rough.tltl")
+    assert (checked.status, checked.out) == (1, outcome.out)
     assert Path("rough.tltl").read_text(encoding="utf-8") == ROUGH.rstrip()
 
 
-def test_a_diff_is_coloured() -> None:
-    from tltlc.tools.fmt.changes import unified
+def test_the_lines_of_a_coloured_diff_have_ansi_colours() -> None:
+    from tltlc.tools.fmt.changes import diff_text
 
-    assert unified("a", "x\ny\n", "x\nz\n", color=True) == (
+    assert diff_text("a", "x\ny\n", "x\nz\n", color=True) == (
         "\x1b[1m--- a\x1b[0m\n\x1b[1m+++ a\x1b[0m\n\x1b[36m@@ -1,2 +1,2 @@\x1b[0m\n"
         " x\n\x1b[31m-y\x1b[0m\n\x1b[32m+z\x1b[0m\n"
     )
-    assert unified("a", "x\n", "x\n", color=True) == ""
+    assert diff_text("a", "x\n", "x\n", color=True) == ""
 
 
 def test_line_ends_and_byte_order_marks_count_as_changes(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]

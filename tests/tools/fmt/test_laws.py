@@ -1,4 +1,4 @@
-"""Formatting keeps the tree and the comments, and formatting twice gives the same as once."""
+"""Formatting keeps the tree and the comments, and formatting again changes nothing."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def texts_without_errors() -> dict[str, str]:
 
 
 @pytest.mark.parametrize("style", STYLES)
-def test_all_files_of_the_repository_are_formatted_correctly(style: str) -> None:
+def test_the_laws_hold_for_all_files_of_the_repository(style: str) -> None:
     assert len(texts_without_errors()) > 100
     for name, text in texts_without_errors().items():
         try:
@@ -53,19 +53,19 @@ def test_all_files_of_the_repository_are_formatted_correctly(style: str) -> None
 
 @settings(max_examples=400, deadline=None)
 @given(st.randoms(use_true_random=False), st.sampled_from([*STYLES]))
-def test_random_modules_are_formatted_correctly(random: Random, style: str) -> None:
+def test_the_laws_hold_for_random_modules(random: Random, style: str) -> None:
     check(random_texts.module(random), style)
 
 
 @settings(max_examples=400, deadline=None)
 @given(st.randoms(use_true_random=False), st.sampled_from([*STYLES]))
-def test_random_allow_comments_keep_their_targets(random: Random, style: str) -> None:
-    check(random_texts.module(random, random_texts.ALLOWING), style)
+def test_the_laws_hold_for_random_modules_with_allow_comments(random: Random, style: str) -> None:
+    check(random_texts.module(random, random_texts.GAPS_WITH_ALLOW), style)
 
 
 @settings(max_examples=200, deadline=None)
 @given(st.randoms(use_true_random=False), st.sampled_from([*STYLES]))
-def test_comments_between_any_two_words_are_kept(random: Random, style: str) -> None:
+def test_the_laws_hold_with_comments_between_any_two_words(random: Random, style: str) -> None:
     # A number must stay next to its unit.
     words = [token for token in tokenize(EVERYTHING).tokens if token.text]
     text = "".join((" " if word.type == "UNIT" else random.choice(random_texts.GAPS)) + word.text for word in words)

@@ -1,4 +1,4 @@
-"""The layout by examples: a source text and its formatted text."""
+"""The layout, in examples of a source text and its formatted text."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ CASES = {
         "spec s // why\n{\n keep a }",
         "spec s {  // why\n    keep a\n}\n",
     ),
-    "what a brace is documented by documents no clause": (
+    "a documentation comment before a brace documents no clause": (
         "spec s /// why\n{\n keep a }",
         "spec s  /// why\n    {\n    keep a\n}\n",
     ),
@@ -74,7 +74,7 @@ CASES = {
 
 
 @pytest.mark.parametrize("case", CASES)
-def test_examples_are_laid_out(case: str) -> None:
+def test_each_example_is_laid_out_as_expected(case: str) -> None:
     text, expected = CASES[case]
     assert check(text, "words") == expected
 
@@ -94,7 +94,7 @@ def test_long_expressions_break_at_their_weakest_operators() -> None:
     )
 
 
-def test_long_bracketed_parts_are_put_on_lines_of_their_own() -> None:
+def test_long_parts_in_brackets_get_lines_of_their_own() -> None:
     text = (
         f"spec s = G({LONG} -> F(f({LONG}, {LONG}, {LONG}, p) & p)) & clamp(min({LONG}, {LONG}, x - {LONG}), -1, 1) > 0"
     )
@@ -143,7 +143,7 @@ def test_long_heads_and_lists_are_broken() -> None:
     )
 
 
-def test_the_guide_shows_the_layout() -> None:
+def test_the_example_of_the_guide_is_in_the_standard_layout() -> None:
     page = (ROOT / "docs" / "guides" / "formatting.md").read_text(encoding="utf-8")
     (example,) = re.findall(r"^```tltl\n(.*?)^```", page, re.MULTILINE | re.DOTALL)
     assert check(example, "words") == example

@@ -1,4 +1,4 @@
-"""The four styles: their spellings and bounds; a formula means the same in each style."""
+"""The four styles: their spellings of operators and bounds. A formula means the same in each."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ BOUNDS = [
     ("G[1 s, 2 s] (p)", "G[1 s, 2 s](p)", "[][1 s, 2 s](p)", "□[1 s, 2 s](p)"),
     ("G[0,2 s] p", "G[0,2 s] p", "[][0,2 s] p", "□[0,2 s] p"),
 ]
-"""Bounds in words, letters, symbols and Unicode; the four cells of a row are the same formula."""
+"""Bounds in words, letters, symbols and Unicode. The four texts of a row are the same formula."""
 
 
 def formula(text: str) -> object:
@@ -63,8 +63,8 @@ def test_the_styles_equal_those_of_the_project_file() -> None:
 def test_operators_are_written_in_each_style(style: str, expected: str) -> None:
     text = format_text(f"spec s = {OPERATORS}", style)
     assert " ".join(text.split()) == f"spec s = {expected}"
-    for other in STYLES:
-        assert format_text(format_text(text, other), style) == text
+    for other_style in STYLES:
+        assert format_text(format_text(text, other_style), style) == text
 
 
 @pytest.mark.parametrize("row", BOUNDS, ids=lambda row: row[0])
@@ -77,7 +77,7 @@ def test_bounds_are_written_in_each_style(row: tuple[str, ...]) -> None:
 
 @pytest.mark.parametrize("name", ["x", "in", "at", "as", "for", "within", "after", "step", "expect", "s", "m", "steps"])
 @pytest.mark.parametrize("style", STYLES)
-def test_contextual_keywords_work_as_names(name: str, style: str) -> None:
+def test_a_contextual_keyword_can_be_a_name_in_each_style(name: str, style: str) -> None:
     text = (
         f"signal {name}: bool\n"
         f"spec a = F {name} & G[0,3] {name} & !X {name} & {name} U F within 2 steps {name}\n"

@@ -1,4 +1,4 @@
-"""The formatter: one layout for every source text, with a choice of four operator styles."""
+"""The formatter: one layout for every source text, with operators in one of four styles."""
 
 from tltlc.tools.fmt.format import format_source as format_source
 from tltlc.tools.fmt.format import format_text as format_text

@@ -1,7 +1,7 @@
 """Keep the effect of ``allow`` comments when a text is laid out.
 
-A comment such as ``// tltlc: allow TLT0421`` applies to what is on its line, so the layout must not
-change what shares a line with it.
+A comment such as ``// tltlc: allow TLT0421`` applies to the statements on its line. So the layout
+must not change which statements share a line with the comment.
 """
 
 from __future__ import annotations
@@ -17,26 +17,26 @@ from tltlc.grammar.tree import Comment, EntityDecl, Module
 
 
 @record
-class Kept:
-    """The offsets where the layout must keep the source as it is.
+class LayoutConstraints:
+    """What the layout must keep as it is in the source.
 
     No line begins at an offset in ``joints``. A declaration that starts at an offset in
-    ``declarations`` is copied as it is written.
+    ``declarations`` is copied from the source.
     """
 
     joints: frozenset[int]
     declarations: frozenset[int]
 
 
-NOTHING: Final = Kept(frozenset(), frozenset())
+NO_CONSTRAINTS: Final = LayoutConstraints(frozenset(), frozenset())
 
 
-def keeping(module: Module, text: str, kept: Kept) -> Kept:
-    """Return what the layout must keep for comments to allow the same as before.
+def required_constraints(module: Module, text: str, constraints: LayoutConstraints) -> LayoutConstraints:
+    """Return constraints under which ``allow`` comments apply to the same statements as before.
 
-    ``text`` is the layout of the module with ``kept``. The result extends ``kept``. First,
-    statements that share a line with a comment keep sharing it. If that is not enough, their
-    declarations are kept as they are written.
+    ``text`` is the layout of the module under ``constraints``, which the result extends. First,
+    statements that share a line with a comment have to stay on it. If that is not enough, their
+    declarations are copied from the source. The result equals ``constraints`` if these suffice.
     """
     before = commented_spans(module)
     lists = [
@@ -44,46 +44,46 @@ def keeping(module: Module, text: str, kept: Kept) -> Kept:
         for declaration in module.declarations
         if isinstance(declaration, EntityDecl) and len(declaration.names) > 1
     ]
-    listed = {span for list_ in lists for span in (list_.span, *(name.span for name in list_.names))}
-    if not any(_may_change(comment, places or (), module.source.text, listed) for comment, places in before):
-        return kept
-    laid_out, _ = parse(SourceFile("<layout>", text))
-    back = dict(zip(statements(laid_out), statements(module), strict=True))
-    wrong: set[Span] = set()
-    after = commented_spans(laid_out)
+    list_spans = {span for list_ in lists for span in (list_.span, *(name.span for name in list_.names))}
+    if not any(_may_change(comment, places or (), module.source.text, list_spans) for comment, places in before):
+        return constraints
+    new_module, _ = parse(SourceFile("<layout>", text))
+    old_spans = dict(zip(statements(new_module), statements(module), strict=True))
+    affected: set[Span] = set()
+    after = commented_spans(new_module)
     # Comments on the same line share one tuple of places, before and after.
     pairs = {
         (id(places), id(new_places)): (places, new_places)
         for (_, places), (_, new_places) in zip(before, after, strict=True)
     }
     for places, new_places in pairs.values():
-        places_now = {back[place] for place in new_places or ()}
-        if places is not None and _outer(places) != _outer(places_now):
-            wrong.update(places_now.union(places))
-    joints = kept.joints.union(*(_joints(module.source.text, place) for place in wrong))
-    if joints != kept.joints:
-        return Kept(joints, kept.declarations)
+        places_now = {old_spans[place] for place in new_places or ()}
+        if places is not None and _outermost(places) != _outermost(places_now):
+            affected.update(places_now.union(places))
+    joints = constraints.joints.union(*(_joints(module.source.text, place) for place in affected))
+    if joints != constraints.joints:
+        return LayoutConstraints(joints, constraints.declarations)
     starts = {
         declaration.span.start
         for declaration in module.declarations
-        if any(declaration.span.covers(place) for place in wrong)
+        if any(declaration.span.covers(place) for place in affected)
     }
-    return Kept(joints, kept.declarations | starts)
+    return LayoutConstraints(joints, constraints.declarations | starts)
 
 
-def _may_change(comment: Comment, places: tuple[Span, ...], text: str, listed: Container[Span]) -> bool:
-    """Whether a comment could apply to something else after layout.
+def _may_change(comment: Comment, places: tuple[Span, ...], text: str, list_spans: Container[Span]) -> bool:
+    """Whether a comment could apply to other statements after the layout.
 
-    It could if it applies to several statements, to an entry of a list, or to the block that
-    contains it. Other comments stay above, after or within their one statement and need no check.
+    This is possible if it applies to several statements, to an entry of a list, or to the block that
+    contains it. Any other comment stays above, after or within its only statement.
     """
     if len(places) > 1 or any(place.covers(comment.span) and text[place.end - 1] == "}" for place in places):
         return True
-    return any(place in listed for place in places)
+    return any(place in list_spans for place in places)
 
 
-def _outer(places: Iterable[Span]) -> set[Span]:
-    """Return the places that are not inside another one."""
+def _outermost(places: Iterable[Span]) -> set[Span]:
+    """Return the places that are not inside another of the places."""
     outer: list[Span] = []
     for place in sorted(places, key=lambda place: (place.start, -place.end)):
         if not outer or place.end > outer[-1].end:

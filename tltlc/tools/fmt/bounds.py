@@ -1,4 +1,4 @@
-"""Convert bounds between words and brackets where both mean exactly the same."""
+"""Convert bounds between words and brackets if both mean exactly the same."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ _WHOLE: Final = re.compile("[0-9]{1,9}")
 _WORD: Final = {"F": "within", "G": "for", "X": "after", "N": "after"}
 
 
-def forms(node: tree.Unary, number: Callable[[tree.NumberExpr], str]) -> dict[str, str]:
-    """Return the forms of an operator's bound, by the names ``words`` and ``brackets``.
+def bound_forms(node: tree.Unary, number: Callable[[tree.NumberExpr], str]) -> dict[str, str]:
+    """Return the forms of the bound of an operator, by the names ``words`` and ``brackets``.
 
-    Words look like ``within 3 steps``, brackets like ``[0,3]``. A bound may have only one of these
-    forms. ``number`` returns the text of a number. The words of ``for`` count samples, and brackets
-    name the last sample. A time is rounded up to samples, so the two forms differ and ``for`` with
-    a time has only one. ``after`` has no brackets.
+    Words look like ``within 3 steps``, and brackets like ``[0,3]``. The result is empty without a
+    bound, and has one form if the other cannot express the bound. ``for 3 steps`` counts samples, and
+    ``[0,2]`` names the last one. A time is rounded up to samples, so no brackets equal ``for`` with
+    a time. ``after`` has no brackets. ``number`` returns the text of a number.
     """
     bound = node.bound
     if bound is None:
@@ -41,7 +41,7 @@ def forms(node: tree.Unary, number: Callable[[tree.NumberExpr], str]) -> dict[st
 
 
 def _in_brackets(op: str, high: tree.NumberExpr, text: str) -> str | None:
-    """Return the last sample of ``within`` or ``for`` as it appears in brackets, or None."""
+    """Return the end in brackets that equals ``within`` or ``for`` with this bound, or None."""
     if high.unit not in _STEPS:
         return text if op == "F" else None
     count = text.partition(" ")[0]
@@ -51,7 +51,7 @@ def _in_brackets(op: str, high: tree.NumberExpr, text: str) -> str | None:
 
 
 def _in_words(op: str, high: tree.NumberExpr, text: str) -> str | None:
-    """Return the words of ``within`` or ``for`` for a bound from now until ``high``, or None."""
+    """Return the bound of ``within`` or ``for`` that equals the brackets ``[0,high]``, or None."""
     if high.unit not in _STEPS:
         return text if op == "F" else None
     count = text.partition(" ")[0]

@@ -1,4 +1,4 @@
-"""Show the changes of the formatter as a unified diff."""
+"""Show the changes of the formatter as a diff_text diff."""
 
 from __future__ import annotations
 
@@ -7,12 +7,15 @@ from typing import Final
 _COLOURS: Final = {"---": "1", "+++": "1", "@@": "36", "-": "31", "+": "32"}
 
 
-def unified(name: str, before: str, after: str, *, color: bool = False) -> str:
-    """Return the diff between two texts of a file; empty if they are equal."""
+def diff_text(name: str, before: str, after: str, *, color: bool = False) -> str:
+    """Return the unified diff between two texts of a file; empty if they are equal.
+
+    With ``color``, lines have ANSI colours.
+    """
     from difflib import unified_diff
 
     lines = unified_diff(_lines(before), _lines(after), name, name)
-    return "".join(_shown(line, color) for line in lines)
+    return "".join(_diff_line(line, color) for line in lines)
 
 
 def _lines(text: str) -> list[str]:
@@ -21,7 +24,7 @@ def _lines(text: str) -> list[str]:
     return [f"{line}\n" for line in whole] + ([last] if last else [])
 
 
-def _shown(line: str, color: bool) -> str:
+def _diff_line(line: str, color: bool) -> str:
     text = line.removesuffix("\n")
     if color:
         colour = next((code for start, code in _COLOURS.items() if line.startswith(start)), None)

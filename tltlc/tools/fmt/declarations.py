@@ -1,4 +1,4 @@
-"""Lay out declarations: heads, bodies after ``=``, and blocks with one clause on each line."""
+"""Lay out declarations: heads, bodies after ``=``, and blocks with a clause on each line."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from typing import Final
 from tltlc.core.source import SourceFile, Span
 from tltlc.grammar import tree
 from tltlc.grammar.tree import Expr
-from tltlc.tools.fmt.expressions import Expressions, Item, name
-from tltlc.tools.fmt.flat import Flat
+from tltlc.tools.fmt.expressions import Expressions, Item, name_item
+from tltlc.tools.fmt.flat import OneLinePrinter
 from tltlc.tools.fmt.page import STEP, Page
 
 _AMOUNT: Final = re.compile(r"(<=|>=|[<>≤≥])\s*([0-9.eE+-]+)\s*(\S*)\Z")
@@ -18,14 +18,14 @@ _AMOUNT: Final = re.compile(r"(<=|>=|[<>≤≥])\s*([0-9.eE+-]+)\s*(\S*)\Z")
 
 
 class Declarations:
-    """Writes the declarations of one source on a page. No line begins at the offsets ``joints``."""
+    """Writes the declarations of a source on a page. No line begins at an offset in ``joints``."""
 
-    def __init__(self, source: SourceFile, page: Page, flat: Flat, joints: Set[int]) -> None:
+    def __init__(self, source: SourceFile, page: Page, one_line: OneLinePrinter, joints: Set[int]) -> None:
         self._source = source
         self._page = page
-        self._flat = flat
+        self._one_line = one_line
         self._joints = joints
-        self._expressions = Expressions(page, flat)
+        self._expressions = Expressions(page, one_line)
 
     def put(self, node: tree.Declaration) -> None:
         """Write a declaration on lines of its own.
@@ -40,7 +40,7 @@ class Declarations:
                 self._put_head("signal", node, node.type, node.interval, node.span.end - 1)
             case tree.EntityDecl():
                 self._page.put("entity ")
-                self._expressions.put_list([*map(name, node.names)], STEP)
+                self._expressions.put_list([*map(name_item, node.names)], STEP)
             case tree.ParamDecl():
                 self._put_head("param", node, node.type, node.interval, node.value.span.start)
                 self._put_body(node.value)
@@ -71,9 +71,9 @@ class Declarations:
     # --- heads ----------------------------------------------------------------------------------
 
     def _put_words(self, keyword: str, rest: str, end: int) -> None:
-        """Write a keyword and words that are never broken; they end at the offset ``end``."""
+        """Write a keyword and words on one line. In the source, they end at the offset ``end``."""
         self._page.put(keyword)
-        self._page.comments(end, STEP)
+        self._page.put_comments(end, STEP)
         self._page.put(f" {rest}")
 
     def _put_import(self, node: tree.Import) -> None:
@@ -81,9 +81,9 @@ class Declarations:
         self._put_words("import", target, node.target_span.end)
         if node.names is not None:
             self._page.put(" ")
-            self._expressions.put_in_brackets([*map(name, node.names)])
+            self._expressions.put_in_brackets([*map(name_item, node.names)])
         elif node.alias is not None:
-            self._page.comments(node.span.end, STEP)
+            self._page.put_comments(node.span.end, STEP)
             self._page.put(f" as {node.alias}")
 
     def _put_head(
@@ -96,20 +96,20 @@ class Declarations:
     ) -> None:
         """Write ``keyword NAME(parameters): type in [low, high]``.
 
-        Comments before the offset ``end`` are part of it.
+        If there is no range, comments before the offset ``end`` belong to the head.
         """
         self._put_words(keyword, node.name, node.name_span.end)
         rest = (f": {type_}" if type_ else "") + (f" {self._range(interval)}" if interval else "")
         if not isinstance(node, tree.ParamDecl) and node.parameters:
             items = [self._parameter(parameter) for parameter in node.parameters]
-            behind = len(rest) + (0 if isinstance(node, tree.SignalDecl) else 2)
-            self._expressions.put_in_brackets(items, None, behind)
+            reserved = len(rest) + (0 if isinstance(node, tree.SignalDecl) else 2)
+            self._expressions.put_in_brackets(items, None, reserved)
         if rest:
-            self._page.comments(interval.span.end if interval else end, STEP)
+            self._page.put_comments(interval.span.end if interval else end, STEP)
             self._page.put(rest)
 
     def _range(self, interval: tree.Interval) -> str:
-        low, high = (self._flat.text(limit, 1 << 30) for limit in (interval.low, interval.high))
+        low, high = (self._one_line.text(limit, 1 << 30) for limit in (interval.low, interval.high))
         return f"in [{low}, {high}]"
 
     def _parameter(self, node: tree.Parameter) -> Item:
@@ -125,15 +125,15 @@ class Declarations:
     def _put_block(self, span: Span, head: int, items: Sequence[tree.Clause | tree.TestStep | tree.TestExpect]) -> None:
         """Write ``{ … }``.
 
-        It stays on one line if it is on one line in the source and fits. Else each item gets a
-        line.
+        The block stays on one line if it is on one line in the source and fits. Otherwise, each item
+        gets a line.
         """
         page = self._page
         brace = page.find("{", head)
         if page.has_comment(brace) and "///" in self._source.text[head:brace]:
-            page.comments(brace, STEP)
+            page.put_comments(brace, STEP)
         if not page.has_comment(span.end) and "\n" not in self._source.slice(span):
-            texts = [self._flat_item(item) for item in items]
+            texts = [self._one_line_item(item) for item in items]
             whole = " ".join(["{", *(text for text in texts if text is not None), "}"])
             if None not in texts and len(whole) < page.room:
                 page.put(f" {whole}" if items else " {}")
@@ -141,17 +141,17 @@ class Declarations:
         page.put(" {")
         page.open_block()
         for item in items:
-            page.comments(item.span.start, STEP, gaps=True)
-            page.gap(item.span.start)
+            page.put_comments(item.span.start, STEP, gaps=True)
+            page.put_gap(item.span.start)
             page.begin(item.span.start in self._joints, STEP)
             self._put_item(item)
-        page.comments(span.end - 1, STEP, gaps=True)
-        if items or page.is_fresh or span.end - 1 not in self._joints:
+        page.put_comments(span.end - 1, STEP, gaps=True)
+        if items or page.is_at_line_start or span.end - 1 not in self._joints:
             page.begin(span.end - 1 in self._joints, 0)
         page.put("}")
 
-    def _flat_item(self, item: tree.Clause | tree.TestStep | tree.TestExpect) -> str | None:
-        """Return an item of a block on one line, or None if it is too long."""
+    def _one_line_item(self, item: tree.Clause | tree.TestStep | tree.TestExpect) -> str | None:
+        """Return the text of an item of a block on one line, or None if it is too long."""
         if isinstance(item, tree.TestExpect):
             return f"expect {self._expectation(item)}"
         if isinstance(item, tree.TestStep):
@@ -160,31 +160,31 @@ class Declarations:
             return f"{item.kind} {', '.join(part.name for part in item.value)}"
         else:
             head, values = _keyword(item), [item.value]
-        texts = [self._flat.text(value) for value in values]
+        texts = [self._one_line.text(value) for value in values]
         return None if None in texts else f"{head} {', '.join(text for text in texts if text)}"
 
     def _put_item(self, item: tree.Clause | tree.TestStep | tree.TestExpect) -> None:
         page, indent = self._page, 2 * STEP
         if isinstance(item, tree.TestExpect):
             page.put("expect")
-            page.comments(item.span.end, indent)
+            page.put_comments(item.span.end, indent)
             page.put(f" {self._expectation(item)}")
         elif isinstance(item, tree.TestStep):
             page.put("step")
-            page.comments(item.atoms[0].span.start, indent)
+            page.put_comments(item.atoms[0].span.start, indent)
             page.put(f"{self._repetitions(item)} ")
             self._expressions.put_list([Item("", atom, atom.span) for atom in item.atoms], indent)
         elif isinstance(item.value, tuple):
             page.put(f"{item.kind} ")
-            self._expressions.put_list([*map(name, item.value)], indent)
+            self._expressions.put_list([*map(name_item, item.value)], indent)
         else:
             page.put(item.kind)
-            page.comments(item.value.span.start, indent)
+            page.put_comments(item.value.span.start, indent)
             page.put(" at " if item.kind == "judge" else " ")
-            self._expressions.put_behind_word(item.value, indent)
+            self._expressions.put_after_keyword(item.value, indent)
 
     def _repetitions(self, item: tree.TestStep) -> str:
-        """Return the number of repetitions of a step, such as `` 3x``; empty if the source has none."""
+        """Return the repetitions of a step, such as `` 3x``; empty if the source gives none."""
         head = self._without_comments(Span(item.span.start, item.atoms[0].span.start))
         times = re.search("[0-9]+", head)
         return f" {times[0]}x" if times else ""
@@ -197,7 +197,7 @@ class Declarations:
         amount = _AMOUNT.search(self._without_comments(item.span))
         assert amount is not None
         unit = f" {amount[3]}" if amount[3] else ""
-        return f"progress{self._flat.infix(item.comparison or '>=')}{amount[2]}{unit}"
+        return f"progress{self._one_line.infix(item.comparison or '>=')}{amount[2]}{unit}"
 
     def _without_comments(self, span: Span) -> str:
         return re.sub("//[^\n]*", "", self._source.slice(span))

@@ -21,18 +21,18 @@ _PER: Final = ("s", "h", "ms", "min")
 _LETTERS: Final = "abcdefghijklmnopqrstuvwxyzHz%"
 
 
-class Flat:
-    """Writes the expressions of one source on one line, in one style."""
+class OneLinePrinter:
+    """Prints the expressions of a source on one line, in one style."""
 
     def __init__(self, source: SourceFile, style: Style) -> None:
         self._source = source
         self._style = style
 
     def text(self, node: Expr, room: int = WIDTH) -> str | None:
-        """Return the expression, or None if it takes more than ``room`` columns.
+        """Return the text of an expression, or None if it takes more than ``room`` columns.
 
-        Comments inside it are ignored. It stops as soon as the room is used up, so a long
-        expression costs no more than one line of it.
+        Comments inside the expression are ignored. The printer stops as soon as the room is used
+        up, so a long expression takes no more time than a line.
         """
         if room <= 0:
             return None
@@ -65,16 +65,16 @@ class Flat:
         return text if text is not None and len(text) <= room else None
 
     def number(self, node: tree.NumberExpr) -> str:
-        """Return a number as it is written, with a space before its unit."""
-        written = self._source.slice(node.span)
+        """Return a number as in the source, but with a space before its unit."""
+        source_text = self._source.slice(node.span)
         if node.unit is None:
-            return written
-        count = written.rstrip(_LETTERS)
-        return f"{count.rstrip()} {written[len(count) :]}"
+            return source_text
+        count = source_text.rstrip(_LETTERS)
+        return f"{count.rstrip()} {source_text[len(count) :]}"
 
     def prefix(self, node: tree.Unary) -> str:
-        """Return the operator before an operand, with its bound and its space."""
-        return self._style.before(node, bounds.forms(node, self.number))
+        """Return an operator before its operand, with its bound and a space if it needs one."""
+        return self._style.prefix_text(node, bounds.bound_forms(node, self.number))
 
     def infix(self, op: str) -> str:
         """Return an operator between two operands, with its spaces."""
@@ -107,7 +107,7 @@ class Flat:
         return "".join(texts)
 
     def _speed(self, node: Expr, room: int) -> str | None:
-        """Return a speed: ``20 m/s``."""
+        """Return a speed: ``20 m/s``, or None if it takes more than ``room`` columns."""
         assert isinstance(node, tree.BinaryExpr)
         denominator = self.text(node.right, room)
         return None if denominator is None else f"{self.text(node.left)}/{denominator}"
@@ -125,19 +125,19 @@ class Flat:
 
 
 def chain(node: tree.BinaryExpr) -> Iterator[tuple[tree.BinaryExpr | None, Expr]]:
-    """Yield the operands of operators with the same precedence, in order.
+    """Yield the operands of a chain of operators with the same precedence, in order.
 
-    Each operand comes with the operator before it.
+    Each operand comes with the node of the operator before it, or None for the first one.
     """
     if is_speed(node):
         yield None, node
         return
     level = _LEVEL.get(node.op, node.op)
-    waiting: list[tuple[tree.BinaryExpr | None, Expr]] = [(None, node)]
-    while waiting:
-        operator, part = waiting.pop()
+    pending: list[tuple[tree.BinaryExpr | None, Expr]] = [(None, node)]
+    while pending:
+        operator, part = pending.pop()
         if isinstance(part, tree.BinaryExpr) and _LEVEL.get(part.op, part.op) == level and not is_speed(part):
-            waiting += ((part, part.right), (operator, part.left))
+            pending += ((part, part.right), (operator, part.left))
         else:
             yield operator, part
 

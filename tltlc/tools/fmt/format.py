@@ -1,4 +1,4 @@
-"""Format a source text: it keeps its meaning and comments, and gets other spaces and spellings."""
+"""Format a source text. Its meaning and comments stay; spaces and spellings change."""
 
 from __future__ import annotations
 
@@ -9,21 +9,21 @@ from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.grammar import tree
 from tltlc.grammar.lexer import MAX_TOKENS
 from tltlc.grammar.parser import is_too_large, parse
-from tltlc.tools.fmt.allowed import NOTHING, Kept, keeping
+from tltlc.tools.fmt.allowed import NO_CONSTRAINTS, LayoutConstraints, required_constraints
 from tltlc.tools.fmt.declarations import Declarations
-from tltlc.tools.fmt.flat import Flat
+from tltlc.tools.fmt.flat import OneLinePrinter
 from tltlc.tools.fmt.page import Page
 from tltlc.tools.fmt.style import DEFAULT, STYLES, Style
 
 
 def format_text(text: str, style: str = DEFAULT) -> str:
-    r"""Return the text in its layout, with the operators of a style.
+    r"""Return a source text in the standard layout, with the operators of a style.
 
     The styles are ``words``, ``letters``, ``symbols`` and ``unicode``. The syntax tree of the
     result is the same as the tree of ``text``, except for spans and the form of bounds.
 
     Raises:
-        TltlError: the text has syntax errors; or TLT0004, the result would be too large to be read.
+        TltlError: the text has syntax errors; or TLT0004, the result would be too large to read.
         KeyError: there is no such style.
 
     >>> from tltlc.tools.fmt import format_text
@@ -34,36 +34,36 @@ def format_text(text: str, style: str = DEFAULT) -> str:
 
 
 def format_source(source: SourceFile, style: str = DEFAULT) -> str:
-    """Format a text like :func:`format_text`; errors call it by its name."""
+    """Format a text like :func:`format_text`. Errors have the name of the source."""
     module, diagnostics = parse(source)
     if diagnostics:
         raise TltlError(diagnostics)
     try:
-        return _written(module, STYLES[style])
+        return _format_module(module, STYLES[style])
     except RecursionError:
         from tltlc.automaton.finite.blowup import recursion_room
 
         # The grammar allows operators to nest 1000 levels deep.
         with recursion_room():
-            return _written(module, STYLES[style])
+            return _format_module(module, STYLES[style])
 
 
-_EVERYTHING: Final = 1 << 62
+_END: Final = 1 << 62
 
 
-def _written(module: tree.Module, style: Style) -> str:
-    """Return the layout in which comments allow the same as before.
+def _format_module(module: tree.Module, style: Style) -> str:
+    """Return a layout in which ``allow`` comments apply to the same statements as before.
 
-    It leaves as much of the source unchanged as this requires.
+    It copies as much from the source as this requires.
     """
-    kept = NOTHING
+    constraints = NO_CONSTRAINTS
     while True:
-        text = _laid_out(module, style, kept)
+        text = _lay_out(module, style, constraints)
         _check_size(module.source.name, text)
-        needed = keeping(module, text, kept)
-        if needed == kept:
+        needed = required_constraints(module, text, constraints)
+        if needed == constraints:
             return text
-        kept = needed
+        constraints = needed
 
 
 def _check_size(name: str, text: str) -> None:
@@ -74,17 +74,17 @@ def _check_size(name: str, text: str) -> None:
         raise TltlError([Diagnostic("TLT0004", title, help=help_)])
 
 
-def _laid_out(module: tree.Module, style: Style, kept: Kept) -> str:
+def _lay_out(module: tree.Module, style: Style, constraints: LayoutConstraints) -> str:
     page = Page(module.source, module.comments)
-    declarations = Declarations(module.source, page, Flat(module.source, style), kept.joints)
+    declarations = Declarations(module.source, page, OneLinePrinter(module.source, style), constraints.joints)
     for declaration in module.declarations:
         start = declaration.span.start
-        page.comments(start, 0, gaps=True)
-        page.gap(start)
-        page.begin(start in kept.joints, 0)
-        if start in kept.declarations:
-            page.put_as_written(declaration.span)
+        page.put_comments(start, 0, gaps=True)
+        page.put_gap(start)
+        page.begin(start in constraints.joints, 0)
+        if start in constraints.declarations:
+            page.put_source(declaration.span)
         else:
             declarations.put(declaration)
-    page.comments(_EVERYTHING, 0, gaps=True)
+    page.put_comments(_END, 0, gaps=True)
     return page.text()

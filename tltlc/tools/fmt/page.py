@@ -1,4 +1,4 @@
-"""The page that the formatter writes: code with the comments of the source in their places."""
+"""The page that the formatter writes: code, with the comments of the source in their places."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from tltlc.core.source import SourceFile, Span
 from tltlc.grammar.tree import Comment
 
 WIDTH: Final = 100
-"""The maximum number of columns in a line, if its words and comments allow it."""
+"""The most columns of a line. Only a long word or a comment can make a line longer."""
 
 STEP: Final = 4
 """The number of columns of one level of indentation."""
@@ -21,13 +21,13 @@ _GAP: Final = 2
 """The number of blanks between a line and the comment after it."""
 
 _OPENERS: Final = ("{", "(", ":", "=")
-"""Line ends after which a comment applies to everything that follows, not only to the next line."""
+"""After a line with one of these ends, a comment applies to more than the next line."""
 
 
 class Page:
-    """Lines that are filled from left to right. Comments join them in the order of the source.
+    """Lines that are filled from left to right, with the comments in the order of the source.
 
-    A comment after code stays after it. A comment on its own line stays on its own line.
+    A comment after code stays after code. A comment on a line of its own stays on a line of its own.
     """
 
     def __init__(self, source: SourceFile, comments: Sequence[Comment]) -> None:
@@ -35,34 +35,34 @@ class Page:
         self._comments = comments
         self._next = 0
         self._lines: list[str] = []
-        self._remarks: dict[int, str] = {}
+        self._line_comments: dict[int, str] = {}
         self._is_comment = False
-        self._fresh = True
+        self._at_line_start = True
         self._indent = 0
         self._opened = 0
 
     def put(self, text: str) -> None:
-        """Write a text, on a new line if the last line has ended."""
-        if self._fresh:
+        """Write a text. If the last line has ended, this begins a new line."""
+        if self._at_line_start:
             self._lines.append(" " * self._indent + text.lstrip(" "))
-            self._fresh = self._is_comment = False
+            self._at_line_start = self._is_comment = False
         else:
             self._lines[-1] += text
 
     def end_line(self, indent: int) -> None:
-        """End the line. The next text begins a line at ``indent``."""
-        self._fresh = True
+        """End the line. The next text begins a line at the column ``indent``."""
+        self._at_line_start = True
         self._indent = min(indent, _DEEPEST)
 
     def begin(self, joined: bool, indent: int) -> None:
-        """Begin a line, or continue this line if ``joined`` and it does not end in a comment."""
-        if joined and not self._fresh:
+        """End the line, or write a space if ``joined`` and the line does not end in a comment."""
+        if joined and not self._at_line_start:
             self.put(" ")
         else:
             self.end_line(indent)
 
-    def put_as_written(self, span: Span) -> None:
-        """Write a part of the source, with its comments, as it is in the source."""
+    def put_source(self, span: Span) -> None:
+        """Copy a part of the source, with its comments."""
         while self.has_comment(span.end):
             self._next += 1
         first, *rest = (line.rstrip() for line in self._text[span.start : span.end].split("\n"))
@@ -72,23 +72,23 @@ class Page:
                 self._lines.append(line)
 
     def open_block(self) -> None:
-        """Note that a block begins here, so that no empty line follows."""
+        """Mark the beginning of a block, after which no empty line is written."""
         self._opened = len(self._lines)
 
     @property
-    def is_fresh(self) -> bool:
+    def is_at_line_start(self) -> bool:
         """Whether the next text begins a line."""
-        return self._fresh
+        return self._at_line_start
 
     @property
     def room(self) -> int:
         """The number of columns that are left in the line."""
-        return WIDTH - (self._indent if self._fresh else len(self._lines[-1]))
+        return WIDTH - (self._indent if self._at_line_start else len(self._lines[-1]))
 
     @property
     def indent(self) -> int:
         """The column where the line begins."""
-        if self._fresh:
+        if self._at_line_start:
             return self._indent
         line = self._lines[-1]
         return len(line) - len(line.lstrip(" "))
@@ -96,15 +96,15 @@ class Page:
     def has_comment(self, end: int, start: int = 0) -> bool:
         """Whether an unwritten comment begins before ``end`` and not before ``start``."""
         for place in range(self._next, len(self._comments)):
-            at = self._comments[place].span.start
-            if at >= start:
-                return at < end
+            offset = self._comments[place].span.start
+            if offset >= start:
+                return offset < end
         return False
 
     def find(self, sign: str, start: int) -> int:
-        """Return the first place of a sign from an offset of the source on.
+        """Return the offset of the first ``sign`` in the source that is not before ``start``.
 
-        Comments that are not yet written are skipped.
+        Comments that are not written yet are skipped.
         """
         place = self._text.find(sign, start)
         for number in range(self._next, len(self._comments)):
@@ -115,25 +115,26 @@ class Page:
                 place = self._text.find(sign, span.end)
         return place
 
-    def comments(self, end: int, indent: int, *, gaps: bool = False) -> None:
-        """Write the comments before an offset. They and the next text begin lines at ``indent``.
+    def put_comments(self, end: int, indent: int, *, gaps: bool = False) -> None:
+        """Write the comments before the offset ``end``.
 
-        With ``gaps``, empty lines before comments are kept.
+        Comments on lines of their own, and the text after a comment, begin at the column ``indent``.
+        With ``gaps``, an empty line before a comment is kept.
         """
         while self._next < len(self._comments) and self._comments[self._next].span.start < end:
             comment = self._comments[self._next]
             self._next += 1
             if self._lines and not self._is_comment and not self._stands_alone(comment):
-                self._remarks[len(self._lines) - 1] = comment.text
+                self._line_comments[len(self._lines) - 1] = comment.text
             else:
                 if gaps:
-                    self.gap(comment.span.start)
+                    self.put_gap(comment.span.start)
                 self._lines.append(" " * min(indent, _DEEPEST) + comment.text)
             self._is_comment = True
             self.end_line(indent)
 
-    def gap(self, offset: int) -> None:
-        """Write an empty line if the source has any before this offset."""
+    def put_gap(self, offset: int) -> None:
+        """Write an empty line if the source has an empty line before this offset."""
         start = offset
         while start and self._text[start - 1].isspace():
             start -= 1
@@ -141,13 +142,10 @@ class Page:
             self._lines.append("")
 
     def text(self) -> str:
-        """Return all lines, each with a line feed.
-
-        Comments after neighbouring lines are aligned.
-        """
+        """Return all lines, each with a line feed, and with comments after adjacent lines aligned."""
         lines = [line.rstrip() for line in self._lines]
         group: list[int] = []
-        for place in sorted(self._remarks):
+        for place in sorted(self._line_comments):
             if group and (place != group[-1] + 1 or lines[group[-1]].endswith(_OPENERS)):
                 self._align(lines, group)
                 group = []
@@ -156,15 +154,15 @@ class Page:
         return "".join(f"{line}\n" for line in lines)
 
     def _align(self, lines: list[str], group: list[int]) -> None:
-        """Write comments after their lines.
+        """Append the comments of a group of lines to these lines.
 
-        They share one column unless one of them would then end beyond ``WIDTH``.
+        The comments begin in one column, unless one of them would then end beyond ``WIDTH``.
         """
         widest = max((len(lines[place]) for place in group), default=0)
-        if any(widest + _GAP + len(self._remarks[place]) > WIDTH for place in group):
+        if any(widest + _GAP + len(self._line_comments[place]) > WIDTH for place in group):
             widest = 0
         for place in group:
-            lines[place] = lines[place].ljust(widest) + " " * _GAP + self._remarks[place]
+            lines[place] = lines[place].ljust(widest) + " " * _GAP + self._line_comments[place]
 
     def _stands_alone(self, comment: Comment) -> bool:
         """Whether a comment is alone on its line in the source."""

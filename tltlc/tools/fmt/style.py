@@ -1,4 +1,4 @@
-"""The four styles, which select a spelling for each operator."""
+"""The four styles, each with a spelling for every operator."""
 
 from __future__ import annotations
 
@@ -15,10 +15,11 @@ _ARITHMETIC: Final = {**{op: f" {op} " for op in ("then", "<", "<=", ">", ">=", 
 
 @record
 class Style:
-    """The spellings of operators with their spaces.
+    """The spellings of operators, with their spaces.
 
-    ``prefix`` is before an operand and ``infix`` between two. ``letters`` are the prefixes for
-    bounds that words cannot express. It is None for styles that do not write bounds in words.
+    ``prefix`` has operators before an operand, and ``infix`` operators between two operands.
+    ``letters`` has the prefixes for bounds that words cannot express. It is None for styles that do
+    not write bounds in words.
     """
 
     prefix: Mapping[str, str]
@@ -27,10 +28,10 @@ class Style:
     space_before_bracket: bool
     letters: Mapping[str, str] | None
 
-    def before(self, node: tree.Unary, bound: Mapping[str, str]) -> str:
-        """Return the operator before an operand, with its bound and the space after it.
+    def prefix_text(self, node: tree.Unary, bound: Mapping[str, str]) -> str:
+        """Return an operator before its operand, with its bound and the space after it.
 
-        ``bound`` has the forms of the bound, from :func:`tltlc.tools.fmt.bounds.forms`.
+        ``bound`` has the forms of the bound, from :func:`tltlc.tools.fmt.bounds.bound_forms`.
         """
         if "words" in bound and (self.letters or "brackets" not in bound):
             return f"{self.prefix[node.op].rstrip()} {bound['words']} "
@@ -45,11 +46,13 @@ class Style:
         )
 
 
-def _style(notation: Notation, others: Mapping[str, str] = EMPTY, letters: Mapping[str, str] | None = None) -> Style:
-    """Return the style of a notation; ``others`` are additional spellings of infix operators."""
+def _style(
+    notation: Notation, extra_infix: Mapping[str, str] = EMPTY, letters: Mapping[str, str] | None = None
+) -> Style:
+    """Return the style of a notation; ``extra_infix`` has further spellings of infix operators."""
     prefix, infix, constants = (_by_text(table) for table in (notation.prefix, notation.infix, notation.constants))
     return Style(
-        {"-": "-", **prefix}, {**_ARITHMETIC, **infix, **others}, constants, notation.space_before_bracket, letters
+        {"-": "-", **prefix}, {**_ARITHMETIC, **infix, **extra_infix}, constants, notation.space_before_bracket, letters
     )
 
 

@@ -84,9 +84,9 @@ def _format(path: str, style: str, report: Report, *, check: bool, diff: bool) -
     if check and not diff and not is_same:
         print(source.name)
     if diff and not is_same:
-        from tltlc.tools.fmt.changes import unified
+        from tltlc.tools.fmt.changes import diff_text
 
-        sys.stdout.write(unified(source.name, data.decode(), formatted, color=wants_colour(sys.stdout)))
+        sys.stdout.write(diff_text(source.name, data.decode(), formatted, color=wants_colour(sys.stdout)))
     if not check and not diff:
         if path == STDIN:
             # The text is UTF-8, whatever encoding the terminal has.
