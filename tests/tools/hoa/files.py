@@ -1,4 +1,4 @@
-"""Random automata, together with their HOA files in varied styles."""
+"""Random automata, and their HOA files in different styles."""
 
 from __future__ import annotations
 
@@ -8,16 +8,19 @@ from random import Random
 from typing import Any
 
 Condition = tuple[Any, ...]
-"""``("fin", set)``, ``("inf", set)``, both optionally followed by ``"outside"``; ``("and", …)``,
-``("or", …)``, ``("t",)``."""
+"""``("fin", set)`` or ``("inf", set)``, each with an optional ``"outside"``; ``("and", …)``,
+``("or", …)`` or ``("t",)``."""
 Letter = int
 """Bit i is set if atom i holds."""
 
 
 @dataclass
 class Automaton:
-    """For each state and letter, the target and the acceptance sets of the edge; and the acceptance
-    condition."""
+    """An automaton with acceptance sets on edges and states.
+
+    ``moves`` has, for each state and letter, the target and the acceptance sets of the edge.
+    ``of_states`` has the acceptance sets of each state.
+    """
 
     atoms: int
     sets: int
@@ -30,17 +33,17 @@ class Automaton:
         state = 0
         for letter in prefix:
             state, _ = self.moves[state][letter]
-        seen: dict[int, int] = {}
+        first_round: dict[int, int] = {}
         rounds: list[list[frozenset[int]]] = []
-        while state not in seen:
-            seen[state] = len(rounds)
-            met: list[frozenset[int]] = []
+        while state not in first_round:
+            first_round[state] = len(rounds)
+            round_sets: list[frozenset[int]] = []
             for letter in cycle:
                 target, sets = self.moves[state][letter]
-                met.append(sets | self.of_states[state])
+                round_sets.append(sets | self.of_states[state])
                 state = target
-            rounds.append(met)
-        taken = [sets for met in rounds[seen[state] :] for sets in met]
+            rounds.append(round_sets)
+        taken = [sets for round_sets in rounds[first_round[state] :] for sets in round_sets]
         return self._holds(self.condition, taken)
 
     def _holds(self, condition: Condition, taken: list[frozenset[int]]) -> bool:
@@ -56,8 +59,7 @@ class Automaton:
 
 @dataclass
 class Shape:
-    """The numbers of atoms, states and sets, and the acceptance condition, of an automaton to be
-    generated."""
+    """The numbers of atoms, states and sets of a random automaton, and its acceptance condition."""
 
     atoms: int
     states: int
@@ -65,13 +67,13 @@ class Shape:
     condition: Condition
 
 
-def some_automaton(chance: Random, shape: Shape | None = None) -> Automaton:
-    """Return a deterministic, complete automaton; without a shape, size and acceptance are random."""
+def random_automaton(chance: Random, shape: Shape | None = None) -> Automaton:
+    """Return a deterministic, complete automaton. Without a shape, its size and condition are random."""
     atoms, states, sets = chance.randint(0, 2), chance.randint(1, 5), chance.randint(0, 3)
     if shape is not None:
         atoms, states, sets = shape.atoms, shape.states, shape.sets
 
-    def some_sets(likely: float) -> frozenset[int]:
+    def random_sets(likely: float) -> frozenset[int]:
         return frozenset(number for number in range(sets) if chance.random() < likely)
 
     def condition(depth: int) -> Condition:
@@ -83,14 +85,14 @@ def some_automaton(chance: Random, shape: Shape | None = None) -> Automaton:
         return (chance.choice(("and", "or")), *(condition(depth - 1) for _ in range(chance.randint(2, 3))))
 
     of_edges, of_states = chance.choice(((0.3, 0.0), (0.0, 0.4), (0.2, 0.2)))
-    moves = [[(chance.randrange(states), some_sets(of_edges)) for _ in range(2**atoms)] for _ in range(states)]
+    moves = [[(chance.randrange(states), random_sets(of_edges)) for _ in range(2**atoms)] for _ in range(states)]
     return Automaton(
-        atoms, sets, shape.condition if shape else condition(2), moves, [some_sets(of_states) for _ in range(states)]
+        atoms, sets, shape.condition if shape else condition(2), moves, [random_sets(of_states) for _ in range(states)]
     )
 
 
-def written(automaton: Automaton, chance: Random) -> str:
-    """Return the automaton as a file in a random style."""
+def hoa_text(automaton: Automaton, chance: Random) -> str:
+    """Return the text of a HOA file of the automaton, in a random style."""
     lines = ["HOA: v1", *([f"States: {len(automaton.moves)}"] if chance.random() < 0.7 else []), "Start: 0"]
     lines.append(" ".join([f"AP: {automaton.atoms}", *(f'"p{atom}"' for atom in range(automaton.atoms))]))
     if automaton.atoms:
@@ -107,12 +109,12 @@ def written(automaton: Automaton, chance: Random) -> str:
         elif chance.random() < 0.4:
             lines += [f"{target}{_sets(sets)}" for target, sets in moves]
         else:
-            lines += _labelled(automaton, moves, chance)
+            lines += _labelled_edges(automaton, moves, chance)
     return "\n".join([*lines, "--END--", ""])
 
 
-def _labelled(automaton: Automaton, moves: list[tuple[int, frozenset[int]]], chance: Random) -> list[str]:
-    """Return one edge per letter, or one edge for all letters with the same move."""
+def _labelled_edges(automaton: Automaton, moves: list[tuple[int, frozenset[int]]], chance: Random) -> list[str]:
+    """Return an edge for each letter, or one edge for all letters with the same move."""
     groups: dict[Any, list[int]] = {}
     together = chance.random() < 0.5
     for letter, move in enumerate(moves):

@@ -1,3 +1,5 @@
+"""Automata survive export to HOA and import, and HOA files in any style can be imported."""
+
 from __future__ import annotations
 
 import re
@@ -11,7 +13,7 @@ from hypothesis import given, settings
 
 import tltlc
 from tests.backends.strategies import automata, infinite_automata
-from tests.tools.hoa.files import Automaton, Condition, Shape, some_automaton, written
+from tests.tools.hoa.files import Automaton, Condition, Shape, hoa_text, random_automaton
 from tltlc import backends
 from tltlc.automaton.compare import are_equivalent
 from tltlc.automaton.fspa import Fspa, Text
@@ -26,26 +28,25 @@ EXAMPLES = sorted((Path(__file__).parents[3] / "examples").glob("*.tltl"))
 PROPOSITIONS = SourceFile("p.tltl", "signal p0: bool\nsignal p1: bool\n")
 
 
-def imported(text: str, library: SourceFile = PROPOSITIONS, options: ImportOptions | None = None) -> Fspa:
+def import_text(text: str, library: SourceFile = PROPOSITIONS, options: ImportOptions | None = None) -> Fspa:
     fspa, _ = load(SourceFile("x.hoa", text), library, options or ImportOptions())
     return fspa
 
 
 def library(fspa: Fspa) -> SourceFile:
-    """Return a source with a signal for each atom of the automaton, and its groups of exclusive
-    atoms."""
+    """Return a library with a predicate for each atom of the automaton, and its exclusive groups."""
     signals = [f"signal {atom.name}: number in [-1, 1]" for atom in fspa.atoms]
     predicates = [f"predicate {atom.name}_ = {atom.name}" for atom in fspa.atoms]
     groups = [f"exclusive {', '.join(f'{fspa.atoms[index].name}_' for index in group)}" for group in fspa.exclusive]
     return SourceFile("lib.tltl", "\n".join([*signals, *predicates, *groups, ""]))
 
 
-def again(fspa: Fspa) -> Fspa:
-    """Write the automaton as HOA, and read it back."""
+def reimport(fspa: Fspa) -> Fspa:
+    """Write an automaton as HOA, and read it back."""
     text = backends.emit("hoa", fspa)[f"{fspa.name}.hoa"]
     assert isinstance(text, str)
     options = ImportOptions(atoms={atom.name: f"{atom.name}_" for atom in fspa.atoms})
-    automaton = imported(text, library(fspa), options)
+    automaton = import_text(text, library(fspa), options)
     # Restore the names of the atoms, so that the automata can be compared.
     names = {f"{atom.name}_": atom.name for atom in fspa.atoms}
     return replace(
@@ -56,7 +57,7 @@ def again(fspa: Fspa) -> Fspa:
 @settings(max_examples=80, deadline=None)
 @given(automata())
 def test_a_finite_automaton_survives_export_and_import(fspa: Fspa) -> None:
-    reimported = again(fspa)
+    reimported = reimport(fspa)
     assert reimported.semantics == "finite"
     assert are_equivalent(reimported, fspa)
     assert [replace(state, label=None) for state in reimported.states] == [
@@ -71,7 +72,7 @@ def test_a_finite_automaton_survives_export_and_import(fspa: Fspa) -> None:
 @settings(max_examples=80, deadline=None)
 @given(infinite_automata())
 def test_an_infinite_automaton_survives_export_and_import(fspa: Fspa) -> None:
-    reimported = again(fspa)
+    reimported = reimport(fspa)
     assert reimported.semantics == "infinite"
     assert are_equivalent(reimported, fspa)
     assert [replace(state, label=None) for state in reimported.states] == [
@@ -81,7 +82,7 @@ def test_an_infinite_automaton_survives_export_and_import(fspa: Fspa) -> None:
     assert (reimported.spec_size, reimported.judge) == (fspa.spec_size, fspa.judge)
 
 
-def ascii_alone(fspa: Fspa) -> Fspa:
+def with_ascii_labels(fspa: Fspa) -> Fspa:
     def plain(label: Formula | Text) -> Text:
         return Text(str(label), "", "")
 
@@ -94,25 +95,24 @@ def test_an_example_survives_export_and_import(example: Path) -> None:
     specs = tltlc.compile_file(example)
     assert specs
     for spec in specs:
-        _survives_export_and_import(spec, example)
+        _check_export_and_import(spec, example)
 
 
-def _survives_export_and_import(fspa: Fspa, example: Path) -> None:
+def _check_export_and_import(fspa: Fspa, example: Path) -> None:
     text = backends.emit("hoa", fspa)[f"{fspa.name}.hoa"]
     assert isinstance(text, str)
-    reimported = imported(text, read_source(example))
+    reimported = import_text(text, read_source(example))
     # The file names comparisons without their units, so a label with a comparison can no longer be parsed as
     # a formula.
     if any("<" in atom.name or ">" in atom.name for atom in fspa.atoms):
-        fspa, reimported = ascii_alone(fspa), ascii_alone(reimported)
+        fspa, reimported = with_ascii_labels(fspa), with_ascii_labels(reimported)
     for name in Fspa.__match_args__:
         if name not in ("doc", "tags"):
             assert (name, getattr(reimported, name)) == (name, getattr(fspa, name))
 
 
 def _as_artefact(fspa: Fspa) -> Fspa:
-    """Write the automaton as an artefact and read it back; reading checks all invariants of
-    artefacts."""
+    """Write an automaton as an artefact, and read it back. Reading checks the invariants."""
     from tltlc.artefact.decode import read
 
     text = backends.emit("json", fspa)[f"{fspa.name}.fspa.json"]
@@ -137,16 +137,16 @@ def accepts(fspa: Fspa, prefix: Sequence[int], cycle: Sequence[int]) -> bool:
     state = 0
     for letter in prefix:
         state = fspa.edges[taken(state, letter)].target
-    seen: dict[int, int] = {}
+    first_round: dict[int, int] = {}
     rounds: list[list[int]] = []
-    while state not in seen:
-        seen[state] = len(rounds)
+    while state not in first_round:
+        first_round[state] = len(rounds)
         edges = []
         for letter in cycle:
             edges.append(taken(state, letter))
             state = fspa.edges[edges[-1]].target
         rounds.append(edges)
-    met = {mark for edges in rounds[seen[state] :] for edge in edges for mark in marks[edge]}
+    met = {mark for edges in rounds[first_round[state] :] for edge in edges for mark in marks[edge]}
     return any((pair, "inf") in met and (pair, "fin") not in met for pair in range(len(fspa.acceptance)))
 
 
@@ -160,8 +160,8 @@ def lassos(automaton: Automaton, chance: Random) -> list[tuple[list[int], list[i
 @pytest.mark.parametrize("seed", range(150))
 def test_any_acceptance_and_any_style_can_be_imported(seed: int) -> None:
     chance = Random(seed)
-    automaton = some_automaton(chance)
-    fspa = imported(written(automaton, chance))
+    automaton = random_automaton(chance)
+    fspa = import_text(hoa_text(automaton, chance))
     assert _as_artefact(fspa) == fspa
     for prefix, cycle in lassos(automaton, chance):
         assert accepts(fspa, prefix, cycle) == automaton.accepts(prefix, cycle)
@@ -169,8 +169,8 @@ def test_any_acceptance_and_any_style_can_be_imported(seed: int) -> None:
 
 @pytest.mark.parametrize("seed", range(10))
 def test_unreachable_states_are_left_out(seed: int) -> None:
-    text = re.sub("States:.*\n", "", written(some_automaton(Random(seed)), Random(seed)))
-    assert imported(text.replace("--END--", 'State: 90 "unreached"\n--END--')) == imported(text)
+    text = re.sub("States:.*\n", "", hoa_text(random_automaton(Random(seed)), Random(seed)))
+    assert import_text(text.replace("--END--", 'State: 90 "unreached"\n--END--')) == import_text(text)
 
 
 def rabin(pairs: int) -> Condition:
@@ -182,7 +182,7 @@ def streett(pairs: int) -> Condition:
 
 
 def parity(colours: int) -> Condition:
-    """The acceptance condition ``parity max even``."""
+    """Return the acceptance condition ``parity max even``."""
     condition: Condition = ("inf", 0)
     for colour in range(1, colours):
         condition = ("and", ("fin", colour), condition) if colour % 2 else ("or", ("inf", colour), condition)
@@ -213,8 +213,8 @@ def generalized_rabin(pairs: int, infs: int) -> Condition:
 )
 def test_named_acceptances_bound_the_number_of_states(condition: Condition, sets: int, largest: int, seed: int) -> None:
     chance = Random(seed)
-    automaton = some_automaton(chance, Shape(atoms=2, states=6, sets=sets, condition=condition))
-    fspa = imported(written(automaton, chance))
+    automaton = random_automaton(chance, Shape(atoms=2, states=6, sets=sets, condition=condition))
+    fspa = import_text(hoa_text(automaton, chance))
     assert len(fspa.states) <= largest
     for prefix, cycle in lassos(automaton, chance):
         assert accepts(fspa, prefix, cycle) == automaton.accepts(prefix, cycle)
@@ -223,39 +223,39 @@ def test_named_acceptances_bound_the_number_of_states(condition: Condition, sets
 def test_copies_of_a_state_are_numbered() -> None:
     text = """HOA: v1 Start: 0 AP: 2 "p0" "p1" Acceptance: 2 Inf(0)&Inf(1)
     --BODY-- State: 0 "both" [0&!1] 0 {0} [!0&1] 0 {1} [!0&!1] 0 [0&1] 0 {0 1} --END--"""
-    assert [str(state.label) for state in imported(text).states] == ["both (1 of 2)", "both (2 of 2)"]
+    assert [str(state.label) for state in import_text(text).states] == ["both (1 of 2)", "both (2 of 2)"]
 
 
 @pytest.mark.parametrize("name", ["a=b", "x==1", "", "X", "q > 2", "p0 p1"])
 def test_an_atom_of_any_name_can_be_mapped_to_a_predicate(name: str) -> None:
     text = f'HOA: v1 Start: 0 AP: 1 "{name}" Acceptance: 0 t --BODY-- State: 0 [0] 0 [!0] 0 --END--'
     key, _, value = f"{name}=p1".partition("=")
-    assert [atom.name for atom in imported(text, options=ImportOptions({key: value})).atoms] == ["p1"]
+    assert [atom.name for atom in import_text(text, options=ImportOptions({key: value})).atoms] == ["p1"]
     with pytest.raises(tltlc.TltlError) as error:
-        imported(text)
+        import_text(text)
     assert all(f'`--atom "{name}=…"`' in str(diagnostic.help) for diagnostic in error.value.diagnostics)
 
 
 def test_only_errors_of_the_library_are_reported_if_it_has_any() -> None:
     text = 'HOA: v1 Start: 0 AP: 1 "a" Acceptance: 0 t --BODY-- State: 0 [0] 0 [!0] 0 --END--'
     with pytest.raises(tltlc.TltlError) as error:
-        imported(text, SourceFile("lib.tltl", "signal a: boool\n"))
+        import_text(text, SourceFile("lib.tltl", "signal a: boool\n"))
     assert {diagnostic.labels[0].source.name for diagnostic in error.value.diagnostics} == {"lib.tltl"}
 
 
 def test_automata_over_the_limits_are_rejected() -> None:
-    automaton = some_automaton(Random(1), Shape(atoms=2, states=6, sets=16, condition=generalized_rabin(4, 3)))
+    automaton = random_automaton(Random(1), Shape(atoms=2, states=6, sets=16, condition=generalized_rabin(4, 3)))
     with pytest.raises(tltlc.TltlError, match="is too large, or its acceptance"):
-        imported(written(automaton, Random(1)), options=ImportOptions(work=300))
+        import_text(hoa_text(automaton, Random(1)), options=ImportOptions(work=300))
     with pytest.raises(tltlc.TltlError, match="needs more than 3 states"):
-        imported(written(automaton, Random(1)), options=ImportOptions(state_budget=3))
+        import_text(hoa_text(automaton, Random(1)), options=ImportOptions(state_budget=3))
 
 
 def test_too_many_prime_implicants_are_rejected(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("tltlc.automaton.guards.PRIME_LIMIT", 1)
     text = 'HOA: v1 Start: 0 AP: 2 "p0" "p1" Acceptance: 0 t --BODY-- State: 0 [0&!1 | !0&1] 0 [0&1 | !0&!1] 1'
     with pytest.raises(tltlc.TltlError, match="TLT0502"):
-        imported(f"{text} State: 1 [t] 1 --END--")
+        import_text(f"{text} State: 1 [t] 1 --END--")
 
 
 @pytest.mark.parametrize(
@@ -270,7 +270,7 @@ def test_too_many_prime_implicants_are_rejected(monkeypatch: pytest.MonkeyPatch)
 )
 def test_wrong_headers_are_reported(text: str, message: str) -> None:
     with pytest.raises(tltlc.TltlError, match=re.escape(message)):
-        imported(f"HOA: v1 {text} Acceptance: 0 t --BODY-- State: 0 [t] 0 --END--")
+        import_text(f"HOA: v1 {text} Acceptance: 0 t --BODY-- State: 0 [t] 0 --END--")
 
 
 @pytest.mark.slow
@@ -278,7 +278,7 @@ def test_letters_of_many_atoms_are_not_enumerated() -> None:
     names = " ".join(f'"p{place}"' for place in range(15_000))
     library = SourceFile("p.tltl", "\n".join(f"signal p{place}: bool" for place in range(15_000)))
     with pytest.raises(tltlc.TltlError, match=r"has 1 edge without labels, for 2\^15000 letters"):
-        imported(f"HOA: v1 Start: 0 AP: 15000 {names} Acceptance: 0 t --BODY-- State: 0 0 --END--", library)
+        import_text(f"HOA: v1 Start: 0 AP: 15000 {names} Acceptance: 0 t --BODY-- State: 0 0 --END--", library)
 
 
 def test_every_terminal_has_a_name_for_messages() -> None:

@@ -15,54 +15,57 @@ from tltlc.tools.hoa.tree import Hoa
 
 
 def vocabulary_of(
-    hoa: Hoa, library: SourceFile, given: Mapping[str, str], options: ResolveOptions
+    hoa: Hoa, library: SourceFile, predicates: Mapping[str, str], options: ResolveOptions
 ) -> tuple[Vocabulary, FormulaOf, tuple[Diagnostic, ...]]:
-    """Return the atoms of a file in its order, a function that reads formulas over the library, and warnings.
+    """Return the atoms of a HOA file in order, a function that resolves formulas, and warnings.
 
-    ``given`` maps the names of propositions to predicates; other propositions must be predicates as
-    they are written.
+    ``predicates`` maps the names of propositions to predicates of the library. The names of other
+    propositions must be predicates themselves. The function resolves a syntax tree over the library
+    to a formula, or to None.
 
     Raises:
-        TltlError: the errors of the library; TLT0655 if a proposition is no atom or the same atom
-            as another one, or if ``given`` names a proposition that the file does not have; any
-            other error in the formula of a proposition.
+        TltlError: the errors of the library; TLT0655 if a proposition is not an atom or is the same
+            atom as another proposition, or if ``predicates`` has a proposition that the file does not
+            have; any other error in the formula of a proposition.
     """
     module, diagnostics = parse(library)
     stop_at_errors(diagnostics)
-    given = _by_name(hoa, given)
-    written = [
-        SourceFile(f"--atom {atom.text}", given[atom.text])
-        if atom.text in given
-        # This name differs for each position, unlike the file's name: otherwise equal messages would be merged.
+    predicates = _by_proposition(hoa, predicates)
+    sources = [
+        SourceFile(f"--atom {atom.text}", predicates[atom.text])
+        if atom.text in predicates
+        # This name differs for each position. With the name of the file, equal messages would be merged.
         else SourceFile(f"{hoa.source.name}:{atom.span.start}", hoa.source.slice(atom.span))
         for atom in hoa.atoms
     ]
-    vocabulary, formula_of, atom_diagnostics = resolve_atoms(module, written, options)
+    vocabulary, formula_of, atom_diagnostics = resolve_atoms(module, sources, options)
     starts = {
-        source.name: atom.span.start for source, atom in zip(written, hoa.atoms, strict=True) if atom.text not in given
+        source.name: atom.span.start
+        for source, atom in zip(sources, hoa.atoms, strict=True)
+        if atom.text not in predicates
     }
-    diagnostics += tuple(_in_file(diagnostic, starts, hoa.source) for diagnostic in atom_diagnostics)
+    diagnostics += tuple(_with_places_in_file(diagnostic, starts, hoa.source) for diagnostic in atom_diagnostics)
     stop_at_errors(diagnostics)
     assert vocabulary is not None
     return vocabulary, formula_of, diagnostics
 
 
-def _by_name(hoa: Hoa, given: Mapping[str, str]) -> dict[str, str]:
-    """Return the given predicates by the names of the file's propositions.
+def _by_proposition(hoa: Hoa, options: Mapping[str, str]) -> dict[str, str]:
+    """Return the predicates by the names of the propositions of the file.
 
-    The command line splits ``NAME=PREDICATE`` at the first ``=``, but a name may contain ``=``: the
-    longest name that matches is taken.
+    The command line splits ``NAME=PREDICATE`` at the first ``=``, but a name may contain ``=``. So
+    this takes the longest name of a proposition that matches.
     """
     names = {atom.text for atom in hoa.atoms}
-    predicates: dict[str, str] = {}
-    for key, value in given.items():
+    by_proposition: dict[str, str] = {}
+    for key, value in options.items():
         whole = f"{key}={value}"
         matches = [name for name in names if whole.startswith(f"{name}=")]
         if not matches:
             raise TltlError([_unknown(hoa, key)])
         name = max(matches, key=len)
-        predicates[name] = whole[len(name) + 1 :]
-    return predicates
+        by_proposition[name] = whole[len(name) + 1 :]
+    return by_proposition
 
 
 def _unknown(hoa: Hoa, name: str) -> Diagnostic:
@@ -70,21 +73,21 @@ def _unknown(hoa: Hoa, name: str) -> Diagnostic:
 
     names = [atom.text for atom in hoa.atoms]
     close = get_close_matches(name, names, n=1)
-    listed = ", ".join(f"`{name}`" for name in names[:10]) or "none"
-    suggestion = f"did you mean `{close[0]}`?" if close else f"the file has {listed}"
-    return Diagnostic("TLT0655", f"`{hoa.source.name}` has no atomic proposition `{name}`", help=suggestion)
+    name_list = ", ".join(f"`{name}`" for name in names[:10]) or "none"
+    help_ = f"did you mean `{close[0]}`?" if close else f"the file has {name_list}"
+    return Diagnostic("TLT0655", f"`{hoa.source.name}` has no atomic proposition `{name}`", help=help_)
 
 
-def _in_file(message: Diagnostic, starts: Mapping[str, int], source: SourceFile) -> Diagnostic:
-    """Return a diagnostic about a proposition's name with its labels moved to their positions in the file.
+def _with_places_in_file(message: Diagnostic, starts: Mapping[str, int], source: SourceFile) -> Diagnostic:
+    """Return a diagnostic about the name of a proposition with its labels moved into the file.
 
-    ``starts`` maps the name of each proposition's source to the position where the proposition
-    begins.
+    ``starts`` maps the name of the source of each proposition to the offset in the file at which the
+    proposition begins.
     """
     if not message.labels or message.labels[0].source.name not in starts:
         return message
 
-    def placed(label: Label) -> Label:
+    def place_in_file(label: Label) -> Label:
         start = starts.get(label.source.name)
         if start is None:
             return label
@@ -93,5 +96,5 @@ def _in_file(message: Diagnostic, starts: Mapping[str, int], source: SourceFile)
     mapped = f'say which predicate it is: `--atom "{message.labels[0].source.text.strip()}=…"`'
     # Other help texts are for the author of a formula.
     own_help = message.help if message.code in ("TLT0201", "TLT0655") else None
-    suggestion = f"{own_help}; or {mapped}" if own_help else mapped
-    return replace(message, labels=tuple(map(placed, message.labels)), help=suggestion)
+    help_ = f"{own_help}; or {mapped}" if own_help else mapped
+    return replace(message, labels=tuple(map(place_in_file, message.labels)), help=help_)

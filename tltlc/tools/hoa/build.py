@@ -24,14 +24,17 @@ from tltlc.tools.hoa.transitions import NO, NOT_ALLOWED, YES, HoaTransitions, Mo
 from tltlc.tools.hoa.tree import Hoa
 
 _MOST_PROBLEMS: Final = 5
-"""At most this many states that are not deterministic or not complete are reported."""
+"""At most this many states that are not deterministic, or not complete, are reported."""
 
 Moves = dict[int, int]
-"""Each reachable state's function from the letter to a :data:`~tltlc.tools.hoa.transitions.Move`."""
+"""Maps each reachable state to its function from letters to :data:`~tltlc.tools.hoa.transitions.Move`."""
 
 
 class FiniteAnalysis:
-    """The successors and verdicts of states over finite traces; ``goals`` are the accepting states."""
+    """The successors (``targets``) and verdicts of states over finite traces.
+
+    ``goals`` are the accepting states.
+    """
 
     def __init__(self, automaton: Rabin, goals: set[int]) -> None:
         self.goals = goals
@@ -46,21 +49,21 @@ class FiniteAnalysis:
         return self._verdicts[state]
 
     def default_judge(self) -> Judge:
-        """Return ``limit`` if the initial state accepts, else ``goal``."""
+        """Return ``limit`` if the initial state is accepting, else ``goal``."""
         return "limit" if 0 in self.goals else "goal"
 
 
 def automaton_of(
     hoa: Hoa, atoms: Sequence[str], exclusive: Sequence[Sequence[int]], work: Work, state_budget: int
 ) -> tuple[Rabin, Analysis | FiniteAnalysis]:
-    """Return the automaton of a checked file, and its analysis.
+    """Return the automaton of a file, and its analysis. The file must have passed ``check``.
 
-    ``atoms`` are the names of the file's atoms, followed by any further atoms.  At most one atom of
-    each group of ``exclusive`` holds.  The labels of states are their numbers in the file.
+    ``atoms`` has the names of the atoms of the file, followed by any further atoms. At most one atom
+    of each group of ``exclusive`` holds at a time. The labels of states are their numbers in the
+    file. States with the same behaviour are merged.
 
-    Over infinite traces the acceptance condition is converted to Rabin pairs, component by
-    component; this adds states if pairs on the existing states cannot express the condition.
-    States with the same behaviour are merged.
+    Over infinite traces, the acceptance condition of each strongly connected component is converted
+    to Rabin pairs. This adds states if no pairs over the existing states express the condition.
 
     Raises:
         TltlError: TLT0651 if a label is wrong; TLT0653 if the automaton is not deterministic;
@@ -70,14 +73,15 @@ def automaton_of(
     """
     letters: Diagrams[Any] = Diagrams(work)
     moves = _moves(hoa, HoaTransitions(hoa, atoms, letters, at_most_one(letters, exclusive, YES, NO)), state_budget)
-    return (_finite if is_finite(hoa) else _infinite)(hoa, moves, letters)
+    return (_finite_automaton if is_finite(hoa) else _infinite_automaton)(hoa, moves, letters)
 
 
 def _moves(hoa: Hoa, transitions: HoaTransitions, state_budget: int) -> Moves:
+    """Return the moves of the states that can be reached. Errors are as in :func:`automaton_of`."""
     states = {state.number: state for state in hoa.states}
     queue = list(hoa.starts[0].states)
     moves: Moves = {}
-    seen = set(queue)
+    reached = set(queue)
     problems: list[Diagnostic] = []
     for number in queue:
         try:
@@ -85,16 +89,16 @@ def _moves(hoa: Hoa, transitions: HoaTransitions, state_budget: int) -> Moves:
         except TltlError as error:
             problems += error.diagnostics
         for edge in states[number].edges:
-            queue += [target for target in edge.targets.states if target not in seen]
-            seen.update(edge.targets.states)
-        if len(seen) > state_budget:
+            queue += [target for target in edge.targets.states if target not in reached]
+            reached.update(edge.targets.states)
+        if len(reached) > state_budget:
             raise OutOfStates
     if problems:
         raise TltlError(problems[:_MOST_PROBLEMS])
     return moves
 
 
-def _finite(hoa: Hoa, moves: Moves, letters: Diagrams[Any]) -> tuple[Rabin, Analysis | FiniteAnalysis]:
+def _finite_automaton(hoa: Hoa, moves: Moves, letters: Diagrams[Any]) -> tuple[Rabin, Analysis | FiniteAnalysis]:
     def leaf(move: Move | None) -> Any:
         return (("exit", IMPOSSIBLE), NO_MARKS) if move is NOT_ALLOWED else ((move[0],), NO_MARKS)
 
@@ -107,7 +111,7 @@ def _finite(hoa: Hoa, moves: Moves, letters: Diagrams[Any]) -> tuple[Rabin, Anal
     return automaton, FiniteAnalysis(automaton, goals)
 
 
-def _infinite(hoa: Hoa, moves: Moves, letters: Diagrams[Any]) -> tuple[Rabin, Analysis | FiniteAnalysis]:
+def _infinite_automaton(hoa: Hoa, moves: Moves, letters: Diagrams[Any]) -> tuple[Rabin, Analysis | FiniteAnalysis]:
     acceptance = Acceptance(hoa, letters.work)
 
     def targets(number: int) -> list[int]:
@@ -139,7 +143,7 @@ def _infinite(hoa: Hoa, moves: Moves, letters: Diagrams[Any]) -> tuple[Rabin, An
     return automaton, analysis_of_rabin(automaton, letters.work)
 
 
-def _piece(letters: Diagrams[Any], one: ComponentAutomaton) -> Piece:
-    """Return a component with pairs: the pairs of the file, unless fewer are found."""
-    best, unchanged = with_pairs(letters, one, letters.work), as_it_stands(letters, one)
+def _piece(letters: Diagrams[Any], component: ComponentAutomaton) -> Piece:
+    """Return a component with Rabin pairs: those of the file, unless fewer pairs are found."""
+    best, unchanged = with_pairs(letters, component, letters.work), as_it_stands(letters, component)
     return unchanged if unchanged is not None and unchanged.pairs <= best.pairs else best

@@ -1,4 +1,7 @@
-"""Check what the grammar of HOA files cannot express: that numbers are in range, and that the automaton can be read."""
+"""Check what the grammar of HOA files cannot express.
+
+Numbers must be in range, and the automaton must be of a kind that tltlc can read.
+"""
 
 from __future__ import annotations
 
@@ -6,7 +9,7 @@ from collections.abc import Iterator
 from typing import Final
 
 from tltlc.core.source import Span
-from tltlc.tools.hoa.problems import DETERMINISTIC, broken, other_kind
+from tltlc.tools.hoa.problems import DETERMINISTIC, format_error, unsupported_error
 from tltlc.tools.hoa.tree import Header, Hoa, HoaExpression, Sets, Targets
 
 FINITE: Final = "Tltlc-semantics:"
@@ -14,12 +17,13 @@ FINITE: Final = "Tltlc-semantics:"
 
 
 def check(hoa: Hoa) -> None:
-    """Raise TltlError for the first problem.
+    """Raise TltlError for the first problem of a file.
 
-    TLT0651: a state or an acceptance set does not exist, or a state or the name of an atom occurs
-    twice.  TLT0652: the automaton is of a kind that cannot be read: it does not have exactly one
-    initial state, it is alternating, its header :data:`FINITE` does not fit, or an unknown header
-    changes its meaning.
+    Raises:
+        TltlError: TLT0651, a state or an acceptance set does not exist, or a state or the name of an
+            atom occurs twice; TLT0652, the automaton does not have exactly one initial state, it is
+            alternating, its header :data:`FINITE` does not fit, or an unknown header changes its
+            meaning.
     """
     _check_condition(hoa, hoa.condition)
     for header in hoa.headers:
@@ -29,62 +33,64 @@ def check(hoa: Hoa) -> None:
     names: dict[str, Span] = {}
     for atom in hoa.atoms:
         if names.setdefault(atom.text, atom.span) is not atom.span:
-            raise broken(hoa.source, atom.span, f"two atoms are called `{atom.text}`", "rename one of them")
+            raise format_error(hoa.source, atom.span, f"two atoms are called `{atom.text}`", "rename one of them")
 
 
 def is_finite(hoa: Hoa) -> bool:
-    """Whether the automaton is over finite traces: it then has the header :data:`FINITE`."""
+    """Whether the automaton is over finite traces, that is, has the header :data:`FINITE`."""
     return any(header.name == FINITE for header in hoa.headers)
 
 
 def _check_header(hoa: Hoa, header: Header) -> None:
-    """Check a header: the format says that an unknown header with an upper-case initial must not be ignored."""
+    """Check a header. By the format, an unknown header that begins in upper case must not be ignored."""
     if header.name == FINITE and header.values == ("finite",):
         if (hoa.sets, hoa.condition.op, hoa.condition.outside) != (1, "inf", False):
             title = "over finite traces a state accepts or does not: `Acceptance: 1 Inf(0)`"
-            raise other_kind(hoa.source, header.span, title, "set 0 holds the states in which a trace may end")
+            raise unsupported_error(hoa.source, header.span, title, "set 0 holds the states in which a trace may end")
         for state in hoa.states:
             for edge in state.edges:
                 if edge.sets.numbers:
                     title = "over finite traces states accept, and no edges do"
-                    raise other_kind(
+                    raise unsupported_error(
                         hoa.source, edge.sets.span, title, "put the set behind the states that it leads to"
                     )
     elif header.name == FINITE:
-        title, suggestion = (
+        title, help_ = (
             'the only value of this header is `"finite"`',
             "leave the header out where traces are infinite",
         )
-        raise other_kind(hoa.source, header.span, title, suggestion)
+        raise unsupported_error(hoa.source, header.span, title, help_)
     elif header.name[0].isupper():
         title = f"the header `{header.name}` changes what the automaton means, and is not known here"
-        raise other_kind(hoa.source, header.span, title, "write the automaton without it")
+        raise unsupported_error(hoa.source, header.span, title, "write the automaton without it")
 
 
 def _check_start(hoa: Hoa) -> None:
     if not hoa.starts:
-        raise other_kind(hoa.source, Span(0, 4), "the automaton has no initial state", "name one: `Start: 0`")
+        raise unsupported_error(hoa.source, Span(0, 4), "the automaton has no initial state", "name one: `Start: 0`")
     if len(hoa.starts) > 1:
         title = "the automaton has several initial states, so it is not deterministic"
-        raise other_kind(hoa.source, hoa.starts[1].span, title, DETERMINISTIC)
+        raise unsupported_error(hoa.source, hoa.starts[1].span, title, DETERMINISTIC)
 
 
 def _check_states(hoa: Hoa) -> None:
-    seen: set[int] = set()
+    numbers: set[int] = set()
     for state in hoa.states:
-        if state.number in seen:
-            raise broken(hoa.source, state.span, f"state {state.number} stands here again", "join its edges in one")
-        seen.add(state.number)
-    if hoa.count is not None and (wrong := next((state for state in hoa.states if state.number >= hoa.count), None)):
-        title = f"there is no state {wrong.number}: `States:` declares {hoa.count}, counted from 0"
-        raise broken(hoa.source, wrong.span, title, "declare more states, or leave `States:` out")
+        if state.number in numbers:
+            raise format_error(
+                hoa.source, state.span, f"state {state.number} stands here again", "join its edges in one"
+            )
+        numbers.add(state.number)
+    if hoa.count is not None and (excess := next((state for state in hoa.states if state.number >= hoa.count), None)):
+        title = f"there is no state {excess.number}: `States:` declares {hoa.count}, counted from 0"
+        raise format_error(hoa.source, excess.span, title, "declare more states, or leave `States:` out")
     for targets in _targets(hoa):
         if len(targets.states) > 1:
             title = "this leads to several states at once, so the automaton is alternating"
-            raise other_kind(hoa.source, targets.span, title, DETERMINISTIC)
-        if targets.states[0] not in seen:
+            raise unsupported_error(hoa.source, targets.span, title, DETERMINISTIC)
+        if targets.states[0] not in numbers:
             title = f"there is no state {targets.states[0]}"
-            raise broken(hoa.source, targets.span, title, f"add it to the body: `State: {targets.states[0]}`")
+            raise format_error(hoa.source, targets.span, title, f"add it to the body: `State: {targets.states[0]}`")
     for sets in _sets(hoa):
         _check_set(hoa, max(sets.numbers, default=-1), sets.span)
 
@@ -102,7 +108,7 @@ def _check_set(hoa: Hoa, number: int, span: Span) -> None:
     """Raise TltlError, TLT0651, if there is no set with this number."""
     if number >= hoa.sets:
         title = f"there is no set {number}: `Acceptance:` declares {hoa.sets}, counted from 0"
-        raise broken(hoa.source, span, title, "name one of those, or declare more")
+        raise format_error(hoa.source, span, title, "name one of those, or declare more")
 
 
 def _targets(hoa: Hoa) -> Iterator[Targets]:

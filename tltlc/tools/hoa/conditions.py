@@ -10,7 +10,9 @@ from tltlc.tools.hoa.tree import Hoa, HoaExpression
 
 
 class Acceptance:
-    """The disjunctive normal form of a condition; each different ``Fin`` or ``Inf`` in it is a mark.
+    """An acceptance condition in disjunctive normal form, as ``clauses`` over marks.
+
+    Each different ``Fin`` or ``Inf`` of the condition has a mark.
 
     Raises :class:`~tltlc.automaton.work.OutOfWork` if there are too many clauses.
     """
@@ -25,7 +27,7 @@ class Acceptance:
         self.clauses = tuple(disjuncts)
 
     def marks(self, sets: Collection[int]) -> Marks:
-        """Return the marks of an edge in these sets."""
+        """Return the marks of an edge that is in these acceptance sets."""
         return frozenset(place for (_, number, outside), place in self._places.items() if (number in sets) != outside)
 
     def _skeleton(self, term: HoaExpression) -> Skeleton:

@@ -20,7 +20,7 @@ from tltlc.tools.hoa.atoms import vocabulary_of
 from tltlc.tools.hoa.build import automaton_of
 from tltlc.tools.hoa.checks import check, is_finite
 from tltlc.tools.hoa.metadata import metadata
-from tltlc.tools.hoa.reader import read
+from tltlc.tools.hoa.reader import read_hoa
 from tltlc.tools.hoa.tree import Hoa
 
 if TYPE_CHECKING:
@@ -43,11 +43,11 @@ from tltlc.resolve.spec import Judge
 class ImportOptions:
     """The information that a HOA file does not contain.
 
-    ``atoms`` maps atomic propositions, by name, to predicates; other propositions must be
-    predicates as they are written.  ``name`` is the name of the spec; by default it is the file's
-    ``name:`` if that is a plain name, else it is derived from the file's name.  ``level``,
-    ``limit_steps`` and ``judge`` are as in :class:`~tltlc.resolve.spec.Spec`.  ``resolve`` is for
-    the library, ``state_budget`` limits states, and ``work`` limits steps.
+    ``atoms`` maps the names of atomic propositions to predicates; the names of other propositions
+    must be predicates themselves. ``name`` is the name of the spec. By default, it is the ``name:`` of
+    the file if that is a plain name, and otherwise the name of the file. ``level``, ``limit_steps``
+    and ``judge`` are as in :class:`~tltlc.resolve.spec.Spec`. ``resolve`` has the options for the
+    library. ``state_budget`` is the most states, and ``work`` the most steps of work.
     """
 
     atoms: Mapping[str, str] = EMPTY
@@ -61,15 +61,15 @@ class ImportOptions:
 
 
 def load(source: SourceFile, library: SourceFile, options: ImportOptions) -> tuple[Fspa, tuple[Diagnostic, ...]]:
-    """Return the automaton of a HOA file whose atomic propositions are predicates of ``library``, and warnings.
+    """Return the automaton of a HOA file, and warnings. Its propositions are predicates of ``library``.
 
     Raises:
-        TltlError: the errors of :func:`~tltlc.tools.hoa.reader.read`,
+        TltlError: the errors of :func:`~tltlc.tools.hoa.reader.read_hoa`,
             :func:`~tltlc.tools.hoa.checks.check`, :func:`~tltlc.tools.hoa.atoms.vocabulary_of` and
             :func:`~tltlc.tools.hoa.build.automaton_of`; TLT0501 or TLT0502 if the automaton is too
             large; TLT0652 if a ``tltlc-`` header has a wrong value.
     """
-    hoa = read(source)
+    hoa = read_hoa(source)
     check(hoa)
     vocabulary, formula_of, warnings = vocabulary_of(hoa, library, options.atoms, options.resolve)
     names = [atom.name for atom in vocabulary.atoms]
@@ -112,25 +112,25 @@ def load(source: SourceFile, library: SourceFile, options: ImportOptions) -> tup
         spec_size=parts.spec_size,
         acceptance=parts.acceptance,
     )
-    return fspa, (*warnings, *_decided(fspa, source))
+    return fspa, (*warnings, *_trivial_warnings(fspa, source))
 
 
-def _decided(fspa: Fspa, source: SourceFile) -> tuple[Diagnostic, ...]:
-    """Return a warning if the automaton accepts every trace, or none."""
+def _trivial_warnings(fspa: Fspa, source: SourceFile) -> tuple[Diagnostic, ...]:
+    """Return a warning if the automaton accepts every trace, or no trace."""
     if fspa.states[0].verdict == "violated":
-        title, suggestion = f"`{source.name}` accepts no trace", "look at its acceptance, and at what is `exclusive`"
-        return (Diagnostic("TLT0410", title, help=suggestion, severity="warning"),)
+        title, help_ = f"`{source.name}` accepts no trace", "look at its acceptance, and at what is `exclusive`"
+        return (Diagnostic("TLT0410", title, help=help_, severity="warning"),)
     if fspa.states[0].verdict == "satisfied":
-        title, suggestion = (
+        title, help_ = (
             f"`{source.name}` accepts every trace",
             "look at its acceptance: it asks nothing of the game",
         )
-        return (Diagnostic("TLT0411", title, help=suggestion, severity="warning"),)
+        return (Diagnostic("TLT0411", title, help=help_, severity="warning"),)
     return ()
 
 
 def _name(hoa: Hoa) -> str:
-    """Return the automaton's name if it is a plain name, else one made from the name of its file."""
+    """Return the name of the automaton if it is a plain name, else a name made from its file name."""
     if hoa.name and is_plain_name(hoa.name.text):
         return hoa.name.text
     if hoa.source.name == STDIN_NAME:
@@ -140,28 +140,28 @@ def _name(hoa: Hoa) -> str:
 
 
 def _state_names(hoa: Hoa, numbers: Sequence[int]) -> list[str]:
-    """Return a name for each state of the automaton, given its number in the file.
+    """Return a name for each state of the automaton. ``numbers`` has their numbers in the file.
 
-    If a state of the file became several, they are counted: "state 3 (1 of 2)".
+    States that come from the same state of the file are counted: "state 3 (1 of 2)".
     """
     names = {state.number: state.name or f"state {state.number}" for state in hoa.states}
-    totals, counted = Counter(numbers), Counter[int]()
+    totals, counts = Counter(numbers), Counter[int]()
     state_names = []
     for number in numbers:
-        counted[number] += 1
-        count = f" ({counted[number]} of {totals[number]})" if totals[number] > 1 else ""
-        state_names.append(names[number] + count)
+        counts[number] += 1
+        suffix = f" ({counts[number]} of {totals[number]})" if totals[number] > 1 else ""
+        state_names.append(names[number] + suffix)
     return state_names
 
 
-def _label(words: str, formula_of: FormulaOf) -> Formula | Text:
-    """Return a state's name as a formula if it is one as tltlc prints it, else unchanged."""
-    expression, _ = parse_formula(SourceFile("<name>", words))
+def _label(name: str, formula_of: FormulaOf) -> Formula | Text:
+    """Return a name as a formula if tltlc prints that formula as the name, else as text."""
+    expression, _ = parse_formula(SourceFile("<name>", name))
     formula = None if expression is None else formula_of(expression)
     # Operators of other tools may have other precedences.
-    if formula is not None and ascii_text(formula) == words:
+    if formula is not None and ascii_text(formula) == name:
         return formula
-    return Text(words.encode("ascii", "backslashreplace").decode(), words, words)
+    return Text(name.encode("ascii", "backslashreplace").decode(), name, name)
 
 
 def _too_large(source: SourceFile, reason: Exception, options: ImportOptions) -> Diagnostic:

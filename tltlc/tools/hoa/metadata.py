@@ -6,7 +6,7 @@ from typing import Any, Final
 
 from tltlc.core.record import record
 from tltlc.resolve.spec import Judge
-from tltlc.tools.hoa.problems import other_kind
+from tltlc.tools.hoa.problems import unsupported_error
 from tltlc.tools.hoa.tree import Header, Hoa
 
 _LARGEST: Final = 10**9
@@ -14,7 +14,7 @@ _LARGEST: Final = 10**9
 
 @record
 class Metadata:
-    """The values of the headers, as in :class:`~tltlc.resolve.spec.Spec`; None if the file has no such header."""
+    """The values of the headers, as in :class:`~tltlc.resolve.spec.Spec`; None for missing headers."""
 
     judge: Judge | None = None
     limit_steps: int | None = None
@@ -31,7 +31,7 @@ def metadata(hoa: Hoa) -> Metadata:
     fields: dict[str, Any] = {}
     for header in hoa.headers:
         if header.name == "tltlc-judge:":
-            fields["judge"] = _one_of(hoa, header, ("goal", "limit"))
+            fields["judge"] = _choice(hoa, header, ("goal", "limit"))
         elif header.name == "tltlc-limit:":
             fields["limit_steps"] = _steps(hoa, header)
         elif header.name in ("tltlc-level:", "tltlc-formula:"):
@@ -39,16 +39,16 @@ def metadata(hoa: Hoa) -> Metadata:
     return Metadata(**fields)
 
 
-def _one_of(hoa: Hoa, header: Header, values: tuple[str, ...]) -> str:
+def _choice(hoa: Hoa, header: Header, values: tuple[str, ...]) -> str:
     if len(header.values) != 1 or header.values[0] not in values:
-        title, suggestion = f"this header says {' or '.join(f'`{value}`' for value in values)}", "or leave it out"
-        raise other_kind(hoa.source, header.span, title, suggestion)
+        title, help_ = f"this header says {' or '.join(f'`{value}`' for value in values)}", "or leave it out"
+        raise unsupported_error(hoa.source, header.span, title, help_)
     return header.values[0]
 
 
 def _steps(hoa: Hoa, header: Header) -> int:
     value = header.values[0] if len(header.values) == 1 else ""
     if not value.isdecimal() or not 0 < int(value[:12]) <= _LARGEST:
-        title, suggestion = "this header says a number of steps, at least 1", "or leave it out"
-        raise other_kind(hoa.source, header.span, title, suggestion)
+        title, help_ = "this header says a number of steps, at least 1", "or leave it out"
+        raise unsupported_error(hoa.source, header.span, title, help_)
     return int(value)

@@ -11,11 +11,11 @@ FORMAT: Final = "the format is described at https://adl.github.io/hoaf/"
 DETERMINISTIC: Final = "make it deterministic and complete first, e.g. with Spot: `autfilt -G -D -C`"
 
 
-def broken(source: SourceFile, span: Span, title: str, suggestion: str = FORMAT, remark: str = "") -> TltlError:
-    """Return TLT0651: the text does not follow the format."""
-    return TltlError([Diagnostic("TLT0651", title, (Label(source, span, remark),), suggestion)])
+def format_error(source: SourceFile, span: Span, title: str, help_: str = FORMAT, remark: str = "") -> TltlError:
+    """Return the error TLT0651: the text does not follow the format. ``remark`` is for the label."""
+    return TltlError([Diagnostic("TLT0651", title, (Label(source, span, remark),), help_)])
 
 
-def other_kind(source: SourceFile, span: Span, title: str, suggestion: str, remark: str = "") -> TltlError:
-    """Return TLT0652: the automaton is of a kind that cannot be read."""
-    return TltlError([Diagnostic("TLT0652", title, (Label(source, span, remark),), suggestion)])
+def unsupported_error(source: SourceFile, span: Span, title: str, help_: str, remark: str = "") -> TltlError:
+    """Return the error TLT0652: tltlc cannot read this kind of automaton. ``remark`` is for the label."""
+    return TltlError([Diagnostic("TLT0652", title, (Label(source, span, remark),), help_)])

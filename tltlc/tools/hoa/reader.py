@@ -1,4 +1,4 @@
-"""Parse the text of a HOA file to its tree."""
+"""Parse the text of a HOA file into its syntax tree."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from lark.visitors import Transformer_NonRecursive
 
 from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.tools.hoa.problems import broken, other_kind
+from tltlc.tools.hoa.problems import format_error, unsupported_error
 from tltlc.tools.hoa.tree import Alias, Header, Hoa, HoaEdge, HoaExpression, HoaState, HoaString, Sets, Targets
 
-_OUTSIDE: Final = re.compile(r'"(?:\\.|[^\\"])*(?:"|\\?\Z)|/\*', re.DOTALL)
-"""A string in quotes, whose end may be missing, or the beginning of a comment."""
+_STRING_OR_COMMENT: Final = re.compile(r'"(?:\\.|[^\\"])*(?:"|\\?\Z)|/\*', re.DOTALL)
+"""Matches a string in quotes, whose end may be missing, or the beginning of a comment."""
 _IN_A_COMMENT: Final = re.compile(r"/\*|\*/")
 _ESCAPE: Final = re.compile(r"\\(?:u([0-9a-fA-F]{4})|U(000[0-9a-fA-F]{5}|0010[0-9a-fA-F]{4})|(.))", re.DOTALL)
 _LARGEST: Final = 2**31 - 1
@@ -31,38 +31,38 @@ _NAMES: Final = {
     "STRING": "a text in double quotes",
     "VERSION": "a version as `v1`",
 }
-"""The names in messages of terminals that are patterns, not fixed words."""
+"""What messages call the terminals that are patterns."""
 _MOST_EXPECTED: Final = 5
 _LONGEST_SHOWN: Final = 40
 
 _ONCE: Final = ("States:", "AP:", "Acceptance:", "name:")
 
 
-def read(source: SourceFile) -> Hoa:
-    """Return the automaton of a file as it is written; its numbers are not checked.
+def read_hoa(source: SourceFile) -> Hoa:
+    """Return the syntax tree of a HOA file. The numbers in it are not checked.
 
     Raises:
         TltlError: TLT0651 if the text does not follow the format; TLT0652 if the file has several
             automata, or ends with ``--ABORT--``.
     """
     if source.text.lstrip().startswith("{"):
-        title, suggestion = (
+        title, help_ = (
             f"`{source.name}` is JSON, and no automaton in the Hanoi format",
             "an artefact needs no import",
         )
-        raise TltlError([Diagnostic("TLT0651", title, help=suggestion)])
+        raise TltlError([Diagnostic("TLT0651", title, help=help_)])
     text = _without_comments(source)
     try:
         hoa: Hoa = _Tree(source).transform(_parser().parse(text, start="automaton"))
     except UnexpectedInput as error:
-        raise _unreadable(source, error, Span(0, len(text.rstrip())), "the end of the file") from None
+        raise _syntax_error(source, error, Span(0, len(text.rstrip())), "the end of the file") from None
     except VisitError as error:
         raise _cause(error) from None
     return hoa
 
 
 def _cause(error: VisitError) -> Exception:
-    """Return the original error; it may be wrapped several times, since a label is a tree within the tree."""
+    """Return the original error. It may be wrapped several times, because labels are parsed separately."""
     cause: Exception = error
     while isinstance(cause, VisitError):
         cause = cause.orig_exc
@@ -76,65 +76,70 @@ def _parser() -> Lark:
 
 
 def _without_comments(source: SourceFile) -> str:
-    """Return the text with comments, which nest, replaced by spaces, so that all positions stay the same."""
+    """Return the text with spaces in place of comments, so that all offsets stay the same.
+
+    Comments nest. Error TLT0651 if a comment does not end.
+    """
     pieces: list[str] = []
-    kept = start = depth = 0
+    code_start = comment_start = depth = 0
     place = 0
-    while match := (_IN_A_COMMENT if depth else _OUTSIDE).search(source.text, place):
+    while match := (_IN_A_COMMENT if depth else _STRING_OR_COMMENT).search(source.text, place):
         place = match.end()
         if match.group() == "/*":
             if depth == 0:
-                start = match.start()
-                pieces.append(source.text[kept:start])
+                comment_start = match.start()
+                pieces.append(source.text[code_start:comment_start])
             depth += 1
         elif match.group() == "*/":
             depth -= 1
             if depth == 0:
-                kept = place
-                pieces.append(" " * (kept - start))
+                code_start = place
+                pieces.append(" " * (code_start - comment_start))
     if depth:
-        title, suggestion = "this comment does not end", "comments nest: each `/*` needs a `*/`"
-        raise broken(source, Span(start, start + 2), title, suggestion)
-    return "".join([*pieces, source.text[kept:]])
+        title, help_ = "this comment does not end", "comments nest: each `/*` needs a `*/`"
+        raise format_error(source, Span(comment_start, comment_start + 2), title, help_)
+    return "".join([*pieces, source.text[code_start:]])
 
 
 # --- syntax errors --------------------------------------------------------------------------------
 
 
-def _unreadable(source: SourceFile, error: UnexpectedInput, whole: Span, at_end: str) -> TltlError:
-    """Return the error for a part of the text that could not be parsed.
+def _syntax_error(source: SourceFile, error: UnexpectedInput, whole: Span, at_end: str) -> TltlError:
+    """Return the error for a part of the text that cannot be parsed.
 
-    ``whole`` is the span of the part, and ``at_end`` the name of what follows it.
+    ``whole`` is the span of the part. ``at_end`` is what messages call the thing after the part.
     """
     if not isinstance(error, UnexpectedToken):
         start = whole.start + (error.pos_in_stream or 0)
         if source.text.startswith("--ABORT--", start):
-            title, suggestion = "the tool that wrote this automaton gave it up", "have it written again, to its end"
-            return other_kind(source, Span(start, start + len("--ABORT--")), title, suggestion)
+            title, help_ = "the tool that wrote this automaton gave it up", "have it written again, to its end"
+            return unsupported_error(source, Span(start, start + len("--ABORT--")), title, help_)
         character = source.text[start]
         endless = {'"': "this text does not end", "[": "this label does not end"}
-        return broken(source, Span(start, start + 1), endless.get(character, f"`{character}` is not expected here"))
+        return format_error(
+            source, Span(start, start + 1), endless.get(character, f"`{character}` is not expected here")
+        )
     token = error.token
     if token.type != "$END":
-        span, title = _moved(_span(token), whole.start), f"`{_short(token)}` is not expected here"
+        span, title = _shift(_span(token), whole.start), f"`{_shorten(token)}` is not expected here"
     elif source.text[whole.end :].strip():
         span, title = Span(whole.end, whole.end + 1), f"{at_end} is not expected here"
     else:
         here = Span(whole.end, whole.end)
-        return broken(source, here, "the file ends too soon", "it was cut off: an automaton ends with `--END--`")
+        return format_error(source, here, "the file ends too soon", "it was cut off: an automaton ends with `--END--`")
     if error.accepts == {"$END"} and token == "HOA:":
-        title, suggestion = f"`{source.name}` holds several automata", "give a file with one of them"
-        return other_kind(source, span, title, suggestion, "another one")
+        title, help_ = f"`{source.name}` holds several automata", "give a file with one of them"
+        return unsupported_error(source, span, title, help_, "another one")
     expected = sorted(at_end if name == "$END" else _terminal_name(name) for name in error.accepts)
-    remark = f"expected {_listed(expected)}" if 0 < len(expected) <= _MOST_EXPECTED else ""
-    return broken(source, span, title, remark=remark)
+    remark = f"expected {_alternatives(expected)}" if 0 < len(expected) <= _MOST_EXPECTED else ""
+    return format_error(source, span, title, remark=remark)
 
 
-def _moved(span: Span, by: int) -> Span:
+def _shift(span: Span, by: int) -> Span:
     return Span(span.start + by, span.end + by)
 
 
-def _listed(names: list[str]) -> str:
+def _alternatives(names: list[str]) -> str:
     *head, last = names
     return f"{', '.join(head)} or {last}" if head else last
 
@@ -146,7 +151,7 @@ def _terminal_name(terminal: str) -> str:
     return f"`{pattern.value}`"
 
 
-def _short(token: str) -> str:
+def _shorten(token: str) -> str:
     return token if len(token) <= _LONGEST_SHOWN else f"{token[:_LONGEST_SHOWN]}…"
 
 
@@ -155,8 +160,9 @@ def _short(token: str) -> str:
 
 @v_args(inline=True)
 class _Tree(Transformer_NonRecursive[Token, Hoa]):
-    """Builds the records of :mod:`tltlc.tools.hoa.tree`, and checks rules of the header that the
-    grammar cannot express.
+    """Builds the records of :mod:`tltlc.tools.hoa.tree`, and checks the header.
+
+    Each method is called for the grammar rule of its name, and its docstring shows an example.
     """
 
     def __init__(self, source: SourceFile) -> None:
@@ -164,23 +170,23 @@ class _Tree(Transformer_NonRecursive[Token, Hoa]):
         self._source = source
         self._labels: dict[str, HoaExpression] = {}
         self._start = 0
-        """The position in the file of the text that is being parsed: labels are parsed separately."""
+        """The offset in the file of the text that is being parsed, because labels are parsed separately."""
 
     def automaton(self, version: Token, *items: Any) -> Hoa:
         """Build the whole automaton."""
         if version != "v1":
-            suggestion = "this reads version 1 of the format, `HOA: v1`"
-            raise broken(self._source, self._span(version), f"`{_short(version)}` is no version known", suggestion)
+            help_ = "this reads version 1 of the format, `HOA: v1`"
+            raise format_error(self._source, self._span(version), f"`{_shorten(version)}` is no version known", help_)
         states = tuple(item for item in items if isinstance(item, HoaState))
         header: dict[str, list[Any]] = {}
         for kind, value, span in (item for item in items if not isinstance(item, HoaState)):
-            known = header.setdefault(kind, [])
-            if known and kind in _ONCE:
-                raise broken(self._source, span, f"`{kind}` stands here again", "keep one of the two")
-            known.append(value)
+            values = header.setdefault(kind, [])
+            if values and kind in _ONCE:
+                raise format_error(self._source, span, f"`{kind}` stands here again", "keep one of the two")
+            values.append(value)
         if "Acceptance:" not in header:
-            title, suggestion = "the header says nothing of acceptance", "it needs a line as `Acceptance: 1 Inf(0)`"
-            raise broken(self._source, Span(0, 4), title, suggestion)
+            title, help_ = "the header says nothing of acceptance", "it needs a line as `Acceptance: 1 Inf(0)`"
+            raise format_error(self._source, Span(0, 4), title, help_)
         ((sets, condition),) = header["Acceptance:"]
         return Hoa(
             source=self._source,
@@ -195,7 +201,7 @@ class _Tree(Transformer_NonRecursive[Token, Hoa]):
             states=states,
         )
 
-    # The methods for items of the header return the item's name, its value and its span.
+    # The methods for items of the header return the name of the item, its value, and its span.
 
     def states(self, word: Token, count: Token) -> Any:
         """``States: 3``."""
@@ -209,7 +215,7 @@ class _Tree(Transformer_NonRecursive[Token, Hoa]):
         """``AP: 2 "a" "b"``."""
         if self._number(count) != len(names):
             title = f"`AP:` says {count}, and {len(names)} {'name follows' if len(names) == 1 else 'names follow'}"
-            raise broken(self._source, self._span(word), title, "give the number of names")
+            raise format_error(self._source, self._span(word), title, "give the number of names")
         return "AP:", names, self._span(word)
 
     def alias(self, name: Token, term: HoaExpression) -> Any:
@@ -242,7 +248,7 @@ class _Tree(Transformer_NonRecursive[Token, Hoa]):
         return HoaEdge(self._label(label), targets, sets)
 
     def _label(self, label: Token | None) -> HoaExpression | None:
-        """Parse a label in square brackets; equal labels share one term, with the positions of the first."""
+        """Parse a label in square brackets. Equal labels share one term, with the spans of the first."""
         if label is None:
             return None
         if label not in self._labels:
@@ -251,7 +257,7 @@ class _Tree(Transformer_NonRecursive[Token, Hoa]):
             try:
                 tree = _parser().parse(label[1:-1], start="label")
             except UnexpectedInput as error:
-                raise _unreadable(self._source, error, inside, "`]`") from None
+                raise _syntax_error(self._source, error, inside, "`]`") from None
             self._start = inside.start
             term: Any = self.transform(tree)
             self._start = 0
@@ -270,7 +276,7 @@ class _Tree(Transformer_NonRecursive[Token, Hoa]):
     def string(self, text: Token) -> HoaString:
         """A string in double quotes."""
         whole = self._span(text)
-        return HoaString(_ESCAPE.sub(_escaped, text[1:-1]), Span(whole.start + 1, whole.end - 1))
+        return HoaString(_ESCAPE.sub(_unescape, text[1:-1]), Span(whole.start + 1, whole.end - 1))
 
     # Boolean expressions.
 
@@ -301,8 +307,8 @@ class _Tree(Transformer_NonRecursive[Token, Hoa]):
     def set(self, kind: Token, outside: Token | None, number: Token) -> HoaExpression:
         """``Fin(0)`` or ``Inf(!0)``."""
         if kind not in ("Fin", "Inf"):
-            title, suggestion = f"`{kind}` is no acceptance", "it is `Fin` or `Inf` of a set"
-            raise broken(self._source, self._span(kind), title, suggestion)
+            title, help_ = f"`{kind}` is no acceptance", "it is `Fin` or `Inf` of a set"
+            raise format_error(self._source, self._span(kind), title, help_)
         op: Any = kind.lower()
         return HoaExpression(op, (), self._number(number), outside is not None, self._span(number))
 
@@ -311,21 +317,21 @@ class _Tree(Transformer_NonRecursive[Token, Hoa]):
     def _number(self, digits: Token) -> int:
         # Check the length first: Python refuses to convert thousands of digits.
         if len(digits) > len(str(_LARGEST)) or int(digits) > _LARGEST:
-            title, suggestion = "this number is too large", f"numbers of the format end at {_LARGEST:,}"
-            raise broken(self._source, self._span(digits), title, suggestion)
+            title, help_ = "this number is too large", f"numbers of the format end at {_LARGEST:,}"
+            raise format_error(self._source, self._span(digits), title, help_)
         return int(digits)
 
     def _span(self, first: Token, last: Token | None = None) -> Span:
-        return _moved(_span(first, last), self._start)
+        return _shift(_span(first, last), self._start)
 
 
-def _escaped(match: re.Match[str]) -> str:
+def _unescape(match: re.Match[str]) -> str:
     code, long_code, character = match.groups()
     return character or chr(int(code or long_code, 16))
 
 
 def _as_text(value: Token) -> str:
-    return _ESCAPE.sub(_escaped, value[1:-1]) if value.type == "STRING" else str(value)
+    return _ESCAPE.sub(_unescape, value[1:-1]) if value.type == "STRING" else str(value)
 
 
 def _span(first: Token, last: Token | None = None) -> Span:

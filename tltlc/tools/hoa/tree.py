@@ -1,4 +1,4 @@
-"""The syntax tree of a HOA file; its atoms are not resolved."""
+"""The syntax tree of a HOA file. Its atoms are not resolved yet."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ class HoaExpression:
     """A Boolean expression over atoms, or an acceptance condition over sets.
 
     ``value`` is the index of an ``atom``, the name of an ``alias``, or the number of the set of a
-    ``fin`` or ``inf``.  If ``outside``, the condition is about the edges outside of the set.
+    ``fin`` or ``inf``. With ``outside``, the condition is about the edges that are not in the set.
     """
 
     op: Literal["true", "false", "not", "and", "or", "atom", "alias", "fin", "inf"]
@@ -33,7 +33,10 @@ class Sets:
 
 @record
 class Targets:
-    """The targets of an edge, or the initial states; an edge with several targets makes the automaton alternating."""
+    """The targets of an edge, or initial states.
+
+    An edge with several targets makes the automaton alternating.
+    """
 
     states: tuple[int, ...]
     span: Span
@@ -41,7 +44,11 @@ class Targets:
 
 @record
 class HoaEdge:
-    """An edge; if ``label`` is None, the state's label applies, or the edge is for the letter of its position."""
+    """An edge.
+
+    If ``label`` is None, the label of the state applies. If there is none, the edge is for the letter
+    of its position.
+    """
 
     label: HoaExpression | None
     targets: Targets
@@ -50,7 +57,7 @@ class HoaEdge:
 
 @record
 class HoaState:
-    """A state; ``span`` is the span of its number."""
+    """A state. ``span`` is the span of its number."""
 
     number: int
     name: str | None
@@ -62,7 +69,7 @@ class HoaState:
 
 @record
 class HoaString:
-    """A string without its quotes, with escapes resolved; ``span`` is the span between the quotes."""
+    """A string without its quotes, with escapes resolved. ``span`` is the span between the quotes."""
 
     text: str
     span: Span
@@ -79,7 +86,7 @@ class Alias:
 
 @record
 class Header:
-    """An item of the header without a field of its own in :class:`Hoa`; strings in ``values`` have no quotes."""
+    """An item of the header that has no field in :class:`Hoa`. ``values`` have no quotes."""
 
     name: str
     values: tuple[str, ...]
@@ -88,7 +95,11 @@ class Header:
 
 @record
 class Hoa:
-    """The whole file; ``count`` is the declared number of states, None if it is not declared."""
+    """A HOA file. ``count`` is the number of states that it declares, or None.
+
+    ``starts`` are its initial states, ``sets`` is its number of acceptance sets, and ``condition`` its
+    acceptance condition.
+    """
 
     source: SourceFile
     count: int | None
