@@ -9,7 +9,7 @@ from pathlib import Path
 
 from hypothesis import HealthCheck, Phase, settings
 
-from tests.tools.conformance.runner import Outcome, Runner, built
+from tests.tools.conformance.runner import Outcome, Runner, build_program
 from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
 from tltlc.core.record import replace
@@ -38,7 +38,7 @@ class Programs:
 
     def __init__(self, runner: Runner, folder: Path, fspas: Sequence[Fspa]) -> None:
         self.fspas = [replace(fspa, name=f"spec{number}") for number, fspa in enumerate(fspas)]
-        self._run = built(runner, self.fspas, folder)
+        self._run = build_program(runner, self.fspas, folder)
 
     def run(self, *runs: tuple[int, str]) -> list[Outcome]:
         """Run programs with ``--full``, each given by the number of its automaton and its trace."""

@@ -20,7 +20,7 @@ from tests.backends.monitors import Programs, Sample, batches, expected, one_ato
 from tests.backends.strategies import HOSTILE, hostile_automata
 from tests.fixtures import cover_and_hide
 from tests.monitor.strategies import PARAMS, SIGNALS, atom_traces, automata, expressions, numbers
-from tests.tools.conformance.runners.c import CPP, RUNNERS, SANITIZED, C, linked
+from tests.tools.conformance.runners.c import CPP, RUNNERS, SANITIZED, C, link
 from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
@@ -51,7 +51,7 @@ def programs_of(folder: Path, compiler: str, fspas: Sequence[Fspa]) -> Programs:
     """Build the programs of automata; only ``gcc`` adds sanitizers, which take long to compile."""
     command = (*COMPILERS[compiler], *STRICT, *(SANITIZED if compiler == "gcc" else ()))
     (runner,) = (runner for runner in RUNNERS if runner.name == ("c" if compiler == "gcc" else "c++"))
-    programs = Programs(replace(runner, build_all=partial(linked, command)), folder, fspas)
+    programs = Programs(replace(runner, build_all=partial(link, command)), folder, fspas)
     assert all((folder / f"{fspa.name}_monitor.h").read_bytes().isascii() for fspa in programs.fspas)
     return programs
 

@@ -15,7 +15,7 @@ from tltlc import backends
 from tltlc.automaton.fspa import Fspa
 from tltlc.core.record import record
 from tltlc.tools.conformance.check import differences
-from tltlc.tools.conformance.expected import COLUMNS, Expected
+from tltlc.tools.conformance.expected import COLUMNS, ExpectedOutput
 
 LONGEST_BUILD_S = LONGEST_RUN_S = HANG_S
 
@@ -91,7 +91,7 @@ def build(runner: Runner, name: str, folder: Path) -> None:
         execute([word.format(name=name) for word in runner.build], folder)
 
 
-def ran(runner: Runner, name: str, folder: Path, trace: bytes) -> Outcome:
+def run_monitor(runner: Runner, name: str, folder: Path, trace: bytes) -> Outcome:
     """Run the program of one monitor, which is already built, on a trace."""
     (folder / f"{name}.trace.csv").write_bytes(trace)
     command = [word.format(name=name) for word in (*runner.run, "--full", "{name}.trace.csv")]
@@ -99,7 +99,7 @@ def ran(runner: Runner, name: str, folder: Path, trace: bytes) -> Outcome:
     return process.returncode, process.stdout.decode(), process.stderr.decode()
 
 
-def built(runner: Runner, fspas: Sequence[Fspa], folder: Path) -> Callable[[Runs], list[Outcome]]:
+def build_program(runner: Runner, fspas: Sequence[Fspa], folder: Path) -> Callable[[Runs], list[Outcome]]:
     """Build one program for many monitors, or one per monitor if the runner has no ``build_all``.
 
     Return a function that runs the monitors over traces, in one process where there is one program.
@@ -110,19 +110,19 @@ def built(runner: Runner, fspas: Sequence[Fspa], folder: Path) -> Callable[[Runs
     if runner.build_all is None:
         for name in names:
             build(runner, name, folder)
-        return lambda runs: [ran(runner, name, folder, trace) for name, trace in runs]
+        return lambda runs: [run_monitor(runner, name, folder, trace) for name, trace in runs]
     runner.build_all(folder, names)
-    return lambda runs: _ran_together(runner, folder, runs)
+    return lambda runs: _run_all(runner, folder, runs)
 
 
-def _ran_together(runner: Runner, folder: Path, runs: Runs) -> list[Outcome]:
+def _run_all(runner: Runner, folder: Path, runs: Runs) -> list[Outcome]:
     command, traces = [*runner.run_all], []
     for number, (name, trace) in enumerate(runs):
         traces.append(f"{number}.csv")
         (folder / traces[-1]).write_bytes(trace)
         command += [name, traces[-1]]
     process = subprocess.run(command, cwd=folder, capture_output=True, timeout=LONGEST_RUN_S)
-    outputs, errors = (_pieces(text.decode()) for text in (process.stdout, process.stderr))
+    outputs, errors = (_output_by_trace(text.decode()) for text in (process.stdout, process.stderr))
     outcomes = []
     for (name, _), trace_name in zip(runs, traces, strict=True):
         err, _, status = errors.get(trace_name, "").rpartition("@@status ")
@@ -133,13 +133,13 @@ def _ran_together(runner: Runner, folder: Path, runs: Runs) -> list[Outcome]:
     return outcomes
 
 
-def _pieces(text: str) -> dict[str, str]:
+def _output_by_trace(text: str) -> dict[str, str]:
     """Split the output into the part printed for each trace, by the trace's name."""
     pieces = re.split(r"^@@ (\d+\.csv)\r?\n", text, flags=re.MULTILINE)
     return dict(zip(pieces[1::2], pieces[2::2], strict=True))
 
 
-def problems(outcome: Outcome, expected: Expected, tolerance: float) -> Iterator[str]:
+def output_differences(outcome: Outcome, expected: ExpectedOutput, tolerance: float) -> Iterator[str]:
     """Yield the differences between a program's outcome and the expected one, on one trace."""
     error = expected.refusal and expected.refusal.document()
     return differences(*outcome, [COLUMNS, *expected.rows], expected.warnings, error, tolerance)

@@ -10,10 +10,19 @@ from typing import Any
 
 import pytest
 
-from tests.tools.conformance.runner import Outcome, Runner, build, built, problems, ran, runners, write
+from tests.tools.conformance.runner import (
+    Outcome,
+    Runner,
+    build,
+    build_program,
+    output_differences,
+    run_monitor,
+    runners,
+    write,
+)
 from tltlc.tools.conformance.case import ConformanceCase
 from tltlc.tools.conformance.corpus import CASES, is_exact
-from tltlc.tools.conformance.expected import Expected, expected
+from tltlc.tools.conformance.expected import ExpectedOutput, expected_output
 
 ALONE = ("by_zero", "exclusive_many", "names_of_code")
 """Cases whose programs are built one by one and started once per trace, as a user does;
@@ -21,9 +30,9 @@ ALONE = ("by_zero", "exclusive_many", "names_of_code")
 
 
 @cache
-def case_and_expected(name: str) -> tuple[ConformanceCase, tuple[Expected, ...]]:
+def case_and_expected(name: str) -> tuple[ConformanceCase, tuple[ExpectedOutput, ...]]:
     case = CASES[name]()
-    return case, tuple(expected(case.fspa, trace) for trace in case.traces)
+    return case, tuple(expected_output(case.fspa, trace) for trace in case.traces)
 
 
 def _usable() -> Iterator[Any]:
@@ -40,7 +49,7 @@ def _differences(runner: Runner, name: str, outcomes: list[Outcome]) -> Iterator
     case, expectations = case_and_expected(name)
     tolerance = 0.0 if is_exact(case.fspa) else runner.tolerance
     for number, (outcome, expectation) in enumerate(zip(outcomes, expectations, strict=True), start=1):
-        differences = list(problems(outcome, expectation, tolerance))
+        differences = list(output_differences(outcome, expectation, tolerance))
         if differences:
             yield f"{runner.name}, {name}.{number}.csv\n" + "\n".join(differences[:10])
 
@@ -49,7 +58,7 @@ def _differences(runner: Runner, name: str, outcomes: list[Outcome]) -> Iterator
 def test_all_cases_built_as_one_program_match_the_expected_rows(runner: Runner, tmp_path: Path) -> None:
     cases = {name: case_and_expected(name)[0] for name in CASES}
     runs = [(name, trace) for name, case in cases.items() for trace in case.traces]
-    outcomes = iter(built(runner, [case.fspa for case in cases.values()], tmp_path)(runs))
+    outcomes = iter(build_program(runner, [case.fspa for case in cases.values()], tmp_path)(runs))
     differences: list[str] = []
     for name, case in cases.items():
         differences += _differences(runner, name, [next(outcomes) for _ in case.traces])
@@ -62,5 +71,7 @@ def test_single_programs_match_the_expected_rows(runner: Runner, name: str, tmp_
     case, _ = case_and_expected(name)
     write(runner, case.fspa, tmp_path)
     build(runner, name, tmp_path)
-    differences = list(_differences(runner, name, [ran(runner, name, tmp_path, trace) for trace in case.traces]))
+    differences = list(
+        _differences(runner, name, [run_monitor(runner, name, tmp_path, trace) for trace in case.traces])
+    )
     assert not differences, "\n".join(differences)

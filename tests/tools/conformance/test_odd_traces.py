@@ -8,11 +8,10 @@ from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 
 from tests.monitor.odd_bytes import csv_traces
-from tests.tools.conformance.runner import Runner, built, runners
-from tests.tools.conformance.runner import problems as differences
+from tests.tools.conformance.runner import Runner, build_program, output_differences, runners
 from tltlc.automaton.fspa import Fspa
 from tltlc.tools.conformance.corpus import CASES
-from tltlc.tools.conformance.expected import expected
+from tltlc.tools.conformance.expected import expected_output
 from tltlc.tools.conformance.odd_traces import CELLS, LINES, MORE_VALUES, VALUES
 
 NAME = "trace_values"
@@ -30,7 +29,8 @@ def problems(run, traces: list[bytes]) -> list[str]:  # type: ignore[no-untyped-
     fspa, messages = automaton(), []
     for trace, outcome in zip(traces, run([(NAME, trace) for trace in traces]), strict=True):
         messages += [
-            f"{trace[:200]!r}: {difference}" for difference in differences(outcome, expected(fspa, trace), 0.0)
+            f"{trace[:200]!r}: {difference}"
+            for difference in output_differences(outcome, expected_output(fspa, trace), 0.0)
         ]
     return messages
 
@@ -38,10 +38,10 @@ def problems(run, traces: list[bytes]) -> list[str]:  # type: ignore[no-untyped-
 @pytest.fixture(scope="module", params=USABLE, ids=lambda runner: runner.name)
 def run(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory):  # type: ignore[no-untyped-def]
     runner: Runner = request.param
-    return built(runner, [automaton()], tmp_path_factory.mktemp(runner.name))
+    return build_program(runner, [automaton()], tmp_path_factory.mktemp(runner.name))
 
 
-def test_odd_traces_are_read_alike(run) -> None:  # type: ignore[no-untyped-def]
+def test_programs_read_the_listed_traces_as_the_monitor_does(run) -> None:  # type: ignore[no-untyped-def]
     odd = [odd_trace.trace for odd_trace in (*LINES.values(), *CELLS.values(), *VALUES.values(), *MORE_VALUES.values())]
     assert not problems(run, odd)
 
@@ -49,5 +49,5 @@ def test_odd_traces_are_read_alike(run) -> None:  # type: ignore[no-untyped-def]
 # One example consists of a hundred traces, which one process reads.
 @settings(max_examples=2, phases=(Phase.generate,), suppress_health_check=list(HealthCheck))
 @given(traces=st.lists(csv_traces(), min_size=100, max_size=100))
-def test_random_traces_are_read_alike(run, traces: list[bytes]) -> None:  # type: ignore[no-untyped-def]
+def test_programs_read_random_traces_as_the_monitor_does(run, traces: list[bytes]) -> None:  # type: ignore[no-untyped-def]
     assert not problems(run, traces)

@@ -17,7 +17,7 @@ from threading import Timer
 import pytest
 
 from tests.backends.monitors import FAR, HEAD, expected, trace_of
-from tests.tools.conformance.runner import LONGEST_RUN_S, Outcome, Runner, build, built, runners, write
+from tests.tools.conformance.runner import LONGEST_RUN_S, Outcome, Runner, build, build_program, runners, write
 from tltlc.io.limits import TRACE_LINE
 from tltlc.tools.conformance.case import ConformanceCase
 from tltlc.tools.conformance.corpus import CASES
@@ -150,7 +150,7 @@ def outcomes(program: Program, run: Run, case: ConformanceCase, tmp_path: Path) 
     """A function that runs the program on many traces, with ``--full``."""
     runner, _, _ = program
     if runner.name in SLOW_TO_START:
-        together = built(runner, [case.fspa], tmp_path)
+        together = build_program(runner, [case.fspa], tmp_path)
         return lambda traces: together([(NAME, trace) for trace in traces])
     return lambda traces: [run("--full", "trace.csv", trace=trace) for trace in traces]
 
@@ -179,7 +179,7 @@ def test_invalid_traces_are_rejected(outcomes: RunAll) -> None:
         assert err.startswith(start) and rest in err and err.count("\n") == 1, (trace[:200], err[:200])
 
 
-def test_rows_come_before_an_error(run: Run) -> None:
+def test_rows_before_an_unreadable_line_are_printed(run: Run) -> None:
     status, out, err = run("trace.csv", trace=f"{HEAD}1,20,20,20\n2,20,20,20\n1,20,?,20\n")
     assert (status, out.count("\n")) == (1, 3)
     assert err == (
@@ -236,8 +236,8 @@ with_python = pytest.mark.parametrize(
 )
 
 
-def notices_output(program: Program) -> tuple[Path, list[str]]:
-    """Return the folder and the command of a program that can tell when its output fails."""
+def reporting_program(program: Program) -> tuple[Path, list[str]]:
+    """Return the folder and the command of the program; skip a program that cannot report a failed output."""
     runner, folder, command = program
     if runner.target in UNAWARE:
         pytest.skip(f"{runner.name}: the engine does not say whether it could print")
@@ -253,7 +253,7 @@ def full_device() -> Path:
 @with_python
 @pytest.mark.parametrize("rest", ["", "1,20,20,20\n" * 20_000, "1,20,?,20\n"], ids=["one row", "many", "an error"])
 def test_full_standard_output_exits_with_3(program: Program, rest: str) -> None:
-    folder, command = notices_output(program)
+    folder, command = reporting_program(program)
     (folder / "trace.csv").write_text(f"{HEAD}2,20,20,20\n{rest}")
     with full_device().open("wb") as full:
         process = subprocess.run(
@@ -268,7 +268,7 @@ def test_full_standard_output_exits_with_3(program: Program, rest: str) -> None:
 
 @with_python
 def test_full_standard_error_does_not_change_the_exit_status(program: Program) -> None:
-    folder, command = notices_output(program)
+    folder, command = reporting_program(program)
     for trace, status in ((f"{HEAD}2,20,20,20\n", 3), (f"{HEAD}1,20,?,20\n", 1)):
         (folder / "trace.csv").write_text(trace)
         with full_device().open("wb") as full:
@@ -280,7 +280,7 @@ def test_full_standard_error_does_not_change_the_exit_status(program: Program) -
 
 @with_python
 def test_closed_standard_output_exits_with_3(program: Program) -> None:
-    folder, command = notices_output(program)
+    folder, command = reporting_program(program)
     if program[0].target in REOPENING:
         pytest.skip(f"{program[0].name}: rows go to the null device where standard output is closed")
     (folder / "trace.csv").write_text(f"{HEAD}1,20,20,20\n")
@@ -293,7 +293,7 @@ def test_closed_standard_output_exits_with_3(program: Program) -> None:
 @pytest.mark.parametrize("by_signal", [True, False], ids=["by signal", "by error"])
 def test_a_closed_pipe_ends_the_program_quietly(program: Program, by_signal: bool) -> None:
     """The system sends SIGPIPE, unless the parent process ignores this signal."""
-    folder, command = notices_output(program)
+    folder, command = reporting_program(program)
     (folder / "trace.csv").write_text(f"{HEAD}2,20,20,20\n")
     reading, writing = os.pipe()
     os.close(reading)
@@ -315,7 +315,7 @@ def test_a_closed_pipe_ends_the_program_quietly(program: Program, by_signal: boo
 
 @with_python
 def test_a_pipe_closed_during_the_run_ends_the_program_quietly(program: Program) -> None:
-    folder, command = notices_output(program)
+    folder, command = reporting_program(program)
     running = subprocess.Popen(
         [*command, "-"], cwd=folder, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE
     )

@@ -8,10 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from tests.tools.conformance.runner import Runner, built, problems, ran, runners
+from tests.tools.conformance.runner import Runner, build_program, output_differences, run_monitor, runners
 from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.logic import formula as f
-from tltlc.tools.conformance.expected import COLUMNS, Expected, Refusal
+from tltlc.tools.conformance.expected import COLUMNS, ExpectedOutput, Refusal
 
 RIGHT = ("1", "0", "pending", "false", "false", "0.10000000000000001", "0", "0.5", "a, b")
 HEADER = ",".join(COLUMNS)
@@ -20,12 +20,14 @@ REFUSED = Refusal("by zero", 2, ("a",))
 MESSAGE = "error: step 2: the atom `a` divides by zero"
 
 
-def problems_of(out: str, err: str, status: int, expected: Expected, folder: Path, tolerance: float = 0.0) -> list[str]:
+def differences_of(
+    out: str, err: str, status: int, expected: ExpectedOutput, folder: Path, tolerance: float = 0.0
+) -> list[str]:
     """Return the problems with a program that prints this output and exits with this status."""
     program = f"import sys; sys.stdout.write({out!r}); sys.stderr.write({err!r}); sys.exit({status})"
     (folder / "spec.py").write_text(program)
     runner = Runner(name="it", target="python", run=(sys.executable, "{name}.py"))
-    return list(problems(ran(runner, "spec", folder, b""), expected, tolerance))
+    return list(output_differences(run_monitor(runner, "spec", folder, b""), expected, tolerance))
 
 
 @pytest.mark.parametrize(
@@ -54,7 +56,7 @@ def problems_of(out: str, err: str, status: int, expected: Expected, folder: Pat
 def test_wrong_rows_are_detected(
     out: str, err: str, status: int, tolerance: float, right: bool, tmp_path: Path
 ) -> None:
-    assert (not problems_of(out, err, status, Expected((RIGHT,), None, 0), tmp_path, tolerance)) == right
+    assert (not differences_of(out, err, status, ExpectedOutput((RIGHT,), None, 0), tmp_path, tolerance)) == right
 
 
 @pytest.mark.parametrize(
@@ -70,12 +72,12 @@ def test_wrong_rows_are_detected(
     ],
 )
 def test_wrong_errors_are_detected(out: str, err: str, status: int, right: bool, tmp_path: Path) -> None:
-    assert (not problems_of(out, err, status, Expected((RIGHT,), REFUSED, 0), tmp_path)) == right
+    assert (not differences_of(out, err, status, ExpectedOutput((RIGHT,), REFUSED, 0), tmp_path)) == right
 
 
 def test_the_header_may_be_missing_before_a_rejected_first_sample(tmp_path: Path) -> None:
     for out in ("", f"{HEADER}\n", "Engine v3\n\n"):
-        assert not problems_of(out, "error: no sample", 1, Expected((), Refusal("no sample", 1), 0), tmp_path)
+        assert not differences_of(out, "error: no sample", 1, ExpectedOutput((), Refusal("no sample", 1), 0), tmp_path)
 
 
 def test_runners_have_unique_names_and_report_why_they_are_skipped() -> None:
@@ -101,7 +103,7 @@ sys.exit(STATUS)
 """
 
 
-def together(folder: Path, *traces: str, status: int = 0) -> list[tuple[int, str, str]]:
+def run_together(folder: Path, *traces: str, status: int = 0) -> list[tuple[int, str, str]]:
     """Run a program of two monitors, ``one`` and ``other``, which take turns reading the traces."""
 
     def build_all(folder: Path, names: Sequence[str]) -> None:
@@ -111,16 +113,16 @@ def together(folder: Path, *traces: str, status: int = 0) -> list[tuple[int, str
     runner = Runner("it", "python", run=(), build_all=build_all, run_all=(sys.executable, "it.py"))
     fspas = [build(spec_from_formula(f.TRUE, name)) for name in ("one", "other")]
     runs = [(fspas[number % 2].name, trace.encode()) for number, trace in enumerate(traces)]
-    return built(runner, fspas, folder)(runs)
+    return build_program(runner, fspas, folder)(runs)
 
 
 def test_outcomes_of_a_joint_program_are_separated(tmp_path: Path) -> None:
     outcomes = [(3, "rows of one\n", "a\n"), (5, "rows of other\n", "b\n"), (3, "rows of one\n", "c\n")]
-    assert together(tmp_path, "a", "b", "c") == outcomes
+    assert run_together(tmp_path, "a", "b", "c") == outcomes
 
 
 def test_a_joint_program_that_ends_early_is_reported_with_the_monitor(tmp_path: Path) -> None:
     with pytest.raises(AssertionError, match=r"^it, other, 1.csv: the program ended within it: end\n"):
-        together(tmp_path, "a", "end", "c")
+        run_together(tmp_path, "a", "end", "c")
     with pytest.raises(AssertionError):
-        together(tmp_path, "a", status=1)
+        run_together(tmp_path, "a", status=1)

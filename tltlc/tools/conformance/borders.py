@@ -13,7 +13,7 @@ from typing import Final
 from tltlc.core.record import record
 from tltlc.core.source import SourceFile
 from tltlc.pipeline import CompileOptions, compile_source
-from tltlc.tools.conformance.case import ConformanceCase, Makers
+from tltlc.tools.conformance.case import CaseBuilders, ConformanceCase
 from tltlc.tools.conformance.draw import Draw
 from tltlc.tools.conformance.traces import table
 
@@ -55,7 +55,7 @@ class Border:
         assert right is not None, "a threshold that varies is given"
         return {"<": x < right, "<=": x <= right, ">": x > right, ">=": x >= right}[self.op]
 
-    def truth(self) -> tuple[float, ...]:
+    def true_values(self) -> tuple[float, ...]:
         """Return values at which the comparison is true."""
         x, threshold = (self.high, self.low) if self.op[0] == ">" else (self.low, self.high)
         return (x, threshold) if self.threshold is None else (x,)
@@ -77,33 +77,33 @@ EXTREMES: Final = (
 )
 
 
-def drawn_borders(draw: Draw, count: int) -> tuple[Border, ...]:
-    """Return random comparisons; ranges and thresholds have any exponent of a normal float."""
+def random_borders(draw: Draw, count: int) -> tuple[Border, ...]:
+    """Return random comparisons, whose ranges and thresholds have any exponent of a normal float."""
     borders: list[Border] = []
     while len(borders) < count:
-        low, threshold, high = sorted(_any_number(draw) for _ in range(3))
+        low, threshold, high = sorted(_random_number(draw) for _ in range(3))
         if low < threshold < high:
-            op = draw.one(("<", "<=", ">", ">="))
+            op = draw.choice(("<", "<=", ">", ">="))
             borders.append(Border(op, None if draw.chance(0.25) else threshold, low, high))
     return tuple(borders)
 
 
-def _any_number(draw: Draw) -> float:
+def _random_number(draw: Draw) -> float:
     """Return a normal number; Mono's compiler and library misread subnormal ones by a bit."""
     sign = -1.0 if draw.chance(0.5) else 1.0
     return sign * ldexp(1 + draw.below(1 << 20) / (1 << 20), draw.below(2046) - 1022)
 
 
 def _case(name: str, borders: tuple[Border, ...]) -> ConformanceCase:
-    """Return a case with all comparisons, required again and again; in each row at most one is false."""
+    """Return a case that requires all comparisons again and again; in each row at most one is false."""
     numbered = list(enumerate(borders, start=1))
     declarations = "".join(border.declaration(number) for number, border in numbered)
     formula = " and ".join(border.comparison(number) for number, border in numbered)
     text = f"{declarations}\nspec {name} = always eventually ({formula})\n"
     (fspa,) = compile_source(SourceFile(f"{name}.tltl", text), CompileOptions(specs=(name,))).automata
-    columns = [f"{letter}{number}" for number, border in numbered for letter in "xy"[: len(border.truth())]]
+    columns = [f"{letter}{number}" for number, border in numbered for letter in "xy"[: len(border.true_values())]]
     rows = [
-        [value for n, b in numbered for value in (values if n == number else b.truth())]
+        [value for n, b in numbered for value in (values if n == number else b.true_values())]
         for number, border in numbered
         for values in border.values()
     ]
@@ -112,11 +112,11 @@ def _case(name: str, borders: tuple[Border, ...]) -> ConformanceCase:
     )
 
 
-def _drawn(name: str, seed: int) -> ConformanceCase:
-    return _case(name, drawn_borders(Draw(seed), 8))
+def _random_case(name: str, seed: int) -> ConformanceCase:
+    return _case(name, random_borders(Draw(seed), 8))
 
 
-CASES: Final[Makers] = {
+CASES: Final[CaseBuilders] = {
     "borders": partial(_case, "borders", EXTREMES),
-    **{f"borders_{n}": partial(_drawn, f"borders_{n}", 8000 + n) for n in range(1, 4)},
+    **{f"borders_{n}": partial(_random_case, f"borders_{n}", 8000 + n) for n in range(1, 4)},
 }

@@ -28,7 +28,7 @@ class ConformanceCase:
     source: str | None = None
 
 
-Makers = Mapping[str, Callable[[], ConformanceCase]]
+CaseBuilders = Mapping[str, Callable[[], ConformanceCase]]
 """Cases by name, each as a function that builds it, so that one case is built without the others."""
 
 

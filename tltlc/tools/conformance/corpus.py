@@ -14,13 +14,12 @@ from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.expression.evaluate import MULTIPLIED_EXPONENTS
 from tltlc.expression.tree import Const, Op, nodes
 from tltlc.io.files import MAX_ARTEFACT_BYTES, read_source
-from tltlc.tools.conformance import arithmetic, borders, odd_traces, operators, random_cases, shapes
-from tltlc.tools.conformance import file_cases as written
-from tltlc.tools.conformance.case import ConformanceCase, Makers
-from tltlc.tools.conformance.expected import COLUMNS, Expected, Refusal, expected
+from tltlc.tools.conformance import arithmetic, borders, file_cases, odd_traces, operators, random_cases, shapes
+from tltlc.tools.conformance.case import CaseBuilders, ConformanceCase
+from tltlc.tools.conformance.expected import COLUMNS, ExpectedOutput, Refusal, expected_output
 
-CASES: Final[Makers] = {
-    **written.CASES,
+CASES: Final[CaseBuilders] = {
+    **file_cases.CASES,
     **operators.CASES,
     **arithmetic.CASES,
     **borders.CASES,
@@ -33,7 +32,7 @@ VERSION: Final = 1
 TOLERANCE: Final = 1e-12
 """The largest difference of numbers in a case that is not exact."""
 
-_ROUNDED_ANYHOW: Final = ("exp", "tanh", "^")
+_ROUNDED_BY_LIBRARY: Final = ("exp", "tanh", "^")
 """Operators whose rounding depends on the library of the language."""
 
 
@@ -43,13 +42,13 @@ def files() -> backends.Files:
     index: list[dict[str, Any]] = []
     for make in CASES.values():
         case = make()
-        outcomes = [expected(case.fspa, trace) for trace in case.traces]
-        index.append(_entry(case, outcomes))
-        folders.update(_folder(case, outcomes))
+        outcomes = [expected_output(case.fspa, trace) for trace in case.traces]
+        index.append(_index_entry(case, outcomes))
+        folders.update(_case_files(case, outcomes))
     document = {"version": VERSION, "columns": list(COLUMNS), "tolerance": TOLERANCE, "cases": index}
     return {
-        "README.md": _beside("about.md"),
-        "check.py": _beside("check.py"),
+        "README.md": _package_text("about.md"),
+        "check.py": _package_text("check.py"),
         "index.json": json.dumps(document, indent=1, ensure_ascii=False) + "\n",
         **folders,
     }
@@ -70,7 +69,7 @@ def is_exact(fspa: Fspa) -> bool:
     This holds if IEEE 754 defines each operation.
     """
     operations = [node for atom in fspa.atoms for node in nodes(atom.expression) if isinstance(node, Op)]
-    return all(node.op not in _ROUNDED_ANYHOW or _is_product(node) for node in operations)
+    return all(node.op not in _ROUNDED_BY_LIBRARY or _is_product(node) for node in operations)
 
 
 def _is_product(node: Op) -> bool:
@@ -79,7 +78,7 @@ def _is_product(node: Op) -> bool:
     return node.op == "^" and isinstance(exponent, Const) and exponent.value in MULTIPLIED_EXPONENTS
 
 
-def _folder(case: ConformanceCase, outcomes: Sequence[Expected]) -> backends.Files:
+def _case_files(case: ConformanceCase, outcomes: Sequence[ExpectedOutput]) -> backends.Files:
     """Return the files of one case."""
     name = case.fspa.name
     contents = backends.emit("json", case.fspa)
@@ -100,7 +99,7 @@ def _refusal_text(refusal: Refusal) -> str:
     return "".join(f"{line}\n" for line in lines)
 
 
-def _entry(case: ConformanceCase, outcomes: Sequence[Expected]) -> dict[str, Any]:
+def _index_entry(case: ConformanceCase, outcomes: Sequence[ExpectedOutput]) -> dict[str, Any]:
     """Return the entry of a case in the index."""
     fspa, name = case.fspa, case.fspa.name
     traces = []
@@ -123,7 +122,7 @@ def _entry(case: ConformanceCase, outcomes: Sequence[Expected]) -> dict[str, Any
     }
 
 
-def _beside(name: str) -> str:
+def _package_text(name: str) -> str:
     """Return the text of a file in the folder of this module."""
     path = os.path.join(os.path.dirname(__file__), name)  # noqa: PTH118, PTH120
     with open(path, encoding="utf-8") as file:  # noqa: PTH123

@@ -10,9 +10,9 @@ T = TypeVar("T")
 
 
 class Draw:
-    """Draws from a seed.
+    """A source of random choices, which depend only on its seed.
 
-    Everything comes from ``Random.random``, whose numbers Python promises not to change.
+    They are all computed from ``Random.random``, whose numbers Python promises not to change.
     """
 
     def __init__(self, seed: int) -> None:
@@ -22,7 +22,7 @@ class Draw:
         """Return a number from 0 to ``count`` - 1."""
         return int(self._random() * count)
 
-    def one(self, items: Sequence[T]) -> T:
+    def choice(self, items: Sequence[T]) -> T:
         """Return one of the items."""
         return items[self.below(len(items))]
 

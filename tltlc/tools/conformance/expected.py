@@ -43,7 +43,7 @@ class Refusal:
 
 
 @record
-class Expected:
+class ExpectedOutput:
     """The rows before the end or the refusal, without the header, and the number of clamped values."""
 
     rows: tuple[tuple[str, ...], ...]
@@ -59,56 +59,60 @@ class Expected:
         return text.getvalue()
 
 
-def expected(fspa: Fspa, trace: bytes) -> Expected:
+def expected_output(fspa: Fspa, trace: bytes) -> ExpectedOutput:
     """Return the output of a monitor of the automaton on a CSV file."""
     monitor, rows, sample = Monitor(fspa), list[tuple[str, ...]](), Sample()
     refusal = None
     try:
         for sample in read_trace(io.BytesIO(trace), "trace", fspa.signals):
-            rows.append(_cells(len(rows) + 1, monitor.step(sample)))
+            rows.append(_row_cells(len(rows) + 1, monitor.step(sample)))
     except TltlError as error:
         refusal = _refusal(fspa, error.diagnostics[0], len(rows) + 1, trace, sample)
-    return Expected(tuple(rows), refusal, len(monitor.notices))
+    return ExpectedOutput(tuple(rows), refusal, len(monitor.notices))
 
 
-def _cells(number: int, step: Step) -> tuple[str, ...]:
+def _row_cells(number: int, step: Step) -> tuple[str, ...]:
     flags = [str(flag).lower() for flag in (step.accepting, step.done)]
     numbers = [f"{value:.17g}" for value in (step.progress, step.reward, step.robustness)]
     return (str(number), str(step.state), step.verdict, *flags, *numbers, step.limiting or "")
 
 
 def _refusal(fspa: Fspa, error: Diagnostic, step: int, trace: bytes, sample: Sample) -> Refusal:
-    """Return the refusal for a diagnostic's code; the names are computed again, not read from its text."""
+    """Return the refusal that a diagnostic reports.
+
+    Its names are computed from the sample or the trace, not read from the text of the diagnostic.
+    """
     if error.code == "TLT0620":
         return Refusal("no sample", step)
     if error.code == "TLT0612":
-        return Refusal("not finite", step, tuple(_infinite(fspa, sample)[:1]))
+        return Refusal("not finite", step, tuple(_infinite_signals(fspa, sample)[:1]))
     if error.code == "TLT0613":
         kind, atom = _without_value(fspa, sample)
         return Refusal(kind, step, (atom,))
     if error.code == "TLT0614":
-        return Refusal("together", step, _together(fspa, sample))
+        return Refusal("together", step, _conflicting_atoms(fspa, sample))
     label = error.labels[0]
     line, _ = label.source.position(label.span.start)
     if error.code == "TLT0621":
-        return Refusal("missing signal", step, _missing(fspa, trace), line)
+        return Refusal("missing signal", step, _missing_signals(fspa, trace), line)
     return Refusal("bad cell", step, line=line)
 
 
-def _missing(fspa: Fspa, trace: bytes) -> tuple[str, ...]:
+def _missing_signals(fspa: Fspa, trace: bytes) -> tuple[str, ...]:
     """Return the signals without a column."""
     table = read_rows(TraceLines(io.BytesIO(trace), "trace"))
     header = table.header if isinstance(table, TraceTable) else ()
     return tuple(signal.name for signal in fspa.signals if signal.name not in header)
 
 
-def _infinite(fspa: Fspa, sample: Sample) -> list[str]:
+def _infinite_signals(fspa: Fspa, sample: Sample) -> list[str]:
+    """Return the signals whose values are infinite or NaN."""
     return [signal.name for signal in fspa.signals if not isfinite(sample[signal.name])]
 
 
 def _without_value(fspa: Fspa, sample: Sample) -> tuple[Kind, str]:
     """Return the first atom that has no value, and the reason."""
-    signals, params = _clamped(fspa, sample), {param.name: param.value for param in fspa.params}
+    signals, params = _clamp(fspa, sample), {param.name: param.value for param in fspa.params}
     too_large: str | None = None
     for atom in fspa.atoms:
         try:
@@ -125,15 +129,15 @@ def _without_value(fspa: Fspa, sample: Sample) -> tuple[Kind, str]:
     return "too large", too_large
 
 
-def _together(fspa: Fspa, sample: Sample) -> tuple[str, ...]:
+def _conflicting_atoms(fspa: Fspa, sample: Sample) -> tuple[str, ...]:
     """Return the atoms that hold in the first exclusive group with more than one of them."""
-    signals, params = _clamped(fspa, sample), {param.name: param.value for param in fspa.params}
+    signals, params = _clamp(fspa, sample), {param.name: param.value for param in fspa.params}
     holds = [evaluate(atom.expression, signals, params) > 0.0 for atom in fspa.atoms]
     holding = [[atom for atom in group if holds[atom]] for group in fspa.exclusive]
     return tuple(fspa.atoms[atom].name for atom in next(group for group in holding if len(group) > 1))
 
 
-def _clamped(fspa: Fspa, sample: Mapping[str, float]) -> dict[str, float]:
+def _clamp(fspa: Fspa, sample: Mapping[str, float]) -> dict[str, float]:
     """Return the signals, clamped to their ranges."""
     values = {}
     for signal in fspa.signals:

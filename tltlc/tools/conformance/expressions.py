@@ -55,29 +55,29 @@ def _expression(draw: Draw, depth: int) -> Expression:
         return _leaf(draw)
     choice = draw.below(8)
     if choice == 0:
-        return Op(draw.one(_UNARY), (_expression(draw, depth - 1),))
+        return Op(draw.choice(_UNARY), (_expression(draw, depth - 1),))
     if choice == 1:
-        return Op("^", (_expression(draw, depth - 1), Const(draw.one(_EXPONENTS))))
+        return Op("^", (_expression(draw, depth - 1), Const(draw.choice(_EXPONENTS))))
     if choice == 2:
         parts = tuple(_expression(draw, depth - 1) for _ in range(3))
-        return Op(draw.one(("clamp", "min", "max")), parts)
+        return Op(draw.choice(("clamp", "min", "max")), parts)
     if choice <= 4:
         cases = tuple((_condition(draw, depth - 1), _expression(draw, depth - 1)) for _ in range(1 + draw.below(2)))
         return When(cases, _expression(draw, depth - 1))
-    return Op(draw.one(_BINARY), (_expression(draw, depth - 1), _expression(draw, depth - 1)))
+    return Op(draw.choice(_BINARY), (_expression(draw, depth - 1), _expression(draw, depth - 1)))
 
 
 def _condition(draw: Draw, depth: int) -> Condition:
     if depth and draw.chance(0.5):
-        op = draw.one(_CONNECTIVES)
+        op = draw.choice(_CONNECTIVES)
         count = 1 if op == "not" else 2 + draw.below(2)
         return Condition(op, tuple(_condition(draw, depth - 1) for _ in range(count)))
-    return Condition(draw.one(_COMPARISONS), (_expression(draw, max(0, depth - 1)), _leaf(draw)))
+    return Condition(draw.choice(_COMPARISONS), (_expression(draw, max(0, depth - 1)), _leaf(draw)))
 
 
 def _leaf(draw: Draw) -> Expression:
     if draw.chance(0.25):
-        return Const(draw.one(_NUMBERS))
+        return Const(draw.choice(_NUMBERS))
     if draw.chance(0.2):
-        return ParamValue(draw.one(PARAMS).name)
-    return SignalValue(draw.one(SIGNALS).name)
+        return ParamValue(draw.choice(PARAMS).name)
+    return SignalValue(draw.choice(SIGNALS).name)

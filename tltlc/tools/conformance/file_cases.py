@@ -8,9 +8,9 @@ from typing import Final
 
 from tltlc.core.source import SourceFile
 from tltlc.pipeline import CompileOptions, compile_source
-from tltlc.tools.conformance.case import ConformanceCase, Makers
+from tltlc.tools.conformance.case import CaseBuilders, ConformanceCase
 from tltlc.tools.conformance.draw import Draw
-from tltlc.tools.conformance.traces import Pools, drawn, lively
+from tltlc.tools.conformance.traces import Pools, lively_trace, random_trace
 
 _ABOUT: Final = {
     "cover_and_hide": "Formula (3) of the paper, with a recorded episode.",
@@ -40,7 +40,7 @@ def _case(number: int, name: str) -> ConformanceCase:
     text = _read(f"{name}.tltl").decode()
     (fspa,) = compile_source(SourceFile(f"{name}.tltl", text), CompileOptions(specs=(name,))).automata
     draw = Draw(7000 + number)
-    traces = [lively(fspa, draw, 40, _POOLS.get(name, {})), drawn(fspa, draw, 20)]
+    traces = [lively_trace(fspa, draw, 40, _POOLS.get(name, {})), random_trace(fspa, draw, 20)]
     if name in _RECORDED:
         traces.insert(0, _read(f"{name}.csv"))
     return ConformanceCase(fspa, _ABOUT[name], tuple(traces), text)
@@ -51,4 +51,4 @@ def _read(name: str) -> bytes:
         return file.read()
 
 
-CASES: Final[Makers] = {name: partial(_case, number, name) for number, name in enumerate(_ABOUT)}
+CASES: Final[CaseBuilders] = {name: partial(_case, number, name) for number, name in enumerate(_ABOUT)}

@@ -19,8 +19,8 @@ BINARY: Final[tuple[Callable[[Formula, Formula], Formula], ...]] = (
 def formula(draw: Draw, atoms: Sequence[str], leaves: int) -> Formula:
     """Return a formula with this many leaves, most of them atoms."""
     if leaves == 1:
-        leaf = draw.one((TRUE, FALSE)) if draw.chance(0.05) else f.atom(draw.one(atoms))
-        return draw.one(UNARY)(leaf) if draw.chance(0.5) else leaf
+        leaf = draw.choice((TRUE, FALSE)) if draw.chance(0.05) else f.atom(draw.choice(atoms))
+        return draw.choice(UNARY)(leaf) if draw.chance(0.5) else leaf
     left = 1 + draw.below(leaves - 1)
-    combined = draw.one(BINARY)(formula(draw, atoms, left), formula(draw, atoms, leaves - left))
-    return draw.one(UNARY)(combined) if draw.chance(0.3) else combined
+    combined = draw.choice(BINARY)(formula(draw, atoms, left), formula(draw, atoms, leaves - left))
+    return draw.choice(UNARY)(combined) if draw.chance(0.3) else combined

@@ -11,7 +11,7 @@ from tltlc.core.record import record
 from tltlc.expression.tree import Const, Expression, Op, SignalValue
 from tltlc.logic import formula as f
 from tltlc.resolve import spec
-from tltlc.tools.conformance.case import ConformanceCase, Makers, automaton
+from tltlc.tools.conformance.case import CaseBuilders, ConformanceCase, automaton
 
 SIGNALS: Final = (spec.Signal("x", "number", None, 1.0), spec.Signal("seen", "bool", 0.0, 1.0))
 
@@ -33,22 +33,22 @@ _ONE: Final = ((0.5, 1.0),)
 _TWO: Final = ((0.5, 1.0), (-0.25, 0.0))
 
 
-def _row(row: bytes) -> OddTrace:
+def _bad_row(row: bytes) -> OddTrace:
     """Return a trace whose second row is refused."""
     return OddTrace(_HEAD + b"0.5,1\n" + row + b"\n0.5,1\n", _ONE, 3)
 
 
-def _cell(cell: bytes, value: float | None) -> OddTrace:
+def _x_cell(cell: bytes, value: float | None) -> OddTrace:
     """Return a trace with a second value of ``x``; None means that the cell is refused."""
     if value is None:
-        return _row(cell + b",1")
+        return _bad_row(cell + b",1")
     return OddTrace(_HEAD + b"0.5,1\n" + cell + b",1\n", (*_ONE, (value, 1.0)))
 
 
-def _truth(cell: bytes, value: float | None) -> OddTrace:
+def _seen_cell(cell: bytes, value: float | None) -> OddTrace:
     """Return a trace with a second value of ``seen``; None means that the cell is refused."""
     if value is None:
-        return _row(b"0.5," + cell)
+        return _bad_row(b"0.5," + cell)
     return OddTrace(_HEAD + b"0.5,1\n0.5," + cell + b"\n", (*_ONE, (0.5, value)))
 
 
@@ -58,6 +58,7 @@ def _note(cell: bytes) -> OddTrace:
 
 
 def _bad_note(cell: bytes, line: int = 3) -> OddTrace:
+    """Return a trace that is refused at this line, for a cell in a column that nothing reads."""
     return OddTrace(b"note,x,seen\n-,0.5,1\n" + cell + b",0.5,1\n-,0.5,1\n", _ONE, line)
 
 
@@ -77,21 +78,21 @@ LINES: Final[Mapping[str, OddTrace]] = {
     "blank lines": OddTrace(b"\n\r\n \nx,seen\n\n0.5,1\n\t \n\r\n-0.25,0\n\n", _TWO),
     "the line number counts blank lines": OddTrace(b"\nx,seen\n\n0.5,1\r\n \n0.5,?\n", _ONE, 6),
     "CR as line end": OddTrace(b"x,seen\r0.5,1\r", line=1),
-    "CR within a line": _row(b"0.5\r,1"),
-    "CR CR LF": _row(b"0.5,1\r\r"),
+    "CR within a line": _bad_row(b"0.5\r,1"),
+    "CR CR LF": _bad_row(b"0.5,1\r\r"),
     "CR on a line of its own": OddTrace(_HEAD + b"0.5,1\n\r\r\n0.5,1\n", _ONE, 3),
     "form feed as line end": OddTrace(b"x,seen\x0c0.5,1\n", line=1),
-    "vertical tab as a blank line": _row(b"\x0b"),
+    "vertical tab as a blank line": _bad_row(b"\x0b"),
     "next line (U+0085) as line end": OddTrace("x,seen\x850.5,1\n".encode(), line=1),
     "line separator (U+2028) in a note": _note("a\u2028b".encode()),
-    "no-break space on a line of its own": _row("\u00a0".encode()),
+    "no-break space on a line of its own": _bad_row("\u00a0".encode()),
     "control Z at the end": OddTrace(_HEAD + b"0.5,1\n\x1a", _ONE, 3),
     "byte order mark": OddTrace(b"\xef\xbb\xbfx,seen\n0.5,1\n-0.25,0\n", _TWO),
     "byte order mark and quotes": OddTrace(b'\xef\xbb\xbf"x",seen\n0.5,1\n', _ONE),
     "byte order mark and a blank line": OddTrace(b"\xef\xbb\xbf\nx,seen\n0.5,1\n", _ONE),
     "byte order mark twice": OddTrace(b"\xef\xbb\xbf\xef\xbb\xbfx,seen\n0.5,1\n", line=1),
     "byte order mark after a blank line": OddTrace(b"\n\xef\xbb\xbfx,seen\n0.5,1\n", line=2),
-    "byte order mark before a value": _row(b"\xef\xbb\xbf0.5,1"),
+    "byte order mark before a value": _bad_row(b"\xef\xbb\xbf0.5,1"),
     "byte order mark in a note": _note(b"\xef\xbb\xbf"),
     "half a byte order mark": OddTrace(b"\xef\xbbx,seen\n0.5,1\n", line=1),
     "UTF-16, little end first": OddTrace("\ufeffx,seen\n0.5,1\n".encode("utf-16-le"), line=1),
@@ -114,7 +115,7 @@ LINES: Final[Mapping[str, OddTrace]] = {
     ),
     "NUL in a note": _bad_note(b"a\0b"),
     "NUL in quotes": _bad_note(b'"a\0b"'),
-    "NUL behind a value": _row(b"0.5\0,1"),
+    "NUL behind a value": _bad_row(b"0.5\0,1"),
     "NUL in the header": OddTrace(b"x\0,seen\n0.5,1\n", line=1),
     "NUL on a blank line": OddTrace(_HEAD + b"0.5,1\n\n\0\n0.5,1\n", _ONE, 4),
     "NUL at the end": OddTrace(_HEAD + b"0.5,1\n\0", _ONE, 3),
@@ -125,21 +126,21 @@ CELLS: Final[Mapping[str, OddTrace]] = {
     "blanks around cells": OddTrace(b" x\t, seen \n\t0.5 , true\t\n -0.25\t,\t0 \n", _TWO),
     "quotes": OddTrace(b'"x","seen"\n"0.5","true"\n"-0.25","0"\n', _TWO),
     "blanks around quotes": OddTrace(b' "x"\t, "seen" \n\t"0.5" , "true"\t\n "-0.25"\t,"0" \r\n', _TWO),
-    "blanks within the quotes of a value": _cell(b'" \t-0.25 "', -0.25),
+    "blanks within the quotes of a value": _x_cell(b'" \t-0.25 "', -0.25),
     "blanks within the quotes of a name": OddTrace(b'" x",seen\n0.5,1\n', line=1),
-    "a line end within the quotes of a value": _cell(b'"0.5\n"', None),
-    "no-break space before a value": _cell("\u00a00.5".encode(), None),
-    "no-break space behind a value": _cell("0.5\u00a0".encode(), None),
-    "no-break space behind quotes": _cell('"0.5"\u00a0'.encode(), None),
+    "a line end within the quotes of a value": _x_cell(b'"0.5\n"', None),
+    "no-break space before a value": _x_cell("\u00a00.5".encode(), None),
+    "no-break space behind a value": _x_cell("0.5\u00a0".encode(), None),
+    "no-break space behind quotes": _x_cell('"0.5"\u00a0'.encode(), None),
     "no-break space around a name": OddTrace("x\u00a0,seen\n0.5,1\n".encode(), line=1),
-    "thin space between digits": _cell("0.\u20095".encode(), None),
-    "no width before a value": _cell("\u200b0.5".encode(), None),
-    "vertical tab behind a value": _cell(b"0.5\x0b", None),
-    "form feed before a value": _cell(b"\x0c0.5", None),
-    "text behind quotes": _row(b'"0.5"0,1'),
-    "text behind quotes and a blank": _row(b'"0.5" 0,1'),
+    "thin space between digits": _x_cell("0.\u20095".encode(), None),
+    "no width before a value": _x_cell("\u200b0.5".encode(), None),
+    "vertical tab behind a value": _x_cell(b"0.5\x0b", None),
+    "form feed before a value": _x_cell(b"\x0c0.5", None),
+    "text behind quotes": _bad_row(b'"0.5"0,1'),
+    "text behind quotes and a blank": _bad_row(b'"0.5" 0,1'),
     "text behind quotes in a note": _bad_note(b'"a"b'),
-    "quotes behind quotes": _row(b'"0.5" "0",1'),
+    "quotes behind quotes": _bad_row(b'"0.5" "0",1'),
     "quotes within a note": _note(b'say "hi"'),
     "quotes that are not closed": OddTrace(_HEAD + b'0.5,1\n"0.5,1\n0.5,1\n', _ONE, 3),
     "quotes that are not closed, alone": OddTrace(_HEAD + b'0.5,1\n"', _ONE, 3),
@@ -157,24 +158,24 @@ CELLS: Final[Mapping[str, OddTrace]] = {
     "a CR behind several lines in quotes": OddTrace(b'note,x,seen\n"a\nb",0.5,1\r\n"c\nd", -0.25 ,0\r\n', _TWO),
     "a quoted cell at the end, with CR LF": OddTrace(b'x,seen,"note"\r\n0.5,1,"a"\r\n-0.25,0,"" \r\n', _TWO),
     "a CR behind quotes": _bad_note(b'"a"\r'),
-    "single quotes": _cell(b"'0.5'", None),
-    "curly quotes": _cell("“0.5”".encode(), None),
+    "single quotes": _x_cell(b"'0.5'", None),
+    "curly quotes": _x_cell("“0.5”".encode(), None),
     "backslash before quotes": _bad_note(b'"a\\"b"'),
     "a long cell": _note(b"a" * 140_000),
     "a long cell in quotes": _note(b'"' + b"a " * 70_000 + b'"'),
     "many columns": OddTrace(
         b"x,seen" + b",n" * 3000 + b"\n0.5,1" + b",-" * 3000 + b"\n-0.25,0" + b",-" * 3000 + b"\n", _TWO
     ),
-    "empty cell": _row(b",1"),
-    "blank cell": _row(b" \t,1"),
-    "empty quotes": _row(b'"",1'),
-    "empty cell at the end": _row(b"0.5,"),
-    "a row of commas": _row(b","),
-    "a cell too few": _row(b"0.5"),
-    "a cell too many": _row(b"0.5,1,1"),
-    "a comma too many": _row(b"0.5,1,"),
+    "empty cell": _bad_row(b",1"),
+    "blank cell": _bad_row(b" \t,1"),
+    "empty quotes": _bad_row(b'"",1'),
+    "empty cell at the end": _bad_row(b"0.5,"),
+    "a row of commas": _bad_row(b","),
+    "a cell too few": _bad_row(b"0.5"),
+    "a cell too many": _bad_row(b"0.5,1,1"),
+    "a comma too many": _bad_row(b"0.5,1,"),
     "commas behind all rows": OddTrace(b"x,seen,\n0.5,1,\n-0.25,0,\n", _TWO),
-    "empty quotes on a line of their own": _row(b'""'),
+    "empty quotes on a line of their own": _bad_row(b'""'),
     "columns that nothing reads": OddTrace(b"a,seen,b,x,c\n?,1,,0.5,nan\n,0,-,-0.25,1_0\n", _TWO),
     "two columns of one name that nothing reads": OddTrace(b"a,a,,,x,seen\n1,2,,,0.5,1\n", _ONE),
     "two columns of one name": OddTrace(b"x,seen,x\n0.5,1,0.5\n", line=1),
@@ -220,7 +221,7 @@ VALUES: Final[Mapping[str, OddTrace]] = {
         _HEAD + b"".join(f"0.5,{cell}\n".encode() for cell, _ in _TRUTHS), tuple((0.5, value) for _, value in _TRUTHS)
     ),
     **{
-        f"no number: {cell}": _cell(cell.encode(), None)
+        f"no number: {cell}": _x_cell(cell.encode(), None)
         for cell in (
             *(
                 "x",
@@ -263,12 +264,12 @@ VALUES: Final[Mapping[str, OddTrace]] = {
         f"not finite: {cell}": OddTrace(_HEAD + b"0.5,1\n" + cell.encode() + b",1\n", (*_ONE, (value, 1.0)))
         for cell, value in (("nan", nan), ("-NaN", nan), ("-Inf", -inf), ("+INFINITY", inf), ("1e400", inf))
     },
-    **{f"no truth: {cell}": _truth(cell.encode(), None) for cell in ("2", "-1", "0.5", "yes", "nan", "inf")},
+    **{f"no truth: {cell}": _seen_cell(cell.encode(), None) for cell in ("2", "-1", "0.5", "yes", "nan", "inf")},
 }
 
 MORE_VALUES: Final[Mapping[str, OddTrace]] = {
     **{
-        f"no number: {cell}": _cell(cell.encode(), None)
+        f"no number: {cell}": _x_cell(cell.encode(), None)
         for cell in (
             *(
                 "0b1",
@@ -316,18 +317,18 @@ MORE_VALUES: Final[Mapping[str, OddTrace]] = {
         )
     },
     **{
-        f"no truth: {cell}": _truth(cell.encode(), None)
+        f"no truth: {cell}": _seen_cell(cell.encode(), None)
         for cell in ("T", "not", "1.0000000000000002", "true1", "5e-324")
     },
-    "a very long number": _cell(b"0." + b"0123456789" * 10_000, 0.012345678901234568),
+    "a very long number": _x_cell(b"0." + b"0123456789" * 10_000, 0.012345678901234568),
     "a very long whole number": OddTrace(_HEAD + b"0.5,1\n" + b"9" * 100_000 + b",1\n", (*_ONE, (inf, 1.0))),
-    "a very long exponent": _cell(b"5e-" + b"0" * 100_000 + b"1", 0.5),
-    "a million zeros and an exponent that takes them back": _cell(b"-0." + b"0" * 1_040_000 + b"25e1040000", -0.25),
-    "a million digits and an exponent that takes them back": _cell(b"25" + b"0" * 1_040_000 + b"e-1040002", 0.25),
+    "a very long exponent": _x_cell(b"5e-" + b"0" * 100_000 + b"1", 0.5),
+    "a million zeros and an exponent that takes them back": _x_cell(b"-0." + b"0" * 1_040_000 + b"25e1040000", -0.25),
+    "a million digits and an exponent that takes them back": _x_cell(b"25" + b"0" * 1_040_000 + b"e-1040002", 0.25),
     "a million zeros and a larger exponent": OddTrace(
         _HEAD + b"0.5,1\n0." + b"0" * 1_040_000 + b"25e99999999999999999999,1\n", (*_ONE, (inf, 1.0))
     ),
-    "a million digits and a smaller exponent": _cell(b"-" + b"9" * 1_040_000 + b"e-99999999999999999999", -0.0),
+    "a million digits and a smaller exponent": _x_cell(b"-" + b"9" * 1_040_000 + b"e-99999999999999999999", -0.0),
 }
 """Values that are not in the corpus, because checking the corpus starts a program for each trace."""
 
@@ -340,7 +341,7 @@ def _case(name: str, about: str, odd: Mapping[str, OddTrace]) -> ConformanceCase
     return ConformanceCase(fspa, about, tuple(case.trace for case in odd.values()))
 
 
-CASES: Final[Makers] = {
+CASES: Final[CaseBuilders] = {
     name: partial(_case, name, about, odd)
     for name, about, odd in (
         ("trace_lines", "Encodings, line ends and blank lines, good ones and those that must be refused.", LINES),

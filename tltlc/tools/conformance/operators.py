@@ -8,9 +8,9 @@ from typing import Final
 from tltlc.logic import formula as f
 from tltlc.logic.formula import Formula
 from tltlc.resolve.spec import Judge
-from tltlc.tools.conformance.case import ConformanceCase, Makers, automaton
+from tltlc.tools.conformance.case import CaseBuilders, ConformanceCase, automaton
 from tltlc.tools.conformance.draw import Draw
-from tltlc.tools.conformance.traces import drawn, lively
+from tltlc.tools.conformance.traces import lively_trace, random_trace
 
 _A, _B, _C = f.atom("a"), f.atom("b"), f.atom("c")
 
@@ -47,8 +47,12 @@ def _case(number: int, shape: _Shape) -> ConformanceCase:
     # With mostly positive values a trace rarely violates a rule early; with zeros no atom holds.
     lucky = dict.fromkeys("abc", (-0.5, 0.25, 0.5, 1.0, 1.0))
     zeros = dict.fromkeys("abc", (0.0, -0.0))
-    traces = (lively(fspa, draw, 24, pools), lively(fspa, draw, 30, lucky), drawn(fspa, draw, 14, zeros))
+    traces = (
+        lively_trace(fspa, draw, 24, pools),
+        lively_trace(fspa, draw, 30, lucky),
+        random_trace(fspa, draw, 14, zeros),
+    )
     return ConformanceCase(fspa, f"The formula {fspa.formula}.", traces)
 
 
-CASES: Final[Makers] = {shape[0]: partial(_case, number, shape) for number, shape in enumerate(_SHAPES)}
+CASES: Final[CaseBuilders] = {shape[0]: partial(_case, number, shape) for number, shape in enumerate(_SHAPES)}

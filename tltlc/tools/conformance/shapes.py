@@ -9,15 +9,15 @@ from tltlc.core.record import replace
 from tltlc.expression.tree import Const, Expression, Op, ParamValue, SignalValue
 from tltlc.logic import formula as f
 from tltlc.resolve import spec
-from tltlc.tools.conformance.case import ConformanceCase, Makers, automaton
+from tltlc.tools.conformance.case import CaseBuilders, ConformanceCase, automaton
 from tltlc.tools.conformance.draw import Draw
-from tltlc.tools.conformance.traces import drawn, table
+from tltlc.tools.conformance.traces import random_trace, table
 
 _VALUES: Final = (-1.0, -0.5, -0.25, 0.0, 0.25, 0.5, 1.0)
 
 
-def _exclusive(name: str, count: int) -> ConformanceCase:
-    """Return a case with a sequence over atoms of which only one holds at a time."""
+def _exclusive_case(name: str, count: int) -> ConformanceCase:
+    """Return a case of places to visit in order; at most one of their atoms holds at a time."""
     atoms = [f"at_{number}" for number in range(count)]
     order = f.atom(atoms[-1])
     for atom in reversed(atoms[:3]):
@@ -36,26 +36,27 @@ def _exclusive(name: str, count: int) -> ConformanceCase:
     traces = (
         table(names, [*quiet, *quiet]),
         table(names, [quiet[0], border, quiet[3], clash, quiet[1]]),
-        drawn(fspa, draw, 20, {**pools, atoms[0]: _VALUES, "alarm": (-1.0,)}),
+        random_trace(fspa, draw, 20, {**pools, atoms[0]: _VALUES, "alarm": (-1.0,)}),
     )
     return ConformanceCase(fspa, "At most one atom of a group holds at a time.", traces)
 
 
-def _decided(name: str, formula: f.Formula, limit: int | None) -> ConformanceCase:
+def _decided_case(name: str, formula: f.Formula, limit: int | None) -> ConformanceCase:
+    """Return a case whose verdict is final before the first step."""
     fspa = automaton(name, f.and_(formula, f.or_(f.atom("a"), f.not_(f.atom("a")))), limit=limit)
     rows: list[list[object]] = [[0.5], [-0.5], [0], [1]]
     traces = (table([s.name for s in fspa.signals] or ["a"], rows),)
     return ConformanceCase(fspa, f"Decided before anything happens: {fspa.formula}.", traces)
 
 
-def _one_step() -> ConformanceCase:
+def _one_step_case() -> ConformanceCase:
     fspa = automaton("one_step", f.or_(f.eventually(f.atom("a")), f.always(f.atom("b"))), limit=1)
     files: tuple[list[list[float]], ...] = ([[-0.5, -0.5], [1, 1]], [[-0.5, 0.5]] * 3, [[1, -1], [-1, -1]])
     traces = tuple(table(["a", "b"], rows) for rows in files)
     return ConformanceCase(fspa, "A limit of one step.", traces)
 
 
-def _constants() -> ConformanceCase:
+def _constants_case() -> ConformanceCase:
     expressions: dict[str, Expression] = {
         "a": SignalValue("x"),
         "b": Const(0.25),
@@ -64,10 +65,10 @@ def _constants() -> ConformanceCase:
     formula = f.and_(f.eventually(f.and_(f.atom("a"), f.atom("b"))), f.always(f.not_(f.atom("c"))))
     signals = (spec.Signal("x", "number", -1.0, 1.0),)
     fspa = automaton("constants", formula, expressions, signals, (spec.Param("p", "number", 0.1, 0.0, 1.0),), limit=9)
-    return ConformanceCase(fspa, "Atoms that no signal moves.", (drawn(fspa, Draw(3100), 15),))
+    return ConformanceCase(fspa, "Atoms that no signal moves.", (random_trace(fspa, Draw(3100), 15),))
 
 
-def _many() -> ConformanceCase:
+def _many_states_case() -> ConformanceCase:
     order = f.atom("g8")
     for number in range(7, 0, -1):
         order = f.then(f.atom(f"g{number}"), order)
@@ -80,20 +81,20 @@ def _many() -> ConformanceCase:
             rows.append([held.get(name, -0.9) for name in names])
     draw = Draw(3200)
     pools = dict.fromkeys(names, (-0.9, -0.4, 0.3)) | {"alive": (0.5, 0.8, 1.0)}
-    return ConformanceCase(fspa, "Eight goals in order.", (table(names, rows), drawn(fspa, draw, 40, pools)))
+    return ConformanceCase(fspa, "Eight goals in order.", (table(names, rows), random_trace(fspa, draw, 40, pools)))
 
 
 # --- names ----------------------------------------------------------------------------------------
 
 
-def _named(name: str, names: tuple[str, str, str]) -> ConformanceCase:
-    """Return a case with hostile names everywhere a monitor shows or reads a name."""
+def _names_case(name: str, names: tuple[str, str, str]) -> ConformanceCase:
+    """Return a case with names that are hard to quote, wherever a monitor prints or reads a name."""
     first, second, third = names
     formula = f.and_(f.eventually(f.and_(f.atom(first), f.next_(f.atom(second)))), f.always(f.atom(third)))
     fspa = replace(automaton(name, formula, limit=20), doc=f"{first} */ {second}\n\\ {third}")
     pools = {first: _VALUES, second: _VALUES, third: (0.25, 0.5, 0.75)}
     draw = Draw(3300 + len("".join(names)))
-    return ConformanceCase(fspa, "Names that quote, comment and escape.", (drawn(fspa, draw, 24, pools),))
+    return ConformanceCase(fspa, "Names that quote, comment and escape.", (random_trace(fspa, draw, 24, pools),))
 
 
 _NAMES: Final = {
@@ -109,7 +110,7 @@ _NAMES: Final = {
 # --- files ----------------------------------------------------------------------------------------
 
 
-def _ranges() -> ConformanceCase:
+def _ranges_case() -> ConformanceCase:
     """Return a case with values out of range: they are clamped, and one warning is given per signal."""
     expressions: dict[str, Expression] = {
         "near": Op("-", (Const(1.0), Op("/", (SignalValue("distance"), Const(4.0))))),
@@ -140,8 +141,8 @@ _BAD_CELLS: Final = ("", "x", "0x10", "1_000", "1 2", "+-1", "1e", "1,5", ".", "
 _INFINITE: Final = ("nan", "inf", "-inf", "1e400", "-1e999", "NaN", "Infinity")
 
 
-def _cells() -> ConformanceCase:
-    """Return a case with ways to write a file, valid ones and others that must be refused."""
+def _cells_case() -> ConformanceCase:
+    """Return a case of traces written in several ways, some of which must be refused."""
     expressions: dict[str, Expression] = {
         "a": SignalValue("x"),
         "b": Op("-", (Op("*", (Const(2.0), SignalValue("seen"))), Const(1.0))),
@@ -164,15 +165,15 @@ def _cells() -> ConformanceCase:
     return ConformanceCase(fspa, "Ways to write a trace, and cells that must be refused.", (*good, *bad))
 
 
-CASES: Final[Makers] = {
-    "exclusive_few": partial(_exclusive, "exclusive_few", 4),
-    "exclusive_many": partial(_exclusive, "exclusive_many", 10),
-    "never": partial(_decided, "never", f.FALSE, 5),
-    "anything": partial(_decided, "anything", f.TRUE, None),
-    "one_step": _one_step,
-    "constants": _constants,
-    "many_states": _many,
-    **{name: partial(_named, name, names) for name, names in _NAMES.items()},
-    "ranges": _ranges,
-    "cells": _cells,
+CASES: Final[CaseBuilders] = {
+    "exclusive_few": partial(_exclusive_case, "exclusive_few", 4),
+    "exclusive_many": partial(_exclusive_case, "exclusive_many", 10),
+    "never": partial(_decided_case, "never", f.FALSE, 5),
+    "anything": partial(_decided_case, "anything", f.TRUE, None),
+    "one_step": _one_step_case,
+    "constants": _constants_case,
+    "many_states": _many_states_case,
+    **{name: partial(_names_case, name, names) for name, names in _NAMES.items()},
+    "ranges": _ranges_case,
+    "cells": _cells_case,
 }

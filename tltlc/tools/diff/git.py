@@ -27,7 +27,7 @@ _HOOK_VARIABLES: Final = {"GIT_DIR", "GIT_WORK_TREE", "GIT_INDEX_FILE", "GIT_PRE
 _PLAIN_FILES: Final = (b"100644", b"100755")
 _LINK: Final = b"120000"
 _NO_TARGET: Final = (b"symlink", b"dangling", b"loop", b"notdir")
-"""DifferenceKind git prints for a link that leads nowhere or out of the repository.
+"""What git prints for a link that leads nowhere or out of the repository.
 
 After it, git prints a size and a text of that size.
 """

@@ -22,7 +22,7 @@ _ROUNDING: Final = 1e-9
 
 @record
 class Meaning:
-    """DifferenceKind determines the value of an atom: its expression, signals and params.
+    """What determines the value of an atom: its expression, signals and params.
 
     ``signals`` and ``params`` are those that the expression uses.
     """

@@ -1,4 +1,4 @@
-"""Convert an explanation to JSON json_values."""
+"""Convert an explanation to JSON values."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from tltlc.tools.explain.explanation import Explanation
 
 
 def json_values(explanation: Explanation) -> dict[str, Any]:
-    """Return the fields of an explanation by name, recursively as JSON json_values."""
+    """Return the fields of an explanation by name, recursively as JSON values."""
     fields: dict[str, Any] = _value(explanation)
     return fields
 

@@ -1,4 +1,4 @@
-"""Show the changes of the formatter as a diff_text diff."""
+"""Show the changes of the formatter as a unified diff."""
 
 from __future__ import annotations
 

@@ -47,7 +47,7 @@ int main(int argc, char **argv) {
 """
 
 
-def linked(compiler: Sequence[str], folder: Path, names: Sequence[str]) -> None:
+def link(compiler: Sequence[str], folder: Path, names: Sequence[str]) -> None:
     """Build the program ``monitors`` from all headers, included in one translation unit."""
     lines = ["#define TLTL_MAIN"]
     for name in names:
@@ -66,7 +66,7 @@ RUNNERS = (
         target="c",
         build=(*C, "-O1", *STRICT, *SANITIZED, *_SOURCE),
         run=("./{name}_c",),
-        build_all=partial(linked, (*C, "-O1", *STRICT)),
+        build_all=partial(link, (*C, "-O1", *STRICT)),
         run_all=("./monitors",),
         tools=("gcc",),
     ),
@@ -75,7 +75,7 @@ RUNNERS = (
         target="c",
         build=(*CPP, "-O1", *STRICT, *SANITIZED, *_SOURCE),
         run=("./{name}_c",),
-        build_all=partial(linked, (*CPP, *STRICT, *SANITIZED)),
+        build_all=partial(link, (*CPP, *STRICT, *SANITIZED)),
         # Detecting leaks takes longer than the rest of the run, so only the programs of single monitors do it.
         run_all=("env", "ASAN_OPTIONS=detect_leaks=0", "./monitors"),
         tools=("g++",),

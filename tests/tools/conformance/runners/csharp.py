@@ -35,7 +35,7 @@ internal static class Monitors
 """
 
 
-def assembled(folder: Path, names: Sequence[str]) -> None:
+def assemble(folder: Path, names: Sequence[str]) -> None:
     """Build ``monitors.exe``, one assembly with all monitors."""
     cases = [f'            case "{name}": return Tltl.{name}_monitor_program.Main(rest);' for name in names]
     (folder / "monitors.cs").write_text(_DRIVER.replace("@@cases@@", "\n".join(cases)))
@@ -49,7 +49,7 @@ RUNNERS = (
         target="csharp",
         build=("mcs", *STRICT, "{name}_monitor.cs"),
         run=("mono", "{name}_monitor.exe"),
-        build_all=assembled,
+        build_all=assemble,
         run_all=("mono", "monitors.exe"),
         tools=("mcs", "mono"),
     ),

@@ -31,7 +31,7 @@ _BASE = "extends SceneTree\n"
 _START = "func _init() -> void:\n\tquit(_run(_arguments()))\n"
 
 
-def gathered(folder: Path, names: Sequence[str]) -> None:
+def gather(folder: Path, names: Sequence[str]) -> None:
     """Write ``monitors.gd``, and a copy of each program without the code that makes it quit the
     engine."""
     (folder / "project.godot").touch()
@@ -49,7 +49,7 @@ RUNNERS = (
         target="gdscript3",
         build=("touch", "project.godot"),
         run=(*_ENGINE, "{name}_monitor_main.gd"),
-        build_all=gathered,
+        build_all=gather,
         run_all=(*_ENGINE, "monitors.gd"),
         tools=("godot3-server",),
     ),

@@ -20,7 +20,7 @@ for (let i = 0; i + 1 < words.length; i += 2) {
 """
 
 
-def gathered(folder: Path, names: Sequence[str]) -> None:
+def gather(folder: Path, names: Sequence[str]) -> None:
     """Write ``monitors.mjs``, and a copy of each module that also exports its ``main``."""
     (folder / "monitors.mjs").write_text(_DRIVER)
     for name in names:
@@ -33,7 +33,7 @@ RUNNERS = (
         name="node",
         target="javascript",
         run=("node", "{name}_monitor.mjs"),
-        build_all=gathered,
+        build_all=gather,
         run_all=("node", "monitors.mjs"),
         tools=("node",),
         tolerance=1e-12,

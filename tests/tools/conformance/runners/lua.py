@@ -23,7 +23,7 @@ leave(0)
 """
 
 
-def gathered(folder: Path, names: Sequence[str]) -> None:
+def gather(folder: Path, names: Sequence[str]) -> None:
     """Write ``monitors.lua``, which runs the monitors' files."""
     (folder / "monitors.lua").write_text(_DRIVER)
 
@@ -33,7 +33,7 @@ RUNNERS = tuple(
         name=interpreter,
         target="lua",
         run=(interpreter, "{name}_monitor.lua"),
-        build_all=gathered,
+        build_all=gather,
         run_all=(interpreter, "monitors.lua"),
         tools=(interpreter,),
         tolerance=1e-12,

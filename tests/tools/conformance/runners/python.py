@@ -23,7 +23,7 @@ for name, path in zip(words[::2], words[1::2]):
 """
 
 
-def gathered(folder: Path, names: Sequence[str]) -> None:
+def gather(folder: Path, names: Sequence[str]) -> None:
     """Write ``monitors.py``, which imports the monitors' modules."""
     (folder / "monitors.py").write_text(_DRIVER)
 
@@ -33,7 +33,7 @@ RUNNERS = (
         name="python",
         target="python",
         run=(sys.executable, "-I", "{name}_monitor.py"),
-        build_all=gathered,
+        build_all=gather,
         run_all=(sys.executable, "-I", "monitors.py"),
     ),
 )

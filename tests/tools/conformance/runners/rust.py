@@ -26,7 +26,7 @@ fn main() {
 """
 
 
-def linked(folder: Path, names: Sequence[str]) -> None:
+def link(folder: Path, names: Sequence[str]) -> None:
     """Build the program ``monitors``, one crate with all monitors."""
     lines = ["#![allow(non_snake_case)]", "", *(f"mod {name}_monitor;" for name in names)]
     cases = [f'            Some("{name}") => {name}_monitor::program::run(rest),' for name in names]
@@ -40,7 +40,7 @@ RUNNERS = (
         target="rust",
         build=("rustc", *STRICT, "{name}_monitor.rs"),
         run=("./{name}_monitor",),
-        build_all=linked,
+        build_all=link,
         run_all=("./monitors",),
         tools=("rustc",),
     ),
