@@ -38,11 +38,11 @@ from tltl_runtime.stealth.recordings.file import to_bytes as episode_to_bytes
 from tltl_runtime.stealth.recordings.summary import judged_with, trace_csv
 from tltl_runtime.stealth.recordings.summary import summary as episode_summary
 from tltl_runtime.stealth.recordings.summary import summary_text as episode_summary_text
-from tltl_runtime.training.exploration.search import Searched
+from tltl_runtime.training.exploration.search import SearchProgress
 from tltl_runtime.training.ppo.recent_episodes import RecentEpisodes
 from tltl_runtime.training.run.checkpoint import BestPolicy, Checkpoint, read_checkpoint, write_checkpoint
 from tltl_runtime.training.run.metrics import METRICS, read_metrics, truncate
-from tltl_runtime.training.run.record import ended_as, record_so_far, recorded_end
+from tltl_runtime.training.run.record import finished_record, record_so_far, recorded_end
 from tltl_runtime.training.run.run_file import CHECKPOINT, RECORD, RUN, identity, read_run, write_run
 from tltl_runtime.training.run.settings import read_settings
 
@@ -313,7 +313,7 @@ def test_records(seed: int, training: Path) -> None:
     run, path = run_in(training), training / RECORD
     document = {"end": "steps", "steps": 100, "seconds": 3.5, "settings": {"stop": {}}}
     path.write_bytes(mutated_json(Random(seed), document).encode("utf-8", "surrogatepass"))
-    check(lambda: (ended_as(run), recorded_end(training)))
+    check(lambda: (finished_record(run), recorded_end(training)))
 
 
 @pytest.fixture(name="content", scope="module")
@@ -328,7 +328,7 @@ def _content(folder: Path) -> tuple[bytes, dict[str, Any]]:
         steps=192,
         seconds=1.5,
         replayed=7,
-        searched=Searched(10, 7, 0.5, 4, (8, 9), complete=True),
+        searched=SearchProgress(10, 7, 0.5, 4, (8, 9), complete=True),
         algorithm={"actor_state_dict": weights},
         processes=({"cpu": torch.get_rng_state()},),
         window=((True, 1.0, 30, 2, False),),

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from tltl_runtime.stealth.recording import RecordEpisode
     from tltl_runtime.stealth.recordings.episode import Episode
     from tltl_runtime.stealth.rendering.camera import View
-    from tltl_runtime.training.imitation.demonstrations import Demonstrations, Tried
+    from tltl_runtime.training.imitation.demonstrations import Attempt, Demonstrations
 
 
 @click.command(
@@ -134,10 +134,10 @@ def _begins(demonstrations: Demonstrations, wanted: int) -> list[str]:
 
 def _by_expert(env: RecordEpisode, demonstrations: Demonstrations, wanted: int, seed: int, report: cli.Report) -> None:
     from tltl_runtime.stealth.capabilities.feasible import reach_warnings
-    from tltl_runtime.training.imitation.demonstrations import by_expert
+    from tltl_runtime.training.imitation.demonstrations import expert_attempts
 
     report.add(reach_warnings(env.get_wrapper_attr("level"), env.get_wrapper_attr("task").fspa))
-    for attempt in by_expert(env, demonstrations, wanted, seed):
+    for attempt in expert_attempts(env, demonstrations, wanted, seed):
         click.echo(_line(attempt, wanted))
 
 
@@ -194,7 +194,7 @@ class _Kept:
         return f"{path}, {count}"
 
 
-def _line(attempt: Tried, wanted: int) -> str:
+def _line(attempt: Attempt, wanted: int) -> str:
     from tltl_runtime.cli.support.episode_text import episode_line
     from tltl_runtime.stealth.recordings.episode import Episode
 

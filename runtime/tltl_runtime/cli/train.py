@@ -19,7 +19,7 @@ from tltlc.api import cli
 
 if TYPE_CHECKING:
     from tltl_runtime.training.run.report import TrainingReport as Trained
-    from tltl_runtime.training.run.run_file import Run
+    from tltl_runtime.training.run.run_file import TrainingRun
 
 
 def _setting(table: str, key: str) -> Callable[[click.Context, click.Parameter, Any], Any]:
@@ -146,7 +146,7 @@ def command(
             new_settings,
             resumed_run,
         )
-        from tltl_runtime.training.ppo.distributed import peers
+        from tltl_runtime.training.ppo.distributed import process_group
         from tltl_runtime.training.run.run_file import resume_command
         from tltl_runtime.training.run.settings import settings_text
 
@@ -158,11 +158,11 @@ def command(
             click.echo(settings_text(settings), nl=False)
             return cli.exits.CLEAN
         run = new_run(asked, folder) if resume is None else resumed_run(asked, resume)
-        again, is_first = resume_command(run.folder), peers().rank == 0
+        again, is_first = resume_command(run.folder), process_group().rank == 0
         if resume is not None:
-            from tltl_runtime.training.run.record import ended_as
+            from tltl_runtime.training.run.record import finished_record
 
-            if record := ended_as(run):
+            if record := finished_record(run):
                 if is_first:
                     click.echo(_over(run, record, again))
                 return cli.exits.CLEAN if record["end"] == "met" else cli.exits.FINDINGS
@@ -194,7 +194,7 @@ def command(
     return report.status
 
 
-def _begins(run: Run, *, resume: bool) -> Iterator[str]:
+def _begins(run: TrainingRun, *, resume: bool) -> Iterator[str]:
     """Describe the training; if it is resumed without a checkpoint, say what happens to its files."""
     from tltl_runtime.training.run.metrics import METRICS
     from tltl_runtime.training.run.run_file import CHECKPOINT, POLICY, RECORD
@@ -218,7 +218,7 @@ def _begins(run: Run, *, resume: bool) -> Iterator[str]:
     yield f"there is no {CHECKPOINT} in {run.folder}: the training begins anew, {fate}{ways}"
 
 
-def _ended(run: Run, last: Trained, again: str) -> Iterator[str]:
+def _ended(run: TrainingRun, last: Trained, again: str) -> Iterator[str]:
     """Describe how a training ended, its files and the next steps.  ``again`` is the command that resumes it."""
     window, folder = last.window, quote(str(run.folder))
     ended = "the spec is met" if last.stop == "met" else f"ended by the limit of {last.stop}"
@@ -231,7 +231,7 @@ def _ended(run: Run, last: Trained, again: str) -> Iterator[str]:
         yield f"to go on, with a higher limit: {again} --{last.stop} N"
 
 
-def _over(run: Run, record: Mapping[str, Any], again: str) -> str:
+def _over(run: TrainingRun, record: Mapping[str, Any], again: str) -> str:
     """Describe a training that cannot be resumed because it has ended.  ``again`` is the command that resumes it."""
     from tltl_runtime.cli.support.training_text import minutes
 

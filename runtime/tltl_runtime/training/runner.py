@@ -16,7 +16,7 @@ from torch import Tensor, nn
 from tltl_runtime.policies.threads import threads
 from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltl_runtime.training.exploration.self_imitation import imitate
-from tltl_runtime.training.ppo.distributed import peers
+from tltl_runtime.training.ppo.distributed import process_group
 from tltl_runtime.training.ppo.environment import TrainingEnv
 from tltlc.api import Diagnostic, TltlError, record
 
@@ -25,9 +25,9 @@ from tltlc.api import Diagnostic, TltlError, record
 class Iteration:
     """The result of a rollout and the update after it.
 
-    ``number`` counts from 1.  ``steps`` counts the decisions of all environments.  ``losses`` are
-    the losses of rsl-rl's PPO by name, and ``imitation`` if there was self-imitation.
-    ``collect_s`` and ``learn_s`` are wall-clock seconds.
+    ``number`` counts from 1.  ``steps`` counts the decisions of all environments.  ``finished`` are the
+    episodes that ended.  ``losses`` are the losses of rsl-rl's PPO by name, and ``imitation`` if there
+    was self-imitation.  ``collect_s`` and ``learn_s`` are wall-clock seconds.
     """
 
     number: int
@@ -42,8 +42,9 @@ class Runner(OnPolicyRunner):
     """An rsl-rl runner whose learning loop is a generator: it yields after each iteration.
 
     It prints nothing.  Updates run in ``cfg["threads"]`` threads, because no environment steps
-    meanwhile.  In the first ``cfg["warm_up"]`` iterations only the critic learns.  Several
-    processes must use it within :func:`~tltl_runtime.training.ppo.distributed.joined`.
+    meanwhile.  In the first ``cfg["warm_up"]`` iterations only the critic learns.  If there are several
+    processes, each must use it within
+    :func:`~tltl_runtime.training.ppo.distributed.join_process_group`.
     """
 
     env: TrainingEnv
@@ -63,19 +64,21 @@ class Runner(OnPolicyRunner):
                 # Fused, the optimiser takes the same steps in a tenth of the time.
                 group["fused"] = True
 
-    def take_up(self, saved: Mapping[str, Any]) -> None:
+    def load_algorithm(self, saved: Mapping[str, Any]) -> None:
         """Restore what ``alg.save`` returned, even if the weights had another memory layout."""
         self.alg.load(saved, None, strict=True)
         for parameter, state in self.alg.optimizer.state.items():
             # The fused optimiser assumes that its averages have the memory layout of the weights.
-            state |= {name: _like(value, parameter) for name, value in state.items() if value.shape == parameter.shape}
+            state |= {
+                name: _in_layout_of(value, parameter) for name, value in state.items() if value.shape == parameter.shape
+            }
 
-    def begin_with(self, weights: Mapping[str, Tensor]) -> None:
+    def load_actor(self, weights: Mapping[str, Tensor]) -> None:
         """Load weights, by name, into the actor.  The critic keeps its random weights."""
         self.alg.actor.load_state_dict({name: tensor.float() for name, tensor in weights.items()})
 
-    def sharpen(self, factor: float) -> None:
-        """Multiply the actor's inverse temperature: a factor above 1 makes likely choices likelier.
+    def scale_inverse_temperature(self, factor: float) -> None:
+        """Multiply the actor's logits by ``factor``: above 1, it makes likely choices likelier.
 
         In the first ``cfg["warm_up"]`` iterations this does nothing.
         """
@@ -87,12 +90,12 @@ class Runner(OnPolicyRunner):
                 parameter.mul_(factor)
 
     def iterations(self) -> Iterator[Iteration]:
-        """Run iterations without end; yield each one."""
+        """Run iterations without end; yield the result of each."""
         self.alg.train_mode()
         if self.is_distributed:
             self.alg.broadcast_parameters()
         while True:
-            began = time.perf_counter()
+            started = time.perf_counter()
             observation = self.env.get_observations().to(self.device)
             with torch.inference_mode():
                 for _ in range(self.cfg["num_steps_per_env"]):
@@ -108,18 +111,18 @@ class Runner(OnPolicyRunner):
             yield Iteration(
                 number=self.current_learning_iteration,
                 steps=self.cfg["num_steps_per_env"] * self.env.num_envs,
-                finished=self.env.finished(),
+                finished=self.env.pop_finished(),
                 losses=losses,
-                collect_s=collected - began,
+                collect_s=collected - started,
                 learn_s=time.perf_counter() - collected,
             )
 
     def _configure_multi_gpu(self) -> None:
-        """Like rsl-rl's method, but for any device and for a process group that exists already."""
-        own = peers()
-        self.gpu_world_size, self.gpu_global_rank, self.gpu_local_rank = own.count, own.rank, own.local_rank
-        self.is_distributed = own.count > 1
-        names = {"global_rank": own.rank, "local_rank": own.local_rank, "world_size": own.count}
+        """Configure distribution like rsl-rl's method, but for any device and an existing process group."""
+        group = process_group()
+        self.gpu_world_size, self.gpu_global_rank, self.gpu_local_rank = group.count, group.rank, group.local_rank
+        self.is_distributed = group.count > 1
+        names = {"global_rank": group.rank, "local_rank": group.local_rank, "world_size": group.count}
         self.cfg["multi_gpu"] = names if self.is_distributed else None
 
     def _step(self, observation: Any) -> Any:
@@ -131,14 +134,14 @@ class Runner(OnPolicyRunner):
         return observation
 
     def _imitate(self) -> dict[str, float]:
-        """Take the steps of self-imitation; return the mean loss as ``imitation``, if there is one.
+        """Take the steps of self-imitation; return the mean loss as ``imitation``, empty without a batch.
 
         If any process has a batch, all take the step together, so that their weights stay equal.
         """
-        lessons, losses = self.env.lessons, []
-        for _ in range(self.cfg["imitation"] if lessons else 0):
-            batch = lessons.draw() if lessons else None
-            if not any(peers().gather(batch is not None)):
+        self_imitation, losses = self.env.self_imitation, []
+        for _ in range(self.cfg["imitation"] if self_imitation else 0):
+            batch = self_imitation.draw() if self_imitation else None
+            if not any(process_group().gather(batch is not None)):
                 break
             observations, actions = batch or (self.env.get_observations()[:0], torch.zeros(0, self.env.num_actions))
             losses.append(imitate(self.alg, observations.to(self.device), actions.to(self.device)))
@@ -154,6 +157,6 @@ class Runner(OnPolicyRunner):
             raise TltlError([Diagnostic("TLT0854", title, help=help_)]) from None
 
 
-def _like(tensor: Tensor, parameter: Tensor) -> Tensor:
+def _in_layout_of(tensor: Tensor, parameter: Tensor) -> Tensor:
     """Return a copy of a tensor in the memory layout of a parameter."""
     return torch.empty_like(parameter, requires_grad=False).copy_(tensor)

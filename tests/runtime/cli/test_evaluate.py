@@ -29,8 +29,7 @@ from tltl_runtime.policies.shipped import shipped_policy
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.stealth.levels.identity import level_hash
 from tltl_runtime.stealth.recordings.file import read_episode, write_episode
-from tltl_runtime.training.run.run_file import Run as Training
-from tltl_runtime.training.run.run_file import write_run
+from tltl_runtime.training.run.run_file import TrainingRun, write_run
 from tltl_runtime.training.run.settings import read_settings
 from tltlc.core.record import replace
 
@@ -236,7 +235,7 @@ def test_the_folder_of_a_training_names_the_file_of_its_level(
     level = str(tmp_path / "mine" / "vault.toml")
     folder, trained = tmp_path / "trained", untrained(None, level)
     card = trained.card
-    write_run(Training(folder, card.fspa, card.params, level, "v0", card.sensors, read_settings(None), 0))
+    write_run(TrainingRun(folder, card.fspa, card.params, level, "v0", card.sensors, read_settings(None), 0))
     # The training was written by an older version, which lacked a setting.
     run = json.loads((folder / "run.json").read_text())
     del run["settings"]["ppo"]["entropy_schedule"]

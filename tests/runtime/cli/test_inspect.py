@@ -18,7 +18,7 @@ from tltl_runtime.policies.file import write_policy
 from tltl_runtime.policies.identity import spec_hash
 from tltl_runtime.policies.policy import Policy
 from tltl_runtime.policies.summary import summary, summary_text
-from tltl_runtime.training.run.metrics import METRICS, measurements
+from tltl_runtime.training.run.metrics import METRICS, metrics_line
 from tltl_runtime.training.run.run_file import POLICY, write_run
 from tltl_runtime.training.run.train import train
 from tltlc.automaton.text import formula_text
@@ -123,7 +123,7 @@ def test_the_end_of_a_training_is_shown(policy: Policy, training: dict[str, obje
 def test_an_unfinished_training_is_shown(tltlc, policy: Policy, tmp_path: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     write_run(run_in(tmp_path))
     write_policy(tmp_path / POLICY, Policy(replace(policy.card, training={}), policy.weights()))
-    line = measurements(a_report(count=0, successes=0, finished=(an_episode(True),)), policy.card.fspa)
+    line = metrics_line(a_report(count=0, successes=0, finished=(an_episode(True),)), policy.card.fspa)
     (tmp_path / METRICS).write_text(json.dumps(line) + "\n")
     result: Outcome = tltlc("inspect", str(tmp_path))
     assert "  ended    not yet: after 4,096 steps, 1 episode ended" in result.out.splitlines()

@@ -11,7 +11,7 @@ from tests.interfaces.cli.conftest import Outcome, tltlc  # noqa: F401
 from tests.runtime.training.reports import a_report, an_episode
 from tests.runtime.training.runs import run_in
 from tltl_runtime.cli.support.policy_path import policy_path
-from tltl_runtime.training.run.metrics import METRICS, measurements
+from tltl_runtime.training.run.metrics import METRICS, metrics_line
 from tltl_runtime.training.run.run_file import POLICY, write_run
 from tltlc.diagnostics.diagnostic import TltlError
 
@@ -42,7 +42,7 @@ def test_a_training_without_a_policy_is_reported(tltlc, here: Path, command: str
         "one that is going on has it soon\n"
     )
     fspa = run_in(here).fspa
-    lines = [measurements(a_report(number, finished=(an_episode(True),) * number), fspa) for number in (1, 2)]
+    lines = [metrics_line(a_report(number, finished=(an_episode(True),) * number), fspa) for number in (1, 2)]
     # The last line is valid JSON, but has no measurements.
     text = "".join(json.dumps(line) + "\n" for line in [*lines, {"iteration": 3}])
     (here / "two words" / METRICS).write_text(text)

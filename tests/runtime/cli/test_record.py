@@ -14,7 +14,7 @@ import pytest
 from tests.interfaces.cli.conftest import Outcome, tltlc  # noqa: F401
 from tests.runtime.cli.test_play import PLAYERS, ended, needs_screen, started
 from tests.runtime.stealth.xvfb import keys, screen
-from tests.runtime.training.imitating import SOON, kept, played
+from tests.runtime.training.imitating import SOON, recorded_episode, write_recordings
 from tests.waiting import HANG_S
 from tltl_runtime.cli.record import _Kept
 from tltl_runtime.stealth.env import make_env
@@ -84,7 +84,7 @@ def test_failed_episodes_are_reported_and_not_kept(tltlc: TltlcFunction, here: P
 
 
 def test_other_recordings_in_the_folder_stay(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
-    folder = kept(here / "mine", played(5), played(7, variant="v1"))
+    folder = write_recordings(here / "mine", recorded_episode(5), recorded_episode(7, variant="v1"))
     before = {path: path.read_bytes() for path in folder.iterdir()}
     result = tltlc("record", "cover_and_hide", "--spec", "soon.tltl", "--episodes", "2", "-o", "mine")
     assert result.status == 0
@@ -97,7 +97,7 @@ def test_other_recordings_in_the_folder_stay(tltlc: TltlcFunction, here: Path) -
 
 
 def test_a_damaged_recording_does_not_count_and_stays(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
-    folder = kept(here / "mine", played(5))
+    folder = write_recordings(here / "mine", recorded_episode(5))
     (folder / "damaged.episode.npz").write_bytes(b"PK, and no more")
     result = tltlc("record", "cover_and_hide", "--spec", "soon.tltl", "--episodes", "2", "-o", "mine")
     assert result.status == 0
@@ -174,10 +174,10 @@ def test_failed_episodes_of_a_person_are_not_kept(tmp_path: Path, capsys: pytest
     demonstrations = Demonstrations(tmp_path, env.unwrapped.level, env.task)  # type: ignore[attr-defined]
     env.close()
     recorder = _Kept(demonstrations, 2)
-    recorder.keep(played(4, steps=3))
-    assert recorder.save(played(4, steps=5)) == "not kept, 0 of 2"
+    recorder.keep(recorded_episode(4, steps=3))
+    assert recorder.save(recorded_episode(4, steps=5)) == "not kept, 0 of 2"
     assert not list(tmp_path.iterdir())
-    assert recorder.save(played(4)) == "cover_and_hide-v0-4.episode.npz, 1 of 2"
+    assert recorder.save(recorded_episode(4)) == "cover_and_hide-v0-4.episode.npz, 1 of 2"
     lines = capsys.readouterr().out.splitlines()
     assert lines[0].startswith("seed 4: stopped after 5 steps") and lines[0].endswith("not kept (0 of 2)")
     assert lines[1] == "  stopped after 0.75 s, remaining: Keep alive throughout"
@@ -196,10 +196,10 @@ def test_a_recording_is_saved_elsewhere_if_its_folder_is_unwritable(
     recorder = _Kept(demonstrations, 2)
     folder.touch()
     saved = spare / "cover_and_hide-v0-4.episode.npz"
-    assert recorder.save(played(4)) == f"{saved}, 0 of 2"
+    assert recorder.save(recorded_episode(4)) == f"{saved}, 0 of 2"
     assert read_episode(saved).success
     output = capsys.readouterr()
     assert output.err.startswith("TLT0005: cannot write ")
     assert output.out.rstrip().endswith(f": {saved} (0 of 2, until it is moved to {folder})")
     folder.unlink()
-    assert recorder.save(played(5)) == "cover_and_hide-v0-5.episode.npz, 1 of 2"
+    assert recorder.save(recorded_episode(5)) == "cover_and_hide-v0-5.episode.npz, 1 of 2"

@@ -22,7 +22,7 @@ from tests.interfaces.cli.conftest import EXAMPLE, Outcome, tltlc  # noqa: F401
 from tests.runtime.training.test_settings import GOLDEN
 from tests.waiting import HANG_S
 from tltl_runtime.policies.file import read_policy
-from tltl_runtime.training.exploration.search import Searched
+from tltl_runtime.training.exploration.search import SearchProgress
 from tltl_runtime.training.run.metrics import METRICS, read_metrics
 from tltl_runtime.training.run.settings import default_text, read_settings
 from tltl_runtime.training.runner import Iteration, Runner
@@ -461,7 +461,7 @@ def test_the_page_lists_the_keys_of_the_record() -> None:
     assert documented == list(json.loads(Path("it/record.json").read_text()))
     (search,) = re.findall(r"^\| `search` \| (.*) \|$", section, re.MULTILINE)
     # The explanations of some keys follow after the list, and start with their names.
-    assert tuple(dict.fromkeys(re.findall(r"`(\w+)`", search))) == Searched.__match_args__
+    assert tuple(dict.fromkeys(re.findall(r"`(\w+)`", search))) == SearchProgress.__match_args__
 
 
 def _command(*options: str) -> list[str]:

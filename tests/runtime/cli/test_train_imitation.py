@@ -13,7 +13,7 @@ import pytest
 
 from tests.interfaces.cli.conftest import Outcome, tltlc  # noqa: F401
 from tests.runtime.cli.test_train import SMALL
-from tests.runtime.training.imitating import SOON, kept, played
+from tests.runtime.training.imitating import SOON, recorded_episode, write_recordings
 from tests.waiting import until
 from tltl_runtime.training.run.checkpoint import read_checkpoint
 from tltl_runtime.training.run.metrics import METRICS, read_metrics
@@ -57,7 +57,7 @@ def test_a_training_records_the_expert_and_can_be_evaluated(tltlc: TltlcFunction
 
 
 def test_named_demonstrations_are_imitated_and_needed_on_resume(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
-    kept(here / "mine", played(1), played(2), played(3, steps=5))
+    write_recordings(here / "mine", recorded_episode(1), recorded_episode(2), recorded_episode(3, steps=5))
     (here / "small.toml").write_text(ENDLESS)
     result = tltlc(*TRAIN_IMITATION, "--demonstrations", "mine", "--out", "run", "--steps", "64")
     assert "; 1 recording left out: cover_and_hide-v0-3.episode.npz: it does not meet `soon`" in result.err
@@ -74,7 +74,7 @@ def test_named_demonstrations_are_imitated_and_needed_on_resume(tltlc: TltlcFunc
 
 
 def test_a_killed_training_resumes_from_its_checkpoint(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
-    kept(here / "mine", played(1))
+    write_recordings(here / "mine", recorded_episode(1))
     (here / "small.toml").write_text(f"checkpoint_s = 0.0\n{ENDLESS}")
     command = [sys.executable, "-m", "tltlc", *TRAIN_IMITATION, "--demonstrations", "mine", "--out", "run"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as training:
@@ -122,7 +122,7 @@ def test_the_method_is_stored_in_the_settings(tltlc: TltlcFunction, here: Path) 
     (here / "printed.toml").write_text(printed)
     settings = read_settings(here / "printed.toml")
     assert settings.imitates and not settings.searches
-    kept(here / "mine", played(1))
+    write_recordings(here / "mine", recorded_episode(1))
     named = ("--demonstrations", "mine", "--steps", "64", "--out", "run")
     tltlc("train", "soon.tltl", "--config", "small.toml", "--method", "imitation", *named)
     other = tltlc("train", "--resume", "run", "--method", "automaton", "--steps", "128")

@@ -14,7 +14,7 @@ from tltl_runtime.cli.support.training_text import (
     search_line,
     seconds_left,
 )
-from tltl_runtime.training.exploration.search import Searched
+from tltl_runtime.training.exploration.search import SearchProgress
 from tltl_runtime.training.run.report import Confirmation
 from tltl_runtime.training.run.settings import Stop, read_settings
 from tltlc.core.record import replace
@@ -46,12 +46,12 @@ def test_the_line_of_an_iteration(stop: Stop) -> None:
     ],
 )
 def test_the_line_of_the_search(lengths: tuple[int, ...], said: str) -> None:
-    searched = Searched(steps=6400, replayed=3200, seconds=61.0, places=1200, lengths=lengths, complete=False)
+    searched = SearchProgress(steps=6400, replayed=3200, seconds=61.0, places=1200, lengths=lengths, complete=False)
     assert search_line(searched) == f"searching: 6,400 steps in 1 min 1 s, 1,200 places, {said}"
 
 
 def test_the_line_at_the_end_of_the_search() -> None:
-    searched = Searched(steps=6400, replayed=3200, seconds=61.0, places=1200, lengths=(90, 80), complete=True)
+    searched = SearchProgress(steps=6400, replayed=3200, seconds=61.0, places=1200, lengths=(90, 80), complete=True)
     assert found_line(searched) == "search: 2 ways found in 1 min 1 s, the shortest of 80 steps"
 
 
@@ -63,7 +63,7 @@ def test_the_nearer_limit_determines_the_remaining_time(stop: Stop) -> None:
 
 
 def test_the_remaining_time_excludes_the_search(stop: Stop) -> None:
-    report, searched = a_report(10), Searched(6400, 3200, 600.0, 1200, (80,), complete=True)
+    report, searched = a_report(10), SearchProgress(6400, 3200, 600.0, 1200, (80,), complete=True)
     after = replace(report, seconds=report.seconds + 600.0, searched=searched)
     assert seconds_left(after, stop) == pytest.approx(seconds_left(report, stop))
     # The seconds of the search count towards the limit of minutes.

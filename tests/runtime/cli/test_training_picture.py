@@ -11,14 +11,14 @@ from rich.console import Console
 from tests.runtime.training.reports import a_report
 from tests.runtime.training.runs import run_in
 from tltl_runtime.cli.support.training_picture import Picture
-from tltl_runtime.training.exploration.search import Searched
+from tltl_runtime.training.exploration.search import SearchProgress
 from tltl_runtime.training.run.report import TrainingReport
 from tltlc.core.record import replace
 
-SEARCHED = Searched(steps=6400, replayed=3200, seconds=80.0, places=1200, lengths=(90, 80), complete=True)
+SEARCHED = SearchProgress(steps=6400, replayed=3200, seconds=80.0, places=1200, lengths=(90, 80), complete=True)
 
 
-def _lines(folder: Path, columns: int, lines: int, report: TrainingReport | Searched | None) -> list[str]:
+def _lines(folder: Path, columns: int, lines: int, report: TrainingReport | SearchProgress | None) -> list[str]:
     console = Console(width=columns, height=lines, file=StringIO(), force_terminal=True, color_system=None)
     run = run_in(folder, exploration__ways=10, stop__steps=12_000_000)
     picture = Picture(run, console)

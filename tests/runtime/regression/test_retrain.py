@@ -33,7 +33,7 @@ from tltl_runtime.spec.task import load_task
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.stealth.recordings.file import read_episode
 from tltl_runtime.training.run.record import write_record
-from tltl_runtime.training.run.run_file import CHECKPOINT, POLICY, RECORD, RUN, Run
+from tltl_runtime.training.run.run_file import CHECKPOINT, POLICY, RECORD, RUN, TrainingRun
 from tltl_runtime.training.run.train import train
 from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import TltlError
@@ -46,12 +46,12 @@ def judged(suite: Suite) -> list[Done]:
     return list(regress(suite, suite.cases, baseline_of(suite), Path("run"), 1, lambda *_: None))
 
 
-def training_of(suite: Suite, done: Done, minutes: float = SHORT) -> Run:
+def training_of(suite: Suite, done: Done, minutes: float = SHORT) -> TrainingRun:
     assert done.ready is not None
     return retraining(suite, done.ready, Path("run"), minutes, 1)
 
 
-def trained(run: Run, resume: bool = False) -> None:
+def trained(run: TrainingRun, resume: bool = False) -> None:
     *_, last = train(run, resume=resume)
     write_record(run, last)
 

@@ -8,7 +8,7 @@ import pytest
 
 from tests.runtime.training.runs import run_in
 from tltl_runtime.training.run.report import TrainingReport
-from tltl_runtime.training.run.run_file import Run
+from tltl_runtime.training.run.run_file import TrainingRun
 from tltl_runtime.training.run.train import train
 
 
@@ -18,7 +18,7 @@ def _folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(name="whole", scope="module")
-def _whole(folder: Path) -> tuple[Run, list[TrainingReport]]:
+def _whole(folder: Path) -> tuple[TrainingRun, list[TrainingReport]]:
     """A training of three iterations; each module has its own, since resuming changes it."""
     run = run_in(folder / "whole")
     return run, list(train(run))

@@ -12,7 +12,7 @@ from tltl_runtime.stealth.env import make_env
 from tltl_runtime.stealth.recording import RecordEpisode
 from tltl_runtime.stealth.recordings.episode import Episode
 from tltl_runtime.stealth.recordings.file import write_episode
-from tltl_runtime.training.run.run_file import Run
+from tltl_runtime.training.run.run_file import TrainingRun
 from tltlc.core.record import replace
 
 SOON = "import stealth\nspec soon { level cover_and_hide\n limit 8 steps\n keep alive }\n"
@@ -21,7 +21,7 @@ ALONG = 1, 0, 0, 0, 1
 """The action of a demonstration: run towards greater x."""
 
 
-def played(
+def recorded_episode(
     seed: int, spec: str = SOON, variant: str = "v0", steps: int = 8, action: Sequence[int] = ALONG, player: str = "me"
 ) -> Episode:
     """An episode that repeats one action and stops after ``steps`` steps."""
@@ -33,7 +33,7 @@ def played(
     return env.episode
 
 
-def kept(folder: Path, *episodes: Episode) -> Path:
+def write_recordings(folder: Path, *episodes: Episode) -> Path:
     """Write recordings of the episodes into the folder; return the folder."""
     folder.mkdir(exist_ok=True)
     for episode in episodes:
@@ -41,7 +41,7 @@ def kept(folder: Path, *episodes: Episode) -> Path:
     return folder
 
 
-def imitating(folder: Path, demonstrations: Path | None, **changes: Any) -> Run:
+def imitating(folder: Path, demonstrations: Path | None, **changes: Any) -> TrainingRun:
     """A training by imitation of three iterations; the actor is cloned in the first one."""
     run = run_in(folder, SOON, **{"method": "imitation", "imitation__cloning": 0.3, **changes})
     return replace(run, demonstrations=str(demonstrations) if demonstrations else None)

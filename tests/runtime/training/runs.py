@@ -17,9 +17,9 @@ from tltl_runtime.game.level import spec_of
 from tltl_runtime.spec.task import load_task
 from tltl_runtime.stealth.capabilities.vocabulary import params
 from tltl_runtime.stealth.levels.file import load_level
-from tltl_runtime.training.exploration.search import Searched
+from tltl_runtime.training.exploration.search import SearchProgress
 from tltl_runtime.training.run.checkpoint import Checkpoint, read_checkpoint
-from tltl_runtime.training.run.run_file import CHECKPOINT, Run, identity
+from tltl_runtime.training.run.run_file import CHECKPOINT, TrainingRun, identity
 from tltl_runtime.training.run.settings import read_settings
 from tltl_runtime.training.run.train import train
 from tltl_runtime.training.runner import Iteration, Runner
@@ -38,7 +38,7 @@ SMALL: dict[str, Any] = {
 }
 
 
-def run_in(folder: Path, spec: str | None = None, **changes: Any) -> Run:
+def run_in(folder: Path, spec: str | None = None, **changes: Any) -> TrainingRun:
     """A training on cover_and_hide of three iterations of 64 steps, with the settings :data:`SMALL`.
 
     ``changes`` override settings; dots in their names are written as two underscores.  ``spec`` is the text of a
@@ -53,23 +53,23 @@ def run_in(folder: Path, spec: str | None = None, **changes: Any) -> Run:
             settings = replace(settings, **{table: replace(getattr(settings, table), **{key: value})})
         else:
             settings = replace(settings, **{key: value})
-    return Run(folder, task.fspa, task.params, "cover_and_hide", "v0", level.sensors, settings, 3)
+    return TrainingRun(folder, task.fspa, task.params, "cover_and_hide", "v0", level.sensors, settings, 3)
 
 
-def checkpoint_of(run: Run) -> Checkpoint:
+def checkpoint_of(run: TrainingRun) -> Checkpoint:
     """The checkpoint that a training has written."""
     checkpoint = read_checkpoint(run.folder / CHECKPOINT, identity(run))
     assert checkpoint is not None
     return checkpoint
 
 
-class Telling(Runner):
+class WeightPrinting(Runner):
     """A runner that prints the hash of the weights after each iteration."""
 
     def iterations(self) -> Iterator[Iteration]:
         for iteration in super().iterations():
             weights = b"".join(parameter.numpy().tobytes() for parameter in self.alg.actor.state_dict().values())
-            _say(weights=hashlib.sha256(weights).hexdigest(), iteration=iteration.number)
+            _print_json(weights=hashlib.sha256(weights).hexdigest(), iteration=iteration.number)
             yield iteration
 
 
@@ -100,17 +100,17 @@ class Failing(Runner):
         return super()._step(observation)
 
 
-class Weighing(Runner):
-    """A runner that reports the entropy weight, the severity, and the rise of the penalty at step 0 as losses."""
+class WeightReporting(Runner):
+    """A runner that reports as losses the entropy weight, the penalty weight, and the extra penalty at step 0."""
 
     def iterations(self) -> Iterator[Iteration]:
         for iteration in super().iterations():
-            dearer = self.env._dearer
-            losses = {"weight": self.alg.entropy_coef, "severity": self.env.severity}
-            yield replace(iteration, losses=losses | {"dearer": dearer(0) if dearer else 0.0})
+            extra_penalty = self.env._extra_penalty
+            losses = {"weight": self.alg.entropy_coef, "penalty_weight": self.env.penalty_weight}
+            yield replace(iteration, losses=losses | {"extra_penalty": extra_penalty(0) if extra_penalty else 0.0})
 
 
-def _say(**values: Any) -> None:
+def _print_json(**values: Any) -> None:
     # Write with a single call, since several processes may write at once.
     os.write(1, (json.dumps({"rank": os.environ.get("RANK", "0"), **values}) + "\n").encode())
 
@@ -122,12 +122,12 @@ def main(folder: str, *options: str) -> None:
     the number of steps of the search at its first progress report, and waits there to be killed.
     """
 
-    def searching(searched: Searched) -> None:
+    def searching(searched: SearchProgress) -> None:
         if "--wait-in-search" in options:
-            _say(searched=searched.steps)
+            _print_json(searched=searched.steps)
             signal.pause()
 
     changes = dict(option.split("=", 1) for option in options if "=" in option)
     run = run_in(Path(folder), **{name: json.loads(value) for name, value in changes.items()})
-    for report in train(run, resume="--resume" in options, searching=searching):
-        _say(number=report.iteration.number, steps=report.steps, stop=report.stop, finished=report.window.count)
+    for report in train(run, resume="--resume" in options, on_search=searching):
+        _print_json(number=report.iteration.number, steps=report.steps, stop=report.stop, finished=report.window.count)

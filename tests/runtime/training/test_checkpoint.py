@@ -9,7 +9,7 @@ import pytest
 import torch
 
 from tests.runtime.training.runs import run_in
-from tltl_runtime.training.exploration.search import Searched
+from tltl_runtime.training.exploration.search import SearchProgress
 from tltl_runtime.training.run.checkpoint import BestPolicy, Checkpoint, read_checkpoint, write_checkpoint
 from tltl_runtime.training.run.run_file import RUN, write_run
 from tltlc.core.record import replace
@@ -24,7 +24,7 @@ def _checkpoint() -> Checkpoint:
         steps=192,
         seconds=1.5,
         replayed=7,
-        searched=Searched(10, 7, 0.5, 4, (8, 9), complete=True),
+        searched=SearchProgress(10, 7, 0.5, 4, (8, 9), complete=True),
         algorithm={"rate": 0.001, "actor_state_dict": {}},
         processes=({"cpu": torch.get_rng_state()},),
         window=((True, 1.0, 30, 2, False),),

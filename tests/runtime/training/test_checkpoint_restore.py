@@ -16,7 +16,7 @@ from tltl_runtime.training.exploration.reverse_curriculum import ReverseCurricul
 from tltl_runtime.training.exploration.search import FailedEpisode, SuccessfulEpisode
 from tltl_runtime.training.run.checkpoint import read_checkpoint
 from tltl_runtime.training.run.report import TrainingReport
-from tltl_runtime.training.run.run_file import CHECKPOINT, Run
+from tltl_runtime.training.run.run_file import CHECKPOINT, TrainingRun
 from tltl_runtime.training.run.train import train
 from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import TltlError
@@ -24,13 +24,13 @@ from tltlc.diagnostics.diagnostic import TltlError
 Content = dict[str, Any]
 
 
-def changed(run: Run, change: Callable[[Content], object]) -> None:
+def changed(run: TrainingRun, change: Callable[[Content], object]) -> None:
     content = torch.load(run.folder / CHECKPOINT, weights_only=True)
     change(content)
     torch.save(content, run.folder / CHECKPOINT)
 
 
-def refusal(run: Run) -> str:
+def refusal(run: TrainingRun) -> str:
     """The reason why a training cannot resume from a checkpoint; the checkpoint itself is readable."""
     assert read_checkpoint(run.folder / CHECKPOINT)
     before = (run.folder / CHECKPOINT).read_bytes()
@@ -43,7 +43,7 @@ def refusal(run: Run) -> str:
 
 
 @pytest.fixture(name="copy")
-def _copy(tmp_path: Path, whole: tuple[Run, list[TrainingReport]]) -> Run:
+def _copy(tmp_path: Path, whole: tuple[TrainingRun, list[TrainingReport]]) -> TrainingRun:
     shutil.copytree(whole[0].folder, tmp_path / "run")
     return replace(whole[0], folder=tmp_path / "run")
 
@@ -128,35 +128,35 @@ CHANGES: dict[str, tuple[Callable[[Content], object], str]] = {
 
 
 @pytest.mark.parametrize("name", CHANGES)
-def test_a_checkpoint_that_does_not_fit_is_rejected(copy: Run, name: str) -> None:
+def test_a_checkpoint_that_does_not_fit_is_rejected(copy: TrainingRun, name: str) -> None:
     change, why = CHANGES[name]
     changed(copy, change)
     assert why in refusal(copy)
 
 
-def test_an_unchanged_checkpoint_fits(copy: Run) -> None:
+def test_an_unchanged_checkpoint_fits(copy: TrainingRun) -> None:
     assert next(train(copy, resume=True)).stop == "steps"
 
 
-def test_a_checkpoint_without_processes_is_rejected(copy: Run) -> None:
+def test_a_checkpoint_without_processes_is_rejected(copy: TrainingRun) -> None:
     changed(copy, lambda it: it.update(processes=()))
     with pytest.raises(TltlError, match="TLT0864"):
         read_checkpoint(copy.folder / CHECKPOINT)
 
 
-def test_starts_of_another_shape_are_rejected(tmp_path: Path) -> None:
+def test_a_curriculum_of_another_shape_is_rejected(tmp_path: Path) -> None:
     run = run_in(tmp_path / "run", exploration__ways=1, exploration__steps=64, stop__steps=64)
     list(train(run))
     changed(run, lambda it: it["processes"][0].update(rates=torch.zeros(2, 3)))
     assert refusal(run).startswith("`processes` 1: `rates` must be float64 of the shape [")
 
 
-def restarts_state() -> dict[str, Any]:
-    """The state of restarts with one trajectory and one failure."""
-    restarts = ReverseCurriculum(4, np.random.default_rng(0))
-    restarts.add(SuccessfulEpisode(1, [[0] * 5, [1] * 5], 2))
-    restarts.failures.append(FailedEpisode(3, [[0] * 5], 1))
-    return restarts.state()
+def curriculum_state() -> dict[str, Any]:
+    """The state of a curriculum with one demonstration and one failed episode."""
+    curriculum = ReverseCurriculum(4, np.random.default_rng(0))
+    curriculum.add(SuccessfulEpisode(1, [[0] * 5, [1] * 5], 2))
+    curriculum.failures.append(FailedEpisode(3, [[0] * 5], 1))
+    return curriculum.state()
 
 
 STARTS: dict[str, Callable[[dict[str, Any]], object]] = {
@@ -179,8 +179,8 @@ STARTS: dict[str, Callable[[dict[str, Any]], object]] = {
 
 
 @pytest.mark.parametrize("name", STARTS)
-def test_damaged_starts_are_rejected(name: str) -> None:
-    whole = restarts_state()
+def test_a_damaged_curriculum_is_rejected(name: str) -> None:
+    whole = curriculum_state()
     ReverseCurriculum(4, np.random.default_rng(0)).load(whole)
     STARTS[name](whole)
     with pytest.raises(ValueError, match="`"):

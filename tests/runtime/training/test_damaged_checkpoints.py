@@ -14,8 +14,8 @@ from torch import Tensor
 from tests.runtime.training.runs import run_in
 from tltl_runtime.training.run import train as training
 from tltl_runtime.training.run.checkpoint import read_checkpoint
-from tltl_runtime.training.run.run_file import CHECKPOINT, Run
-from tltl_runtime.training.run.setup import environments
+from tltl_runtime.training.run.run_file import CHECKPOINT, TrainingRun
+from tltl_runtime.training.run.setup import make_environments
 from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import TltlError
 
@@ -123,7 +123,7 @@ def _is_list(value: object) -> bool:
 
 
 @pytest.fixture(name="made", scope="module")
-def _made(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Run, Content]]:
+def _training_with_search(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[TrainingRun, Content]]:
     """A training with a search, and the content of its checkpoint, in which no part is empty.
 
     All trainings of this module share its environments, since starting processes for each is slow.
@@ -140,10 +140,10 @@ def _made(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Run, Conte
         stop__confirmation=1000,
         checkpoint_s=1e9,
     )
-    env = environments(run)
+    env = make_environments(run)
     close, env.close = env.close, lambda: None  # type: ignore[method-assign]
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(training, "environments", lambda run: env)
+        patch.setattr(training, "make_environments", lambda run: env)
         assert list(training.train(run))
         yield (
             replace(run, settings=replace(run.settings, stop=replace(run.settings.stop, steps=10**9))),
@@ -152,7 +152,7 @@ def _made(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Run, Conte
     close()
 
 
-def goes_on(run: Run, content: Any, folder: Path) -> bool:
+def goes_on(run: TrainingRun, content: Any, folder: Path) -> bool:
     """Whether a training resumes from a checkpoint with this content; if not, check that the rejection has a code."""
     shutil.copytree(run.folder, folder)
     run = replace(run, folder=folder)
@@ -173,7 +173,7 @@ def goes_on(run: Run, content: Any, folder: Path) -> bool:
         shutil.rmtree(folder)
 
 
-def test_no_part_of_the_checkpoint_is_empty(made: tuple[Run, Content], tmp_path: Path) -> None:
+def test_no_part_of_the_checkpoint_is_empty(made: tuple[TrainingRun, Content], tmp_path: Path) -> None:
     run, content = made
     process = content["processes"][0]
     assert all(process[name].numel() for name in ("way_actions", "failure_actions", "rates"))
@@ -183,7 +183,7 @@ def test_no_part_of_the_checkpoint_is_empty(made: tuple[Run, Content], tmp_path:
     assert goes_on(run, content, tmp_path / "copy")
 
 
-def check(made: tuple[Run, Content], chosen: list[tuple[Path_, str]], folder: Path) -> None:
+def check(made: tuple[TrainingRun, Content], chosen: list[tuple[Path_, str]], folder: Path) -> None:
     run, content = made
     errors = []
     for number, (path, name) in enumerate(chosen):
@@ -194,13 +194,13 @@ def check(made: tuple[Run, Content], chosen: list[tuple[Path_, str]], folder: Pa
     assert not errors, "\n".join(errors)
 
 
-def test_changes_that_once_crashed_are_rejected_or_harmless(made: tuple[Run, Content], tmp_path: Path) -> None:
+def test_changes_that_once_crashed_are_rejected_or_harmless(made: tuple[TrainingRun, Content], tmp_path: Path) -> None:
     check(made, [(path, name) for path, names in CRASHING_CHANGES.items() for name in names], tmp_path)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", REPLACEMENTS)
 def test_every_change_of_each_value_is_rejected_or_harmless(
-    made: tuple[Run, Content], tmp_path: Path, name: str
+    made: tuple[TrainingRun, Content], tmp_path: Path, name: str
 ) -> None:
     check(made, [(path, name) for path in values(made[1])], tmp_path)

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from tests import pipes
-from tests.runtime.training.imitating import SOON, kept, played
+from tests.runtime.training.imitating import SOON, recorded_episode, write_recordings
 from tests.runtime.training.test_settings import compare
 from tltl_runtime.stealth.env import make_env
 from tltl_runtime.stealth.expert.expert import expert_episodes
@@ -17,9 +17,9 @@ from tltl_runtime.stealth.recording import RecordEpisode
 from tltl_runtime.stealth.recordings.file import read_episode
 from tltl_runtime.training.imitation.demonstrations import (
     MOST_FAILURES,
+    Attempt,
     Demonstrations,
-    Tried,
-    by_expert,
+    expert_attempts,
     recordings,
 )
 from tltlc.diagnostics.diagnostic import TltlError
@@ -42,7 +42,7 @@ def demonstrations_in(env: RecordEpisode, folder: Path) -> Demonstrations:
 
 def test_only_episodes_that_meet_the_spec_are_kept(env: RecordEpisode, tmp_path: Path) -> None:
     demonstrations = demonstrations_in(env, tmp_path / "new")
-    good, stopped = demonstrations.add(played(3)), demonstrations.add(played(4, steps=5))
+    good, stopped = demonstrations.add(recorded_episode(3)), demonstrations.add(recorded_episode(4, steps=5))
     assert good.path == tmp_path / "new" / "cover_and_hide-v0-3.episode.npz"
     assert (stopped.path, good.kept, stopped.kept, demonstrations.count) == (None, 1, 1, 1)
     pipes.put_beside(tmp_path / "new" / "pipe.episode.npz")
@@ -51,10 +51,16 @@ def test_only_episodes_that_meet_the_spec_are_kept(env: RecordEpisode, tmp_path:
 
 
 def test_existing_recordings_of_the_level_and_the_spec_count(env: RecordEpisode, tmp_path: Path) -> None:
-    folder = kept(tmp_path / "old", played(1), played(2, variant="v1"), played(3, LONGER, steps=9), played(4, steps=7))
+    folder = write_recordings(
+        tmp_path / "old",
+        recorded_episode(1),
+        recorded_episode(2, variant="v1"),
+        recorded_episode(3, LONGER, steps=9),
+        recorded_episode(4, steps=7),
+    )
     demonstrations = demonstrations_in(env, folder)
     assert (demonstrations.count, demonstrations.seeds("me"), demonstrations.seeds("expert")) == (1, [1], [])
-    assert [(recording.path.name.split("-", 1)[1], recording.why) for recording in demonstrations.others] == [
+    assert [(recording.path.name.split("-", 1)[1], recording.reason) for recording in demonstrations.rejected] == [
         ("v0-3.episode.npz", "it is of another spec"),
         ("v0-4.episode.npz", "it does not meet the spec"),
         ("v1-2.episode.npz", "it is of another level"),
@@ -62,37 +68,39 @@ def test_existing_recordings_of_the_level_and_the_spec_count(env: RecordEpisode,
 
 
 def test_an_unreadable_recording_does_not_count(env: RecordEpisode, tmp_path: Path) -> None:
-    folder = kept(tmp_path / "old", played(1), played(2))
+    folder = write_recordings(tmp_path / "old", recorded_episode(1), recorded_episode(2))
     damaged = recordings(folder)[1]
     damaged.write_bytes(damaged.read_bytes()[:1000])
     demonstrations = demonstrations_in(env, folder)
     assert demonstrations.seeds("me") == [1]
-    (other,) = demonstrations.others
-    assert other.path == damaged and other.why.startswith("TLT0820, ")
+    (recording,) = demonstrations.rejected
+    assert recording.path == damaged and recording.reason.startswith("TLT0820, ")
 
 
 def test_the_expert_records_only_the_missing_demonstrations(env: RecordEpisode, tmp_path: Path) -> None:
-    first = list(islice(by_expert(env, demonstrations_in(env, tmp_path), 3, seed=5), 2))
+    first = list(islice(expert_attempts(env, demonstrations_in(env, tmp_path), 3, seed=5), 2))
     assert [(attempt.episode.seed, attempt.kept) for attempt in first] == [(5, 1), (6, 2)]
     times = {path: path.stat().st_mtime_ns for path in recordings(tmp_path)}
-    rest = list(by_expert(env, demonstrations_in(env, tmp_path), 3, seed=5))
+    rest = list(expert_attempts(env, demonstrations_in(env, tmp_path), 3, seed=5))
     assert [(attempt.episode.seed, attempt.kept) for attempt in rest] == [(7, 3)]
     assert {path: path.stat().st_mtime_ns for path in times} == times
-    assert not list(by_expert(env, demonstrations_in(env, tmp_path), 3, seed=5))
+    assert not list(expert_attempts(env, demonstrations_in(env, tmp_path), 3, seed=5))
     # With another first seed, existing demonstrations are not played again.
-    assert [attempt.episode.seed for attempt in by_expert(env, demonstrations_in(env, tmp_path), 4, seed=0)] == [8]
+    assert [attempt.episode.seed for attempt in expert_attempts(env, demonstrations_in(env, tmp_path), 4, seed=0)] == [
+        8
+    ]
 
 
 def test_the_seeds_of_a_person_do_not_count_for_the_expert(env: RecordEpisode, tmp_path: Path) -> None:
-    kept(tmp_path, played(900))
-    assert [attempt.episode.seed for attempt in by_expert(env, demonstrations_in(env, tmp_path), 2)] == [0]
+    write_recordings(tmp_path, recorded_episode(900))
+    assert [attempt.episode.seed for attempt in expert_attempts(env, demonstrations_in(env, tmp_path), 2)] == [0]
 
 
 def test_the_expert_gives_up_after_many_failures(tmp_path: Path) -> None:
     env = RecordEpisode(make_env("cover_and_hide", "v0", IN_VAIN), "expert")
-    tried: list[Tried] = []
+    attempts: list[Attempt] = []
     with pytest.raises(TltlError) as caught:
-        tried.extend(by_expert(env, demonstrations_in(env, tmp_path / "none"), 2))
+        attempts.extend(expert_attempts(env, demonstrations_in(env, tmp_path / "none"), 2))
     env.close()
     compare("TLT0920", caught.value)
     assert not (tmp_path / "none").exists()
@@ -101,9 +109,9 @@ def test_the_expert_gives_up_after_many_failures(tmp_path: Path) -> None:
 
 def test_failures_are_reported_before_the_expert_gives_up(tmp_path: Path) -> None:
     env = RecordEpisode(make_env("cover_and_hide", "v0", IN_VAIN), "expert")
-    tried = list(islice(by_expert(env, demonstrations_in(env, tmp_path), 2), MOST_FAILURES))
+    attempts = list(islice(expert_attempts(env, demonstrations_in(env, tmp_path), 2), MOST_FAILURES))
     env.close()
-    assert [(attempt.path, attempt.kept, attempt.episode.seed) for attempt in tried] == [
+    assert [(attempt.path, attempt.kept, attempt.episode.seed) for attempt in attempts] == [
         (None, 0, seed) for seed in range(MOST_FAILURES)
     ]
 

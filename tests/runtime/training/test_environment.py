@@ -11,7 +11,7 @@ import pytest
 import torch
 
 from tltl_runtime.spec.episode_summary import EpisodeSummary
-from tltl_runtime.training.exploration.replayed_starts import EpisodeStart, Replayed
+from tltl_runtime.training.exploration.replayed_starts import EpisodeStart, ReplayedStartEnv
 from tltl_runtime.training.exploration.reverse_curriculum import ReverseCurriculum
 from tltl_runtime.training.exploration.search import SuccessfulEpisode
 from tltl_runtime.training.ppo.environment import TrainingEnv
@@ -29,26 +29,26 @@ spec stoop { level navigation
 """
 """A spec that crouching meets and jumping violates, in one step."""
 STAY, WALK, JUMP, CROUCH = [0, 0, 0, 0, 0], [1, 0, 0, 0, 0], [0, 0, 1, 0, 0], [0, 0, 0, 1, 0]
-WAY = SuccessfulEpisode(5, [STAY, CROUCH], end=1)
-ON_IT = EpisodeStart(5, [STAY], part=(WAY.end, 0))
+DEMONSTRATION = SuccessfulEpisode(5, [STAY, CROUCH], end=1)
+ON_DEMONSTRATION = EpisodeStart(5, [STAY], segment=(DEMONSTRATION.end, 0))
 STARTS = (
     EpisodeStart(5),
     EpisodeStart(5),
     EpisodeStart(5),
-    ON_IT,
-    ON_IT,
-    EpisodeStart(5, [STAY], part=(WAY.end, 0), most=2),
-    ON_IT,
+    ON_DEMONSTRATION,
+    ON_DEMONSTRATION,
+    EpisodeStart(5, [STAY], segment=(DEMONSTRATION.end, 0), max_decisions=2),
+    ON_DEMONSTRATION,
 )
 """The start of the episodes of each environment."""
 
 
-class Fixed(ReverseCurriculum):
-    """Restarts that return the same starts in turn."""
+class FixedCurriculum(ReverseCurriculum):
+    """A curriculum that returns the same starts in turn."""
 
     def __init__(self) -> None:
         super().__init__(1, np.random.default_rng(0))
-        self.add(WAY)
+        self.add(DEMONSTRATION)
         self._starts = cycle(STARTS)
 
     def draw(self) -> EpisodeStart:
@@ -61,9 +61,11 @@ def _make() -> Iterator[Callable[[], TrainingEnv]]:
 
         def make() -> TrainingEnv:
             info = {**TLTL_INFO, "cell": np.int64}
-            played = make_vec("navigation", "v0", len(STARTS), 1, spec=SPEC, wrapper=Replayed, info=info)
-            stack.callback(played.close)
-            return TrainingEnv(played, 0, restarts=Fixed(), dearer=lambda steps: 10.0 * steps, limit_steps=4)
+            vector_env = make_vec("navigation", "v0", len(STARTS), 1, spec=SPEC, wrapper=ReplayedStartEnv, info=info)
+            stack.callback(vector_env.close)
+            return TrainingEnv(
+                vector_env, 0, curriculum=FixedCurriculum(), extra_penalty=lambda steps: 10.0 * steps, limit_steps=4
+            )
 
         yield make
 
@@ -73,13 +75,13 @@ def _env(make: Callable[[], TrainingEnv]) -> TrainingEnv:
     return make()
 
 
-def test_truncated_episodes_are_time_outs_and_episodes_on_ways_are_not_counted(env: TrainingEnv) -> None:
+def test_truncated_episodes_are_time_outs_and_only_full_episodes_count(env: TrainingEnv) -> None:
     first = env.get_observations()
     ends = []
     for actions in ([WALK, JUMP, CROUCH, JUMP, CROUCH, WALK, WALK], *[[WALK] * len(STARTS)] * 3):
         observation, _, dones, extras = env.step(torch.tensor(actions))
         rows, late = (torch.nonzero(mask).flatten().tolist() for mask in (dones, extras["time_outs"]))
-        ends.append((rows, late, env.finished()))
+        ends.append((rows, late, env.pop_finished()))
         if len(ends) == 2:
             # The truncated episode is followed at once by one with the same start.
             assert all(torch.equal(observation[key][5], first[key][5]) for key in env.shapes)
@@ -95,14 +97,16 @@ def test_truncated_episodes_are_time_outs_and_episodes_on_ways_are_not_counted(e
     ]
 
 
-def test_failures_cost_more_with_a_greater_severity(make: Callable[[], TrainingEnv]) -> None:
-    mild, severe = make(), make()
-    severe.severity = 0.5
+def test_failures_cost_more_with_a_greater_penalty_weight(make: Callable[[], TrainingEnv]) -> None:
+    without_penalty, with_penalty = make(), make()
+    with_penalty.penalty_weight = 0.5
     steps = [[WALK, JUMP, CROUCH, JUMP, CROUCH, WALK, WALK], *[[WALK] * len(STARTS)] * 3]
-    further = torch.stack([mild.step(actions)[1] - severe.step(actions)[1] for actions in map(torch.tensor, steps)])
+    extra_penalties = torch.stack(
+        [without_penalty.step(actions)[1] - with_penalty.step(actions)[1] for actions in map(torch.tensor, steps)]
+    )
     expected = torch.zeros(4, len(STARTS))
-    # A violation at once, and a violation after a replayed way.
+    # A violation at once, and a violation after replayed actions.
     expected[0, 1], expected[0, 3] = 5.0, 10.0
     # The limit of the spec is a failure, too; a truncated episode is not.
     expected[2, 6] = expected[3, 0] = expected[3, 3] = expected[3, 4] = 20.0
-    torch.testing.assert_close(further, expected)
+    torch.testing.assert_close(extra_penalties, expected)

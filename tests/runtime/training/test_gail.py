@@ -10,19 +10,19 @@ from typing import Any
 import pytest
 import torch
 
-from tests.runtime.training.imitating import ALONG, SOON, imitating, kept, played
+from tests.runtime.training.imitating import ALONG, SOON, imitating, recorded_episode, write_recordings
 from tests.runtime.training.runs import checkpoint_of
 from tests.runtime.training.test_settings import compare
 from tltl_runtime.policies.file import read_policy
 from tltl_runtime.stealth.env import make_env
 from tltl_runtime.training.imitation.gail import Gail
-from tltl_runtime.training.ppo.distributed import peers
+from tltl_runtime.training.ppo.distributed import process_group
 from tltl_runtime.training.run.metrics import METRICS, read_metrics
 from tltl_runtime.training.run.record import write_record
 from tltl_runtime.training.run.report import TrainingReport
-from tltl_runtime.training.run.run_file import DEMONSTRATIONS, POLICY, Run, read_run
+from tltl_runtime.training.run.run_file import DEMONSTRATIONS, POLICY, TrainingRun, read_run
 from tltl_runtime.training.run.settings import rsl_config
-from tltl_runtime.training.run.setup import demonstrated, environments, prepared
+from tltl_runtime.training.run.setup import load_imitation_data, make_environments, prepare_environment
 from tltl_runtime.training.run.train import train
 from tltl_runtime.training.runner import Runner
 from tltlc.core.record import replace
@@ -34,11 +34,11 @@ GAIL = {"value", "surrogate", "entropy", "discriminator", "discriminator_theirs"
 
 @pytest.fixture(name="mine", scope="module")
 def _mine(folder: Path) -> Path:
-    return kept(folder / "mine", played(1), played(2))
+    return write_recordings(folder / "mine", recorded_episode(1), recorded_episode(2))
 
 
 @pytest.fixture(name="imitated", scope="module")
-def _imitated(folder: Path, mine: Path) -> tuple[Run, list[TrainingReport]]:
+def _imitated(folder: Path, mine: Path) -> tuple[TrainingRun, list[TrainingReport]]:
     """A training of three iterations."""
     run = imitating(folder / "imitated", mine)
     return run, list(train(run))
@@ -56,19 +56,21 @@ def equal(one: Any, other: Any) -> bool:
     return bool(one == other)
 
 
-def algorithm_of(run: Run) -> Gail:
+def algorithm_of(run: TrainingRun) -> Gail:
     """The algorithm of a training before its first step."""
-    processes = peers()
-    played = environments(run)
+    processes = process_group()
+    vector_env = make_environments(run)
     torch.manual_seed(0)
-    env, _ = prepared(run, processes, "cpu", played, None, print, demonstrated(run, processes, print), None)
+    env, _ = prepare_environment(
+        run, processes, "cpu", vector_env, None, print, load_imitation_data(run, processes, print), None
+    )
     algorithm = Runner(env, rsl_config(run.settings, env.shapes, env.branches)).alg
-    played.close()
+    vector_env.close()
     assert isinstance(algorithm, Gail)
     return algorithm
 
 
-def test_cloning_comes_first(imitated: tuple[Run, list[TrainingReport]]) -> None:
+def test_cloning_comes_first(imitated: tuple[TrainingRun, list[TrainingReport]]) -> None:
     run, reports = imitated
     assert [set(report.iteration.losses) for report in reports] == [CLONING, GAIL, GAIL]
     assert [report.steps for report in reports] == [64, 128, 192]
@@ -80,7 +82,7 @@ def test_cloning_comes_first(imitated: tuple[Run, list[TrainingReport]]) -> None
     assert (about.episodes, about.decisions, about.players, about.left_out) == (2, 16, ("me",), ())
 
 
-def test_the_record_and_the_policy_describe_the_imitation(imitated: tuple[Run, list[TrainingReport]]) -> None:
+def test_the_record_and_the_policy_describe_the_imitation(imitated: tuple[TrainingRun, list[TrainingReport]]) -> None:
     run, reports = imitated
     record = write_record(run, reports[-1])
     assert record["imitated"] == {"episodes": 2, "decisions": 16, "players": ["me"], "left_out": [], "cloned": 64}
@@ -91,7 +93,7 @@ def test_the_record_and_the_policy_describe_the_imitation(imitated: tuple[Run, l
 
 
 def test_equal_trainings_and_equal_checkpoints_give_equal_numbers(
-    folder: Path, mine: Path, imitated: tuple[Run, list[TrainingReport]]
+    folder: Path, mine: Path, imitated: tuple[TrainingRun, list[TrainingReport]]
 ) -> None:
     run, reports = imitated
     again = replace(run, folder=folder / "again")
@@ -137,19 +139,19 @@ def test_cloning_takes_a_share_of_a_limit_in_minutes(folder: Path, mine: Path) -
 def test_without_a_limit_in_minutes_time_does_not_end_cloning(tmp_path: Path, mine: Path) -> None:
     algorithm = algorithm_of(imitating(tmp_path / "endless", mine))
     algorithm.seconds = 1e12
-    assert algorithm.clones
+    assert algorithm.is_cloning
 
 
-def test_the_number_of_workers_does_not_count(
-    folder: Path, imitated: tuple[Run, list[TrainingReport]], mine: Path
+def test_the_number_of_workers_does_not_change_a_training_by_imitation(
+    folder: Path, imitated: tuple[TrainingRun, list[TrainingReport]], mine: Path
 ) -> None:
     two = imitating(folder / "two", mine, rollout__workers=2)
     assert numbers(list(train(two))) == numbers(imitated[1])
     assert equal(checkpoint_of(two).algorithm, checkpoint_of(imitated[0]).algorithm)
 
 
-def test_the_settings_of_automaton_rewards_do_not_count(
-    folder: Path, imitated: tuple[Run, list[TrainingReport]], mine: Path
+def test_the_settings_of_automaton_rewards_have_no_effect_on_imitation(
+    folder: Path, imitated: tuple[TrainingRun, list[TrainingReport]], mine: Path
 ) -> None:
     changes = {"reward__mode": "edge", "reward__termination": "paper", "exploration__ways": 3}
     other = imitating(folder / "edge", mine, **changes)
@@ -177,7 +179,7 @@ def test_cloning_trains_actor_and_critic_separately(tmp_path: Path, mine: Path) 
         for model in (algorithm.actor, algorithm.critic)
     )
     _rollout(algorithm)
-    algorithm._value()
+    algorithm._train_critic()
     assert all(
         torch.equal(parameter, before) for parameter, before in zip(algorithm.actor.parameters(), actor, strict=True)
     )
@@ -185,7 +187,7 @@ def test_cloning_trains_actor_and_critic_separately(tmp_path: Path, mine: Path) 
         torch.equal(parameter, before) for parameter, before in zip(algorithm.critic.parameters(), critic, strict=True)
     )
     critic = [parameter.detach().clone() for parameter in algorithm.critic.parameters()]
-    algorithm._clone()
+    algorithm._clone_actor()
     assert not all(
         torch.equal(parameter, before) for parameter, before in zip(algorithm.actor.parameters(), actor, strict=True)
     )
@@ -196,7 +198,7 @@ def test_cloning_trains_actor_and_critic_separately(tmp_path: Path, mine: Path) 
 
 def _rollout(algorithm: Gail, successes: tuple[int, ...] = (), ends: tuple[int, ...] = ()) -> None:
     """A rollout of 16 steps; episodes of the environments ``successes`` and ``ends`` end in the last step."""
-    observations = algorithm.demonstrated.observations[:4]
+    observations = algorithm.imitation_data.observations[:4]
     with torch.inference_mode():
         for step in range(16):
             algorithm.act(observations)
@@ -219,7 +221,7 @@ def test_the_reward_is_from_the_discriminator_and_the_end_of_the_episode(tmp_pat
 
 
 @pytest.mark.parametrize(("share", "worth"), [(0.5, 0.693), (1 - 1 / math.e, 1.0), (0.7, 1.204)])
-def test_the_return_of_an_endless_episode(
+def test_the_return_of_an_endless_episode_depends_on_the_discriminator(
     tmp_path: Path, mine: Path, monkeypatch: pytest.MonkeyPatch, share: float, worth: float
 ) -> None:
     """With the default settings, if the discriminator gives each decision the probability ``share``."""
@@ -236,14 +238,14 @@ def test_the_return_of_an_endless_episode(
 def test_the_expert_records_demonstrations_first(folder: Path) -> None:
     run = imitating(folder / "expert", None, imitation__demonstrations=2, stop__steps=64)
     recorded: list[Any] = []
-    (report,) = train(run, recording=recorded.append)
+    (report,) = train(run, on_attempt=recorded.append)
     assert [(attempt.episode.player, attempt.kept) for attempt in recorded] == [("expert", 1), ("expert", 2)]
     assert len(list((run.folder / DEMONSTRATIONS).iterdir())) == 2
     assert report.imitated is not None
     assert report.imitated.players == ("expert",)
     longer = replace(run, settings=imitating(folder, None, imitation__demonstrations=2, stop__steps=128).settings)
     recorded.clear()
-    assert [report.iteration.number for report in train(longer, resume=True, recording=recorded.append)] == [2]
+    assert [report.iteration.number for report in train(longer, resume=True, on_attempt=recorded.append)] == [2]
     assert not recorded
 
 
@@ -254,9 +256,9 @@ def test_an_interrupted_recording_resumes(folder: Path) -> None:
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        list(train(run, recording=interrupt))
+        list(train(run, on_attempt=interrupt))
     recorded: list[Any] = []
-    list(train(run, resume=True, recording=recorded.append))
+    list(train(run, resume=True, on_attempt=recorded.append))
     assert [attempt.kept for attempt in recorded] == [2, 3]
 
 
@@ -267,7 +269,7 @@ def test_other_demonstrations_are_rejected_on_resume(folder: Path, mine: Path, m
     reports = train(run)
     next(reports)
     reports.close()
-    kept(folder / "copied", played(3))
+    write_recordings(folder / "copied", recorded_episode(3))
     with pytest.raises(TltlError) as caught:
         next(train(run, resume=True))
     compare("TLT0922", caught.value)
@@ -284,7 +286,7 @@ def test_an_algorithm_that_cannot_imitate_is_rejected(tmp_path: Path, mine: Path
     assert "no subclass of Gail" in str(caught.value)
 
 
-def test_the_demonstrated_actions_are_read(mine: Path, tmp_path: Path) -> None:
-    assert set(map(tuple, algorithm_of(imitating(tmp_path / "a", mine)).demonstrated.actions.tolist())) == {
+def test_the_imitation_data_have_the_demonstrated_actions(mine: Path, tmp_path: Path) -> None:
+    assert set(map(tuple, algorithm_of(imitating(tmp_path / "a", mine)).imitation_data.actions.tolist())) == {
         tuple(map(float, ALONG))
     }

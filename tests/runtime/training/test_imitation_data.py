@@ -9,48 +9,54 @@ import numpy as np
 import pytest
 import torch
 
-from tests.runtime.training.imitating import ALONG, SOON, kept, played
+from tests.runtime.training.imitating import ALONG, SOON, recorded_episode, write_recordings
 from tests.runtime.training.test_settings import compare
 from tltl_runtime.stealth.env import make_env
-from tltl_runtime.training.imitation.imitation_data import Demonstrated, read_demonstrations
+from tltl_runtime.training.imitation.imitation_data import ImitationData, read_demonstrations
 from tltlc.diagnostics.diagnostic import TltlError
 
 make = partial(make_env, "cover_and_hide", "v0", SOON)
 
 
-def read(folder: Path) -> Demonstrated:
+def read(folder: Path) -> ImitationData:
     return read_demonstrations(folder, make)
 
 
 def test_each_decision_has_the_observation_before_it(tmp_path: Path) -> None:
-    demonstrated = read(kept(tmp_path, played(1), played(2, action=(0, 2, 0, 1, 0))))
-    assert (demonstrated.about.episodes, demonstrated.about.decisions, demonstrated.about.players) == (2, 16, ("me",))
-    assert demonstrated.actions.tolist() == [list(map(float, ALONG))] * 8 + [[0.0, 2.0, 0.0, 1.0, 0.0]] * 8
+    data = read(write_recordings(tmp_path, recorded_episode(1), recorded_episode(2, action=(0, 2, 0, 1, 0))))
+    assert (data.summary.episodes, data.summary.decisions, data.summary.players) == (
+        2,
+        16,
+        ("me",),
+    )
+    assert data.actions.tolist() == [list(map(float, ALONG))] * 8 + [[0.0, 2.0, 0.0, 1.0, 0.0]] * 8
     env = make()
     observation, _ = env.reset(seed=2)
     step_observations = [observation, *(env.step([0, 2, 0, 1, 0])[0] for _ in range(7))]
     env.close()
-    assert set(demonstrated.observations.keys()) == set(observation)
+    assert set(data.observations.keys()) == set(observation)
     for key in observation:
         sensed = np.stack([step_observation[key] for step_observation in step_observations]).astype(np.float32)
-        assert np.array_equal(demonstrated.observations[key][8:].numpy(), sensed), key
+        assert np.array_equal(data.observations[key][8:].numpy(), sensed), key
 
 
 def test_recordings_that_do_not_fit_are_left_out_with_a_reason(tmp_path: Path) -> None:
-    demonstrated = read(kept(tmp_path, played(1), played(2, steps=7), played(3, variant="v1")))
-    assert demonstrated.about.episodes == 1
-    assert demonstrated.about.left_out == (
+    data = read(
+        write_recordings(tmp_path, recorded_episode(1), recorded_episode(2, steps=7), recorded_episode(3, variant="v1"))
+    )
+    assert data.summary.episodes == 1
+    assert data.summary.left_out == (
         "cover_and_hide-v0-2.episode.npz: it does not meet `soon`",
         "cover_and_hide-v1-3.episode.npz: it is of another level, `cover_and_hide:v1` as it was then",
     )
 
 
 def test_unreadable_recordings_are_left_out_with_a_reason(tmp_path: Path) -> None:
-    folder = kept(tmp_path, played(1))
+    folder = write_recordings(tmp_path, recorded_episode(1))
     (folder / "damaged.episode.npz").write_bytes(b"PK, and no more")
-    demonstrated = read(folder)
-    assert demonstrated.about.episodes == 1
-    (left_out,) = demonstrated.about.left_out
+    data = read(folder)
+    assert data.summary.episodes == 1
+    (left_out,) = data.summary.left_out
     assert left_out.startswith("damaged.episode.npz: TLT0820, ")
 
 
@@ -63,19 +69,19 @@ def test_a_folder_without_demonstrations_is_reported(
     if name != "TLT0921":
         folder.mkdir()
     if name == "TLT0921_unfit":
-        kept(folder, played(2, steps=7), played(3, variant="v1"))
+        write_recordings(folder, recorded_episode(2, steps=7), recorded_episode(3, variant="v1"))
     with pytest.raises(TltlError) as caught:
         read(folder)
     compare(name, caught.value)
 
 
 def test_decisions_are_sampled_with_the_generator_of_torch(tmp_path: Path) -> None:
-    demonstrated = read(kept(tmp_path, played(1)))
+    data = read(write_recordings(tmp_path, recorded_episode(1)))
     torch.manual_seed(1)
-    once = demonstrated.drawn(5)[0]["entities"], [actions for _, actions in demonstrated.shuffled(3)]
+    first = data.sample(5)[0]["entities"], [actions for _, actions in data.shuffled_batches(3)]
     torch.manual_seed(1)
-    again = demonstrated.drawn(5)[0]["entities"], [actions for _, actions in demonstrated.shuffled(3)]
-    assert torch.equal(once[0], again[0])
-    assert [len(batch) for batch in once[1]] == [3, 3, 2]
-    entities = torch.cat([observations["entities"] for observations, _ in demonstrated.shuffled(3)])
-    assert sorted(entities.tolist()) == sorted(demonstrated.observations["entities"].tolist())
+    second = data.sample(5)[0]["entities"], [actions for _, actions in data.shuffled_batches(3)]
+    assert torch.equal(first[0], second[0])
+    assert [len(batch) for batch in first[1]] == [3, 3, 2]
+    entities = torch.cat([observations["entities"] for observations, _ in data.shuffled_batches(3)])
+    assert sorted(entities.tolist()) == sorted(data.observations["entities"].tolist())

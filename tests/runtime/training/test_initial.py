@@ -17,30 +17,30 @@ from tests.runtime.training.test_settings import compare
 from tltl_runtime.policies.file import read_policy, write_policy
 from tltl_runtime.policies.policy import NoNumbersError, Policy
 from tltl_runtime.policies.summary import summary, summary_text
-from tltl_runtime.training.exploration.search import Searched
-from tltl_runtime.training.run.checkpoint import copied
-from tltl_runtime.training.run.initial_policy import initial_of, weights_hash
+from tltl_runtime.training.exploration.search import SearchProgress
+from tltl_runtime.training.run.checkpoint import deep_copy
+from tltl_runtime.training.run.initial_policy import initial_policy_of, weights_hash
 from tltl_runtime.training.run.record import record_so_far, write_record
 from tltl_runtime.training.run.report import TrainingReport
-from tltl_runtime.training.run.run_file import CHECKPOINT, POLICY, Run, identity, read_run
+from tltl_runtime.training.run.run_file import CHECKPOINT, POLICY, TrainingRun, identity, read_run
 from tltl_runtime.training.run.train import train
 from tltl_runtime.training.runner import Runner
 from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import TltlError
 
 
-def tuned(folder: Path, path: Path, **changes: object) -> Run:
+def tuned(folder: Path, path: Path, **changes: object) -> TrainingRun:
     """A training that starts from the policy in a file."""
-    return replace(run_in(folder, **changes), initial=initial_of(path, read_policy(path)))
+    return replace(run_in(folder, **changes), initial=initial_policy_of(path, read_policy(path)))
 
 
 @pytest.fixture(name="policy")
-def _policy(tmp_path: Path, whole: tuple[Run, list[TrainingReport]]) -> Path:
+def _policy(tmp_path: Path, whole: tuple[TrainingRun, list[TrainingReport]]) -> Path:
     shutil.copy(whole[0].folder / POLICY, tmp_path / "old.safetensors")
     return tmp_path / "old.safetensors"
 
 
-def weights(run: Run) -> dict[str, torch.Tensor]:
+def weights(run: TrainingRun) -> dict[str, torch.Tensor]:
     return {name: weight.half() for name, weight in checkpoint_of(run).algorithm["actor_state_dict"].items()}
 
 
@@ -67,16 +67,16 @@ def test_without_a_warm_up_the_actor_learns_at_once(tmp_path: Path, policy: Path
     assert differing(read_policy(policy).weights(), weights(run))
 
 
-def test_the_actor_is_sharpened_only_after_the_warm_up() -> None:
+def test_the_inverse_temperature_rises_only_after_the_warm_up() -> None:
     last = nn.Linear(2, 2)
     runner = Runner.__new__(Runner)
     runner.cfg, runner.alg = {"warm_up": 2}, SimpleNamespace(actor=SimpleNamespace(mlp=[nn.Linear(2, 2), last]))
-    before = copied(last.state_dict())
+    before = deep_copy(last.state_dict())
     for runner.current_learning_iteration in (1, 2):
-        runner.sharpen(1.5)
+        runner.scale_inverse_temperature(1.5)
         assert not differing(before, last.state_dict())
     runner.current_learning_iteration = 3
-    runner.sharpen(1.5)
+    runner.scale_inverse_temperature(1.5)
     assert all(torch.equal(weight, 1.5 * before[name]) for name, weight in last.state_dict().items())
 
 
@@ -93,8 +93,8 @@ def test_the_initial_policy_plays_first_in_the_search(tmp_path: Path) -> None:
     list(train(old))
     run = run_in(tmp_path / "run", spec, exploration__ways=4, exploration__steps=400, stop__steps=64)
     path = old.folder / POLICY
-    searches: list[Searched] = []
-    list(train(replace(run, initial=initial_of(path, read_policy(path))), searching=searches.append))
+    searches: list[SearchProgress] = []
+    list(train(replace(run, initial=initial_policy_of(path, read_policy(path))), on_search=searches.append))
     # Each of the four environments plays one episode of eight steps, and none from a discovered place.
     assert (searches[-1].lengths, searches[-1].steps, searches[-1].replayed) == ((8, 8, 8, 8), 32, 0)
 

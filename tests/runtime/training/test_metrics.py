@@ -67,7 +67,7 @@ def test_each_iteration_is_a_line(tmp_path: Path, fspa: Fspa) -> None:
     }
 
 
-def test_the_page_lists_the_keys(tmp_path: Path, fspa: Fspa) -> None:
+def test_the_page_lists_the_fields_of_a_line(tmp_path: Path, fspa: Fspa) -> None:
     _measure(tmp_path, fspa, range(1, 2))
     page = (DOCS / "training.md").read_text(encoding="utf-8")
     table = page[page.index("### `metrics.jsonl`") : page.index("## The record")]

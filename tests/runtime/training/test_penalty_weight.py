@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from tests.runtime.training.runs import run_in
-from tltl_runtime.training.ppo.penalty_weight import Weighing, raised_penalty, weighing
+from tltl_runtime.training.ppo.penalty_weight import ScheduledWeights, penalty_rise, scheduled_weights
 from tltl_runtime.training.run.settings import read_settings
 from tltlc.core.record import replace
 
@@ -17,18 +17,20 @@ from tltlc.core.record import replace
     [(0.0, 0.01, 0.0, 1.0), (0.5, 0.005, 0.0, 1.0), (0.75, 0.0025, 0.5, 2.0), (1.0, 0.0, 1.0, 3.0)],
 )
 def test_the_entropy_weight_falls_and_the_other_weights_rise_from_half_on(
-    met: float, entropy: float, severity: float, sharpness: float
+    met: float, entropy: float, penalty_weight: float, inverse_temperature: float
 ) -> None:
     ppo = replace(read_settings().ppo, sharpening=3.0)
-    assert weighing(ppo, met) == Weighing(pytest.approx(entropy), severity, sharpness)
-    assert weighing(replace(ppo, entropy_schedule="fixed"), met) == Weighing(None, severity, sharpness)
-    assert weighing(replace(ppo, sharpening=1.0), met).sharpness == 1.0
+    assert scheduled_weights(ppo, met) == ScheduledWeights(pytest.approx(entropy), penalty_weight, inverse_temperature)
+    assert scheduled_weights(replace(ppo, entropy_schedule="fixed"), met) == ScheduledWeights(
+        None, penalty_weight, inverse_temperature
+    )
+    assert scheduled_weights(replace(ppo, sharpening=1.0), met).inverse_temperature == 1.0
 
 
 def test_the_discounted_penalty_rises_to_the_undiscounted_one(tmp_path: Path) -> None:
     run = run_in(tmp_path / "rising")
     limit = run.fspa.limit_steps
-    rise = raised_penalty(run)
+    rise = penalty_rise(run)
     assert limit is not None
     assert rise is not None
     assert rise(0) == pytest.approx(1 - (1 - 0.99**limit) / (0.01 * limit))
@@ -47,4 +49,4 @@ def test_the_discounted_penalty_rises_to_the_undiscounted_one(tmp_path: Path) ->
     ],
 )
 def test_with_other_settings_the_penalty_does_not_rise(tmp_path: Path, changes: dict[str, str]) -> None:
-    assert raised_penalty(run_in(tmp_path / "other", **changes)) is None
+    assert penalty_rise(run_in(tmp_path / "other", **changes)) is None

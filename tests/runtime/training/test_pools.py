@@ -11,7 +11,7 @@ from tests.runtime.own_cluster import needs_ray, own_cluster
 from tests.runtime.training.runs import run_in
 from tltl_runtime.policies.file import read_policy
 from tltl_runtime.spec.task import load_task
-from tltl_runtime.training.run.initial_policy import initial_of
+from tltl_runtime.training.run.initial_policy import initial_policy_of
 from tltl_runtime.training.run.run_file import POLICY
 from tltl_runtime.training.run.train import train
 from tltlc.core.record import replace
@@ -28,7 +28,7 @@ def _trained(folder: Path, initial: Path | None = None, **settings: Any) -> byte
     limits = {"exploration__ways": 2, "exploration__steps": 400, "stop__steps": 128}
     run = replace(run_in(folder, **limits, **settings), fspa=task.fspa, params=task.params)
     if initial:
-        run = replace(run, initial=initial_of(initial, read_policy(initial)))
+        run = replace(run, initial=initial_policy_of(initial, read_policy(initial)))
     reports = list(train(run))
     assert reports[-1].searched is not None
     assert reports[-1].searched.lengths

@@ -124,7 +124,7 @@ def test_a_training_killed_in_its_search_restarts_the_search(tmp_path: Path) -> 
 def _together(folder: Path, *arguments: str) -> list[dict[str, Any]]:
     """Train in two processes of torchrun; check that both print the same lines, and return them."""
     torchrun = ["-m", "torch.distributed.run", "--standalone", "--nproc_per_node", "2", "--no-python", sys.executable]
-    runner = 'classes__runner="tests.runtime.training.runs:Telling"'
+    runner = 'classes__runner="tests.runtime.training.runs:WeightPrinting"'
     with _started(*torchrun, *PROGRAM, str(folder), runner, *arguments) as process:
         lines = _lines(process)
     one, other = ([{**line, "rank": None} for line in lines if line["rank"] == rank] for rank in "01")
@@ -163,7 +163,7 @@ def test_only_the_first_process_of_a_command_prints(tmp_path: Path) -> None:
     assert read_policy(tmp_path / "run" / POLICY).card.variant == "v2"
 
 
-def test_processes_of_torchrun_imitate_their_own_ways_together(tmp_path: Path) -> None:
+def test_processes_of_torchrun_imitate_their_own_demonstrations_together(tmp_path: Path) -> None:
     # A spec that every policy meets after eight steps.
     spec = "import stealth\nspec soon { level cover_and_hide\n limit 8 steps\n keep alive }\n"
     changes = {"exploration__ways": 2, "exploration__parts": 4, "stop__episodes": 10**5}
@@ -172,7 +172,7 @@ def test_processes_of_torchrun_imitate_their_own_ways_together(tmp_path: Path) -
     for steps, resume in ((256, []), (512, ["--resume"])):
         lines = _together(folder, *arguments, f"stop__steps={steps}", *resume)
         weights |= {line["weights"] for line in lines if "weights" in line}
-        run = run_in(folder, spec, **changes, classes__runner="tests.runtime.training.runs:Telling")
+        run = run_in(folder, spec, **changes, classes__runner="tests.runtime.training.runs:WeightPrinting")
         checkpoint = read_checkpoint(folder / CHECKPOINT, identity(run))
         assert checkpoint is not None
         ways.append([{*process["way_seeds"].tolist()} for process in checkpoint.processes])

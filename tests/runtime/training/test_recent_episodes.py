@@ -22,16 +22,16 @@ def _windows(episodes: list[bool]) -> RecentEpisodes:
 
 @given(st.lists(st.booleans(), max_size=20))
 def test_the_spec_is_met_after_two_windows_of_successes(episodes: list[bool]) -> None:
-    assert _windows(episodes).met == (len(episodes) >= 6 and all(episodes[-6:]))
+    assert _windows(episodes).all_met == (len(episodes) >= 6 and all(episodes[-6:]))
 
 
-def test_after_a_refusal_counting_restarts() -> None:
+def test_after_a_failed_confirmation_counting_starts_again() -> None:
     windows = _windows([True] * 6)
-    windows.refuse()
+    windows.reset_unbroken()
     windows.add([SUCCESS] * 5)
-    assert (windows.met, windows.unbroken, windows.window.successes) == (False, 5, 6)
+    assert (windows.all_met, windows.unbroken, windows.window.successes) == (False, 5, 6)
     windows.add([SUCCESS])
-    assert windows.met
+    assert windows.all_met
 
 
 @given(st.lists(st.booleans(), max_size=20))

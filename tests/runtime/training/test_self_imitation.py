@@ -12,7 +12,7 @@ import pytest
 import torch
 
 from tests.runtime.training.runs import run_in
-from tests.runtime.training.test_search import restarts_of
+from tests.runtime.training.test_search import curriculum_of
 from tltl_runtime.stealth.env import make_env
 from tltl_runtime.training.exploration.search import SuccessfulEpisode
 from tltl_runtime.training.exploration.self_imitation import BATCH, SelfImitation, imitate
@@ -21,7 +21,7 @@ from tltl_runtime.training.run.settings import rsl_config
 from tltl_runtime.training.runner import Runner
 from tltl_runtime.vector import make_vec
 
-WAY = SuccessfulEpisode(5, [[index % 3, 1, 0, 0, index % 2] for index in range(40)], 1)
+DEMONSTRATION = SuccessfulEpisode(5, [[index % 3, 1, 0, 0, index % 2] for index in range(40)], 1)
 make = partial(make_env, "cover_and_hide")
 
 
@@ -36,65 +36,65 @@ class Counting(gymnasium.Wrapper[Any, Any, Any, Any]):
 
 
 def test_decisions_are_drawn_with_the_observations_before_them() -> None:
-    lessons = SelfImitation(make, restarts_of([WAY], 4))
-    batch = lessons.draw()
-    lessons.close()
+    self_imitation = SelfImitation(make, curriculum_of([DEMONSTRATION], 4))
+    batch = self_imitation.draw()
+    self_imitation.close()
     assert batch is not None
     observations, actions = batch
     env = make()
-    first, _ = env.reset(seed=WAY.seed)
-    step_observations = [first, *(env.step(action)[0] for action in WAY.actions)]
+    first, _ = env.reset(seed=DEMONSTRATION.seed)
+    step_observations = [first, *(env.step(action)[0] for action in DEMONSTRATION.actions)]
     env.close()
     entities = np.stack([step_observation["entities"] for step_observation in step_observations])
     for sensed, action in zip(observations["entities"].numpy(), actions.tolist(), strict=True):
         (decisions,) = np.nonzero((entities == sensed).all(axis=1))
-        assert action in [WAY.actions[index] for index in decisions]
+        assert action in [DEMONSTRATION.actions[index] for index in decisions]
 
 
-def test_a_way_is_replayed_only_once() -> None:
+def test_a_demonstration_is_replayed_only_once() -> None:
     other = SuccessfulEpisode(6, [[1, 1, 0, 0, 0]] * 30, 1)
-    restarts = restarts_of([WAY, other], 4)
+    curriculum = curriculum_of([DEMONSTRATION, other], 4)
     env = Counting(make())
-    lessons = SelfImitation(lambda: env, restarts)
+    self_imitation = SelfImitation(lambda: env, curriculum)
     for rates in ([0, 0, 0, 0.5], [1, 0, 0, 0], [0, 0, 0.5, 0.5]):
-        restarts.rates[1][:] = rates
+        curriculum.rates[1][:] = rates
         for _ in range(5):
-            lessons.draw()
-    lessons.close()
+            self_imitation.draw()
+    self_imitation.close()
     assert env.resets == 2
 
 
 @pytest.mark.parametrize(
-    ("rates", "parts"), [([0, 0, 0, 0.5], {0, 1, 2, 3}), ([0, 1, 0, 0], {0}), ([1, 0, 0, 0], set())]
+    ("rates", "segments"), [([0, 0, 0, 0.5], {0, 1, 2, 3}), ([0, 1, 0, 0], {0}), ([1, 0, 0, 0], set())]
 )
-def test_learned_parts_are_not_imitated(rates: list[float], parts: set[int]) -> None:
-    restarts = restarts_of([WAY], 4)
-    restarts.rates[1][:] = rates
-    decisions = restarts.lessons(BATCH)
-    restarts.passed = 1.0
-    assert not restarts.lessons(BATCH)
-    restarts.passed = 0.0
-    assert {index // 10 for _, index in decisions} == parts
+def test_learned_segments_are_not_imitated(rates: list[float], segments: set[int]) -> None:
+    curriculum = curriculum_of([DEMONSTRATION], 4)
+    curriculum.rates[1][:] = rates
+    decisions = curriculum.draw_decisions(BATCH)
+    curriculum.start_rate = 1.0
+    assert not curriculum.draw_decisions(BATCH)
+    curriculum.start_rate = 0.0
+    assert {index // 10 for _, index in decisions} == segments
     assert len(decisions) <= BATCH
-    assert (SelfImitation(make, restarts).draw() is None) == (not parts)
+    assert (SelfImitation(make, curriculum).draw() is None) == (not segments)
 
 
 def test_a_runner_loads_optimizer_moments_with_another_memory_layout() -> None:
     run = run_in(Path("none"))
-    played = make_vec("cover_and_hide", "v0", 2, 1)
-    env = TrainingEnv(played, 1)
+    vector_env = make_vec("cover_and_hide", "v0", 2, 1)
+    env = TrainingEnv(vector_env, 1)
     config = rsl_config(run.settings, env.shapes, env.branches)
     saved_runner, runner = (Runner(env, dict(config)) for _ in range(2))
-    lessons = SelfImitation(make, restarts_of([WAY], 4))
-    batch = lessons.draw()
-    lessons.close()
-    played.close()
+    self_imitation = SelfImitation(make, curriculum_of([DEMONSTRATION], 4))
+    batch = self_imitation.draw()
+    self_imitation.close()
+    vector_env.close()
     assert batch is not None
     imitate(saved_runner.alg, *batch)
     saved = saved_runner.alg.save()
     for model in (runner.alg.actor, runner.alg.critic):
         model.to(memory_format=torch.contiguous_format)
-    runner.take_up(saved)
+    runner.load_algorithm(saved)
     weights = runner.alg.optimizer.param_groups[0]["params"]
     strides = [parameter.stride() for parameter in saved_runner.alg.optimizer.param_groups[0]["params"]]
     assert strides != [parameter.stride() for parameter in weights]
@@ -110,14 +110,14 @@ def test_a_runner_loads_optimizer_moments_with_another_memory_layout() -> None:
 
 def test_imitation_makes_the_actions_likelier() -> None:
     run = run_in(Path("none"))
-    played = make_vec("cover_and_hide", "v0", 2, 1)
-    env = TrainingEnv(played, 1)
+    vector_env = make_vec("cover_and_hide", "v0", 2, 1)
+    env = TrainingEnv(vector_env, 1)
     torch.manual_seed(0)
     runner = Runner(env, rsl_config(run.settings, env.shapes, env.branches))
-    lessons = SelfImitation(make, restarts_of([WAY], 4))
-    batch = lessons.draw()
+    self_imitation = SelfImitation(make, curriculum_of([DEMONSTRATION], 4))
+    batch = self_imitation.draw()
     assert batch is not None
     losses = [imitate(runner.alg, *batch) for _ in range(200)]
-    lessons.close()
-    played.close()
+    self_imitation.close()
+    vector_env.close()
     assert losses[-1] < 0.7 * losses[0]

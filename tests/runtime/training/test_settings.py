@@ -100,7 +100,7 @@ def test_the_defaults_are_from_the_paper() -> None:
     assert (ppo.learning_rate, ppo.entropy, ppo.clip, ppo.lam, ppo.gamma) == (3e-4, 0.01, 0.2, 0.95, 0.99)
     assert settings.network.hidden == (512, 512)
     assert settings.reward.options == RewardOptions(terminal_penalty="discounted", gamma=0.99)
-    assert settings.reward.rises
+    assert settings.reward.penalty_rises
     assert (settings.stop.windows, settings.stop.episodes, settings.stop.confirmation) == (2, 50, 300)
 
 
@@ -117,10 +117,8 @@ def test_the_default_file_has_exactly_all_settings() -> None:
 def test_the_comments_on_settings_hold_for_other_values_too(tmp_path: Path) -> None:
     printed = settings_text(_read(tmp_path, '[ppo]\nentropy_schedule = "fixed"\n'))
     assert "with their defaults" not in printed
-    schedule = (
-        'entropy_schedule = "fixed"          # of that weight: "fading" as the pass rate rises, to nothing at 1, or'
-    )
-    assert f'{schedule} "fixed"' in printed.splitlines()
+    comment = '# "fading": the weight falls as the pass rate rises, to 0 at a pass rate of 1; or "fixed"'
+    assert f'entropy_schedule = "fixed"          {comment}' in printed.splitlines()
 
 
 def test_the_default_network_is_the_network_of_policies() -> None:
@@ -151,7 +149,7 @@ def test_printed_settings_are_read_unchanged(tmp_path: Path) -> None:
     printed = settings_text(settings)
     assert _read(tmp_path, printed) == settings
     assert 'runner = "mine.\U0001d4de:Runner"' in printed.splitlines()
-    assert "threads = 2             # of torch while it learns; " in printed
+    assert "threads = 2             # threads of torch while it learns; " in printed
 
 
 def test_the_config_of_rsl_rl_has_all_settings(tmp_path: Path) -> None:
@@ -172,10 +170,12 @@ def test_the_config_of_rsl_rl_has_all_settings(tmp_path: Path) -> None:
         (2.0, 100, 120.0, "steps"),
     ],
 )
-def test_the_reached_limit(minutes: float, steps: int, seconds: float, limit: str | None) -> None:
+def test_the_limit_that_a_training_has_reached_is_returned(
+    minutes: float, steps: int, seconds: float, limit: str | None
+) -> None:
     stop = replace(read_settings().stop, steps=100, minutes=minutes)
-    assert stop.reached(steps, seconds) == limit
-    assert stop.is_late(seconds) == (minutes > 0 and seconds == 120.0)
+    assert stop.reached_limit(steps, seconds) == limit
+    assert stop.is_out_of_time(seconds) == (minutes > 0 and seconds == 120.0)
 
 
 @pytest.mark.parametrize("name", WRONG)

@@ -20,9 +20,9 @@ from tltl_runtime.spec.task import load_task
 from tltl_runtime.stealth.capabilities.vocabulary import params
 from tltl_runtime.stealth.levels.file import level_path, load_level
 from tltl_runtime.support.record_json import from_json, to_json
-from tltl_runtime.training.exploration.search import Searched
-from tltl_runtime.training.ppo.penalty_weight import raised_penalty
-from tltl_runtime.training.run import training_files as keeping
+from tltl_runtime.training.exploration.search import SearchProgress
+from tltl_runtime.training.ppo.penalty_weight import penalty_rise
+from tltl_runtime.training.run import training_files
 from tltl_runtime.training.run.checkpoint import Checkpoint, write_checkpoint
 from tltl_runtime.training.run.metrics import METRICS, read_metrics
 from tltl_runtime.training.run.record import write_record
@@ -34,7 +34,7 @@ from tltl_runtime.training.run.run_file import (
     POLICY,
     RECORD,
     RUN,
-    Run,
+    TrainingRun,
     identity,
     leaves,
     read_run,
@@ -58,14 +58,14 @@ def _numbers(reports: list[TrainingReport]) -> list[Any]:
     return [(report.iteration.number, report.iteration.losses, report.steps, report.window) for report in reports]
 
 
-def _assert_equal_weights(one: Run, other: Run) -> None:
+def _assert_equal_weights(one: TrainingRun, other: TrainingRun) -> None:
     first, second = checkpoint_of(one).algorithm, checkpoint_of(other).algorithm
     for part in ("actor_state_dict", "critic_state_dict"):
         assert first[part].keys() == second[part].keys()
         assert all(torch.equal(first[part][name], second[part][name]) for name in first[part])
 
 
-def test_a_training_ends_at_its_limit_and_writes_its_files(whole: tuple[Run, list[TrainingReport]]) -> None:
+def test_a_training_ends_at_its_limit_and_writes_its_files(whole: tuple[TrainingRun, list[TrainingReport]]) -> None:
     run, reports = whole
     assert [(report.iteration.number, report.steps, report.stop) for report in reports] == [
         (1, 64, None),
@@ -94,7 +94,7 @@ def test_rsl_rl_prints_nothing(folder: Path, capfd: pytest.CaptureFixture[str]) 
 
 
 def test_equal_runs_and_equal_checkpoints_give_equal_numbers(
-    folder: Path, whole: tuple[Run, list[TrainingReport]]
+    folder: Path, whole: tuple[TrainingRun, list[TrainingReport]]
 ) -> None:
     run, reports = whole
     again = replace(run, folder=folder / "again")
@@ -130,7 +130,7 @@ def test_a_checkpoint_is_written_after_the_first_iteration_that_is_due(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     clock = SimpleNamespace(now=100.0)
-    monkeypatch.setattr(keeping, "time", SimpleNamespace(perf_counter=lambda: clock.now))
+    monkeypatch.setattr(training_files, "time", SimpleNamespace(perf_counter=lambda: clock.now))
     run = run_in(folder / "due", checkpoint_s=1.0, stop__steps=10**6)
     reports = train(run)
     written = []
@@ -155,7 +155,7 @@ def test_a_lower_limit_ends_a_training_with_a_policy(folder: Path) -> None:
     assert all(torch.equal(weights[name], now[name].to(torch.float16)) for name in now)
 
 
-def _judged_by(run: Run, spec: str) -> Run:
+def _judged_by(run: TrainingRun, spec: str) -> TrainingRun:
     task = load_task(spec, offered=params(load_level(run.level, run.variant)))
     return replace(run, fspa=task.fspa, params=task.params)
 
@@ -173,7 +173,7 @@ def test_a_training_interrupted_while_it_saves_saves_again(folder: Path, monkeyp
     assert checkpoint_of(run).iteration == 2
 
 
-@pytest.mark.parametrize("broken", ["train.Report", "metrics.Metrics.add"])
+@pytest.mark.parametrize("broken", ["train.TrainingReport", "metrics.Metrics.add"])
 def test_no_checkpoint_contains_an_unmeasured_iteration(
     folder: Path, monkeypatch: pytest.MonkeyPatch, broken: str
 ) -> None:
@@ -242,8 +242,8 @@ def test_a_resumed_training_has_no_record_of_its_end(folder: Path) -> None:
     assert read_policy(run.folder / POLICY).card.training == record
 
 
-def test_a_resumed_training_starts_on_its_known_ways(folder: Path) -> None:
-    def run_of(name: str, steps: int) -> Run:
+def test_a_resumed_training_starts_from_its_known_demonstrations(folder: Path) -> None:
+    def run_of(name: str, steps: int) -> TrainingRun:
         changes = {"exploration__ways": 2, "exploration__parts": 4, "stop__episodes": 10**5, "stop__steps": steps}
         return _judged_by(run_in(folder / name, **changes), SOON)
 
@@ -311,16 +311,16 @@ def test_the_identity_depends_on_all_settings_that_may_not_change(folder: Path, 
 
 
 @pytest.fixture
-def told_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+def reporting_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
     """Let a search report after its first step, so that a limit that has passed interrupts it."""
-    monkeypatch.setattr("tltl_runtime.training.exploration.search._TOLD_EVERY_S", 0.0)
+    monkeypatch.setattr("tltl_runtime.training.exploration.search._REPORT_INTERVAL_S", 0.0)
 
 
 SEARCH = {"exploration__ways": 10, "exploration__steps": 800}
 """A search that is not finished after its first step, and does not find this many ways."""
 
 
-@pytest.mark.usefixtures("told_at_once")
+@pytest.mark.usefixtures("reporting_at_once")
 def test_a_limit_in_minutes_ends_the_search_too(folder: Path) -> None:
     run = run_in(folder / "short", exploration__ways=10, exploration__steps=10**9, stop__minutes=1e-9)
     (report,) = train(run)
@@ -329,7 +329,7 @@ def test_a_limit_in_minutes_ends_the_search_too(folder: Path) -> None:
     assert report.searched.steps < 100_000
 
 
-@pytest.mark.usefixtures("told_at_once")
+@pytest.mark.usefixtures("reporting_at_once")
 def test_an_interrupted_search_starts_again(folder: Path) -> None:
     run = run_in(folder / "anew", **SEARCH, stop__minutes=1e-9)
     (report,) = train(run)
@@ -342,8 +342,8 @@ def test_an_interrupted_search_starts_again(folder: Path) -> None:
     assert last.searched.lengths[: len(report.searched.lengths)] == report.searched.lengths
 
 
-@pytest.mark.usefixtures("told_at_once")
-def test_an_interrupted_search_with_a_way_does_not_start_again(folder: Path) -> None:
+@pytest.mark.usefixtures("reporting_at_once")
+def test_an_interrupted_search_with_a_demonstration_does_not_start_again(folder: Path) -> None:
     run = run_in(folder / "enough", **SEARCH, stop__minutes=1e-9)
     list(train(run))
     kept = checkpoint_of(run)
@@ -354,7 +354,7 @@ def test_an_interrupted_search_with_a_way_does_not_start_again(folder: Path) -> 
     assert next(train(longer, resume=True)).searched == searched
 
 
-@pytest.mark.usefixtures("told_at_once")
+@pytest.mark.usefixtures("reporting_at_once")
 def test_a_repeated_search_is_in_the_checkpoint(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def stopped(_: Runner) -> Iterator[Iteration]:
         raise KeyboardInterrupt
@@ -374,9 +374,9 @@ def test_a_repeated_search_is_in_the_checkpoint(folder: Path, monkeypatch: pytes
 def test_a_training_at_a_standstill_searches_again_from_failures(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("tltl_runtime.training.ppo.recent_episodes._BETWEEN", (0.0, 2.0))
     monkeypatch.setattr("tltl_runtime.training.ppo.recent_episodes._STANDSTILL_STEPS", 256)
-    search_reports: list[Searched] = []
+    search_reports: list[SearchProgress] = []
     run = run_in(folder / "standstill", CHANCE, exploration__ways=4, exploration__steps=2000, stop__steps=640)
-    reports = list(train(run, searching=search_reports.append))
+    reports = list(train(run, on_search=search_reports.append))
     searches = [report.searched for report in reports if report.searched]
     assert [report.steps for report in reports] == list(range(64, 641, 64))
     first, last = searches[0], searches[-1]
@@ -395,13 +395,13 @@ def test_a_search_at_a_standstill_is_in_the_checkpoint_with_its_time(
     monkeypatch.setattr("tltl_runtime.training.ppo.recent_episodes._BETWEEN", (0.0, 2.0))
     monkeypatch.setattr("tltl_runtime.training.ppo.recent_episodes._STANDSTILL_STEPS", 256)
     changes = {"exploration__ways": 4, "exploration__steps": 2000, "checkpoint_s": 10**6}
-    run, search_reports = run_in(folder / "kept", CHANCE, **changes, stop__steps=10**5), list[Searched]()
-    reports = train(run, searching=search_reports.append)
+    run, search_reports = run_in(folder / "kept", CHANCE, **changes, stop__steps=10**5), list[SearchProgress]()
+    reports = train(run, on_search=search_reports.append)
     before = [next(reports) for _ in range(4)][-1]
     first = len(search_reports)
     next(reports)
     # Simulate that the process is killed here.
-    monkeypatch.setattr("tltl_runtime.training.run.training_files.Keeping.save", lambda *_: None)
+    monkeypatch.setattr("tltl_runtime.training.run.training_files.TrainingFiles.save", lambda *_: None)
     reports.close()
     kept = checkpoint_of(run)
     assert before.searched is not None and kept.searched is not None
@@ -413,7 +413,7 @@ def test_a_search_at_a_standstill_is_in_the_checkpoint_with_its_time(
 @pytest.mark.parametrize(("schedule", "last"), [("fading", 0.0084), ("fixed", 0.01)])
 def test_the_entropy_bonus_fades_as_the_spec_is_met(folder: Path, schedule: str, last: float) -> None:
     run = run_in(
-        folder / schedule, ppo__entropy_schedule=schedule, classes__runner="tests.runtime.training.runs:Weighing"
+        folder / schedule, ppo__entropy_schedule=schedule, classes__runner="tests.runtime.training.runs:WeightReporting"
     )
     first, *_, report = train(_judged_by(run, SOON))
     assert report.window.pass_rate == 1.0
@@ -422,8 +422,8 @@ def test_the_entropy_bonus_fades_as_the_spec_is_met(folder: Path, schedule: str,
     assert report.iteration.losses["weight"] == pytest.approx(last)
 
 
-def test_the_policy_is_sharpened_as_the_spec_is_met(folder: Path) -> None:
-    def run_of(sharpening: float) -> Run:
+def test_the_inverse_temperature_rises_as_the_spec_is_met(folder: Path) -> None:
+    def run_of(sharpening: float) -> TrainingRun:
         changes = {"stop__windows": 1, "stop__episodes": 10, "ppo__sharpening": sharpening}
         return _judged_by(run_in(folder / f"by-{sharpening:.0f}", **changes), SOON)
 
@@ -440,34 +440,45 @@ def test_the_policy_is_sharpened_as_the_spec_is_met(folder: Path) -> None:
         assert torch.allclose(sharper[name], weights * factor), name
 
 
-def test_a_resumed_training_continues_to_sharpen(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_resumed_training_keeps_its_inverse_temperature(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     run = _judged_by(run_in(folder / "sharpened", stop__windows=1, stop__episodes=10, ppo__sharpening=3.0), SOON)
     reports = train(run)
     next(reports)
     reports.close()
     factors: list[float] = []
-    monkeypatch.setattr(Runner, "sharpen", lambda _, factor: factors.append(factor))
+    monkeypatch.setattr(Runner, "scale_inverse_temperature", lambda _, factor: factors.append(factor))
     assert next(train(run, resume=True)).window.successes == 10
     assert factors == pytest.approx([3 / 2.2])
 
 
 def test_failures_cost_more_as_the_spec_is_met(folder: Path) -> None:
-    changes = {"stop__windows": 1, "stop__episodes": 10, "classes__runner": "tests.runtime.training.runs:Weighing"}
+    changes = {
+        "stop__windows": 1,
+        "stop__episodes": 10,
+        "classes__runner": "tests.runtime.training.runs:WeightReporting",
+    }
     run = _judged_by(run_in(folder / "rising", **changes), SOON)
     first, second = train(run)
     assert (first.window.successes, second.stop) == (8, "met")
-    assert (first.iteration.losses["severity"], second.iteration.losses["severity"]) == (0.0, pytest.approx(0.6))
-    rise = raised_penalty(run)
+    assert (first.iteration.losses["penalty_weight"], second.iteration.losses["penalty_weight"]) == (
+        0.0,
+        pytest.approx(0.6),
+    )
+    rise = penalty_rise(run)
     assert rise is not None
-    assert first.iteration.losses["dearer"] == rise(0) > 0
+    assert first.iteration.losses["extra_penalty"] == rise(0) > 0
 
 
 def test_a_resumed_training_keeps_its_weights_of_entropy_and_penalty(folder: Path) -> None:
-    changes = {"stop__windows": 1, "stop__episodes": 10, "classes__runner": "tests.runtime.training.runs:Weighing"}
+    changes = {
+        "stop__windows": 1,
+        "stop__episodes": 10,
+        "classes__runner": "tests.runtime.training.runs:WeightReporting",
+    }
     run = _judged_by(run_in(folder / "weighed", **changes), SOON)
     reports = train(run)
     assert next(reports).window.successes == 8
     reports.close()
     losses = next(train(run, resume=True)).iteration.losses
-    assert losses["severity"] == pytest.approx(0.6)
+    assert losses["penalty_weight"] == pytest.approx(0.6)
     assert losses["weight"] == pytest.approx(0.002)

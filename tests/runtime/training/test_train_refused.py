@@ -20,7 +20,7 @@ from tltl_runtime.training.run.report import TrainingReport
 from tltl_runtime.training.run.run_file import (
     CHECKPOINT,
     RUN,
-    Run,
+    TrainingRun,
     read_run,
 )
 from tltl_runtime.training.run.train import train
@@ -29,20 +29,22 @@ from tltlc.diagnostics.diagnostic import TltlError
 
 
 @pytest.fixture(name="copy")
-def _copy(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, whole: tuple[Run, list[TrainingReport]]) -> Iterator[Run]:
+def _copy(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, whole: tuple[TrainingRun, list[TrainingReport]]
+) -> Iterator[TrainingRun]:
     """A copy of the whole training, in the folder `run`."""
     shutil.copytree(whole[0].folder, tmp_path / "run")
     monkeypatch.chdir(tmp_path)
     return replace(whole[0], folder=Path("run"))
 
 
-def _torn(run: Run) -> Run:
+def _torn(run: TrainingRun) -> TrainingRun:
     data = (run.folder / CHECKPOINT).read_bytes()
     (run.folder / CHECKPOINT).write_bytes(data[: len(data) // 2])
     return run
 
 
-def _flipped(run: Run) -> Run:
+def _flipped(run: TrainingRun) -> TrainingRun:
     data = bytearray((run.folder / CHECKPOINT).read_bytes())
     data[len(data) // 2] ^= 1
     (run.folder / CHECKPOINT).write_bytes(data)
@@ -54,36 +56,36 @@ class _Harmful:
         return Path, ("harm",)
 
 
-def _harmful(run: Run) -> Run:
+def _harmful(run: TrainingRun) -> TrainingRun:
     torch.save({"format": "tltl-checkpoint", "version": 1, "run": _Harmful()}, run.folder / CHECKPOINT)
     return run
 
 
-def _other_seed(run: Run) -> Run:
+def _other_seed(run: TrainingRun) -> TrainingRun:
     return replace(run, seed=4)
 
 
-def _other_settings(run: Run) -> Run:
+def _other_settings(run: TrainingRun) -> TrainingRun:
     """Write a checkpoint with another hash of the settings, as of another version."""
     content = torch.load(run.folder / CHECKPOINT, weights_only=True)
     torch.save({**content, "run": {**content["run"], "settings": "0" * 64}}, run.folder / CHECKPOINT)
     return run
 
 
-def _newer(run: Run) -> Run:
+def _newer(run: TrainingRun) -> TrainingRun:
     content = torch.load(run.folder / CHECKPOINT, weights_only=True)
     torch.save({**content, "version": VERSION + 1}, run.folder / CHECKPOINT)
     return run
 
 
-def _partial(run: Run) -> Run:
+def _partial(run: TrainingRun) -> TrainingRun:
     content = torch.load(run.folder / CHECKPOINT, weights_only=True)
     del content["window"]
     torch.save(content, run.folder / CHECKPOINT)
     return run
 
 
-def _wider(run: Run) -> Run:
+def _wider(run: TrainingRun) -> TrainingRun:
     """Write a checkpoint with weights of another shape, as of another network."""
     content = torch.load(run.folder / CHECKPOINT, weights_only=True)
     weights = content["algorithm"]["actor_state_dict"]
@@ -105,25 +107,27 @@ def _wider(run: Run) -> Run:
         ("TLT0864_shape", _wider),
     ],
 )
-def test_a_checkpoint_that_does_not_fit_is_rejected(copy: Run, name: str, change: Callable[[Run], Run]) -> None:
+def test_a_checkpoint_that_does_not_fit_is_rejected(
+    copy: TrainingRun, name: str, change: Callable[[TrainingRun], TrainingRun]
+) -> None:
     with pytest.raises(TltlError) as caught:
         next(train(change(copy), resume=True))
     compare(name, caught.value)
 
 
-def test_a_new_training_does_not_overwrite_another_one(copy: Run) -> None:
+def test_a_new_training_does_not_overwrite_another_one(copy: TrainingRun) -> None:
     with pytest.raises(TltlError) as caught:
         next(train(copy))
     compare("TLT0867", caught.value)
 
 
-def test_a_folder_is_used_by_one_training_at_a_time(copy: Run) -> None:
+def test_a_folder_is_used_by_one_training_at_a_time(copy: TrainingRun) -> None:
     with lock_training(copy.folder), pytest.raises(TltlError) as caught:
         next(train(copy, resume=True))
     compare("TLT0865", caught.value)
 
 
-def test_an_unwritable_folder_is_reported_on_resume(copy: Run) -> None:
+def test_an_unwritable_folder_is_reported_on_resume(copy: TrainingRun) -> None:
     (copy.folder / ".lock").unlink()
     (copy.folder / ".lock").mkdir()
     with pytest.raises(TltlError) as caught:
@@ -148,7 +152,7 @@ def _with_ppo(document: Any, **changes: Any) -> Any:
         ("TLT0863_gone", lambda document: _with_ppo(document, momentum=0.9)),
     ],
 )
-def test_an_invalid_description_is_rejected(copy: Run, name: str, change: Callable[[Any], Any]) -> None:
+def test_an_invalid_description_is_rejected(copy: TrainingRun, name: str, change: Callable[[Any], Any]) -> None:
     path = copy.folder / RUN
     changed = change(json.loads(path.read_text()))
     path.write_text("{" if changed is None else json.dumps(changed))
@@ -165,7 +169,7 @@ def test_an_invalid_description_is_rejected(copy: Run, name: str, change: Callab
         ({"format": "fspa", "version": float("inf")}, "TLT0601: .* is not JSON: Infinity is no number"),
     ],
 )
-def test_an_invalid_automaton_in_the_description_is_rejected(copy: Run, artefact: object, reason: str) -> None:
+def test_an_invalid_automaton_in_the_description_is_rejected(copy: TrainingRun, artefact: object, reason: str) -> None:
     path = copy.folder / RUN
     path.write_text(json.dumps({**json.loads(path.read_text()), "artefact": artefact}))
     with pytest.raises(TltlError, match=reason):
@@ -230,7 +234,7 @@ def test_a_policy_with_too_large_weights_is_rejected(folder: Path) -> None:
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="limits the size of files as other systems do")
-def test_a_failed_write_keeps_the_older_checkpoint(copy: Run) -> None:
+def test_a_failed_write_keeps_the_older_checkpoint(copy: TrainingRun) -> None:
     import resource
 
     path = copy.folder / CHECKPOINT

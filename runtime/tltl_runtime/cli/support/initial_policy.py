@@ -17,7 +17,7 @@ from tltl_runtime.policies.policy import Policy
 from tltl_runtime.stealth.level import Level, Sensors
 from tltl_runtime.stealth.observation.sensors import chosen
 from tltl_runtime.training.run.initial_policy import weights_hash
-from tltl_runtime.training.run.run_file import Run
+from tltl_runtime.training.run.run_file import TrainingRun
 from tltl_runtime.training.run.settings import TrainingSettings
 from tltl_runtime.training.run.settings_file import read_values
 from tltlc.api import Diagnostic, Fspa, TltlError, fileio, record, replace
@@ -86,7 +86,7 @@ def check_beginning(begun: InitialPolicyOptions, level: Level, fspa: Fspa, asked
     return begun.card.sensors
 
 
-def is_another(run: Run, named: Path) -> str | None:
+def is_another(run: TrainingRun, named: Path) -> str | None:
     """A sentence if a training did not start with this policy; None if it did."""
     where = f"the training in `{run.folder}` begins with"
     if run.initial is None:
@@ -95,7 +95,7 @@ def is_another(run: Run, named: Path) -> str | None:
     return None if same else f"{where} another policy than `{named}`"
 
 
-def moved(run: Run, named: Path) -> Run:
+def moved(run: TrainingRun, named: Path) -> TrainingRun:
     """Update the path of the initial policy."""
     assert run.initial is not None
     return replace(run, initial=replace(run.initial, path=str(policy_file(named))))

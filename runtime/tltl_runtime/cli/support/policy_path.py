@@ -10,7 +10,7 @@ from tltl_runtime.game.level_name import level_place
 from tltl_runtime.policies.shipped import shipped_policy
 from tltl_runtime.stealth.levels.file import level_names, load_level
 from tltl_runtime.training.run.metrics import METRICS, read_metrics
-from tltl_runtime.training.run.run_file import POLICY, RUN, named_trainings, read_place, resume_command
+from tltl_runtime.training.run.run_file import POLICY, RUN, named_trainings, read_level_and_variant, resume_command
 from tltlc.api import Diagnostic, TltlError, fileio
 
 
@@ -35,7 +35,7 @@ def policy_place(policy: Path | None, level: str | None, command: str) -> tuple[
     path = policy_path(policy)
     if name is None and fileio.is_file(policy / RUN):
         # The card has only the level's name; the folder of the training has the path of its file.
-        name, variant = read_place(policy)
+        name, variant = read_level_and_variant(policy)
         check_level_exists(name, variant, f"{command} {quote(str(policy))}")
     return path, name, variant
 

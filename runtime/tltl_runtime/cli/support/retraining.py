@@ -23,8 +23,8 @@ from tltl_runtime.regression.retrain.retrained import Retrained
 from tltl_runtime.regression.suite.suite import SHIPPED, Suite
 from tltl_runtime.regression.verdict.baseline import baseline_command
 from tltl_runtime.regression.verdict.suite_run import NOT_THE_CASE, Done
-from tltl_runtime.training.run.record import ended_as, write_record
-from tltl_runtime.training.run.run_file import RUN, Run
+from tltl_runtime.training.run.record import finished_record, write_record
+from tltl_runtime.training.run.run_file import RUN, TrainingRun
 from tltlc.api import TltlError, cli, record, replace
 
 _NOT_THE_CASE: Final = NOT_THE_CASE | {"TLT0005"}
@@ -93,11 +93,11 @@ def _one_case(name: str) -> Iterator[None]:
         cli.show(error.diagnostics, "text", sys.stderr)
 
 
-def _train(asked: Retraining, name: str, run: Run) -> None:
+def _train(asked: Retraining, name: str, run: TrainingRun) -> None:
     """Start or continue the training to its end, unless it is already finished."""
     exists = (run.folder / RUN).exists()
     kept = exists and is_kept(run)
-    if kept and ended_as(run):
+    if kept and finished_record(run):
         return
     verb = "goes on" if kept else "begins with its policy"
     cause = "what is kept is of another level, policy, spec, seed or settings, or cannot be read"
@@ -109,13 +109,13 @@ def _train(asked: Retraining, name: str, run: Run) -> None:
     write_record(run, train_shown(run, resume=kept, again=f"{asked.again} --minutes {asked.minutes:g}"))
 
 
-def _make_room(asked: Retraining, name: str, run: Run) -> None:
+def _make_room(asked: Retraining, name: str, run: TrainingRun) -> None:
     """Make room for a new training, and print where an earlier one was moved."""
     if run.folder.is_dir() and (moved_to := make_room(asked.suite, run.folder)):
         click.echo(f"{plain(name)}: the training that was in {run.folder} is now in {moved_to}", err=True)
 
 
-def _played(asked: Retraining, done: Done, run: Run) -> Retrained:
+def _played(asked: Retraining, done: Done, run: TrainingRun) -> Retrained:
     """Return the result of the training, showing the progress of its episodes on standard error."""
     assert done.ready is not None
     case = replace(done.ready.case, name=f"{done.report.name}, trained anew")

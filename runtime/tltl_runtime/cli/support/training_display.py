@@ -22,11 +22,11 @@ from tltl_runtime.cli.support.training_text import (
     search_end,
     search_line,
 )
-from tltl_runtime.training.exploration.search import Searched
-from tltl_runtime.training.imitation.demonstrations import Tried
-from tltl_runtime.training.ppo.distributed import peers
+from tltl_runtime.training.exploration.search import SearchProgress
+from tltl_runtime.training.imitation.demonstrations import Attempt
+from tltl_runtime.training.ppo.distributed import process_group
 from tltl_runtime.training.run.report import TrainingReport
-from tltl_runtime.training.run.run_file import CHECKPOINT, Run
+from tltl_runtime.training.run.run_file import CHECKPOINT, TrainingRun
 
 _SECONDS_BETWEEN_LINES: Final = 10.0
 
@@ -34,10 +34,10 @@ _SECONDS_BETWEEN_LINES: Final = 10.0
 class Display(Protocol):
     """Shows the progress of a training."""
 
-    def searched(self, searched: Searched) -> None:
+    def searched(self, searched: SearchProgress) -> None:
         """Show the progress of the search that precedes the training."""
 
-    def recorded(self, tried: Tried) -> None:
+    def recorded(self, attempt: Attempt) -> None:
         """Show the progress of recording the demonstrations that precede the training."""
 
     def trained(self, report: TrainingReport) -> None:
@@ -45,12 +45,12 @@ class Display(Protocol):
 
 
 @contextmanager
-def display(run: Run, again: str) -> Iterator[Display]:
+def display(run: TrainingRun, again: str) -> Iterator[Display]:
     """Yield a display that writes to standard error.  ``again`` is the command that resumes the training.
 
     If torchrun started several processes, only the first one writes.
     """
-    if peers().rank > 0:
+    if process_group().rank > 0:
         yield _Nothing()
         return
     console = Console(stderr=True, highlight=False)
@@ -64,10 +64,10 @@ def display(run: Run, again: str) -> Iterator[Display]:
 
 
 class _Nothing:
-    def searched(self, searched: Searched) -> None:
+    def searched(self, searched: SearchProgress) -> None:
         pass
 
-    def recorded(self, tried: Tried) -> None:
+    def recorded(self, attempt: Attempt) -> None:
         pass
 
     def trained(self, report: TrainingReport) -> None:
@@ -77,12 +77,12 @@ class _Nothing:
 class _Lines:
     """Prints a line at the first report, then every ten seconds, and at the last report."""
 
-    def __init__(self, run: Run, again: str) -> None:
+    def __init__(self, run: TrainingRun, again: str) -> None:
         self._run, self._again = run, again
         self._next = 0.0
         self._has_searched = self._has_trained = False
 
-    def searched(self, searched: Searched) -> None:
+    def searched(self, searched: SearchProgress) -> None:
         if not self._has_searched and self._has_trained:
             self._print(SEARCHED_AGAIN, always=True)
         elif not self._has_searched:
@@ -95,9 +95,9 @@ class _Lines:
         self._has_searched = True
         self._print(search_line(searched), always=self._has_trained and searched.complete)
 
-    def recorded(self, tried: Tried) -> None:
+    def recorded(self, attempt: Attempt) -> None:
         wanted = self._run.settings.imitation.demonstrations
-        self._print(recording_line(tried, wanted), always=tried.path is None or tried.kept == wanted)
+        self._print(recording_line(attempt, wanted), always=attempt.path is None or attempt.kept == wanted)
 
     def trained(self, report: TrainingReport) -> None:
         first, self._has_trained, self._has_searched = not self._has_trained, True, False

@@ -24,10 +24,10 @@ from tltl_runtime.cli.support.training_text import (
     seconds_left,
 )
 from tltl_runtime.support.number_text import duration, number, percent, share
-from tltl_runtime.training.exploration.search import Searched
-from tltl_runtime.training.imitation.demonstrations import Tried
+from tltl_runtime.training.exploration.search import SearchProgress
+from tltl_runtime.training.imitation.demonstrations import Attempt
 from tltl_runtime.training.run.report import EpisodeWindow, TrainingReport
-from tltl_runtime.training.run.run_file import CHECKPOINT, Run
+from tltl_runtime.training.run.run_file import CHECKPOINT, TrainingRun
 from tltl_runtime.training.run.settings import Stop
 from tltlc.api import Fspa, State, label_text
 
@@ -46,23 +46,23 @@ _BAR: Final = 24, 10
 class Picture:
     """Draws the last report.  The clock advances between reports."""
 
-    def __init__(self, run: Run, console: Console) -> None:
+    def __init__(self, run: TrainingRun, console: Console) -> None:
         self._run, self._console = run, console
         self._last: TrainingReport | None = None
-        self._searched: Searched | None = None
-        self._recorded: Tried | None = None
+        self._searched: SearchProgress | None = None
+        self._recorded: Attempt | None = None
         self._confirmation = ""
         self._at = time.monotonic()
         self._checkpoint: float | None = None
         self._resumed = (run.folder / CHECKPOINT).exists()
 
-    def searched(self, searched: Searched) -> None:
+    def searched(self, searched: SearchProgress) -> None:
         """Store the progress of the search."""
         self._searched = searched
 
-    def recorded(self, tried: Tried) -> None:
+    def recorded(self, attempt: Attempt) -> None:
         """Store the progress of recording demonstrations."""
-        self._recorded = tried
+        self._recorded = attempt
 
     def trained(self, report: TrainingReport) -> None:
         """Store a report of the training."""

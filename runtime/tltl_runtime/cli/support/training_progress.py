@@ -7,13 +7,13 @@ from contextlib import closing, contextmanager
 
 from tltl_runtime.cli.support.training_display import display
 from tltl_runtime.training.run.report import TrainingReport
-from tltl_runtime.training.run.run_file import CHECKPOINT, RUN, Run
+from tltl_runtime.training.run.run_file import CHECKPOINT, RUN, TrainingRun
 from tltl_runtime.training.run.train import train
 from tltl_runtime.vector.errors import WorkerError
 from tltlc.api import Diagnostic, TltlError
 
 
-def train_shown(run: Run, *, resume: bool, again: str) -> TrainingReport:
+def train_shown(run: TrainingRun, *, resume: bool, again: str) -> TrainingReport:
     """Train to the end, show the progress, and return the last report.
 
     ``again`` is the command that resumes a stopped training.
@@ -22,14 +22,14 @@ def train_shown(run: Run, *, resume: bool, again: str) -> TrainingReport:
         TltlError: TLT0871, a worker was lost; errors from training.
     """
     with _broken_off(again), display(run, again) as shown:
-        training = train(run, resume=resume, searching=shown.searched, recording=shown.recorded)
+        training = train(run, resume=resume, on_search=shown.searched, on_attempt=shown.recorded)
         with closing(training) as reports:
             for last in reports:
                 shown.trained(last)
         return last
 
 
-def stopped_line(run: Run, again: str) -> str | None:
+def stopped_line(run: TrainingRun, again: str) -> str | None:
     """Describe a training that Ctrl-C has stopped; None if it had not started."""
     if not (run.folder / RUN).exists():
         return None

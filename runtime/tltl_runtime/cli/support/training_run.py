@@ -36,15 +36,15 @@ from tltl_runtime.support.number_text import duration
 from tltl_runtime.support.record_json import to_json
 from tltl_runtime.training.imitation.demonstrations import recordings
 from tltl_runtime.training.imitation.imitation_data import nothing_to_imitate
-from tltl_runtime.training.ppo.distributed import peers
+from tltl_runtime.training.ppo.distributed import process_group
 from tltl_runtime.training.run.checkpoint import read_checkpoint
 from tltl_runtime.training.run.choices import Method
-from tltl_runtime.training.run.initial_policy import initial_of
+from tltl_runtime.training.run.initial_policy import initial_policy_of
 from tltl_runtime.training.run.run_file import (
     CHECKPOINT,
     MAY_CHANGE,
     RUN,
-    Run,
+    TrainingRun,
     leaves,
     read_level_hash,
     read_run,
@@ -75,7 +75,7 @@ class TrainOptions:
     policy: Path | None = None
 
 
-def new_run(asked: TrainOptions, folder: Path | None) -> Run:
+def new_run(asked: TrainOptions, folder: Path | None) -> TrainingRun:
     """Set up a new training, by default in a folder that is named after it.
 
     Raises:
@@ -110,7 +110,7 @@ def new_run(asked: TrainOptions, folder: Path | None) -> Run:
     suffix = f"-{settings.method}" if settings.imitates else "-tuned" if begun else ""
     folder = folder or Path("training") / f"{level.name}-{level.variant}-{task.fspa.name}-{seed}{suffix}"
     _check_folder(folder)
-    return Run(
+    return TrainingRun(
         folder=folder,
         fspa=task.fspa,
         params=task.params,
@@ -120,7 +120,7 @@ def new_run(asked: TrainOptions, folder: Path | None) -> Run:
         settings=settings,
         seed=seed,
         demonstrations=str(asked.demonstrations) if asked.demonstrations else None,
-        initial=initial_of(begun.path, begun.policy) if begun else None,
+        initial=initial_policy_of(begun.path, begun.policy) if begun else None,
     )
 
 
@@ -136,7 +136,7 @@ def new_settings(asked: TrainOptions, begun: InitialPolicyOptions | None) -> Tra
     return settings if begun is None else as_its_policy(settings, begun, asked.config)
 
 
-def resumed_run(asked: TrainOptions, folder: Path) -> Run:
+def resumed_run(asked: TrainOptions, folder: Path) -> TrainingRun:
     """Set up the training in ``folder`` to be resumed.
 
     Only some settings may change.  Level, demonstrations and initial policy must be the same, but their
@@ -160,7 +160,7 @@ def resumed_run(asked: TrainOptions, folder: Path) -> Run:
     return replace(run, settings=_with_limits(settings, asked))
 
 
-def check_limits(run: Run) -> None:
+def check_limits(run: TrainingRun) -> None:
     """Raise TltlError, TLT0862, if a resumed training gets a limit that it has already passed."""
     stop, before = run.settings.stop, read_run(run.folder).settings.stop
     checkpoint = None if stop == before else read_checkpoint(run.folder / CHECKPOINT)
@@ -169,7 +169,7 @@ def check_limits(run: Run) -> None:
     passed: list[tuple[str, str]] = []
     if stop.steps != before.steps and stop.steps <= checkpoint.steps:
         passed.append((f"done {checkpoint.steps:,} steps", f"{stop.steps:,} steps"))
-    if stop.minutes != before.minutes and stop.is_late(checkpoint.seconds):
+    if stop.minutes != before.minutes and stop.is_out_of_time(checkpoint.seconds):
         passed.append((f"gone on for {duration(checkpoint.seconds)}", minutes(stop.minutes)))
     if passed:
         help_, where = "give a limit greater than that, or leave it out", f"the training in `{run.folder}`"
@@ -189,7 +189,7 @@ def _place(asked: TrainOptions, begun: InitialPolicyOptions | None) -> tuple[str
     raise _usage("say what to train for: a spec, a level, or both")
 
 
-def _at_its_level(run: Run, asked: TrainOptions) -> Run:
+def _at_its_level(run: TrainingRun, asked: TrainOptions) -> TrainingRun:
     """Update the path of the level's file if ``--level`` names the same level; check that the file exists."""
     if asked.level is None:
         check_level_exists(run.level, run.variant, resume_command(run.folder))
@@ -205,7 +205,7 @@ def _check_folder(folder: Path) -> None:
 
     They could be lost when the training is deleted.
     """
-    if peers().rank > 0 or not folder.is_dir() or (folder / RUN).exists():
+    if process_group().rank > 0 or not folder.is_dir() or (folder / RUN).exists():
         return
     try:
         names = sorted(path.name for path in folder.iterdir() if not path.name.startswith("."))
@@ -263,7 +263,7 @@ def _or(asked: T | None, known: T) -> T:
     return known if asked is None else asked
 
 
-def _differences(run: Run, asked: TrainOptions, settings: TrainingSettings) -> Iterator[str]:
+def _differences(run: TrainingRun, asked: TrainOptions, settings: TrainingSettings) -> Iterator[str]:
     """Yield a sentence for each difference between a training and the options."""
     where = f"the training in `{run.folder}`"
     if asked.level is not None:

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Final
 
 from tltl_runtime.support.number_text import duration, number, share
-from tltl_runtime.training.exploration.search import Exploration, Searched
-from tltl_runtime.training.imitation.demonstrations import Tried
-from tltl_runtime.training.imitation.imitation_data import Imitated
+from tltl_runtime.training.exploration.search import Exploration, SearchProgress
+from tltl_runtime.training.imitation.demonstrations import Attempt
+from tltl_runtime.training.imitation.imitation_data import ImitationSummary
 from tltl_runtime.training.run.report import Confirmation, TrainingReport
 from tltl_runtime.training.run.settings import Stop
 
@@ -34,13 +34,13 @@ def line(report: TrainingReport, stop: Stop) -> str:
     return ", ".join(parts)
 
 
-def recording_line(tried: Tried, wanted: int) -> str:
+def recording_line(attempt: Attempt, wanted: int) -> str:
     """Describe the progress of recording the expert's demonstrations in one line."""
-    seed, fate = tried.episode.seed, "is kept" if tried.path else "fails, and is not kept"
-    return f"recording the expert: {tried.kept} of {wanted} demonstrations, the episode of seed {seed} {fate}"
+    seed, fate = attempt.episode.seed, "is kept" if attempt.path else "fails, and is not kept"
+    return f"recording the expert: {attempt.kept} of {wanted} demonstrations, the episode of seed {seed} {fate}"
 
 
-def imitated_line(imitated: Imitated) -> str:
+def imitated_line(imitated: ImitationSummary) -> str:
     """Describe the imitated demonstrations in one line."""
     count = f"{imitated.episodes} demonstration{'s' * (imitated.episodes != 1)}"
     text = f"imitating {count} of {imitated.decisions:,} decisions, by {' and '.join(imitated.players)}"
@@ -48,7 +48,7 @@ def imitated_line(imitated: Imitated) -> str:
     return f"{text}; {left} recording{'s' * (left > 1)} left out: {imitated.left_out[0]}" if left else text
 
 
-def search_line(searched: Searched) -> str:
+def search_line(searched: SearchProgress) -> str:
     """Describe the progress of the search in one line."""
     if count := len(searched.lengths):
         ways = f"{count} way{'s' * (count > 1)} to meet the spec, the shortest of {min(searched.lengths)} steps"
@@ -64,7 +64,7 @@ def search_end(exploration: Exploration) -> str:
     return f"The search ends when {ways} are found, at the latest after {exploration.steps:,} steps."
 
 
-def found_line(searched: Searched) -> str:
+def found_line(searched: SearchProgress) -> str:
     """Describe the result of the search in one line of at most 72 characters."""
     took, count = duration(searched.seconds), len(searched.lengths)
     if not count:

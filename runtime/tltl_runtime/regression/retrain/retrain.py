@@ -28,7 +28,7 @@ from tltl_runtime.regression.verdict.suite_run import WRITABLE, Done, case_folde
 from tltl_runtime.support.record_json import to_json
 from tltl_runtime.training.run.checkpoint import read_checkpoint
 from tltl_runtime.training.run.folder import lock_training
-from tltl_runtime.training.run.initial_policy import initial_of, weights_hash
+from tltl_runtime.training.run.initial_policy import initial_policy_of, weights_hash
 from tltl_runtime.training.run.metrics import METRICS
 from tltl_runtime.training.run.record import recorded_end
 from tltl_runtime.training.run.run_file import (
@@ -37,7 +37,7 @@ from tltl_runtime.training.run.run_file import (
     POLICY,
     RECORD,
     RUN,
-    Run,
+    TrainingRun,
     identity,
     read_level_hash,
     read_run,
@@ -54,7 +54,7 @@ _RESULT: Final = "retrained.json"
 _VERSION: Final = 1
 
 
-def retraining(suite: Suite, ready: Ready, folder: Path, minutes: float, pool: Pool) -> Run:
+def retraining(suite: Suite, ready: Ready, folder: Path, minutes: float, pool: Pool) -> TrainingRun:
     """Configure the retraining of a case's policy on its level, below the ``folder`` of a run.
 
     It stops after ``minutes`` at the latest.
@@ -67,7 +67,7 @@ def retraining(suite: Suite, ready: Ready, folder: Path, minutes: float, pool: P
     rollout = replace(
         settings.rollout, pool="ray" if pool == "ray" else "processes", workers=0 if pool == "ray" else pool
     )
-    return Run(
+    return TrainingRun(
         folder=place,
         fspa=setup.fspa,
         params=setup.params,
@@ -76,11 +76,11 @@ def retraining(suite: Suite, ready: Ready, folder: Path, minutes: float, pool: P
         sensors=card.sensors,
         settings=replace(settings, network=card.network, rollout=rollout, stop=replace(settings.stop, minutes=minutes)),
         seed=suite.seed,
-        initial=initial_of(path, setup.policy),
+        initial=initial_policy_of(path, setup.policy),
     )
 
 
-def is_kept(run: Run) -> bool:
+def is_kept(run: TrainingRun) -> bool:
     """Whether the folder contains this training, finished or not: same level, spec, policy, seed and settings.
 
     Raises:
@@ -152,7 +152,9 @@ def _free_beside(suite: Suite, folder: Path) -> Path:
     return next(path for path in candidates if path not in taken and not path.exists())
 
 
-def retrained(suite: Suite, done: Done, run: Run, pool: Pool, on_episode: Callable[[int, Account], None]) -> Retrained:
+def retrained(
+    suite: Suite, done: Done, run: TrainingRun, pool: Pool, on_episode: Callable[[int, Account], None]
+) -> Retrained:
     """Return the result of the finished training in ``run.folder``.
 
     The retrained policy plays fresh episodes, unless the result is cached.  It stops as soon as it is
@@ -193,7 +195,7 @@ def retrained(suite: Suite, done: Done, run: Run, pool: Pool, on_episode: Callab
     return result
 
 
-def trained_of(run: Run) -> FinishedRetraining:
+def trained_of(run: TrainingRun) -> FinishedRetraining:
     """Summarize the finished training in ``run.folder``.
 
     Raises:

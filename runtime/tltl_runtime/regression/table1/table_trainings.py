@@ -14,7 +14,7 @@ from tltl_runtime.policies.identity import spec_hash
 from tltl_runtime.regression.table1.paper_table import Model
 from tltl_runtime.spec.task import load_task
 from tltl_runtime.support.record_json import to_json
-from tltl_runtime.training.run.record import ended_as
+from tltl_runtime.training.run.record import finished_record
 from tltl_runtime.training.run.run_file import MAY_CHANGE, POLICY, RECORD, RUN, leaves, read_run
 from tltl_runtime.training.run.settings import read_settings
 from tltlc.api import record, replace
@@ -124,7 +124,7 @@ def trained(training: TableTraining) -> TrainedModel | None:
         return None
     run = read_run(training.folder)
     stop = replace(run.settings.stop, steps=training.limits.steps, minutes=training.limits.minutes)
-    ending = ended_as(replace(run, settings=replace(run.settings, stop=stop)))
+    ending = finished_record(replace(run, settings=replace(run.settings, stop=stop)))
     if ending is None:
         return None
     cloned = ending["imitated"]["cloned"] / ending["steps"] if training.imitates else None

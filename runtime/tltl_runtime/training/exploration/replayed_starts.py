@@ -1,8 +1,7 @@
-"""The reset distribution: where episodes begin.
+"""Starts of training episodes: the level's start, or a point in the middle of an earlier episode.
 
-They begin at the level's start, or in the middle of an earlier episode.
-Equal seeds and actions give equal episodes, so replaying the actions of an episode reaches the same
-state again.  The agent then continues from there.
+Equal seeds and actions give equal episodes.  So replaying the first actions of an episode reaches
+the same state again, and the agent continues from there.
 """
 
 from __future__ import annotations
@@ -26,82 +25,87 @@ Actions = list[list[int]]
 class EpisodeStart:
     """The start of an episode: its seed, and ``actions`` [n, branches] to replay first.
 
-    ``part`` locates the start on a way: the end of the way and the index of the part.  It is None
-    if the start is on no way.  The episode is cut off after ``most`` decisions of the agent; None:
-    never.
+    ``segment`` locates a start on a demonstration: how the demonstration ended (see
+    :func:`~tltl_runtime.training.exploration.search.end_of`) and the index of the segment.  It is
+    None at the level's start.  The episode is cut off after ``max_decisions`` decisions of the
+    agent; None: never.
     """
 
     seed: int
     actions: Sequence[Sequence[int]] = ()
-    part: tuple[int, int] | None = None
-    most: int | None = None
+    segment: tuple[int, int] | None = None
+    max_decisions: int | None = None
 
 
-class Replayed(gymnasium.Wrapper[Any, Any, Any, Any]):
-    """An environment whose episodes begin with ``begin``: a seed, and actions that are replayed.
+class ReplayedStartEnv(gymnasium.Wrapper[Any, Any, Any, Any]):
+    """An environment whose episodes begin at ``next_start``: a seed, and actions to replay.
 
-    ``begin`` stays as it is until it is set to another value; setting it to None does nothing.
-    Until it is first set, episodes begin as in the wrapped environment.  There are two environments
-    of ``make``: while the agent plays in one, :meth:`prepare` brings the other one to the start of
-    the next episode.
+    ``next_start`` keeps its value for all later episodes; setting it to None does nothing.  Until it
+    is first set, episodes begin as in the wrapped environment.  There are two environments of
+    ``make``: while the agent plays in one of them, :meth:`prepare` replays the actions for the next
+    episode in the other.
     """
 
     def __init__(self, make: Callable[[], gymnasium.Env[Any, Any]]) -> None:
         super().__init__(make())
-        self._other = make()
-        self._begin: tuple[int, NDArray[np.int8]] | None = None
-        self._bringing: Iterator[None] | None = None
-        self._brought: tuple[Any, dict[str, Any]] = {}, {}
+        self._spare_env = make()
+        self._next_start: tuple[int, NDArray[np.int8]] | None = None
+        self._replay: Iterator[None] | None = None
+        self._replayed: tuple[Any, dict[str, Any]] = {}, {}
 
     @property
-    def begin(self) -> tuple[int, NDArray[np.int8]] | None:
-        """The seed and the replayed actions of the next episodes."""
-        return self._begin
+    def next_start(self) -> tuple[int, NDArray[np.int8]] | None:
+        """The seed of the next episodes and the actions to replay [n, branches]; None before it is set."""
+        return self._next_start
 
-    @begin.setter
-    def begin(self, begin: tuple[int, NDArray[np.int8]] | None) -> None:
+    @next_start.setter
+    def next_start(self, next_start: tuple[int, NDArray[np.int8]] | None) -> None:
         # A vector environment sets the attribute of all its environments at once, with None for most of them.
-        if begin is not None:
-            self._begin = begin
-            self._bringing = self._bring(*begin)
+        if next_start is not None:
+            self._next_start = next_start
+            self._replay = self._replay_in_spare(*next_start)
 
     def prepare(self) -> bool:
-        """Take a step of the replay towards the next start; return False once nothing is left."""
-        return self._bringing is not None and next(self._bringing, self) is None
+        """Replay one action for the next episode; return False if none is left."""
+        return self._replay is not None and next(self._replay, self) is None
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
-        """Begin an episode and finish the replay.  The replay does not end the episode."""
-        if self._begin is None:
+        """Finish the replay and begin the episode after it; return the observation and the info there.
+
+        ``seed`` and ``options`` count only before ``next_start`` is set.
+        """
+        if self._next_start is None:
             return self.env.reset(seed=seed, options=options)
-        self._bringing = self._bringing or self._bring(*self._begin)
+        self._replay = self._replay or self._replay_in_spare(*self._next_start)
         while self.prepare():
             pass
-        self._bringing = None
-        self.env, self._other = self._other, self.env
-        return self._brought
+        self._replay = None
+        self.env, self._spare_env = self._spare_env, self.env
+        return self._replayed
 
     def close(self) -> None:
         """Close both environments."""
         super().close()
-        self._other.close()
+        self._spare_env.close()
 
-    def _bring(self, seed: int, actions: NDArray[np.int8]) -> Iterator[None]:
-        """Replay ``actions`` in the other environment, one per step of the generator."""
-        observation, info = self._other.reset(seed=seed)
+    def _replay_in_spare(self, seed: int, actions: NDArray[np.int8]) -> Iterator[None]:
+        """Replay ``actions`` in the spare environment, one per step of the generator."""
+        observation, info = self._spare_env.reset(seed=seed)
         for action in actions:
             yield
-            observation, _, _, _, info = self._other.step(action)
-        self._brought = observation, info
+            observation, _, _, _, info = self._spare_env.step(action)
+        self._replayed = observation, info
 
 
 class Episodes:
     """The current episode of each environment of ``env``: its start and all actions so far.
 
-    The environments are :class:`Replayed`; ``draw`` draws the start of each next episode.  The
-    constructor begins the first episodes: ``observation`` is their first observation.  ``replayed``
-    counts the replayed decisions.
+    The environments are :class:`ReplayedStartEnv`; ``draw`` draws the start of each next episode.
+    The constructor begins the first episodes; ``observation`` is their first observation.
+    ``replayed`` counts the replayed decisions.
 
-    All methods raise WorkerError, with the seeds of the starts, if a worker is lost.
+    Raises:
+        WorkerError: from any method, a worker was lost; the error names the seeds of the starts.
     """
 
     def __init__(self, env: WorkerVectorEnv, draw: Callable[[], EpisodeStart]) -> None:
@@ -111,41 +115,41 @@ class Episodes:
         self.starts = list(self._next)
         self.actions: list[Actions] = [[] for _ in self._next]
         self.replayed = 0
-        self._tell(range(env.num_envs))
-        with self._telling():
+        self._send_starts(range(env.num_envs))
+        with self._starts_in_errors():
             self.observation, _ = env.reset()
-        self.turn(np.ones(env.num_envs, dtype=np.bool_))
+        self.start_next(np.ones(env.num_envs, dtype=np.bool_))
 
     def step(self, actions: NDArray[np.int64]) -> tuple[Any, ...]:
-        """Record actions [num_envs, branches] and step all environments; return their results."""
+        """Record actions [num_envs, branches] and step all environments; return the results of the step."""
         for past_actions, action in zip(self.actions, actions.tolist(), strict=True):
             past_actions.append(action)
-        with self._telling():
+        with self._starts_in_errors():
             return self._env.step(actions)
 
-    def turn(self, over: NDArray[np.bool_]) -> None:
-        """Record that the next episodes have begun in the environments of the mask ``over``."""
-        rows = np.flatnonzero(over).tolist()
+    def start_next(self, mask: NDArray[np.bool_]) -> None:
+        """Note that the environments in ``mask`` [num_envs] have begun their next episodes."""
+        rows = np.flatnonzero(mask).tolist()
         if rows:
-            self._go_on(rows)
-            self._tell(rows)
+            self._advance(rows)
+            self._send_starts(rows)
 
-    def cut(self, over: NDArray[np.bool_]) -> Any:
-        """Cut off the episodes of the mask ``over``, begin the next; return all observations."""
-        rows = np.flatnonzero(over).tolist()
-        self._go_on(rows)
-        with self._telling():
-            observation, _ = self._env.reset(options={"reset_mask": over})
-        self._tell(rows)
+    def cut_off(self, mask: NDArray[np.bool_]) -> Any:
+        """Cut off the episodes in ``mask`` [num_envs] and begin the next; return all observations."""
+        rows = np.flatnonzero(mask).tolist()
+        self._advance(rows)
+        with self._starts_in_errors():
+            observation, _ = self._env.reset(options={"reset_mask": mask})
+        self._send_starts(rows)
         return observation
 
     def is_spent(self, row: int) -> bool:
-        """Whether the agent has made all decisions that the start of the episode allows."""
+        """Whether the agent has used up the ``max_decisions`` of the episode in this row."""
         start = self.starts[row]
-        return start.most is not None and len(self.actions[row]) - len(start.actions) >= start.most
+        return start.max_decisions is not None and len(self.actions[row]) - len(start.actions) >= start.max_decisions
 
-    def _go_on(self, rows: Iterable[int]) -> None:
-        """Go on to the next episodes of these environments, and draw the starts after them."""
+    def _advance(self, rows: Iterable[int]) -> None:
+        """Make the next episodes of these environments the current ones; draw the starts after them."""
         for row in rows:
             start = self.starts[row] = self._next[row]
             self.actions[row] = [list(action) for action in start.actions]
@@ -153,22 +157,22 @@ class Episodes:
             self._next[row] = self._draw()
 
     @contextmanager
-    def _telling(self) -> Iterator[None]:
-        """Add the seeds of the starts and the replayed steps to the error about a lost worker."""
+    def _starts_in_errors(self) -> Iterator[None]:
+        """Add the seeds and the steps of the episodes to an error about a lost worker."""
         try:
             yield
         except WorkerError as error:
-            raise WorkerError(error.loss, tuple(map(self._placed, error.playing))) from error
+            raise WorkerError(error.loss, tuple(map(self._with_start, error.playing))) from error
 
-    def _placed(self, playing: Playing) -> Playing:
-        """Return ``playing`` with the actual seed and step, which the environment does not know."""
+    def _with_start(self, playing: Playing) -> Playing:
+        """Return ``playing`` with the real seed and step; the environment knows only its own."""
         row = playing.env
         return replace(playing, seed=self.starts[row].seed, episode=1, step=len(self.actions[row]))
 
-    def _tell(self, rows: Iterable[int]) -> None:
-        """Send the environments of these rows the starts of their next episodes."""
-        begin: list[tuple[int, NDArray[np.int8]] | None] = [None] * self._env.num_envs
+    def _send_starts(self, rows: Iterable[int]) -> None:
+        """Send the starts of the next episodes to the environments of these rows."""
+        next_starts: list[tuple[int, NDArray[np.int8]] | None] = [None] * self._env.num_envs
         for row in rows:
-            begin[row] = self._next[row].seed, np.array(self._next[row].actions, dtype=np.int8)
-        with self._telling():
-            self._env.set_attr("begin", begin)
+            next_starts[row] = self._next[row].seed, np.array(self._next[row].actions, dtype=np.int8)
+        with self._starts_in_errors():
+            self._env.set_attr("next_start", next_starts)

@@ -1,69 +1,80 @@
-"""When a training searches for ways to meet the spec: before it begins, and at a standstill."""
+"""When a training searches for demonstrations: before it begins, and at a standstill."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
 from tltl_runtime.training.exploration.reverse_curriculum import ReverseCurriculum
-from tltl_runtime.training.exploration.search import Player, Searched, TrajectorySearch
-from tltl_runtime.training.ppo.distributed import Peers
+from tltl_runtime.training.exploration.search import Player, SearchProgress, TrajectorySearch
+from tltl_runtime.training.ppo.distributed import ProcessGroup
 from tltl_runtime.training.ppo.environment import TrainingEnv
 from tltl_runtime.training.ppo.random_streams import Purpose, stream
 from tltl_runtime.training.run.checkpoint import Checkpoint
-from tltl_runtime.training.run.run_file import Run
+from tltl_runtime.training.run.run_file import TrainingRun
 from tltl_runtime.vector import WorkerVectorEnv
 
-Searching = Callable[[Searched], None]
+SearchCallback = Callable[[SearchProgress], None]
 """Called from time to time with the progress of a search."""
 
 
-def searched_first(
-    run: Run,
-    own: Peers,
-    played: WorkerVectorEnv,
-    restarts: ReverseCurriculum,
+def search_before_training(
+    run: TrainingRun,
+    group: ProcessGroup,
+    env: WorkerVectorEnv,
+    curriculum: ReverseCurriculum,
     checkpoint: Checkpoint | None,
-    searching: Searching,
+    on_search: SearchCallback,
     player: Player | None,
-) -> Searched | None:
-    """Search for ways before the training; a ``player`` plays first.
+) -> SearchProgress | None:
+    """Search for demonstrations before the training, and add them to ``curriculum``.
 
-    Returns None if the search was done before.  A search that was broken off by a limit before it
-    found a way is repeated if there is time for it.
+    ``env`` are the environments of this process.  A ``player`` plays their first episodes.  Returns the
+    progress of the search, or None if no search is needed, because an earlier one is in the checkpoint.
+    A search that a limit broke off before it found a demonstration is repeated if there is time for it.
     """
     iteration, seconds = 0, 0.0
     if checkpoint:
         before, iteration, seconds = checkpoint.searched, checkpoint.iteration, checkpoint.seconds
-        if before is None or before.complete or before.lengths or run.settings.stop.is_late(seconds):
+        if before is None or before.complete or before.lengths or run.settings.stop.is_out_of_time(seconds):
             return None
     search = TrajectorySearch(
-        played, run.settings.exploration, stream(run, own, Purpose.SEARCH, iteration), player=player
+        env, run.settings.exploration, stream(run, group, Purpose.SEARCH, iteration), player=player
     )
-    return _run_search(run, search, restarts, seconds, searching)
+    return _run_search(run, search, curriculum, seconds, on_search)
 
 
-def searched_again(run: Run, own: Peers, env: TrainingEnv, state: Checkpoint, searching: Searching) -> Searched | None:
-    """Search for ways from the agent's failures, in a training in this ``state``.
+def search_after_standstill(
+    run: TrainingRun, group: ProcessGroup, env: TrainingEnv, state: Checkpoint, on_search: SearchCallback
+) -> SearchProgress | None:
+    """Search for demonstrations from the agent's failed episodes, in a training in this ``state``.
 
-    All episodes begin anew after the search.  Returns None if no failures are known.
+    All environments begin new episodes after the search.  Returns the progress of the search, or None
+    if no failed episodes are known.
     """
-    if env.restarts is None or not env.restarts.failures:
+    if env.curriculum is None or not env.curriculum.failures:
         return None
-    seed = stream(run, own, Purpose.SEARCH, state.iteration)
-    search = TrajectorySearch(env.env, run.settings.exploration, seed, env.restarts.failures)
-    searched = _run_search(run, search, env.restarts, state.seconds, searching)
-    env.begin_anew()
-    return searched
+    seed = stream(run, group, Purpose.SEARCH, state.iteration)
+    search = TrajectorySearch(env.env, run.settings.exploration, seed, env.curriculum.failures)
+    progress = _run_search(run, search, env.curriculum, state.seconds, on_search)
+    env.restart_episodes()
+    return progress
 
 
 def _run_search(
-    run: Run, search: TrajectorySearch, restarts: ReverseCurriculum, before_s: float, searching: Searching
-) -> Searched:
-    """Run a search, at most to the training's limit of minutes; add its ways to the restarts."""
-    for searched in search.run():
-        searching(searched)
-        if run.settings.stop.is_late(before_s + searched.seconds):
+    run: TrainingRun,
+    search: TrajectorySearch,
+    curriculum: ReverseCurriculum,
+    seconds_before: float,
+    on_search: SearchCallback,
+) -> SearchProgress:
+    """Run a search, at most to the training's limit of minutes; add its demonstrations to the curriculum.
+
+    ``seconds_before`` is the time that the training has taken before the search.
+    """
+    for progress in search.run():
+        on_search(progress)
+        if run.settings.stop.is_out_of_time(seconds_before + progress.seconds):
             break
-    for way in search.ways:
-        restarts.add(way)
-    return searched
+    for demonstration in search.demonstrations:
+        curriculum.add(demonstration)
+    return progress

@@ -1,9 +1,9 @@
-"""Self-imitation of known ways, where the agent does not succeed yet.
+"""Self-imitation of known demonstrations, where the agent does not succeed yet.
 
-The success of a way may depend on a few decisions, for example a jump at the right place.  A policy
-that has come to prefer other actions no longer tries them.  So the agent imitates the ways that the
-search found, and its own successes, but only where it still fails: Oh et al., Self-imitation
-learning, ICML 2018.  The imitation baseline is another method: see ``gail.py``.
+The success of a demonstration may depend on a few decisions, for example a jump at the right place.
+A policy that has come to prefer other actions no longer tries these.  So the agent imitates the
+demonstrations that the search found, and its own successes, but only where it still fails: Oh et
+al., Self-imitation learning, ICML 2018.  The imitation baseline is another method: see ``gail.py``.
 """
 
 from __future__ import annotations
@@ -23,59 +23,68 @@ from tltl_runtime.training.exploration.reverse_curriculum import ReverseCurricul
 from tltl_runtime.training.exploration.search import SuccessfulEpisode
 
 BATCH: Final = 256
-"""The number of decisions that are drawn for an optimiser step."""
+"""The number of decisions that are drawn for one optimiser step."""
 
 
 class SelfImitation:
-    """Draws self-imitation batches from the ways of ``restarts``.
+    """Draws self-imitation batches from the demonstrations of ``curriculum``.
 
-    Observations come from replaying the ways in an environment of ``make``.
+    Observations come from replaying the demonstrations in an environment of ``make``.
     """
 
-    def __init__(self, make: Callable[[], gymnasium.Env[Any, Any]], restarts: ReverseCurriculum) -> None:
-        self._make, self._restarts = make, restarts
+    def __init__(self, make: Callable[[], gymnasium.Env[Any, Any]], curriculum: ReverseCurriculum) -> None:
+        self._make, self._curriculum = make, curriculum
         self._env: gymnasium.Env[Any, Any] | None = None
-        self._sensed: dict[int, tuple[SuccessfulEpisode, Mapping[str, NDArray[Any]]]] = {}
-        """Ways and their observations, by ``id`` of the way, which is valid as the way is kept."""
+        self._observed: dict[int, tuple[SuccessfulEpisode, Mapping[str, NDArray[Any]]]] = {}
+        """By ``id``: each demonstration, kept so that its ``id`` stays valid, and its observations."""
 
     def draw(self) -> tuple[TensorDict, Tensor] | None:
-        """Draw up to ``BATCH`` decisions: observations and actions [n, branches].
+        """Draw up to ``BATCH`` decisions to imitate.
 
-        Returns None if there is nothing to imitate.
+        Returns observations, float32 tensors [n, ...] by key, and actions [n, branches]; None if there is
+        nothing to imitate.
         """
-        decisions = self._restarts.lessons(BATCH)
+        decisions = self._curriculum.draw_decisions(BATCH)
         if not decisions:
             return None
-        known = {id(way) for ways in self._restarts.ways.values() for way in ways}
-        self._sensed = {key: sensed for key, sensed in self._sensed.items() if key in known}
-        for way, _ in decisions:
-            if id(way) not in self._sensed:
-                self._sensed[id(way)] = way, self._observations(way)
-        rows = [(self._sensed[id(way)][1], index) for way, index in decisions]
-        sensed = {
+        current_ids = {
+            id(demonstration)
+            for demonstrations in self._curriculum.demonstrations.values()
+            for demonstration in demonstrations
+        }
+        self._observed = {key: observations for key, observations in self._observed.items() if key in current_ids}
+        for demonstration, _ in decisions:
+            if id(demonstration) not in self._observed:
+                self._observed[id(demonstration)] = demonstration, self._observations(demonstration)
+        rows = [(self._observed[id(demonstration)][1], index) for demonstration, index in decisions]
+        observations = {
             name: torch.from_numpy(np.stack([values[name][index] for values, index in rows])).to(torch.float32)
             for name in rows[0][0]
         }
-        actions = torch.tensor([way.actions[index] for way, index in decisions], dtype=torch.float32)
-        return TensorDict(sensed, batch_size=[len(rows)]), actions
+        actions = torch.tensor(
+            [demonstration.actions[index] for demonstration, index in decisions], dtype=torch.float32
+        )
+        return TensorDict(observations, batch_size=[len(rows)]), actions
 
     def close(self) -> None:
-        """Free the game."""
+        """Close the environment."""
         if self._env is not None:
             self._env.close()
 
-    def _observations(self, way: SuccessfulEpisode) -> Mapping[str, NDArray[Any]]:
-        """Return the observations before each decision of a way."""
+    def _observations(self, demonstration: SuccessfulEpisode) -> Mapping[str, NDArray[Any]]:
+        """Return the observations before each decision of a demonstration, arrays [n, ...] by key."""
         self._env = self._env or self._make()
-        first, _ = self._env.reset(seed=way.seed)
-        observations = [first, *(self._env.step(action)[0] for action in way.actions[:-1])]
+        first, _ = self._env.reset(seed=demonstration.seed)
+        observations = [first, *(self._env.step(action)[0] for action in demonstration.actions[:-1])]
         return {name: np.stack([observation[name] for observation in observations]) for name in first}
 
 
 def imitate(ppo: PPO, observations: TensorDict, actions: Tensor) -> float:
-    """Take an optimiser step towards these actions; return the loss, their negative log-likelihood.
+    """Take an optimiser step that makes these actions likelier.
 
-    The sum is divided by ``BATCH`` even for smaller batches, so that a small batch counts less.
+    ``observations`` [n, ...] and ``actions`` [n, branches] are a batch of decisions.  Returns the loss:
+    the sum of their negative log-likelihoods in nats, divided by ``BATCH``.  The divisor stays the same
+    for smaller batches, so that a small batch counts less.
     """
     ppo.actor(observations, stochastic_output=True)
     loss = -ppo.actor.get_output_log_prob(actions).sum() / BATCH

@@ -26,11 +26,11 @@ MOST_FAILURES: Final = 20
 
 
 @record
-class Tried:
-    """An attempt at a demonstration.
+class Attempt:
+    """An episode that was played to record a demonstration.
 
-    ``path`` is the file of its recording, None if it was not kept.  ``kept`` is the number of
-    demonstrations after it.
+    ``path`` is the file of its recording, or None if it does not meet the spec and was not kept.
+    ``kept`` is the number of demonstrations in the folder after it.
     """
 
     episode: RecordedEpisode
@@ -39,18 +39,18 @@ class Tried:
 
 
 @record
-class Other:
+class RejectedRecording:
     """A recording that is not a demonstration of a level and a task, and the reason in words."""
 
     path: Path
-    why: str
+    reason: str
 
 
 class Demonstrations:
     """The demonstrations of a level and a task in ``folder``, which need not exist yet.
 
-    A recording in the folder is a demonstration if its level, spec and params match and it meets
-    the spec.  ``others`` are the other recordings, including those that cannot be read.
+    A recording in the folder is a demonstration if its level, spec and params match and it meets the
+    spec.  ``rejected`` are the other recordings, including those that cannot be read.
     """
 
     def __init__(self, folder: Path, level: Level, task: Task) -> None:
@@ -58,42 +58,45 @@ class Demonstrations:
         self._game = registered_game()
         self._level, self._spec = self._game.level_hash(level), spec_hash(task.fspa)
         self._params = dict(task.params)
-        self._played: list[tuple[str, int]] = []
-        self.others: list[Other] = []
+        self._players_and_seeds: list[tuple[str, int]] = []
+        self.rejected: list[RejectedRecording] = []
         for path in recordings(folder):
-            self._note(path)
+            self._read(path)
 
     @property
     def count(self) -> int:
         """The number of demonstrations."""
-        return len(self._played)
+        return len(self._players_and_seeds)
 
     def seeds(self, player: str) -> list[int]:
-        """Return the seeds of the demonstrations of a player."""
-        return [seed for name, seed in self._played if name == player]
+        """Return the seeds of the demonstrations that ``player`` played."""
+        return [seed for name, seed in self._players_and_seeds if name == player]
 
-    def add(self, episode: RecordedEpisode) -> Tried:
-        """Write an episode to the folder if it is a demonstration.  Raises TltlError, TLT0005."""
+    def add(self, episode: RecordedEpisode) -> Attempt:
+        """Write an episode to the folder if it is a demonstration; return what became of it.
+
+        Raises TltlError, TLT0005, if the file cannot be written.
+        """
         path = None
-        if not self._why_none(episode):
+        if not self._rejection(episode):
             recording = self._game.episode_bytes(episode)
             path = new_path(self.folder, file_stem(episode), recording)
             fileio.write_files(self.folder, {path.name: recording})
-            self._played.append((episode.player, episode.seed))
-        return Tried(episode, path, self.count)
+            self._players_and_seeds.append((episode.player, episode.seed))
+        return Attempt(episode, path, self.count)
 
-    def _note(self, path: Path) -> None:
+    def _read(self, path: Path) -> None:
         try:
             episode = self._game.read_episode(path)
         except TltlError as error:
-            self.others.append(Other(path, unreadable(error)))
+            self.rejected.append(RejectedRecording(path, error_text(error)))
             return
-        if reason := self._why_none(episode):
-            self.others.append(Other(path, reason))
+        if reason := self._rejection(episode):
+            self.rejected.append(RejectedRecording(path, reason))
         else:
-            self._played.append((episode.player, episode.seed))
+            self._players_and_seeds.append((episode.player, episode.seed))
 
-    def _why_none(self, episode: RecordedEpisode) -> str:
+    def _rejection(self, episode: RecordedEpisode) -> str:
         """Return why an episode is not a demonstration; empty if it is one."""
         if self._game.level_hash(episode.level) != self._level:
             return "it is of another level"
@@ -103,23 +106,23 @@ class Demonstrations:
 
 
 def recordings(folder: Path) -> list[Path]:
-    """Return the recordings in a folder, sorted by name; none if the folder does not exist.
+    """Return the paths of the recordings in a folder, sorted by name; none if the folder does not exist.
 
     Pipes and devices are left out.
     """
     return sorted(filter(fileio.may_be_file, folder.glob(f"*{SUFFIX}")))
 
 
-def unreadable(error: TltlError) -> str:
-    """Return, in words, why a recording cannot be read."""
-    (first, *_) = error.diagnostics
-    return f"{first.code}, {first.title}"
+def error_text(error: TltlError) -> str:
+    """Return the error of a recording that cannot be read, as ``CODE, title``."""
+    (diagnostic, *_) = error.diagnostics
+    return f"{diagnostic.code}, {diagnostic.title}"
 
 
-def by_expert(env: EpisodeRecorder[Any], store: Demonstrations, number: int, seed: int = 0) -> Iterator[Tried]:
+def expert_attempts(env: EpisodeRecorder[Any], store: Demonstrations, number: int, seed: int = 0) -> Iterator[Attempt]:
     """Let the scripted expert play until there are ``number`` demonstrations; yield each episode.
 
-    Seeds count up from ``seed``, after those of the expert's existing demonstrations, so that an
+    Seeds count up from ``seed``, or from the one after the expert's last demonstration, so that an
     interrupted recording continues where it stopped.
 
     Raises:
@@ -130,20 +133,20 @@ def by_expert(env: EpisodeRecorder[Any], store: Demonstrations, number: int, see
     if store.count >= number:
         return
     for episode in registered_game().expert_episodes(env, count(max(played, default=seed - 1) + 1)):
-        yield (tried := store.add(episode))
-        failures = 0 if tried.path else failures + 1
+        yield (attempt := store.add(episode))
+        failures = 0 if attempt.path else failures + 1
         if store.count >= number:
             return
         if failures == MOST_FAILURES:
-            raise _given_up(episode)
+            raise _expert_failed(episode)
 
 
-def _given_up(last: RecordedEpisode) -> TltlError:
-    level, spec = last.level, last.fspa.name
+def _expert_failed(episode: RecordedEpisode) -> TltlError:
+    level, spec = episode.level, episode.fspa.name
     title = f"the expert met `{spec}` in none of {MOST_FAILURES} episodes in a row on `{level.name}:{level.variant}`"
     help_ = (
         f"`tltlc demonstrate {level.name}:{level.variant}` shows how it fails; "
-        f"`tltlc record --seed {last.seed + 1}` tries other episodes; "
+        f"`tltlc record --seed {episode.seed + 1}` tries other episodes; "
         "`tltlc record --by keyboard` records a person, whose folder `tltlc train --demonstrations` takes"
     )
     return TltlError([Diagnostic("TLT0920", title, help=help_)])

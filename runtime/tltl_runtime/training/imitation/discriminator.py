@@ -17,19 +17,20 @@ Decisions = tuple[Mapping[str, Tensor], Tensor]
 
 
 @record
-class Judged:
-    """The ``loss`` of a discriminator, and its mean predicted probabilities of being demonstrated.
+class DiscriminatorLoss:
+    """The ``loss`` of a discriminator, and the mean probabilities of being demonstrated that it predicts.
 
-    ``theirs`` is the mean over decisions of demonstrations, ``agents`` the mean over the agent's.
+    ``demonstration_probability`` is the mean over decisions of demonstrations, ``agent_probability``
+    the mean over the agent's; both are in [0, 1].
     """
 
     loss: Tensor
-    theirs: float
-    agents: float
+    demonstration_probability: float
+    agent_probability: float
 
 
 class Discriminator(nn.Module):
-    """Predicts the logit of a decision being from a demonstration.
+    """Predicts whether a decision is from a demonstration, as a logit.
 
     Ho and Ermon, Generative adversarial imitation learning, NIPS 2016.  ``config`` is rsl-rl's
     configuration of a model.  The network's inputs are observations (``observations`` is an
@@ -41,44 +42,44 @@ class Discriminator(nn.Module):
         self._branches = tuple(branches)
         self._keys = tuple(observations.keys())
         count = next(iter(observations.values())).shape[0]
-        joined = self._joined((observations, torch.zeros(count, len(self._branches))))
+        inputs = self._inputs((observations, torch.zeros(count, len(self._branches))))
         model, options = resolve_class(dict(config))
-        self.network = model(joined, {"discriminator": [*joined]}, "discriminator", 1, **options)
+        self.network = model(inputs, {"discriminator": [*inputs]}, "discriminator", 1, **options)
 
     def forward(self, decisions: Decisions) -> Tensor:
-        """Return the logits [n]."""
-        logits: Tensor = self.network(self._joined(decisions)).squeeze(-1)
+        """Return the logits [n] of these decisions being demonstrated."""
+        logits: Tensor = self.network(self._inputs(decisions)).squeeze(-1)
         return logits
 
     def reward(self, decisions: Decisions) -> Tensor:
-        """Return the rewards [n]: ``-log(1 - D)``, which is at least 0.
+        """Return the rewards [n] of these decisions: ``-log(1 - D)``, which is at least 0.
 
-        D is the predicted probability of being demonstrated.
+        D is the predicted probability that a decision is demonstrated.
         """
         return softplus(self(decisions))
 
-    def judged(self, theirs: Decisions, agents: Decisions, penalty: float) -> Judged:
+    def loss(self, demonstrations: Decisions, agent: Decisions, penalty: float) -> DiscriminatorLoss:
         """Return the loss: the cross entropy, plus ``penalty`` times the gradient penalty.
 
-        ``theirs`` and ``agents`` are equally many decisions of demonstrations and of an agent.
+        ``demonstrations`` and ``agent`` are equally many decisions of demonstrations and of the agent.
         """
-        demonstrated, played = self(theirs), self(agents)
-        loss = softplus(-demonstrated).mean() + softplus(played).mean()
+        demonstration_logits, agent_logits = self(demonstrations), self(agent)
+        loss = softplus(-demonstration_logits).mean() + softplus(agent_logits).mean()
         if penalty:
-            loss = loss + penalty * self._gradient_penalty(theirs, agents)
-        means = (logits.detach().sigmoid().mean().item() for logits in (demonstrated, played))
-        return Judged(loss, *means)
+            loss = loss + penalty * self._gradient_penalty(demonstrations, agent)
+        means = (logits.detach().sigmoid().mean().item() for logits in (demonstration_logits, agent_logits))
+        return DiscriminatorLoss(loss, *means)
 
-    def _gradient_penalty(self, theirs: Decisions, agents: Decisions) -> Tensor:
-        """Return the mean squared deviation from 1 of the gradient's norm, between the two sets.
+    def _gradient_penalty(self, demonstrations: Decisions, agent: Decisions) -> Tensor:
+        """Return the mean of (|gradient| - 1)² at random points between the two sets of decisions.
 
         Gulrajani et al., Improved training of Wasserstein GANs, NIPS 2017; ML-Agents uses it, too.
         """
-        one, other = self._joined(theirs), self._joined(agents)
-        share = torch.rand(theirs[1].shape[0], device=theirs[1].device)
+        first, second = self._inputs(demonstrations), self._inputs(agent)
+        share = torch.rand(demonstrations[1].shape[0], device=demonstrations[1].device)
         mixed = {
-            key: torch.lerp(one[key], other[key], share.view(-1, *[1] * (one[key].dim() - 1))).requires_grad_()
-            for key in one
+            key: torch.lerp(first[key], second[key], share.view(-1, *[1] * (first[key].dim() - 1))).requires_grad_()
+            for key in first
         }
         gradients = torch.autograd.grad(self.network(mixed).sum(), [*mixed.values()], create_graph=True)
         squares = torch.stack([gradient.flatten(1).square().sum(1) for gradient in gradients]).sum(0)
@@ -86,9 +87,9 @@ class Discriminator(nn.Module):
         norms = (squares + 1e-12).sqrt()
         return (norms - 1.0).square().mean()
 
-    def _joined(self, decisions: Decisions) -> dict[str, Tensor]:
-        """Return the observations by key, with the one-hot actions as another input."""
+    def _inputs(self, decisions: Decisions) -> dict[str, Tensor]:
+        """Return the network's inputs: the observations by key, and the one-hot actions as ``action``."""
         observations, actions = decisions
         one_hots = [one_hot(branch.long(), count) for branch, count in zip(actions.T, self._branches, strict=True)]
-        joined = {key: observations[key] for key in self._keys}
-        return {**joined, "action": torch.cat(one_hots, dim=-1).to(torch.float32)}
+        inputs = {key: observations[key] for key in self._keys}
+        return {**inputs, "action": torch.cat(one_hots, dim=-1).to(torch.float32)}

@@ -25,8 +25,9 @@ The paper leaves some points open.  This implementation decides them as follows:
 - The discriminator's reward is -log(1 - D), as in ML-Agents, which is never negative.  It is
   multiplied by ``strength``, one hundredth by default.  One critic estimates the return of this
   reward and the terminal reward together.  With gamma 0.99, the value of an endless episode is then
-  -log(1 - D).  This is 0.69 if decisions cannot be told from demonstrated ones (D = 1/2), and less
-  than a success until D exceeds 1 - 1/e = 0.63.  Beyond that, the reward is not clipped.
+  -log(1 - D).  This value is 0.69 if the discriminator cannot tell the agent's decisions from
+  demonstrated ones (D = 1/2).  It is less than the reward of a success, 1, until D exceeds
+  1 - 1/e = 0.63.  It is not clipped beyond that.
 - An episode that reaches the limit is a failure, and its return is not bootstrapped.
 """
 
@@ -43,7 +44,7 @@ from torch import Tensor, nn
 
 from tltl_runtime.training.exploration.self_imitation import BATCH, imitate
 from tltl_runtime.training.imitation.discriminator import Decisions, Discriminator
-from tltl_runtime.training.imitation.imitation_data import Demonstrated
+from tltl_runtime.training.imitation.imitation_data import ImitationData
 
 _Losses = dict[str, float]
 
@@ -52,50 +53,51 @@ class Gail(PPO):
     """rsl-rl's PPO with rewards from a discriminator, after behavioural cloning.
 
     ``gail`` is the entry of that name in :func:`~tltl_runtime.training.run.settings.rsl_config`.
-    The environment must have ``demonstrated`` decisions, and report in the extras of a step which
-    episodes ended in success.  The losses are those of PPO and:
+    The environment must have ``imitation_data``, and report under ``successes`` in the extras of a
+    step which episodes ended in success.  The losses are those of PPO and:
 
     - ``cloning``: the mean negative log-likelihood of the demonstrations, in nats per decision;
     - ``discriminator``: the loss of the discriminator;
     - ``discriminator_theirs`` and ``discriminator_agents``: the mean probability of being
-      demonstrated that the discriminator predicts for decisions of demonstrations and of the agent.
+      demonstrated that the discriminator predicts for decisions of demonstrations and of the agent,
+      in [0, 1].
     """
 
-    demonstrated: Demonstrated
+    imitation_data: ImitationData
 
     def __init__(self, actor: Any, critic: Any, storage: Any, *, gail: Mapping[str, Any], **ppo: Any) -> None:
         super().__init__(actor, critic, storage, **ppo)
         self._strength, self._terminal = float(gail["strength"]), float(gail["terminal"])
         self._penalty = float(gail["gradient_penalty"])
         self.steps = 0
-        """The number of decisions, of all processes, that it has learned from."""
+        """The number of decisions, of all processes, that the algorithm has learned from."""
         self.seconds = 0.0
         """The training time so far, in seconds; the caller sets it."""
         self.cloning_steps, self.cloning_s = int(gail["cloning_steps"]), float(gail["cloning_s"])
-        """The actor is cloned until this many steps or this many seconds.
+        """The actor is cloned until this many steps, or this many seconds, are over.
 
-        These are shares of the limits when the training begins; they stay when the limits change.
+        Both are shares of the limits when the training begins; they stay when the limits change.
         """
         example = storage.observations[0].to("cpu")
         self.discriminator = Discriminator(example, gail["branches"], gail["discriminator"]).to(self.device)
         if not self.is_multi_gpu:
             self.discriminator.to(memory_format=torch.channels_last)  # type: ignore[call-overload]
-        self._discriminating = torch.optim.Adam(self.discriminator.parameters(), lr=gail["discriminator_rate"])
+        self._discriminator_optimizer = torch.optim.Adam(self.discriminator.parameters(), lr=gail["discriminator_rate"])
 
     @staticmethod
     def construct_algorithm(obs: Any, env: Any, cfg: dict[str, Any], device: str) -> Gail:
-        """Construct the algorithm like rsl-rl, with the demonstrations of ``env``."""
+        """Construct the algorithm like rsl-rl, with the imitation data of ``env``."""
         algorithm: Any = PPO.construct_algorithm(obs, env, cfg, device)
-        algorithm.demonstrated = env.demonstrated.to(device)
+        algorithm.imitation_data = env.imitation_data.to(device)
         return algorithm  # type: ignore[no-any-return]
 
     @property
-    def clones(self) -> bool:
+    def is_cloning(self) -> bool:
         """Whether the actor is still being cloned."""
         return self.steps < self.cloning_steps and self.seconds < self.cloning_s
 
     def process_env_step(self, obs: Any, rewards: Tensor, dones: Tensor, extras: dict[str, Tensor]) -> None:
-        """Record a step of the environment with the terminal rewards instead of ``rewards``.
+        """Record a step of the environments, with terminal rewards instead of ``rewards`` [num_envs].
 
         Time-outs are not passed on, so that no return is bootstrapped.
         """
@@ -110,20 +112,20 @@ class Gail(PPO):
         super().compute_returns(obs)
 
     def update(self) -> _Losses:
-        """Train the discriminator, then clone the actor or update by PPO; return mean losses."""
+        """Train the discriminator, then clone the actor or update it by PPO; return the mean losses by name."""
         storage = self.storage
-        discriminator_losses = self._discriminate()
-        losses = {**self._value(), **self._clone()} if self.clones else super().update()
+        discriminator_losses = self._train_discriminator()
+        losses = {**self._train_critic(), **self._clone_actor()} if self.is_cloning else super().update()
         storage.clear()
         self.steps += storage.num_envs * storage.num_transitions_per_env * self.gpu_world_size
         return {**losses, **discriminator_losses}
 
     def save(self) -> dict[str, Any]:
-        """Return everything that is needed to resume."""
+        """Return everything that is needed to resume, as rsl-rl's algorithms do."""
         return {
             **super().save(),
             "discriminator_state_dict": self.discriminator.state_dict(),
-            "discriminator_optimizer_state_dict": self._discriminating.state_dict(),
+            "discriminator_optimizer_state_dict": self._discriminator_optimizer.state_dict(),
             "steps": self.steps,
             "cloning_steps": self.cloning_steps,
             "cloning_s": self.cloning_s,
@@ -132,7 +134,7 @@ class Gail(PPO):
     def load(self, loaded_dict: dict[str, Any], load_cfg: dict[str, Any] | None, strict: bool) -> bool:
         """Restore what :meth:`save` returned.  ``load_cfg`` selects among the parts of PPO only."""
         self.discriminator.load_state_dict(loaded_dict["discriminator_state_dict"], strict=strict)
-        self._discriminating.load_state_dict(loaded_dict["discriminator_optimizer_state_dict"])
+        self._discriminator_optimizer.load_state_dict(loaded_dict["discriminator_optimizer_state_dict"])
         self.steps, self.cloning_steps = loaded_dict["steps"], loaded_dict["cloning_steps"]
         self.cloning_s = loaded_dict["cloning_s"]
         return bool(super().load(loaded_dict, load_cfg, strict))
@@ -156,32 +158,32 @@ class Gail(PPO):
     def _rollout(self) -> tuple[TensorDict, Tensor]:
         return self.storage.observations.flatten(0, 1), self.storage.actions.flatten(0, 1)
 
-    def _discriminate(self) -> _Losses:
+    def _train_discriminator(self) -> _Losses:
         """Train the discriminator with one pass over the rollout, in as many minibatches as PPO.
 
         Each minibatch is compared with equally many decisions of demonstrations.
         """
         observations, actions = self._rollout()
-        losses, theirs, agents = [], [], []
+        losses, demonstration_probabilities, agent_probabilities = [], [], []
         for rows in torch.randperm(len(actions), device=self.device).tensor_split(self.num_mini_batches):
-            played: Decisions = observations[rows], actions[rows]
-            judged = self.discriminator.judged(self.demonstrated.drawn(len(rows)), played, self._penalty)
-            self._discriminating.zero_grad()
-            judged.loss.backward()
+            agent_decisions: Decisions = observations[rows], actions[rows]
+            result = self.discriminator.loss(self.imitation_data.sample(len(rows)), agent_decisions, self._penalty)
+            self._discriminator_optimizer.zero_grad()
+            result.loss.backward()
             if self.is_multi_gpu:
                 parameters = self.discriminator.parameters()
                 reduce_gradients_in_buckets(parameters, self.gpu_world_size, self.grad_reduce_bucket_mb)
-            self._discriminating.step()
-            losses.append(judged.loss.item())
-            theirs.append(judged.theirs)
-            agents.append(judged.agents)
+            self._discriminator_optimizer.step()
+            losses.append(result.loss.item())
+            demonstration_probabilities.append(result.demonstration_probability)
+            agent_probabilities.append(result.agent_probability)
         return {
             "discriminator": _mean(losses),
-            "discriminator_theirs": _mean(theirs),
-            "discriminator_agents": _mean(agents),
+            "discriminator_theirs": _mean(demonstration_probabilities),
+            "discriminator_agents": _mean(agent_probabilities),
         }
 
-    def _value(self) -> _Losses:
+    def _train_critic(self) -> _Losses:
         """Train only the critic, on the rollout of the actor that is being cloned."""
         losses = []
         for batch in self.storage.mini_batch_generator(self.num_mini_batches, self.num_learning_epochs):
@@ -195,13 +197,13 @@ class Gail(PPO):
             losses.append(loss.item())
         return {"value": _mean(losses)}
 
-    def _clone(self) -> _Losses:
+    def _clone_actor(self) -> _Losses:
         """Clone the actor in as many passes over the demonstrations as PPO makes over a rollout."""
         total = 0.0
         for _ in range(self.num_learning_epochs):
-            for observations, actions in self.demonstrated.shuffled(BATCH):
+            for observations, actions in self.imitation_data.shuffled_batches(BATCH):
                 total += imitate(self, observations, actions) * BATCH
-        return {"cloning": total / (self.num_learning_epochs * len(self.demonstrated.actions))}
+        return {"cloning": total / (self.num_learning_epochs * len(self.imitation_data.actions))}
 
 
 def _mean(values: list[float]) -> float:

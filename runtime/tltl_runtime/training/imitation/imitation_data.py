@@ -1,4 +1,4 @@
-"""The data to imitate: decisions of demonstrations, each with the agent's observation before it."""
+"""The data to imitate: the decisions of demonstrations, each with the observation before it."""
 
 from __future__ import annotations
 
@@ -17,22 +17,22 @@ from tltl_runtime.game.registry import registered_game
 from tltl_runtime.spec.wrapper import TltlEnv
 from tltl_runtime.training.imitation.demonstrations import (
     PLAYER,
+    Attempt,
     Demonstrations,
-    Tried,
-    by_expert,
+    error_text,
+    expert_attempts,
     recordings,
-    unreadable,
 )
 from tltlc.api import Diagnostic, TltlError, record
 
-_Sensed = Mapping[str, NDArray[Any]]
+_Observation = Mapping[str, NDArray[Any]]
 
 
 @record
-class Imitated:
-    """The numbers of ``episodes`` and ``decisions`` of demonstrations, and their ``players``.
+class ImitationSummary:
+    """The numbers of ``episodes`` and ``decisions`` of the demonstrations, and who played them.
 
-    ``left_out`` are the names of the other recordings in the folder, each with the reason.
+    ``left_out`` are the file names of the other recordings in the folder, each with the reason.
     """
 
     episodes: int
@@ -42,25 +42,29 @@ class Imitated:
 
 
 @record
-class Demonstrated:
+class ImitationData:
     """All decisions of the demonstrations.
 
-    ``observations`` [n] are those of the environment as float32, ``actions`` is [n, branches].
+    ``observations`` are those of the environment, float32 tensors [n, ...] by key, and ``actions`` is
+    [n, branches].
     """
 
     observations: TensorDict
     actions: Tensor
-    about: Imitated
+    summary: ImitationSummary
 
-    def rows(self, chosen: Tensor) -> tuple[TensorDict, Tensor]:
-        """Return the observations and actions of the decisions at some indices."""
-        return self.observations[chosen], self.actions[chosen]
+    def rows(self, indices: Tensor) -> tuple[TensorDict, Tensor]:
+        """Return the observations and actions of the decisions at ``indices`` [k]."""
+        return self.observations[indices], self.actions[indices]
 
-    def drawn(self, count: int) -> tuple[TensorDict, Tensor]:
-        """Draw decisions uniformly with replacement, with torch's generator."""
+    def sample(self, count: int) -> tuple[TensorDict, Tensor]:
+        """Draw ``count`` decisions uniformly with replacement, with torch's generator.
+
+        Returns observations and actions.
+        """
         return self.rows(torch.randint(len(self.actions), (count,)))
 
-    def shuffled(self, size: int) -> Iterator[tuple[TensorDict, Tensor]]:
+    def shuffled_batches(self, size: int) -> Iterator[tuple[TensorDict, Tensor]]:
         """Yield all decisions once, in random order by torch's generator, in batches of ``size``.
 
         The last batch may be smaller.
@@ -68,36 +72,36 @@ class Demonstrated:
         for indices in torch.randperm(len(self.actions)).split(size):
             yield self.rows(indices)
 
-    def to(self, device: str) -> Demonstrated:
-        """Return a copy on a device."""
-        return Demonstrated(self.observations.to(device), self.actions.to(device), self.about)
+    def to(self, device: str) -> ImitationData:
+        """Return a copy on a device of torch."""
+        return ImitationData(self.observations.to(device), self.actions.to(device), self.summary)
 
 
-def record_expert(folder: Path, number: int, make: Callable[[], TltlEnv], report: Callable[[Tried], None]) -> None:
+def record_expert(folder: Path, number: int, make: Callable[[], TltlEnv], report: Callable[[Attempt], None]) -> None:
     """Record demonstrations of the expert until ``folder`` has ``number``.
 
-    ``report`` is called with each attempt.  Raises the errors of :func:`by_expert`.
+    ``report`` is called with each attempt.  Raises the errors of :func:`expert_attempts`.
     """
     env = registered_game().recorder(make(), PLAYER)
     try:
         demonstrations = Demonstrations(folder, env.get_wrapper_attr("level"), env.get_wrapper_attr("task"))
-        for tried in by_expert(env, demonstrations, number):
-            report(tried)
+        for attempt in expert_attempts(env, demonstrations, number):
+            report(attempt)
     finally:
         env.close()
 
 
-def read_demonstrations(folder: Path, make: Callable[[], TltlEnv]) -> Demonstrated:
+def read_demonstrations(folder: Path, make: Callable[[], TltlEnv]) -> ImitationData:
     """Read the demonstrations in a folder; replay each one in an environment from ``make``.
 
-    A recording is left out if it is of another level, does not meet the spec in the replay, or
-    cannot be read.
+    A recording is left out if it is of another level, does not meet the spec in the replay, or cannot
+    be read.
 
     Raises:
         TltlError: TLT0921, no demonstration remains.
     """
     game, env = registered_game(), make()
-    sensed: list[_Sensed] = []
+    observed: list[_Observation] = []
     actions: list[NDArray[np.uint8]] = []
     players: set[str] = set()
     left_out: list[str] = []
@@ -106,13 +110,13 @@ def read_demonstrations(folder: Path, make: Callable[[], TltlEnv]) -> Demonstrat
             try:
                 episode = game.read_episode(path)
             except TltlError as error:
-                left_out.append(f"{path.name}: {unreadable(error)}")
+                left_out.append(f"{path.name}: {error_text(error)}")
                 continue
-            replayed = _sensed(env, episode)
-            if isinstance(replayed, str):
-                left_out.append(f"{path.name}: {replayed}")
+            result = _replayed_observations(env, episode)
+            if isinstance(result, str):
+                left_out.append(f"{path.name}: {result}")
                 continue
-            sensed += replayed
+            observed += result
             actions.append(episode.actions)
             players.add(episode.player)
     finally:
@@ -120,17 +124,21 @@ def read_demonstrations(folder: Path, make: Callable[[], TltlEnv]) -> Demonstrat
     if not actions:
         raise nothing_to_imitate(folder, left_out)
     observations = {
-        name: torch.from_numpy(np.stack([observation[name] for observation in sensed])).float() for name in sensed[0]
+        name: torch.from_numpy(np.stack([observation[name] for observation in observed])).float()
+        for name in observed[0]
     }
-    return Demonstrated(
-        TensorDict(observations, batch_size=[len(sensed)]),
+    return ImitationData(
+        TensorDict(observations, batch_size=[len(observed)]),
         torch.from_numpy(np.concatenate(actions)).float(),
-        Imitated(len(actions), len(sensed), tuple(sorted(players)), tuple(left_out)),
+        ImitationSummary(len(actions), len(observed), tuple(sorted(players)), tuple(left_out)),
     )
 
 
 def nothing_to_imitate(folder: Path, left_out: list[str]) -> TltlError:
-    """Return error TLT0921: a folder has no demonstration.  It says why its recordings are none."""
+    """Return error TLT0921: no recording in a folder is a demonstration.
+
+    ``left_out`` are the names of the recordings, each with the reason; the message gives the first.
+    """
     title = f"there is nothing to imitate in `{folder}`: "
     if left_out:
         rest = f", and {len(left_out) - 1} more" if len(left_out) > 1 else ""
@@ -141,19 +149,23 @@ def nothing_to_imitate(folder: Path, left_out: list[str]) -> TltlError:
     return TltlError([Diagnostic("TLT0921", title, help=help_)])
 
 
-def _sensed(env: TltlEnv, episode: RecordedEpisode) -> list[_Sensed] | str:
-    """Replay an episode; return the observation before each decision, or why it does not count."""
-    hash_of = registered_game().level_hash
-    if hash_of(episode.level) != hash_of(env.get_wrapper_attr("level")):
+def _replayed_observations(env: TltlEnv, episode: RecordedEpisode) -> list[_Observation] | str:
+    """Replay an episode; return the observation before each decision, or why the episode does not count."""
+    level_hash = registered_game().level_hash
+    if level_hash(episode.level) != level_hash(env.get_wrapper_attr("level")):
         return f"it is of another level, `{episode.level.name}:{episode.level.variant}` as it was then"
     observation, info = env.reset(seed=episode.seed)
-    sensed: list[_Sensed] = []
-    over = False
+    observed: list[_Observation] = []
+    is_over = False
     for action in episode.actions.tolist():
-        if over:
+        if is_over:
             break
-        sensed.append(observation)
+        observed.append(observation)
         observation, _, terminated, truncated, info = env.step(action)
-        over = terminated or truncated
+        is_over = terminated or truncated
     spec = env.task.fspa.name
-    return sensed if over and info["success"] and len(sensed) == len(episode.actions) else f"it does not meet `{spec}`"
+    return (
+        observed
+        if is_over and info["success"] and len(observed) == len(episode.actions)
+        else f"it does not meet `{spec}`"
+    )

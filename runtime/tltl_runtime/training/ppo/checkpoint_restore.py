@@ -1,4 +1,4 @@
-"""Restore a checkpoint that fits the networks, optimisers and random generators; refuse others."""
+"""Restore a checkpoint into new networks, optimisers and random generators; refuse one that does not fit."""
 
 from __future__ import annotations
 
@@ -21,22 +21,25 @@ _NETWORK: Final = "_state_dict"
 def restore_checkpoint(checkpoint: Checkpoint, runner: Runner, states: int) -> None:
     """Load the weights and optimisers of a checkpoint into a new runner.
 
-    ``states`` is the number of states of the spec's automaton.  Raises RecordJsonError if the
-    checkpoint does not fit, or if the random generator of a process cannot be restored.
+    ``states`` is the number of states of the spec's automaton.
+
+    Raises:
+        RecordJsonError: the checkpoint does not fit the runner, or the random generator of a process
+            cannot be restored.
     """
     initial = runner.alg.save()
-    for name, wanted in initial.items():
+    for name, expected in initial.items():
         if name not in checkpoint.algorithm:
             raise RecordJsonError(f"it lacks a part: '{name}'")
-        _check_part(checkpoint.algorithm[name], wanted, f"algorithm.{name}")
+        _check_part(checkpoint.algorithm[name], expected, f"algorithm.{name}")
     if checkpoint.best:
         _check_weights(checkpoint.best.actor, initial["actor_state_dict"], "best.actor")
-    for own in checkpoint.processes:
-        _check_generators(own, runner.device)
+    for process in checkpoint.processes:
+        _check_generators(process, runner.device)
     if any(state >= states for _, _, _, state, _ in checkpoint.window):
         raise RecordJsonError("`window` holds a state that the spec does not have")
     try:
-        runner.take_up(checkpoint.algorithm)
+        runner.load_algorithm(checkpoint.algorithm)
     except Exception as error:
         # torch and the algorithms of users raise exceptions of many classes.
         raise RecordJsonError(f"its `algorithm` is damaged ({type(error).__name__})") from None
@@ -45,22 +48,22 @@ def restore_checkpoint(checkpoint: Checkpoint, runner: Runner, states: int) -> N
             _check_moments(attribute)
 
 
-def _check_part(saved: object, wanted: object, where: str) -> None:
-    """Raise RecordJsonError if a saved part of an algorithm does not fit the part of a new one.
+def _check_part(saved: object, expected: object, where: str) -> None:
+    """Raise RecordJsonError if a saved part of an algorithm does not fit the part of a new algorithm.
 
     Networks, optimisers and numbers are checked.  Other parts of a user's algorithm are not.
     """
-    if isinstance(wanted, Mapping) and wanted.keys() == {"state", "param_groups"}:
-        _check_optimizer(saved, wanted, where)
-    elif isinstance(wanted, Mapping) and where.endswith(_NETWORK):
-        if all(isinstance(value, Tensor) for value in wanted.values()):
-            _check_weights(saved, wanted, where)
-    elif isinstance(wanted, (int, float)) and not (_kind(saved) == _kind(wanted) and _is_limit(saved)):
+    if isinstance(expected, Mapping) and expected.keys() == {"state", "param_groups"}:
+        _check_optimizer(saved, expected, where)
+    elif isinstance(expected, Mapping) and where.endswith(_NETWORK):
+        if all(isinstance(value, Tensor) for value in expected.values()):
+            _check_weights(saved, expected, where)
+    elif isinstance(expected, (int, float)) and not (_kind(saved) == _kind(expected) and _is_limit(saved)):
         raise RecordJsonError(f"`{where}` is {saved!r:.60}, and a number from 0 on was expected")
 
 
 def _is_limit(value: Any) -> bool:
-    """Whether a number is 0 or greater.  Infinity is allowed: it stands for no limit."""
+    """Whether a number is 0 or greater.  Infinity is allowed: it means no limit."""
     return value == inf or _is_count(value)
 
 
@@ -68,18 +71,18 @@ def _is_count(value: Any) -> bool:
     return isfinite(value) and 0 <= value < 2**63
 
 
-def _check_optimizer(saved: object, wanted: Mapping[str, Any], where: str) -> None:
-    """Raise RecordJsonError for other weights or options, or for averages that are not tensors."""
-    if not isinstance(saved, Mapping) or saved.keys() != wanted.keys():
+def _check_optimizer(saved: object, expected: Mapping[str, Any], where: str) -> None:
+    """Raise RecordJsonError if an optimiser has other weights or options, or averages that are not tensors."""
+    if not isinstance(saved, Mapping) or saved.keys() != expected.keys():
         raise RecordJsonError(f"`{where}` is no state of an optimizer")
     state, groups = saved["state"], saved["param_groups"]
-    if not isinstance(groups, list) or len(groups) != len(wanted["param_groups"]):
+    if not isinstance(groups, list) or len(groups) != len(expected["param_groups"]):
         raise RecordJsonError(f"`{where}.param_groups` is of another optimizer")
-    for group, options in zip(groups, wanted["param_groups"], strict=True):
+    for group, options in zip(groups, expected["param_groups"], strict=True):
         if not isinstance(group, Mapping) or not _are_numbers(group.get("params"), options["params"]):
             raise RecordJsonError(f"`{where}.param_groups` is of another optimizer")
         _check_options(group, options)
-    numbers = {number for group in wanted["param_groups"] for number in group["params"]}
+    numbers = {number for group in expected["param_groups"] for number in group["params"]}
     if not isinstance(state, Mapping) or not state.keys() <= numbers:
         raise RecordJsonError(f"`{where}.state` is of another optimizer")
     for number, averages in state.items():
@@ -87,36 +90,36 @@ def _check_optimizer(saved: object, wanted: Mapping[str, Any], where: str) -> No
             raise RecordJsonError(f"`{where}.state.{number}` holds what is no average")
 
 
-def _check_options(saved: Mapping[str, Any], wanted: Mapping[str, Any]) -> None:
+def _check_options(saved: Mapping[str, Any], expected: Mapping[str, Any]) -> None:
     """Raise RecordJsonError if an option is missing or does not fit.
 
     A newer torch may have saved more options.
     """
-    for name, option in wanted.items():
-        if name not in saved or not _is_like(saved[name], option):
+    for name, option in expected.items():
+        if name not in saved or not _option_fits(saved[name], option):
             raise RecordJsonError(f"an optimizer in it has other options: `{name}`")
 
 
-def _is_like(saved: Any, wanted: object) -> bool:
-    """Whether an option fits.
+def _option_fits(saved: Any, expected: object) -> bool:
+    """Whether the saved value of an option fits the ``expected`` one.
 
     Single numbers may differ, because a training may change the learning rate.
     """
-    if isinstance(wanted, (tuple, list)):
-        return isinstance(saved, (tuple, list)) and list(map(_plain, saved)) == list(wanted)
-    if wanted is None:
+    if isinstance(expected, (tuple, list)):
+        return isinstance(saved, (tuple, list)) and list(map(_number_or_none, saved)) == list(expected)
+    if expected is None:
         # An optimiser may set a switch whose default is None.
         return _kind(saved) == "switch"
-    if _kind(wanted) == "number":
+    if _kind(expected) == "number":
         return _kind(saved) == "number" and _is_count(saved)
-    return type(saved) is type(wanted) and (not isinstance(wanted, bool) or saved == wanted)
+    return type(saved) is type(expected) and (not isinstance(expected, bool) or saved == expected)
 
 
-def _are_numbers(saved: Any, wanted: list[int]) -> bool:
-    return isinstance(saved, list) and all(type(number) is int for number in saved) and saved == wanted
+def _are_numbers(saved: Any, expected: list[int]) -> bool:
+    return isinstance(saved, list) and all(type(number) is int for number in saved) and saved == expected
 
 
-def _plain(value: object) -> object:
+def _number_or_none(value: object) -> object:
     """Return a number as it is, and None for other values: tensors cannot be compared."""
     return value if isinstance(value, (int, float)) else None
 
@@ -125,11 +128,11 @@ def _is_moment(value: object) -> bool:
     return isinstance(value, Tensor) and value.is_floating_point() and bool(torch.isfinite(value).all())
 
 
-def _check_weights(saved: object, wanted: Mapping[str, Tensor], where: str) -> None:
-    """Raise RecordJsonError unless these are tensors of the same names, shapes and types."""
-    if not isinstance(saved, Mapping) or saved.keys() != wanted.keys():
+def _check_weights(saved: object, expected: Mapping[str, Tensor], where: str) -> None:
+    """Raise RecordJsonError unless the saved weights are tensors of the expected names, shapes and types."""
+    if not isinstance(saved, Mapping) or saved.keys() != expected.keys():
         raise RecordJsonError(f"`{where}` is of another network")
-    for name, tensor in wanted.items():
+    for name, tensor in expected.items():
         _check_tensor(saved[name], tensor.shape, tensor.dtype, f"{where}.{name}")
 
 
@@ -142,9 +145,12 @@ def _check_tensor(saved: object, shape: torch.Size, dtype: torch.dtype, where: s
         raise RecordJsonError(f"`{where}` holds what is no finite number")
 
 
-def _check_generators(own: Mapping[str, Tensor], device: str) -> None:
+def _check_generators(process: Mapping[str, Tensor], device: str) -> None:
     """Raise RecordJsonError if the random generators of a process cannot be restored."""
-    states = {"cpu": own.get("cpu"), **({device: own["cuda"]} if device.startswith("cuda") and "cuda" in own else {})}
+    states = {
+        "cpu": process.get("cpu"),
+        **({device: process["cuda"]} if device.startswith("cuda") and "cuda" in process else {}),
+    }
     for where, state in states.items():
         try:
             torch.Generator(where).set_state(state)  # type: ignore[arg-type]
@@ -153,7 +159,7 @@ def _check_generators(own: Mapping[str, Tensor], device: str) -> None:
 
 
 def _kind(value: object) -> str:
-    """Return the kind of an option.
+    """Return the kind of an option: ``switch``, ``number``, or the name of its type.
 
     None counts as a switch: an optimiser may change it to a bool.
     """
@@ -180,7 +186,7 @@ def _check_moments(optimizer: Optimizer) -> None:
 
 
 def _moments(optimizer: Optimizer) -> set[str]:
-    """Return the names of what an optimiser of this class and these options keeps for a weight."""
+    """Return the names of the averages that an optimiser of this class, with these options, keeps for a weight."""
     weight = nn.Parameter(torch.zeros(1))
     weight.grad = torch.zeros(1)
     make: Any = type(optimizer)

@@ -1,4 +1,4 @@
-"""The processes of a training: one, or several of torchrun, each with its own environments."""
+"""The processes of a training: a single one, or several of torchrun, each with its own environments."""
 
 from __future__ import annotations
 
@@ -17,11 +17,12 @@ T = TypeVar("T")
 
 
 @record
-class Peers:
-    """Process ``rank`` of ``count``, and process ``local_rank`` of ``local_count`` on this machine.
+class ProcessGroup:
+    """The position of this process among those of a training, and the exchange with the others.
 
-    All processes must call the methods in the same order; otherwise they wait for each other
-    forever.
+    It is process ``rank`` of ``count``, and process ``local_rank`` of ``local_count`` on this machine;
+    ranks count from 0.  All processes must call the methods in the same order; otherwise they wait for
+    each other forever.
     """
 
     rank: int
@@ -46,27 +47,30 @@ class Peers:
         return values[0]
 
 
-def peers() -> Peers:
+def process_group() -> ProcessGroup:
     """Return the position of this process, from torchrun's environment variables.
 
     Without these variables it is the only process.
     """
     count, local_count = (started(name, 1) for name in ("WORLD_SIZE", "LOCAL_WORLD_SIZE"))
     rank, local_rank = (started(name, 0) for name in ("RANK", "LOCAL_RANK"))
-    return Peers(rank, count, local_rank, local_count)
+    return ProcessGroup(rank, count, local_rank, local_count)
 
 
 def cores() -> int:
     """Return the number of cores for each process on this machine, at least one."""
-    return max(1, usable_cores() // peers().local_count)
+    return max(1, usable_cores() // process_group().local_count)
 
 
 @contextmanager
-def joined(device: str) -> Iterator[tuple[Peers, str]]:
-    """Join the process group inside the block; yield the position in it, and ``device``."""
-    own = peers()
-    if own.count == 1:
-        yield own, device
+def join_process_group(device: str) -> Iterator[tuple[ProcessGroup, str]]:
+    """Join the process group inside the block; yield the position in it, and ``device``.
+
+    A single process joins none.
+    """
+    group = process_group()
+    if group.count == 1:
+        yield group, device
         return
     on_gpu = device.startswith("cuda")
     if on_gpu:
@@ -74,6 +78,6 @@ def joined(device: str) -> Iterator[tuple[Peers, str]]:
     # gloo exchanges Python values on any device; NCCL is the fastest backend for gradients on GPUs.
     distributed.init_process_group("cpu:gloo,cuda:nccl" if on_gpu else "gloo")
     try:
-        yield own, device
+        yield group, device
     finally:
         distributed.destroy_process_group()

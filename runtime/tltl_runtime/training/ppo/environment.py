@@ -18,7 +18,7 @@ from tltl_runtime.training.exploration.replayed_starts import Episodes
 from tltl_runtime.training.exploration.reverse_curriculum import ReverseCurriculum
 from tltl_runtime.training.exploration.search import end_of
 from tltl_runtime.training.exploration.self_imitation import SelfImitation
-from tltl_runtime.training.imitation.imitation_data import Demonstrated
+from tltl_runtime.training.imitation.imitation_data import ImitationData
 from tltl_runtime.vector import WorkerVectorEnv
 
 
@@ -28,18 +28,17 @@ class TrainingEnv(VecEnv):
     ``env`` has environments of :class:`~tltl_runtime.spec.wrapper.TltlEnv`, with ``SAME_STEP``
     autoreset.
 
-    Observation groups are the keys of the observation, float32 tensors [num_envs, ...] on
-    ``device``.  ``shapes`` are the shapes of one environment's observation.  :meth:`finished`
-    returns the episodes that ended.  ``seed`` is the argument of the vector environment's reset: a
-    number, or one for each environment.
+    Observation groups are the keys of the observation, float32 tensors [num_envs, ...] on ``device``.
+    ``shapes`` are the shapes of one environment's observation.  ``seed`` is the argument of the vector
+    environment's reset: a number, or one for each environment.
 
-    If there are ``restarts``, episodes begin at the starts that they draw, and ``seed`` is not
-    used; episodes that do not begin at the level's start are not among the ``finished``.
-    ``replayed`` counts the decisions that led to the starts.  ``lessons`` are decisions for the
-    runner to imitate, ``demonstrated`` are decisions for the algorithm to imitate.  ``dearer`` maps
-    the length of a failed episode to the largest extra penalty.  ``severity``, the penalty weight
-    in [0, 1], initially 0, is the share of it that is subtracted from the reward.  ``limit_steps`` is the
-    spec's limit, or None.
+    With a ``curriculum``, episodes begin at the starts that it draws, and ``seed`` is not used.
+    :meth:`pop_finished` then leaves out the episodes that do not begin at the level's start.
+
+    ``self_imitation`` draws decisions for the runner to imitate; ``imitation_data`` are decisions for
+    the algorithm to imitate.  ``extra_penalty`` maps the length of a failed episode, in steps, to the
+    greatest extra penalty.  ``penalty_weight``, in [0, 1] and initially 0, is the share of the extra
+    penalty that is subtracted from the reward.  ``limit_steps`` is the spec's limit, or None.
 
     Raises:
         TypeError: the spaces are not a Dict of Boxes and a MultiDiscrete.
@@ -50,10 +49,10 @@ class TrainingEnv(VecEnv):
         env: WorkerVectorEnv,
         seed: int | Sequence[int],
         device: str = "cpu",
-        restarts: ReverseCurriculum | None = None,
-        lessons: SelfImitation | None = None,
-        demonstrated: Demonstrated | None = None,
-        dearer: Callable[[int], float] | None = None,
+        curriculum: ReverseCurriculum | None = None,
+        self_imitation: SelfImitation | None = None,
+        imitation_data: ImitationData | None = None,
+        extra_penalty: Callable[[int], float] | None = None,
         limit_steps: int | None = None,
     ) -> None:
         if not isinstance(env.single_action_space, spaces.MultiDiscrete):
@@ -66,22 +65,22 @@ class TrainingEnv(VecEnv):
         self.num_actions = len(self.branches)
         self.shapes = {key: tuple(space.shape or ()) for key, space in env.single_observation_space.items()}
         self.device = device
-        self.restarts = restarts
-        self.lessons = lessons
-        self.demonstrated = demonstrated
-        self._dearer = dearer
-        self.severity = 0.0
+        self.curriculum = curriculum
+        self.self_imitation = self_imitation
+        self.imitation_data = imitation_data
+        self._extra_penalty = extra_penalty
+        self.penalty_weight = 0.0
         self.cfg: dict[str, Any] = {}
         # rsl-rl must not cut off episodes: the spec's limit ends them.
         self.max_episode_length = 2**31
         self.episode_length_buf = torch.zeros(self.num_envs, dtype=torch.long)
         self._replayed_before = 0
-        self._episodes = Episodes(env, restarts.draw) if restarts else None
+        self._episodes = Episodes(env, curriculum.draw) if curriculum else None
         observation = self._episodes.observation if self._episodes else env.reset(seed=seed)[0]
         self._observation = self._tensors(observation)
         self._finished: list[EpisodeSummary] = []
         self._limit_steps = limit_steps
-        self._ended = 0
+        self._episode_count = 0
 
     def get_observations(self) -> TensorDict:
         """Return the current observations of all environments."""
@@ -90,34 +89,37 @@ class TrainingEnv(VecEnv):
     def step(self, actions: Tensor) -> tuple[TensorDict, Tensor, Tensor, dict[str, Any]]:
         """Step all environments with actions [num_envs, branches].
 
-        The extras are bools [num_envs]: ``time_outs`` says whether the limit ended the episode,
+        Returns observations, rewards [num_envs], bools [num_envs] that say which episodes are over, and
+        extras.  The extras are bools [num_envs]: ``time_outs`` says whether a limit ended the episode,
         ``successes`` whether it met the spec.
         """
-        taken = actions.to("cpu", torch.int64).numpy()
+        choices = actions.to("cpu", torch.int64).numpy()
         step = self._episodes.step if self._episodes else self.env.step
-        observation, reward, terminated, truncated, infos = step(taken)
-        over = terminated | truncated
-        ended = self._summaries(infos["final_info"], np.flatnonzero(over)) if over.any() else {}
+        observation, reward, terminated, truncated, infos = step(choices)
+        is_over = terminated | truncated
+        summaries = self._summaries(infos["final_info"], np.flatnonzero(is_over)) if is_over.any() else {}
         successes = torch.zeros(self.num_envs, dtype=torch.bool)
-        for row, episode in ended.items():
+        for row, episode in summaries.items():
             successes[row] = episode.success
-            if self._dearer and not episode.success:
-                reward[row] -= self.severity * self._dearer(self._taken(row, episode))
-        if self._episodes and self.restarts:
-            ends = {row: end_of(infos["final_info"], row) for row, episode in ended.items() if episode.success}
-            states = {row: episode.unmet for row, episode in ended.items()}
-            cut = _update_restarts(self.restarts, self._episodes, over, ends, states)
-            ended = {row: episode for row, episode in ended.items() if self._episodes.starts[row].part is None}
-            self._episodes.turn(over)
+            if self._extra_penalty and not episode.success:
+                reward[row] -= self.penalty_weight * self._extra_penalty(self._episode_steps(row, episode))
+        if self._episodes and self.curriculum:
+            ends = {row: end_of(infos["final_info"], row) for row, episode in summaries.items() if episode.success}
+            states = {row: episode.unmet for row, episode in summaries.items()}
+            cut = _update_curriculum(self.curriculum, self._episodes, is_over, ends, states)
+            summaries = {
+                row: episode for row, episode in summaries.items() if self._episodes.starts[row].segment is None
+            }
+            self._episodes.start_next(is_over)
             if cut.any():
-                observation = self._episodes.cut(cut)
-                over, truncated = over | cut, truncated | cut
-        self._finished += ended.values()
+                observation = self._episodes.cut_off(cut)
+                is_over, truncated = is_over | cut, truncated | cut
+        self._finished += summaries.values()
         self._observation = self._tensors(observation)
         return (
             self._observation,
             torch.from_numpy(reward).to(self.device, torch.float32),
-            torch.from_numpy(over).to(self.device),
+            torch.from_numpy(is_over).to(self.device),
             {"time_outs": torch.from_numpy(truncated).to(self.device), "successes": successes.to(self.device)},
         )
 
@@ -126,26 +128,29 @@ class TrainingEnv(VecEnv):
         """The number of decisions that were replayed to reach the starts of episodes."""
         return self._replayed_before + (self._episodes.replayed if self._episodes else 0)
 
-    def begin_anew(self) -> None:
-        """Begin new episodes in all environments, after something else has used these."""
+    def restart_episodes(self) -> None:
+        """Begin new episodes in all environments, for example after a search has used them.
+
+        The environment must have a curriculum.
+        """
         assert self._episodes is not None
-        assert self.restarts is not None
+        assert self.curriculum is not None
         self._replayed_before += self._episodes.replayed
-        self._episodes = Episodes(self.env, self.restarts.draw)
+        self._episodes = Episodes(self.env, self.curriculum.draw)
         self._observation = self._tensors(self._episodes.observation)
 
-    def finished(self) -> tuple[EpisodeSummary, ...]:
+    def pop_finished(self) -> tuple[EpisodeSummary, ...]:
         """Return the episodes that ended since the last call, in the order of their ends."""
-        ended, self._finished = tuple(self._finished), []
-        return ended
-
-    def _summaries(self, infos: Mapping[str, Any], rows: NDArray[np.int64]) -> dict[int, EpisodeSummary]:
-        """Return the summaries of the episodes that ended, by row."""
-        summaries = _summaries(infos, rows, self._ended, self._limit_steps)
-        self._ended += len(summaries)
+        summaries, self._finished = tuple(self._finished), []
         return summaries
 
-    def _taken(self, row: int, episode: EpisodeSummary) -> int:
+    def _summaries(self, infos: Mapping[str, Any], rows: NDArray[np.int64]) -> dict[int, EpisodeSummary]:
+        """Return the summaries of the episodes that ended in these rows, by row."""
+        summaries = _summaries(infos, rows, self._episode_count, self._limit_steps)
+        self._episode_count += len(summaries)
+        return summaries
+
+    def _episode_steps(self, row: int, episode: EpisodeSummary) -> int:
         """Return the steps of the episode that ended in this row, including replayed ones."""
         return len(self._episodes.actions[row]) if self._episodes else episode.steps
 
@@ -154,28 +159,28 @@ class TrainingEnv(VecEnv):
         return TensorDict(tensors, batch_size=[self.num_envs], device=self.device)
 
 
-def _update_restarts(
-    restarts: ReverseCurriculum,
+def _update_curriculum(
+    curriculum: ReverseCurriculum,
     episodes: Episodes,
-    over: NDArray[np.bool_],
+    is_over: NDArray[np.bool_],
     ends: Mapping[int, int],
     states: Mapping[int, int],
 ) -> NDArray[np.bool_]:
-    """Update the restarts with the episodes that are over and those that used up their decisions.
+    """Update the curriculum with the episodes that are over or have used up their decisions.
 
-    ``ends`` has the ends of episodes that met the spec, by row; ``states`` the final states of all.
-    Returns the mask of the episodes that used up their decisions, which must be cut off.
+    ``ends`` has the ends of the episodes that met the spec, by row; ``states`` the final states of all.
+    Returns the mask [num_envs] of the episodes that have used up their decisions: they must be cut off.
     """
-    spent = np.array([episodes.is_spent(row) for row in range(len(over))]) & ~over
-    for row in [*np.flatnonzero(over).tolist(), *np.flatnonzero(spent).tolist()]:
-        restarts.ended(episodes.starts[row], episodes.actions[row], ends.get(row), states.get(row))
-    return spent
+    used_up = np.array([episodes.is_spent(row) for row in range(len(is_over))]) & ~is_over
+    for row in [*np.flatnonzero(is_over).tolist(), *np.flatnonzero(used_up).tolist()]:
+        curriculum.record_episode(episodes.starts[row], episodes.actions[row], ends.get(row), states.get(row))
+    return used_up
 
 
 def _summaries(
     infos: Mapping[str, Any], rows: NDArray[np.int64], first_index: int, limit_steps: int | None
 ) -> dict[int, EpisodeSummary]:
-    """Return the summaries of the episodes that ended, by row; their indices begin with ``first_index``."""
+    """Return the summaries of the episodes in these rows, by row; their indices count from ``first_index``."""
     lengths = infos["episode"]["l"]
     return {
         row: _summary(infos, row, index, int(lengths[row]), limit_steps)

@@ -1,4 +1,4 @@
-"""Make policies and their cards from a training."""
+"""Make policies, and the cards that describe them, from a training."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from tltl_runtime.game.registry import registered_game
 from tltl_runtime.policies.card import Card
 from tltl_runtime.policies.policy import NoNumbersError, Policy
 from tltl_runtime.training.ppo.environment import TrainingEnv
-from tltl_runtime.training.run.run_file import Run
+from tltl_runtime.training.run.run_file import TrainingRun
 from tltl_runtime.training.run.versions import versions
 from tltlc.api import Diagnostic, TltlError
 
 
-def card_of(run: Run, env: TrainingEnv) -> Card:
-    """Return the card of a policy that ``run`` trains in ``env``, without a record of the training.
+def card_of(run: TrainingRun, env: TrainingEnv) -> Card:
+    """Return the card of a policy that ``run`` trains in ``env``; its record of the training is empty.
 
     The level is read from its file as it is now.
     """
@@ -39,7 +39,7 @@ def card_of(run: Run, env: TrainingEnv) -> Card:
 
 
 def policy_of(card: Card, weights: Mapping[str, Tensor]) -> Policy:
-    """Return the policy with an actor's ``weights``.
+    """Return the policy with the ``weights`` of an actor, by name.
 
     Raises:
         TltlError: TLT0866, a weight is not finite in half precision.

@@ -6,8 +6,8 @@ from enum import IntEnum
 
 import numpy as np
 
-from tltl_runtime.training.ppo.distributed import Peers
-from tltl_runtime.training.run.run_file import Run
+from tltl_runtime.training.ppo.distributed import ProcessGroup
+from tltl_runtime.training.run.run_file import TrainingRun
 
 
 class Purpose(IntEnum):
@@ -24,6 +24,6 @@ class Purpose(IntEnum):
     INITIAL = 5
 
 
-def stream(run: Run, own: Peers, purpose: Purpose, iteration: int = 0) -> np.random.SeedSequence:
-    """Return the seed of a stream of process ``own``, for a purpose, from an iteration on."""
-    return np.random.SeedSequence(run.seed, spawn_key=(own.rank, int(purpose), iteration))
+def stream(run: TrainingRun, group: ProcessGroup, purpose: Purpose, iteration: int = 0) -> np.random.SeedSequence:
+    """Return the seed of a random stream of this process, for a purpose, from an iteration on."""
+    return np.random.SeedSequence(run.seed, spawn_key=(group.rank, int(purpose), iteration))

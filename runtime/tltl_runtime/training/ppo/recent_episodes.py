@@ -1,4 +1,4 @@
-"""The last episodes of a training: whether they meet the spec, and how good their policy is."""
+"""The last episodes of a training: whether all meet the spec, and how good the policy is."""
 
 from __future__ import annotations
 
@@ -13,9 +13,11 @@ Score = tuple[float, float, float]
 """The score of a policy: pass rate, mean progress, mean reward.  Greater is better."""
 
 _STANDSTILL_STEPS = 100_000
-_ENOUGH = 50
-"""A window needs this many episodes before its pass rate can count as risen."""
+"""The training stands still if the pass rate has not risen for this many steps."""
+_MIN_EPISODES = 50
+"""The least number of episodes in a window whose pass rate can count as risen."""
 _RISE = 0.05
+"""The least increase of the best pass rate that counts."""
 _BETWEEN = 0.1, 0.8
 """A standstill is detected only between these pass rates.
 
@@ -25,57 +27,57 @@ left to find.
 
 
 class RecentEpisodes:
-    """The last ``windows * episodes`` episodes; ``limit_steps`` is the spec's limit, or None.
+    """The last ``windows * episodes`` episodes of a training.
 
-    ``unbroken`` is the number of episodes in a row, up to the last one, that met the spec.  A
-    failed confirmation of the policy resets it.
+    ``limit_steps`` is the spec's limit, or None.  ``unbroken`` is the number of successive episodes, up
+    to the last one, that met the spec.  A failed confirmation of the policy resets it.
     """
 
     def __init__(self, windows: int, episodes: int, limit_steps: int | None) -> None:
-        self._episodes = episodes
+        self._window_episodes = episodes
         self._limit_steps = limit_steps
         self._count = windows * episodes
-        self._last: deque[EpisodeSummary] = deque(maxlen=self._count)
+        self._episodes: deque[EpisodeSummary] = deque(maxlen=self._count)
         self.unbroken = 0
 
     def add(self, finished: Iterable[EpisodeSummary]) -> None:
         """Add episodes in the order of their ends."""
         for episode in finished:
-            self._last.append(episode)
+            self._episodes.append(episode)
             self.unbroken = min(self.unbroken + 1, self._count) if episode.success else 0
 
-    def refuse(self) -> None:
-        """Count from 0 again, because the policy failed its confirmation."""
+    def reset_unbroken(self) -> None:
+        """Count successes from 0 again, because the policy failed its confirmation."""
         self.unbroken = 0
 
     @property
-    def met(self) -> bool:
+    def all_met(self) -> bool:
         """Whether all episodes of all windows met the spec."""
         return self.unbroken == self._count
 
     @property
     def window(self) -> EpisodeWindow:
-        """The statistics of all of the last episodes."""
-        return self._window(tuple(self._last))
+        """The statistics of all of the episodes."""
+        return self._window(tuple(self._episodes))
 
     @property
     def score(self) -> Score | None:
-        """The score in the last window; None before there is a whole one."""
-        if len(self._last) < self._episodes:
+        """The score in the last window; None before there are enough episodes for one."""
+        if len(self._episodes) < self._window_episodes:
             return None
-        window = self._window(tuple(self._last)[-self._episodes :])
+        window = self._window(tuple(self._episodes)[-self._window_episodes :])
         return window.pass_rate, window.progress, window.reward
 
     def state(self) -> list[tuple[Any, ...]]:
         """Return the episodes as plain values, for :meth:`load`."""
         return [
             (episode.success, episode.progress, episode.steps, episode.unmet, episode.end == "violation")
-            for episode in self._last
+            for episode in self._episodes
         ]
 
     def load(self, state: Iterable[Sequence[Any]], unbroken: int) -> None:
-        """Restore what :meth:`state` returned."""
-        self._last.extend(self._loaded(index, *fields) for index, fields in enumerate(state))
+        """Restore the episodes that :meth:`state` returned, and ``unbroken``."""
+        self._episodes.extend(self._summary(index, *fields) for index, fields in enumerate(state))
         self.unbroken = unbroken
 
     def _window(self, episodes: tuple[EpisodeSummary, ...]) -> EpisodeWindow:
@@ -92,10 +94,10 @@ class RecentEpisodes:
             violated={state: ended / count for state, ended in sorted(violated.items())},
         )
 
-    def _loaded(
+    def _summary(
         self, index: int, success: bool, progress: float, steps: int, unmet: int, violated: bool
     ) -> EpisodeSummary:
-        """Return the episode at ``index`` of the plain values that :meth:`state` returns."""
+        """Return the episode at ``index``, from the plain values that :meth:`state` returns."""
         return EpisodeSummary(
             index=index,
             seed=None,
@@ -111,7 +113,7 @@ class RecentEpisodes:
 class Standstill:
     """Detects a standstill: the agent succeeds sometimes, but its pass rate no longer rises.
 
-    ``best`` is the greatest pass rate so far, in [0, 1], and ``since`` the number of steps when it
+    ``best`` is the greatest pass rate so far, in [0, 1], and ``since`` the number of steps at which it
     was reached.
     """
 
@@ -119,11 +121,11 @@ class Standstill:
         self._best, self._since = best, since
 
     def add(self, window: EpisodeWindow, steps: int) -> bool:
-        """Add the window after ``steps`` of all environments; return whether this is a standstill.
+        """Add the window after ``steps`` of all environments; return whether the training stands still.
 
         After a standstill, the count of steps begins again.
         """
-        if window.count >= _ENOUGH and window.pass_rate >= self._best + _RISE:
+        if window.count >= _MIN_EPISODES and window.pass_rate >= self._best + _RISE:
             self._best, self._since = window.pass_rate, steps
         low, high = _BETWEEN
         if not low <= self._best < high or steps - self._since < _STANDSTILL_STEPS:

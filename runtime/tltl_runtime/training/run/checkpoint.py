@@ -12,7 +12,7 @@ import torch
 from torch import Tensor
 
 from tltl_runtime.support.record_json import RecordJsonError, from_json
-from tltl_runtime.training.exploration.search import Searched
+from tltl_runtime.training.exploration.search import SearchProgress
 from tltl_runtime.training.ppo.recent_episodes import Score
 from tltl_runtime.training.run.report import StopReason
 from tltl_runtime.training.run.run_file import resume_command
@@ -28,7 +28,7 @@ _MOST: Final = 2**53
 
 @record
 class BestPolicy:
-    """The best policy: its score, its weights by name, and the steps after which it had them."""
+    """The best policy: its score, its weights by name, and the number of steps at which it had them."""
 
     score: Score
     actor: Mapping[str, Tensor]
@@ -43,11 +43,11 @@ class Checkpoint:
     - ``losses`` are the losses of the iteration.
     - ``steps`` and ``seconds`` are totals over all iterations; ``replayed`` counts replayed
       decisions.
-    - ``searched`` is the result of the searches so far.
+    - ``searched`` is the progress of the searches so far.
     - ``algorithm`` is what rsl-rl's algorithm saves.
-    - ``processes`` has the own state of each process: the states of torch's random generators by
+    - ``processes`` has the state of each process, by rank: the states of torch's random generators by
       device, and the arrays of its
-      :class:`~tltl_runtime.training.exploration.reverse_curriculum.Restarts`.
+      :class:`~tltl_runtime.training.exploration.reverse_curriculum.ReverseCurriculum`.
     - ``window`` and ``unbroken`` are from :class:`~tltl_runtime.training.ppo.recent_episodes.RecentEpisodes`,
       ``standstill`` from :class:`~tltl_runtime.training.ppo.recent_episodes.Standstill`.
     - ``best`` is the best policy so far; ``met`` says whether it has met the spec in all windows
@@ -60,7 +60,7 @@ class Checkpoint:
     steps: int
     seconds: float
     replayed: int
-    searched: Searched | None
+    searched: SearchProgress | None
     algorithm: Mapping[str, Any]
     processes: tuple[Mapping[str, Tensor], ...]
     window: tuple[tuple[bool, float, int, int, bool], ...]
@@ -71,22 +71,22 @@ class Checkpoint:
 
     def reason(self, stop: Stop) -> StopReason | None:
         """Return why a training with these limits is over, or None if it is not."""
-        return "met" if self.met else stop.reached(self.steps, self.seconds)
+        return "met" if self.met else stop.reached_limit(self.steps, self.seconds)
 
     @property
     def weights(self) -> Mapping[str, Tensor]:
-        """The weights, by name, of the best actor, or of the current one if there is no best."""
+        """The weights, by name, of the best actor, or of the current actor if there is no best one."""
         last: Mapping[str, Tensor] = self.algorithm["actor_state_dict"]
         return self.best.actor if self.best else last
 
 
-_RECORDS: Final[Mapping[str, Any]] = {"best": BestPolicy, "searched": Searched}
-"""The fields that are records.  They are saved as dicts, because torch would not load records."""
+_RECORDS: Final[Mapping[str, Any]] = {"best": BestPolicy, "searched": SearchProgress}
+"""The fields that are records.  They are saved as dicts, because torch refuses to load other classes."""
 _FIELDS: Final[tuple[str, ...]] = Checkpoint.__match_args__
 
 
 def write_checkpoint(path: Path, checkpoint: Checkpoint) -> None:
-    """Write a checkpoint.  A failure, even of the power, leaves the older file.
+    """Write a checkpoint.  If that fails, even by a power cut, the older file stays.
 
     Raises TltlError, TLT0005.
     """
@@ -114,46 +114,46 @@ def read_checkpoint(path: Path, run: Mapping[str, str] | None = None) -> Checkpo
         return None
     data = fileio.read_bytes(path, str(path), fileio.limits.CHECKPOINT.size)
     if len(data) > fileio.limits.CHECKPOINT.size:
-        raise damaged(path, f"it is larger than {fileio.limits.CHECKPOINT.size >> 20} MiB")
+        raise checkpoint_error(path, f"it is larger than {fileio.limits.CHECKPOINT.size >> 20} MiB")
     content = _content(data, path)
     if type(content.get("version")) is not int or content["version"] != VERSION:
-        raise _other_version(path, content.get("version"))
+        raise _version_error(path, content.get("version"))
     try:
         checkpoint = _checkpoint(content)
         _check_figures(checkpoint)
     except KeyError as error:
-        raise damaged(path, f"it lacks a part: {error}") from None
+        raise checkpoint_error(path, f"it lacks a part: {error}") from None
     except (RecordJsonError, RecursionError) as error:
-        raise damaged(path, str(error) or "it is nested too deeply") from None
+        raise checkpoint_error(path, str(error) or "it is nested too deeply") from None
     if run is not None:
         _check_run(path, checkpoint.run, run)
     return checkpoint
 
 
-def copied(value: Any) -> Any:
-    """Return a deep copy of tensors, mappings and lists, which further learning does not change."""
+def deep_copy(value: Any) -> Any:
+    """Return a deep copy of tensors, mappings and lists, so that further learning does not change it."""
     if isinstance(value, Tensor):
         return value.detach().clone()
     if isinstance(value, Mapping):
-        return {name: copied(item) for name, item in value.items()}
-    return [copied(item) for item in value] if isinstance(value, list) else value
+        return {name: deep_copy(item) for name, item in value.items()}
+    return [deep_copy(item) for item in value] if isinstance(value, list) else value
 
 
 def _content(data: bytes, path: Path) -> Mapping[str, Any]:
-    """Return the content of a checkpoint file; raises TLT0864 if it is not one."""
+    """Return the content of a checkpoint file.  Raises TltlError, TLT0864, if it is something else."""
     try:
         content = read_torch(data)
     except TorchArchiveError as error:
-        raise damaged(path, str(error)) from None
+        raise checkpoint_error(path, str(error)) from None
     if not isinstance(content, dict) or content.get("format") != FORMAT:
-        raise damaged(path, "it is no checkpoint of a training")
+        raise checkpoint_error(path, "it is no checkpoint of a training")
     return content
 
 
 def _checkpoint(content: Mapping[str, Any]) -> Checkpoint:
-    """Make a checkpoint of the loaded content.
+    """Make a checkpoint from the content of its file.
 
-    Raises KeyError or RecordJsonError if something is invalid.
+    Raises KeyError or RecordJsonError if a part is missing or invalid.
     """
     processes, algorithm = content["processes"], _object(content["algorithm"], "algorithm")
     if not isinstance(processes, (tuple, list)) or not processes:
@@ -161,7 +161,7 @@ def _checkpoint(content: Mapping[str, Any]) -> Checkpoint:
     _tensors(algorithm["actor_state_dict"], "algorithm.actor_state_dict")
     tensors = {
         "algorithm": algorithm,
-        "best": None if content["best"] is None else _best(_object(content["best"], "best")),
+        "best": None if content["best"] is None else _best_policy(_object(content["best"], "best")),
         "processes": tuple(_tensors(process, "processes") for process in processes),
     }
     plain = {name: _lists(content[name]) for name in _FIELDS if name not in tensors}
@@ -169,7 +169,7 @@ def _checkpoint(content: Mapping[str, Any]) -> Checkpoint:
 
 
 def _check_figures(checkpoint: Checkpoint) -> None:
-    """Raise RecordJsonError for counts and times below 0 or above their limits."""
+    """Raise RecordJsonError for counts and times that are below 0 or too large."""
     best, searched, (rate, since) = checkpoint.best, checkpoint.searched, checkpoint.standstill
     names = ("iteration", "steps", "seconds", "replayed", "unbroken")
     _check_counts({f"it.{name}": getattr(checkpoint, name) for name in names})
@@ -186,13 +186,13 @@ def _check_figures(checkpoint: Checkpoint) -> None:
         _check_counts({f"it.searched.lengths[{index}]": length for index, length in enumerate(searched.lengths)})
 
 
-def _check_counts(counts: Mapping[str, float], most: float = _MOST) -> None:
+def _check_counts(counts: Mapping[str, float], greatest: float = _MOST) -> None:
     for where, value in counts.items():
-        if not 0 <= value <= most:
-            raise RecordJsonError(f"`{where}` is {value!r:.60}, and a number from 0 to {most:,} was expected")
+        if not 0 <= value <= greatest:
+            raise RecordJsonError(f"`{where}` is {value!r:.60}, and a number from 0 to {greatest:,} was expected")
 
 
-def _best(content: Mapping[str, Any]) -> BestPolicy:
+def _best_policy(content: Mapping[str, Any]) -> BestPolicy:
     plain = {name: _lists(content[name]) for name in ("score", "steps")}
     return from_json(BestPolicy, plain, "best", actor=_tensors(content["actor"], "best.actor"))
 
@@ -217,28 +217,30 @@ def _lists(value: object) -> object:
     return [_lists(item) for item in value] if isinstance(value, (tuple, list)) else value
 
 
-def _check_run(path: Path, actual: Mapping[str, str], wanted: Mapping[str, str]) -> None:
-    """Check that a checkpoint is of the training ``wanted``.
+def _check_run(path: Path, actual: Mapping[str, str], expected: Mapping[str, str]) -> None:
+    """Check that a checkpoint is of the ``expected`` training; ``actual`` is the identity in it.
 
     Raises TLT0868 if only the level differs, TLT0922 if only the demonstrations differ, and TLT0864
     with all differences otherwise.
     """
-    different = [name for name in wanted if actual.get(name) != wanted[name]]
+    different = [name for name in expected if actual.get(name) != expected[name]]
     if different == ["level"]:
-        raise level_changed(path.parent)
+        raise level_changed_error(path.parent)
     if different == ["demonstrations"]:
-        raise _demonstrations_changed(path.parent)
+        raise _demonstrations_changed_error(path.parent)
     if different:
-        raise damaged(path, f"it is of another training: another {' and another '.join(map(_called, different))}")
+        raise checkpoint_error(
+            path, f"it is of another training: another {' and another '.join(map(_part_name, different))}"
+        )
 
 
-def damaged(path: Path, why: str) -> TltlError:
-    """Return error TLT0864: a checkpoint is damaged or does not fit; ``why`` says how."""
+def checkpoint_error(path: Path, reason: str) -> TltlError:
+    """Return error TLT0864: a checkpoint is damaged or does not fit, for this reason."""
     help_ = "put back a copy of it, or move it away: the training then begins anew"
-    return TltlError([Diagnostic("TLT0864", f"`{path}` cannot be resumed from: {why}", help=help_)])
+    return TltlError([Diagnostic("TLT0864", f"`{path}` cannot be resumed from: {reason}", help=help_)])
 
 
-def level_changed(folder: Path) -> TltlError:
+def level_changed_error(folder: Path) -> TltlError:
     """Return error TLT0868: the level has changed since the training in ``folder`` began."""
     help_ = (
         f"put it back and go on by `{resume_command(folder)}`, or train on the level as it is now: anew, or by "
@@ -248,18 +250,18 @@ def level_changed(folder: Path) -> TltlError:
     return TltlError([Diagnostic("TLT0868", title, help=help_)])
 
 
-def _demonstrations_changed(folder: Path) -> TltlError:
+def _demonstrations_changed_error(folder: Path) -> TltlError:
     again = resume_command(folder)
     help_ = f"put them back and go on by `{again}`, or say where they are now: `{again} --demonstrations DIR`"
     title = f"the demonstrations are others than those that the training in `{folder}` began with"
     return TltlError([Diagnostic("TLT0922", title, help=help_)])
 
 
-def _called(part: str) -> str:
+def _part_name(part: str) -> str:
     return "network, senses or settings" if part == "settings" else part
 
 
-def _other_version(path: Path, version: object) -> TltlError:
+def _version_error(path: Path, version: object) -> TltlError:
     folder = quote(str(path.parent))
     title = f"`{path}` cannot be resumed from: it was written by another version of tltlc"
     title += f" (its own is {version!r:.20}, and only {VERSION} can be read)"

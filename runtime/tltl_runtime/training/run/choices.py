@@ -1,4 +1,4 @@
-"""The texts that settings choose from, except for the network and the rewards."""
+"""The values of settings that are one of a few texts, except for the network and the rewards."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """The confirmation of a policy in fresh episodes, before a training ends.
 
-Success in all windows is not enough: policies of several iterations played them, and windows
+Success in all windows is not enough: the policies of several iterations played them, and windows
 without a failure also occur by chance.  A policy with a pass rate of 0.99 meets the spec in 300
 episodes in a row with probability 1/20.
 """
@@ -11,26 +11,28 @@ import numpy as np
 
 from tltl_runtime.evaluation.evaluate import evaluate
 from tltl_runtime.policies.policy import Policy
-from tltl_runtime.training.run.checkpoint import level_changed
+from tltl_runtime.training.run.checkpoint import level_changed_error
 from tltl_runtime.training.run.report import Confirmation
-from tltl_runtime.training.run.run_file import Run, current_level_hash
+from tltl_runtime.training.run.run_file import TrainingRun, current_level_hash
 
 
-def confirm(run: Run, policy: Policy, stream: np.random.SeedSequence) -> Confirmation:
-    """Let a policy play the number of fresh episodes in the settings, or up to the first failure.
+def confirm(run: TrainingRun, policy: Policy, stream: np.random.SeedSequence) -> Confirmation:
+    """Let a policy play the fresh episodes that the settings ask for, at most up to the first failure.
+
+    ``stream`` gives the seed of the episodes.
 
     Raises:
-        TltlError: TLT0868, the level has changed since the training.
+        TltlError: TLT0868, the level has changed since the training began.
     """
     _check_level(run, policy)
-    seed, count, met = int(stream.generate_state(1)[0]), run.settings.stop.confirmation, 0
-    for played in evaluate(policy, run.level, run.variant, episodes=count, seed=seed):
-        if not played.success:
+    seed, count, successes = int(stream.generate_state(1)[0]), run.settings.stop.confirmation, 0
+    for episode in evaluate(policy, run.level, run.variant, episodes=count, seed=seed):
+        if not episode.success:
             break
-        met += 1
-    return Confirmation(met, count)
+        successes += 1
+    return Confirmation(successes, count)
 
 
-def _check_level(run: Run, policy: Policy) -> None:
+def _check_level(run: TrainingRun, policy: Policy) -> None:
     if current_level_hash(run) != policy.card.level_hash:
-        raise level_changed(run.folder)
+        raise level_changed_error(run.folder)

@@ -14,9 +14,9 @@ _DPI: Final = 100
 
 
 def draw_curve(title: str, curve: Sequence[Mapping[str, Any]]) -> bytes:
-    """Return a PNG of a learning ``curve``.
+    """Return a learning ``curve`` as a PNG.
 
-    Each point has ``steps``, and ``pass_rate`` and ``progress``, which are None before the first
+    Each point has ``steps``, ``pass_rate`` and ``progress``.  The last two are None before the first
     episode has ended.
     """
     picture = BytesIO()
@@ -25,16 +25,16 @@ def draw_curve(title: str, curve: Sequence[Mapping[str, Any]]) -> bytes:
 
 
 def curve_figure(title: str, curve: Sequence[Mapping[str, Any]]) -> Figure:
-    """Return the figure of :func:`draw_curve`; it says so if no episode has ended."""
-    shown = [point for point in curve if point["pass_rate"] is not None]
-    steps = [point["steps"] for point in shown]
+    """Return the figure that :func:`draw_curve` draws.  If no episode has ended, it has a note."""
+    points = [point for point in curve if point["pass_rate"] is not None]
+    steps = [point["steps"] for point in points]
     figure = Figure(figsize=_SIZE, dpi=_DPI, layout="constrained")
     axes = figure.add_subplot()
     # A single point makes no line, so it needs a marker.
-    style: dict[str, Any] = {"marker": "o" if len(shown) == 1 else None}
-    axes.plot(steps, [point["progress"] for point in shown], color=_PROGRESS, linewidth=1.2, label="progress", **style)
+    style: dict[str, Any] = {"marker": "o" if len(points) == 1 else None}
+    axes.plot(steps, [point["progress"] for point in points], color=_PROGRESS, linewidth=1.2, label="progress", **style)
     axes.plot(
-        steps, [point["pass_rate"] for point in shown], color=_PASS_RATE, linewidth=2.0, label="pass rate", **style
+        steps, [point["pass_rate"] for point in points], color=_PASS_RATE, linewidth=2.0, label="pass rate", **style
     )
     axes.set_title(title, color=_INK, fontsize=11)
     axes.set_xlabel("steps (decisions of all environments)")
@@ -44,7 +44,7 @@ def curve_figure(title: str, curve: Sequence[Mapping[str, Any]]) -> Figure:
     axes.xaxis.set_major_formatter(lambda value, _: f"{value:,.0f}")
     axes.grid(color="#e2e8f0")
     axes.spines[["top", "right"]].set_visible(False)
-    if shown:
+    if points:
         figure.legend(loc="outside lower center", ncols=2, frameon=False)
     else:
         note = "no episode has ended"

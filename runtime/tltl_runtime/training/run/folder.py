@@ -5,7 +5,7 @@ from __future__ import annotations
 from contextlib import AbstractContextManager
 from pathlib import Path
 
-from tltl_runtime.support import folder_lock as held_folder
+from tltl_runtime.support.folder_lock import lock_folder
 from tltl_runtime.training.run.run_file import WRITABLE
 from tltlc.api import Diagnostic
 
@@ -20,4 +20,4 @@ def lock_training(folder: Path) -> AbstractContextManager[None]:
     """
     title = f"another process trains in `{folder}`"
     busy = Diagnostic("TLT0865", title, help="wait for its end; a new training may go elsewhere, with --out")
-    return held_folder.lock_folder(folder, busy, WRITABLE)
+    return lock_folder(folder, busy, WRITABLE)

@@ -1,4 +1,4 @@
-"""The policy that a training begins with, in place of random weights."""
+"""The policy that a training begins with, instead of random weights."""
 
 from __future__ import annotations
 
@@ -7,25 +7,25 @@ from pathlib import Path
 
 from tltl_runtime.policies.file import read_policy
 from tltl_runtime.policies.policy import Policy
-from tltl_runtime.training.run.run_file import Initial, resume_command
+from tltl_runtime.training.run.run_file import InitialPolicy, resume_command
 from tltlc.api import Diagnostic, TltlError
 
 
-def initial_of(path: Path, policy: Policy) -> Initial:
-    """Return what a training records of ``policy``, from the file ``path``, that it begins with."""
+def initial_policy_of(path: Path, policy: Policy) -> InitialPolicy:
+    """Describe ``policy``, read from the file ``path``, as the initial policy of a training."""
     card = policy.card
-    return Initial(str(path), weights_hash(policy), card.level, card.variant, card.level_hash)
+    return InitialPolicy(str(path), weights_hash(policy), card.level, card.variant, card.level_hash)
 
 
 def weights_hash(policy: Policy) -> str:
-    """Return the SHA-256, in hexadecimal, of the weights, as in a file, and of their names."""
+    """Return the SHA-256, in hexadecimal, of a policy's weights, as its file stores them, and of their names."""
     digest = hashlib.sha256()
     for name, tensor in sorted(policy.weights().items()):
         digest.update(name.encode() + b"\0" + tensor.numpy().tobytes())
     return digest.hexdigest()
 
 
-def read_initial(initial: Initial, folder: Path) -> Policy:
+def read_initial_policy(initial: InitialPolicy, folder: Path) -> Policy:
     """Read the policy that the training in ``folder`` begins with.
 
     Raises:
@@ -33,16 +33,18 @@ def read_initial(initial: Initial, folder: Path) -> Policy:
             ``read_policy``.
     """
     if not Path(initial.path).is_file():
-        raise _gone(f"`{initial.path}` is not there, with which the training in `{folder}` begins", folder)
+        raise _changed_policy_error(
+            f"`{initial.path}` is not there, with which the training in `{folder}` begins", folder
+        )
     policy = read_policy(initial.path)
     if weights_hash(policy) != initial.weights:
-        raise _gone(
+        raise _changed_policy_error(
             f"`{initial.path}` is another policy now than when the training in `{folder}` was asked for", folder
         )
     return policy
 
 
-def _gone(title: str, folder: Path) -> TltlError:
+def _changed_policy_error(title: str, folder: Path) -> TltlError:
     again = resume_command(folder)
     help_ = f"put it back and go on by `{again}`, or say where it is now: `{again} --from POLICY`"
     return TltlError([Diagnostic("TLT0940", title, help=help_)])

@@ -19,19 +19,21 @@ from tltlc.api import Diagnostic, Fspa, TltlError, fileio, label_text
 METRICS: Final = "metrics.jsonl"
 
 _ADVICE: Final = "see that there is room, and that you may write there"
-OF_THE_WINDOW: Final = ("pass_rate", "progress", "reward", "episode_steps")
+WINDOW_MEANS: Final = ("pass_rate", "progress", "reward", "episode_steps")
 """The means over the last episodes."""
-_WHOLE: Final = ("iteration", "steps", "episodes", "window")
-"""The integers among the fields of a line that are read back."""
-_READ: Final = {*_WHOLE, "seconds", "losses", *OF_THE_WINDOW}
-_OF_THE_ITERATION: Final = ("steps_per_s", "collect_s", "learn_s", "episodes")
+_INTEGERS: Final = ("iteration", "steps", "episodes", "window")
+"""The fields of a line that are read back and must be integers."""
+_REQUIRED: Final = {*_INTEGERS, "seconds", "losses", *WINDOW_MEANS}
+"""The fields of a line that are read back."""
+_ITERATION_VALUES: Final = ("steps_per_s", "collect_s", "learn_s", "episodes")
+"""The fields of a line that TensorBoard shows under ``time``."""
 
 
 class Metrics:
     """Writes the metrics files in the folder of a training.
 
-    When a training is resumed, metrics after iteration ``after``, which ended at ``steps``, are
-    removed, because those iterations run again.
+    When a training is resumed, the metrics after iteration ``after``, which ended at ``steps``, are
+    removed, because the iterations after it run again.
 
     Raises:
         TltlError: TLT0005, the folder cannot be written to, here or in ``add``; TLT0001, a file in
@@ -45,26 +47,26 @@ class Metrics:
             # TensorBoard then hides the events at this step and later in other files of this folder.
             self._events = SummaryWriter(str(folder), purge_step=steps + 1)
         except OSError as error:
-            raise _unwritable(folder, error) from None
+            raise _write_error(folder, error) from None
 
     def add(self, report: TrainingReport) -> None:
         """Write the metrics of an iteration."""
-        measured = measurements(report, self._fspa)
+        fields = metrics_line(report, self._fspa)
         try:
-            _append(self._path, _line(measured).encode())
-            for tag, value in _scalars(measured):
+            _append(self._path, _line_text(fields).encode())
+            for tag, value in _scalars(fields):
                 self._events.add_scalar(tag, value, report.steps)
             self._events.flush()
         except OSError as error:
-            raise _unwritable(self._path, error) from None
+            raise _write_error(self._path, error) from None
 
     def close(self) -> None:
         """Close the files."""
         self._events.close()
 
 
-def measurements(report: TrainingReport, fspa: Fspa) -> dict[str, Any]:
-    """Return a line of ``metrics.jsonl``; ``docs/training.md`` describes it."""
+def metrics_line(report: TrainingReport, fspa: Fspa) -> dict[str, Any]:
+    """Return the fields of a line of ``metrics.jsonl``; ``docs/training.md`` describes them."""
     iteration, window = report.iteration, report.window
     return {
         "iteration": iteration.number,
@@ -75,14 +77,14 @@ def measurements(report: TrainingReport, fspa: Fspa) -> dict[str, Any]:
         "learn_s": round(iteration.learn_s, 4),
         "episodes": len(iteration.finished),
         "window": window.count,
-        **(dict.fromkeys(OF_THE_WINDOW) if not window.count else means(window)),
+        **(dict.fromkeys(WINDOW_MEANS) if not window.count else means(window)),
         "confirmation": report.confirmation and to_json(report.confirmation),
-        "states": [_ended(window, fspa, state) for state in sorted(window.states)],
+        "states": [_state_shares(window, fspa, state) for state in sorted(window.states)],
         "losses": {name: round(loss, 6) for name, loss in iteration.losses.items()},
     }
 
 
-def _ended(window: EpisodeWindow, fspa: Fspa, state: int) -> dict[str, Any]:
+def _state_shares(window: EpisodeWindow, fspa: Fspa, state: int) -> dict[str, Any]:
     shares = {"share": round(window.states[state], 6), "violated": round(window.violated.get(state, 0.0), 6)}
     return {"state": state, "label": str(fspa.states[state].label), "english": label_text(fspa, state), **shares}
 
@@ -90,13 +92,13 @@ def _ended(window: EpisodeWindow, fspa: Fspa, state: int) -> dict[str, Any]:
 def means(window: EpisodeWindow) -> dict[str, float]:
     """Return the means over a window, by name."""
     values = (window.pass_rate, window.progress, window.reward, window.steps)
-    return {name: round(value, 6) for name, value in zip(OF_THE_WINDOW, values, strict=True)}
+    return {name: round(value, 6) for name, value in zip(WINDOW_MEANS, values, strict=True)}
 
 
 def read_metrics(path: Path) -> list[dict[str, Any]]:
     """Read the lines of ``metrics.jsonl`` in order; none if there is no file.
 
-    Lines that were cut short, or lack a field that is read, are left out.
+    Lines that are incomplete, or lack a field that is read back, are left out.
 
     Raises:
         TltlError: TLT0001, the system refuses to read the file; TLT0004, it is larger than
@@ -113,35 +115,35 @@ def read_metrics(path: Path) -> list[dict[str, Any]]:
         title = f"`{path}` is larger than {fileio.limits.MEASUREMENTS.size >> 20} MiB"
         raise TltlError([Diagnostic("TLT0004", title, help="move it away: the training then goes on without it")])
     text = data.decode(errors="replace")
-    return [measured for line in text.splitlines() if (measured := _measured(line)) is not None]
+    return [fields for line in text.splitlines() if (fields := _parse_line(line)) is not None]
 
 
 def truncate(path: Path, iteration: int) -> None:
-    """Keep the lines of ``metrics.jsonl`` up to an iteration.
+    """Remove the lines of ``metrics.jsonl`` after an iteration.
 
     Raises TltlError, TLT0001, TLT0004 or TLT0005.
     """
-    kept = [measured for measured in read_metrics(path) if measured["iteration"] <= iteration]
-    fileio.write_file(path, "".join(map(_line, kept)), _ADVICE, over_inputs=True)
+    remaining = [fields for fields in read_metrics(path) if fields["iteration"] <= iteration]
+    fileio.write_file(path, "".join(map(_line_text, remaining)), _ADVICE, over_inputs=True)
 
 
-def _line(measured: Mapping[str, Any]) -> str:
-    return json.dumps(measured, ensure_ascii=False) + "\n"
+def _line_text(fields: Mapping[str, Any]) -> str:
+    return json.dumps(fields, ensure_ascii=False) + "\n"
 
 
-def _measured(line: str) -> dict[str, Any] | None:
-    """Parse a line; return None if it is invalid or lacks a field that is read."""
+def _parse_line(line: str) -> dict[str, Any] | None:
+    """Parse a line; return None if it is invalid or lacks a field that is read back."""
     try:
-        measured = fileio.parse_json(line, fileio.limits.TRACE_LINE)
+        fields = fileio.parse_json(line, fileio.limits.TRACE_LINE)
     except (ValueError, RecursionError):
         return None
-    if not isinstance(measured, dict) or not measured.keys() >= _READ:
+    if not isinstance(fields, dict) or not fields.keys() >= _REQUIRED:
         return None
-    whole = all(type(measured[name]) is int for name in _WHOLE)
+    are_integers = all(type(fields[name]) is int for name in _INTEGERS)
     # There are no means before the first episode has ended.
-    means = [measured[name] for name in OF_THE_WINDOW if measured["window"] or measured[name] is not None]
-    fits = whole and all(map(_is_number, [measured["seconds"], *means])) and isinstance(measured["losses"], dict)
-    return measured if fits else None
+    means = [fields[name] for name in WINDOW_MEANS if fields["window"] or fields[name] is not None]
+    is_valid = are_integers and all(map(_is_number, [fields["seconds"], *means])) and isinstance(fields["losses"], dict)
+    return fields if is_valid else None
 
 
 def _is_number(value: object) -> bool:
@@ -160,15 +162,15 @@ def _append(path: Path, line: bytes) -> None:
         os.close(descriptor)
 
 
-def _scalars(measured: Mapping[str, Any]) -> Iterator[tuple[str, float]]:
-    """Yield the metrics as tags and values for TensorBoard."""
-    yield from ((f"train/{name}", measured[name]) for name in OF_THE_WINDOW if measured["window"])
-    yield from ((f"time/{name}", measured[name]) for name in _OF_THE_ITERATION)
-    yield from ((f"state/{state['state']}", state["share"]) for state in measured["states"])
-    yield from ((f"violated/{state['state']}", state["violated"]) for state in measured["states"])
-    yield from ((f"loss/{name}", value) for name, value in measured["losses"].items())
+def _scalars(fields: Mapping[str, Any]) -> Iterator[tuple[str, float]]:
+    """Yield the fields of a line as tags and values for TensorBoard."""
+    yield from ((f"train/{name}", fields[name]) for name in WINDOW_MEANS if fields["window"])
+    yield from ((f"time/{name}", fields[name]) for name in _ITERATION_VALUES)
+    yield from ((f"state/{state['state']}", state["share"]) for state in fields["states"])
+    yield from ((f"violated/{state['state']}", state["violated"]) for state in fields["states"])
+    yield from ((f"loss/{name}", value) for name, value in fields["losses"].items())
 
 
-def _unwritable(path: Path, error: OSError) -> TltlError:
+def _write_error(path: Path, error: OSError) -> TltlError:
     title = f"cannot write `{path}`: {fileio.reason(error)}"
     return TltlError([Diagnostic("TLT0005", title, help=_ADVICE)])

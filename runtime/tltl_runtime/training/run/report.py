@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Literal
 
-from tltl_runtime.training.exploration.search import Searched
-from tltl_runtime.training.imitation.imitation_data import Imitated
+from tltl_runtime.training.exploration.search import SearchProgress
+from tltl_runtime.training.imitation.imitation_data import ImitationSummary
 from tltl_runtime.training.runner import Iteration
 from tltlc.api import record
 
@@ -17,10 +17,10 @@ StopReason = Literal["met", "steps", "minutes"]
 class EpisodeWindow:
     """Statistics of the last ``count`` episodes, of which ``successes`` met the spec.
 
-    The means are 0 if there is no episode: ``progress`` in [0, 1]; ``reward``, always with the
-    undiscounted terminal penalty; and the length in ``steps``.  ``states`` maps the automaton state
-    at the end of an episode, or before its violation, to the share of episodes in [0, 1].
-    ``violated`` has the shares of violations alone.  States in which no episode ended are left out.
+    ``progress`` in [0, 1], ``reward``, always with the undiscounted terminal penalty, and the length in
+    ``steps`` are means; they are 0 if there is no episode.  ``states`` maps the automaton state at the
+    end of an episode, or before its violation, to the share of episodes in [0, 1].  ``violated`` has
+    the shares of violations alone.  States in which no episode ended are left out.
     """
 
     count: int
@@ -57,20 +57,19 @@ class Confirmation:
 class TrainingReport:
     """An iteration, and the state of the training after it.
 
-    - ``steps`` counts all decisions so far, of all environments and processes.
-    - ``seconds`` is the training time so far, across resumptions.
-    - ``unbroken`` is the number of last episodes in a row that met the spec; a failed confirmation
-      resets it.
+    - ``steps`` counts all decisions so far, of all environments and processes, without those of
+      searches and without ``replayed`` ones.
+    - ``seconds`` is the training time so far, over all resumptions.
+    - ``unbroken`` is the number of successive episodes, up to the last one, that met the spec; a failed
+      confirmation resets it.
     - ``confirmation`` is the result of the confirmation in this iteration, None if none was due.
-    - ``best_pass_rate`` and ``best_steps`` are the pass rate of the best policy and the steps after
-      which it had its weights; None if there is no best policy yet.
+    - ``best_pass_rate`` and ``best_steps`` are the pass rate of the best policy and the number of steps
+      at which it had its weights; None if there is no best policy yet.
     - ``stop`` says why the training ends here; None if it goes on.
     - ``checkpointed`` says whether a checkpoint is written for this iteration.
-    - ``searched`` is the result of the searches, None if there was none.
+    - ``searched`` is the progress of the searches, None if there was none.
     - ``replayed`` counts the decisions that were replayed to reach the starts of episodes.
     - ``imitated`` describes the demonstrations, None without imitation.
-
-    ``steps`` does not include the decisions of searches or the ``replayed`` ones.
     """
 
     iteration: Iteration
@@ -83,6 +82,6 @@ class TrainingReport:
     best_steps: int | None
     stop: StopReason | None
     checkpointed: bool
-    searched: Searched | None
+    searched: SearchProgress | None
     replayed: int
-    imitated: Imitated | None
+    imitated: ImitationSummary | None

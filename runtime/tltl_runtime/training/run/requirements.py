@@ -1,4 +1,4 @@
-"""Resolve the classes and the device that the settings name."""
+"""Find the classes and the device that the settings name."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from typing import Any
 import torch
 from rsl_rl.utils import resolve_callable
 
-from tltl_runtime.training.ppo.distributed import peers
+from tltl_runtime.training.ppo.distributed import process_group
 from tltlc.api import Diagnostic, TltlError
 
 
 def class_of(setting: str, name: str, base: type) -> Any:
-    """Return the class with a name.
+    """Return the class called ``name``, which the setting ``classes.SETTING`` gives.
 
     Raises TltlError, TLT0862, unless it is a subclass of ``base``.
     """
@@ -35,18 +35,18 @@ def device_of(device: str) -> str:
     """
     if not device.startswith("cuda"):
         return device
-    own, gpus = peers(), torch.cuda.device_count() if torch.cuda.is_available() else 0
-    if own.count == 1:
+    group, gpus = process_group(), torch.cuda.device_count() if torch.cuda.is_available() else 0
+    if group.count == 1:
         if int(device.partition(":")[2] or 0) >= gpus:
             raise _no_device(f"there is no device `{device}` here, or torch was built without it", 'train on the "cpu"')
         return device
     if device != "cuda":
-        title = f"each of {own.count} processes takes a device of its own, and `{device}` is but one"
+        title = f"each of {group.count} processes takes a device of its own, and `{device}` is but one"
         raise _no_device(title, 'say "cuda"; the variable CUDA_VISIBLE_DEVICES chooses which ones they take')
-    if own.local_count > gpus:
-        title = f"each of {own.local_count} processes takes a device of its own, and torch finds {gpus} here"
+    if group.local_count > gpus:
+        title = f"each of {group.local_count} processes takes a device of its own, and torch finds {gpus} here"
         raise _no_device(title, 'start no more processes than devices, or train on the "cpu"')
-    return f"cuda:{own.local_rank}"
+    return f"cuda:{group.local_rank}"
 
 
 def _no_device(title: str, help_: str) -> TltlError:

@@ -1,4 +1,4 @@
-"""The specification of a training, and the file in its folder that stores it: ``run.json``.
+"""The description of a training, and the file in its folder that stores it: ``run.json``.
 
 The names of the other files in the folder are also defined here.
 """
@@ -40,14 +40,14 @@ WRITABLE: Final = "see that there is room, and that you may write there; a new t
 _FORMAT: Final = "tltl-run"
 _VERSION: Final = 1
 _MOST_NAMED: Final = 8
-"""A message names at most this many trainings in a folder."""
+"""The most trainings that a help text names."""
 
 
 @record
-class Initial:
+class InitialPolicy:
     """A policy whose weights a training begins with.
 
-    ``path`` is its file; the other fields describe its content when it was read.
+    ``path`` is its file; the other fields describe what the file contained when it was read.
     ``weights`` is the SHA-256, in hexadecimal, of its weights.  ``level``, ``variant`` and
     ``level_hash`` are from its card.
     """
@@ -60,13 +60,13 @@ class Initial:
 
 
 @record
-class Run:
+class TrainingRun:
     """What to train, and the folder that stores it.
 
     ``params`` are the values of the params of ``fspa`` in SI units.  ``level`` is an argument of
     :meth:`~tltl_runtime.game.game.Game.load_level`.  ``demonstrations`` is the folder of the
-    demonstrations to imitate; None is a folder of the training itself, into which the expert's are
-    recorded.  ``initial`` is the policy whose weights the actor begins with, None for random
+    demonstrations to imitate.  If it is None, they are in the folder of the training, and the expert's
+    are recorded there.  ``initial`` is the policy whose weights the actor begins with, None for random
     weights.
     """
 
@@ -79,7 +79,7 @@ class Run:
     settings: TrainingSettings
     seed: int
     demonstrations: str | None = None
-    initial: Initial | None = None
+    initial: InitialPolicy | None = None
 
 
 _PLAIN: Final[Mapping[str, Any]] = {
@@ -90,12 +90,12 @@ _PLAIN: Final[Mapping[str, Any]] = {
     "settings": TrainingSettings,
     "seed": int,
     "demonstrations": str | None,
-    "initial": Initial | None,
+    "initial": InitialPolicy | None,
 }
-"""The fields that are stored in the file as they are, and their types."""
+"""The fields that the file stores as plain JSON values, and their types."""
 
 
-def write_run(run: Run) -> None:
+def write_run(run: TrainingRun) -> None:
     """Write ``run.json`` into the folder; create the folder if it is missing.
 
     Raises TltlError, TLT0005.
@@ -118,7 +118,7 @@ def write_run(run: Run) -> None:
     fileio.write_files(run.folder, {RUN: text}, WRITABLE, durable=True, over_inputs=True)
 
 
-def read_run(folder: Path) -> Run:
+def read_run(folder: Path) -> TrainingRun:
     """Read the training in a folder.
 
     Raises:
@@ -126,68 +126,74 @@ def read_run(folder: Path) -> Run:
             invalid.
     """
     if not (folder / RUN).exists():
-        raise _no_training(folder)
-    source, document = _document(folder)
+        raise _no_training_error(folder)
+    source, document = _read_document(folder)
     _check_settings(source, document)
     values = _values(source, document, tuple(_PLAIN))
     if "artefact" not in document:
-        raise _unfit(source, "it lacks 'artefact'")
+        raise _invalid_run_error(source, "it lacks 'artefact'")
     fspa = compiler.decode_artefact(document["artefact"], f"{source.name}/artefact")
-    return Run(folder=folder, fspa=fspa, **values)
+    return TrainingRun(folder=folder, fspa=fspa, **values)
 
 
-def read_place(folder: Path) -> tuple[str, str]:
-    """Return level and variant of the training in a folder, even if its other parts are invalid.
+def read_level_and_variant(folder: Path) -> tuple[str, str]:
+    """Return level and variant of the training in a folder, even if other parts of its file are invalid.
 
     Raises the errors of :func:`read_run`.
     """
-    values = _values(*_document(folder), ("level", "variant"))
+    values = _values(*_read_document(folder), ("level", "variant"))
     return values["level"], values["variant"]
 
 
 def read_level_hash(folder: Path) -> str | None:
-    """Return the hash of the level that the training in a folder began on, or None.
+    """Return the hash of the level that the training in a folder began on; None if it is not stored.
 
     Raises the errors of :func:`read_run`.
     """
-    digest = _document(folder)[1].get("level_hash")
+    digest = _read_document(folder)[1].get("level_hash")
     return digest if isinstance(digest, str) else None
 
 
-def _document(folder: Path) -> tuple[SourceFile, Mapping[str, Any]]:
+def _read_document(folder: Path) -> tuple[SourceFile, Mapping[str, Any]]:
     source = fileio.read_source(folder / RUN, max_bytes=fileio.MAX_ARTEFACT_BYTES)
     try:
         document = fileio.parse_json(source.text, fileio.limits.ARTEFACT)
     except (ValueError, RecursionError):
-        raise _unfit(source, "it is no JSON") from None
+        raise _invalid_run_error(source, "it is no JSON") from None
     if not isinstance(document, dict) or document.get("format") != _FORMAT:
-        raise _unfit(source, "it describes no training")
+        raise _invalid_run_error(source, "it describes no training")
     if document.get("version") != _VERSION:
-        raise _unfit(source, f"it has version {document.get('version')!r:.20}, and only {_VERSION} can be read")
+        raise _invalid_run_error(
+            source, f"it has version {document.get('version')!r:.20}, and only {_VERSION} can be read"
+        )
     return source, document
 
 
 def _check_settings(source: SourceFile, document: Mapping[str, Any]) -> None:
-    """Raise TLT0863 if the document was written by a version with other settings."""
+    """Raise TLT0863 if another version of tltlc, with other settings, wrote the document."""
     stored, known = set(dict(leaves(document.get("settings", {})))), set(dict(leaves(to_json(read_settings()))))
     help_ = f"begin the training anew; `tltlc evaluate {quote(str(Path(source.name).parent))}` plays what it learned"
-    if stored and (later := sorted(known - stored)):
-        raise _unfit(source, f"it is of an older version of tltlc, which had no setting `{later[0]}`", help_)
-    if gone := sorted(stored - known):
-        raise _unfit(source, f"it is of another version of tltlc, which had a setting `{gone[0]}`", help_)
+    if stored and (missing := sorted(known - stored)):
+        raise _invalid_run_error(
+            source, f"it is of an older version of tltlc, which had no setting `{missing[0]}`", help_
+        )
+    if unknown := sorted(stored - known):
+        raise _invalid_run_error(
+            source, f"it is of another version of tltlc, which had a setting `{unknown[0]}`", help_
+        )
 
 
 def _values(source: SourceFile, document: Mapping[str, Any], names: Sequence[str]) -> dict[str, Any]:
     try:
         return {name: from_json(_PLAIN[name], document[name], name) for name in names}
     except KeyError as error:
-        raise _unfit(source, f"it lacks {error}") from None
+        raise _invalid_run_error(source, f"it lacks {error}") from None
     except (RecordJsonError, RecursionError) as error:
-        raise _unfit(source, str(error)) from None
+        raise _invalid_run_error(source, str(error)) from None
 
 
-def identity(run: Run) -> dict[str, str]:
-    """Return everything that a checkpoint depends on, in parts that messages distinguish.
+def identity(run: TrainingRun) -> dict[str, str]:
+    """Return everything that a checkpoint depends on, in parts that messages tell apart.
 
     ``level`` and ``spec`` are hashes, ``seed`` is the seed.  ``settings`` is a SHA-256, in
     hexadecimal, of the observation version, the params, the sensors and all settings except
@@ -211,19 +217,19 @@ def identity(run: Run) -> dict[str, str]:
     }
 
 
-def current_level_hash(run: Run) -> str:
+def current_level_hash(run: TrainingRun) -> str:
     """Return the hash of the level of a training; the level is read from its file as it is now."""
     game = registered_game()
     return game.level_hash(game.load_level(run.level, run.variant))
 
 
-def demonstrations_of(run: Run) -> Path:
+def demonstrations_of(run: TrainingRun) -> Path:
     """Return the folder of the demonstrations that a training imitates."""
     return run.folder / DEMONSTRATIONS if run.demonstrations is None else Path(run.demonstrations)
 
 
 def leaves(settings: object, path: str = "") -> Iterator[tuple[str, Any]]:
-    """Yield the name and value of each setting in JSON data; names are ``table.key``."""
+    """Yield the name, ``table.key``, and the value of each setting in JSON data."""
     if not isinstance(settings, dict):
         yield path, settings
         return
@@ -237,26 +243,26 @@ def resume_command(folder: Path) -> str:
 
 
 def named_trainings(folder: Path) -> str:
-    """Return a help text that names the trainings in a folder; empty if there are none."""
+    """Return a help text that names the trainings directly below a folder; empty if there are none."""
     trainings = sorted(path.parent for path in folder.glob(f"*/{RUN}"))
     return f"name one of them: {listed([f'`{path}`' for path in trainings], _MOST_NAMED)}" if trainings else ""
 
 
 def _content_hash(folder: Path) -> str:
     """Return the SHA-256, in hexadecimal, of the recordings in a folder and of their names."""
-    most = fileio.limits.RECORDING.size
-    contents = {path.name: fileio.read_bytes(path, str(path), most) for path in recordings(folder)}
+    max_bytes = fileio.limits.RECORDING.size
+    contents = {path.name: fileio.read_bytes(path, str(path), max_bytes) for path in recordings(folder)}
     hashes = {name: hashlib.sha256(data).hexdigest() for name, data in contents.items()}
     return hashlib.sha256(json.dumps(hashes, sort_keys=True).encode()).hexdigest()
 
 
-def _no_training(folder: Path) -> TltlError:
+def _no_training_error(folder: Path) -> TltlError:
     title = f"`{folder}` cannot be resumed from: there is no training in it"
     help_ = named_trainings(folder) or "name the folder of a training, as `tltlc train --out` did"
     return TltlError([Diagnostic("TLT0863", title, help=help_)])
 
 
-def _unfit(
-    source: SourceFile, why: str, help_: str = "name the folder of a training, as `tltlc train --out` did"
+def _invalid_run_error(
+    source: SourceFile, reason: str, help_: str = "name the folder of a training, as `tltlc train --out` did"
 ) -> TltlError:
-    return TltlError([Diagnostic("TLT0863", f"`{source.name}` cannot be resumed from: {why}", help=help_)])
+    return TltlError([Diagnostic("TLT0863", f"`{source.name}` cannot be resumed from: {reason}", help=help_)])

@@ -29,8 +29,8 @@ class Ppo:
 
     The default learning rate, entropy, clip, lambda and gamma are the paper's (section VI).  As the
     pass rate rises from one half to 1, the inverse temperature rises from 1 to ``sharpening``.  A
-    training that begins with a policy has an untrained critic, so only the critic learns in the
-    first ``warm_up`` updates.  Otherwise the policy would follow the critic's initial errors.
+    training that begins with a policy has an untrained critic, so only the critic learns in the first
+    ``warm_up`` updates.  Otherwise the policy would follow the critic's initial errors.
     """
 
     learning_rate: float
@@ -65,12 +65,12 @@ class Rollout:
 class Imitation:
     """The settings of the imitation baseline (paper, section VI): behavioural cloning, then GAIL.
 
-    ``cloning`` is the share of behavioural cloning in the limit that is reached first, of steps or
-    of minutes.  ``demonstrations`` episodes of the expert are recorded if no demonstrations are
-    given.  The discriminator has two layers of width ``encoding``, the learning rate
-    ``discriminator_rate`` and the weight ``gradient_penalty`` of its gradient penalty.  Its reward
-    is multiplied by ``strength``.  The terminal reward of an episode is plus or minus ``terminal``.
-    See :mod:`tltl_runtime.training.imitation.gail`.
+    ``cloning`` is the share of behavioural cloning in the limit that is reached first, of steps or of
+    minutes.  If no demonstrations are given, ``demonstrations`` episodes of the expert are recorded.
+    The discriminator has two layers of width ``encoding``, the learning rate ``discriminator_rate`` and
+    the weight ``gradient_penalty`` of its gradient penalty.  Its reward is multiplied by ``strength``.
+    The terminal reward of an episode is plus or minus ``terminal``.  See
+    :mod:`tltl_runtime.training.imitation.gail`.
     """
 
     demonstrations: int
@@ -87,7 +87,7 @@ class Reward:
     """The settings of rewards: :class:`~tltlc.monitor.reward.RewardOptions` and a schedule.
 
     With the ``penalty_schedule`` ``rising``, a ``discounted`` terminal penalty of mode ``progress``
-    changes to the undiscounted one as the pass rate rises from one half to 1.
+    rises to the undiscounted one as the pass rate rises from one half to 1.
     """
 
     mode: monitors.Mode
@@ -102,18 +102,18 @@ class Reward:
         return RewardOptions(self.mode, self.termination, self.terminal_penalty, self.gamma)
 
     @property
-    def rises(self) -> bool:
-        """Whether the violation penalty changes during the training."""
+    def penalty_rises(self) -> bool:
+        """Whether the violation penalty rises during the training."""
         return self.penalty_schedule == "rising" and (self.mode, self.terminal_penalty) == ("progress", "discounted")
 
 
 @record
 class Stop:
-    """The settings of when a training ends.
+    """The settings that say when a training ends.
 
-    It ends when all episodes of ``windows`` successive windows of ``episodes`` each have met the
-    spec, and then the policy meets it in ``confirmation`` fresh episodes.  It also ends after
-    ``steps`` decisions of all environments, or after ``minutes`` of training (0: no such limit).
+    It ends when all episodes of ``windows`` successive windows of ``episodes`` each have met the spec,
+    and the policy then meets it in ``confirmation`` fresh episodes.  It also ends after ``steps``
+    decisions of all environments, or after ``minutes`` of training (0: no such limit).
     """
 
     windows: int
@@ -122,15 +122,15 @@ class Stop:
     steps: int
     minutes: float
 
-    def is_late(self, seconds: float) -> bool:
+    def is_out_of_time(self, seconds: float) -> bool:
         """Whether a training has reached the limit of minutes after these seconds."""
         return 0 < self.minutes * 60 <= seconds
 
-    def reached(self, steps: int, seconds: float) -> Literal["steps", "minutes"] | None:
+    def reached_limit(self, steps: int, seconds: float) -> Literal["steps", "minutes"] | None:
         """Return the limit that a training has reached after these steps and seconds, or None."""
         if steps >= self.steps:
             return "steps"
-        return "minutes" if self.is_late(seconds) else None
+        return "minutes" if self.is_out_of_time(seconds) else None
 
 
 @record
@@ -147,7 +147,7 @@ class TrainingSettings:
 
     With the ``method`` ``imitation``, the settings ``imitation`` apply, and ``exploration`` and
     ``reward`` do not.  A checkpoint is written after the first iteration that ends ``checkpoint_s``
-    seconds or more after the last checkpoint.  ``threads`` is the number of torch's threads in
+    seconds or more after the last checkpoint.  ``threads`` is the number of torch's threads during
     updates, ``device`` the device of the network.
     """
 
@@ -176,12 +176,12 @@ class TrainingSettings:
 
     @property
     def searches(self) -> bool:
-        """Whether the training searches for ways first, and episodes begin on them."""
+        """Whether the training searches for demonstrations first, from which episodes then begin."""
         return self.exploration.ways > 0 and not self.imitates
 
 
 def read_settings(path: Path | None = None) -> TrainingSettings:
-    """Return the default settings, overridden by a TOML file.
+    """Return the default settings, with those that a TOML file overrides.
 
     Raises:
         TltlError: the file cannot be read (TLT0001 to TLT0004), is not TOML (TLT0860), has an
@@ -189,8 +189,8 @@ def read_settings(path: Path | None = None) -> TrainingSettings:
     """
     values = read_values(fileio.read_source(DEFAULTS))
     if path is not None:
-        given = read_values(fileio.read_source(path))
-        values = {name: {**known, **given.get(name, {})} for name, known in values.items()}
+        overrides = read_values(fileio.read_source(path))
+        values = {name: {**defaults, **overrides.get(name, {})} for name, defaults in values.items()}
     ppo, rollout = Ppo(**values["ppo"]), Rollout(**values["rollout"])
     if ppo.minibatches > rollout.envs * rollout.steps:
         title = f"{ppo.minibatches} minibatches are more than there are decisions in a rollout"
@@ -214,7 +214,7 @@ def default_text() -> str:
 
 
 def settings_text(settings: TrainingSettings) -> str:
-    """Return settings as TOML text: that of the defaults, with other values where they differ."""
+    """Return settings as TOML: the text of the defaults, with other values where they differ."""
     table, lines = "", []
     defaults = read_settings()
     for line in default_text().splitlines():
@@ -233,7 +233,7 @@ def settings_text(settings: TrainingSettings) -> str:
 def _toml(value: object) -> str:
     """Return the value of a setting as TOML.
 
-    The texts have no characters that TOML and JSON read differently.
+    No text among the settings has characters that TOML and JSON write differently.
     """
     # `ensure_ascii` off: JSON escapes characters beyond 16 bits as surrogate pairs, which TOML does not allow.
     return json.dumps(list(value) if isinstance(value, tuple) else value, ensure_ascii=False)
@@ -242,7 +242,7 @@ def _toml(value: object) -> str:
 def algorithm_name(settings: TrainingSettings) -> str:
     """Return the name of the algorithm's class.
 
-    With imitation, :class:`~tltl_runtime.training.imitation.gail.Gail` takes the place of ``PPO``.
+    With imitation, :class:`~tltl_runtime.training.imitation.gail.Gail` replaces ``PPO``.
     """
     name = settings.classes.algorithm
     return _GAIL if settings.imitates and name == _PPO else name

@@ -1,4 +1,4 @@
-"""Read the TOML of settings: the known keys, and the valid values of each."""
+"""Read settings from TOML: the known keys, and which values each of them may have."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from tltlc.api import Diagnostic, SourceFile, TltlError, monitors, record
 
 @record
 class NumberSetting:
-    """A finite number in [low, high], or in (low, high] if ``open``."""
+    """A setting that is a finite number in [low, high], or in (low, high] if ``open``."""
 
     low: float
     high: float
@@ -34,8 +34,8 @@ class NumberSetting:
 
 
 @record
-class Whole:
-    """A whole number in [low, high]."""
+class IntegerSetting:
+    """A setting that is an integer in [low, high]."""
 
     low: int
     high: int
@@ -49,24 +49,24 @@ class Whole:
 
 
 @record
-class Wholes:
-    """A list of one to ``most`` whole numbers, each in the range of ``each``."""
+class IntegerListSetting:
+    """A setting that is a list of 1 to ``max_length`` integers, each in the range of ``item``."""
 
-    each: Whole
-    most: int
+    item: IntegerSetting
+    max_length: int
 
     def read(self, value: object) -> tuple[int, ...] | None:
         """Return the numbers, or None if they are invalid."""
-        good = isinstance(value, list) and 1 <= len(value) <= self.most
-        return tuple(value) if good and all(self.each.read(item) is not None for item in value) else None  # type: ignore[attr-defined, arg-type]
+        is_list = isinstance(value, list) and 1 <= len(value) <= self.max_length
+        return tuple(value) if is_list and all(self.item.read(number) is not None for number in value) else None  # type: ignore[attr-defined, arg-type]
 
     def __str__(self) -> str:
-        return f"a list of 1 to {self.most} whole numbers from {self.each.low:,} to {self.each.high:,}"
+        return f"a list of 1 to {self.max_length} whole numbers from {self.item.low:,} to {self.item.high:,}"
 
 
 @record
-class OneOf:
-    """One of a few texts."""
+class ChoiceSetting:
+    """A setting that is one of a few texts."""
 
     words: tuple[str, ...]
 
@@ -80,83 +80,86 @@ class OneOf:
 
 @record
 class TextSetting:
-    """A text that matches the regular expression ``pattern``; messages describe it as ``what``."""
+    """A setting that is a text and matches the regular expression ``pattern``.
+
+    Messages describe it as ``description``.
+    """
 
     pattern: str
-    what: str
+    description: str
 
     def read(self, value: object) -> str | None:
         """Return the text, or None if it is invalid."""
         return value if isinstance(value, str) and re.fullmatch(self.pattern, value) else None
 
     def __str__(self) -> str:
-        return self.what
+        return self.description
 
 
-Kind = NumberSetting | Whole | Wholes | OneOf | TextSetting
+Kind = NumberSetting | IntegerSetting | IntegerListSetting | ChoiceSetting | TextSetting
 
 _CLASS: Final = TextSetting(r"[A-Za-z_][\w.]*(:[A-Za-z_][\w.]*)?", 'a class, e.g. "package.module:Class"')
 
 KINDS: Final[Mapping[str, Mapping[str, Kind]]] = {
     "": {
-        "method": OneOf(get_args(Method)),
+        "method": ChoiceSetting(get_args(Method)),
         "device": TextSetting(r"cpu|cuda(:\d{1,2})?", 'a device: "cpu", "cuda" or "cuda:0"'),
-        "threads": Whole(1, 1024),
+        "threads": IntegerSetting(1, 1024),
         "checkpoint_s": NumberSetting(0.0, 86_400.0),
     },
     "ppo": {
         "learning_rate": NumberSetting(0.0, 1.0, open=True),
         "entropy": NumberSetting(0.0, 10.0),
-        "entropy_schedule": OneOf(get_args(EntropySchedule)),
+        "entropy_schedule": ChoiceSetting(get_args(EntropySchedule)),
         "sharpening": NumberSetting(1.0, 100.0),
         "clip": NumberSetting(0.0, 10.0, open=True),
         "lam": NumberSetting(0.0, 1.0),
         "gamma": NumberSetting(0.0, 1.0, open=True),
-        "epochs": Whole(1, 1_000),
-        "minibatches": Whole(1, 100_000),
+        "epochs": IntegerSetting(1, 1_000),
+        "minibatches": IntegerSetting(1, 100_000),
         "value_loss": NumberSetting(0.0, 1_000.0),
         "max_gradient": NumberSetting(0.0, 1_000_000.0, open=True),
-        "warm_up": Whole(0, 100_000),
+        "warm_up": IntegerSetting(0, 100_000),
     },
     "rollout": {
-        "envs": Whole(1, 100_000),
-        "steps": Whole(2, 100_000),
-        "workers": Whole(0, 10_000),
-        "pool": OneOf(get_args(Pool)),
+        "envs": IntegerSetting(1, 100_000),
+        "steps": IntegerSetting(2, 100_000),
+        "workers": IntegerSetting(0, 10_000),
+        "pool": ChoiceSetting(get_args(Pool)),
     },
     "network": {
-        "hidden": Wholes(Whole(1, MAX_WIDTH), MAX_LAYERS),
-        "activation": OneOf(get_args(Activation)),
-        "channels": Wholes(Whole(1, MAX_WIDTH), MAX_LAYERS),
-        "kernel": Whole(1, MAX_KERNEL),
-        "stride": Whole(1, MAX_STRIDE),
+        "hidden": IntegerListSetting(IntegerSetting(1, MAX_WIDTH), MAX_LAYERS),
+        "activation": ChoiceSetting(get_args(Activation)),
+        "channels": IntegerListSetting(IntegerSetting(1, MAX_WIDTH), MAX_LAYERS),
+        "kernel": IntegerSetting(1, MAX_KERNEL),
+        "stride": IntegerSetting(1, MAX_STRIDE),
     },
     "exploration": {
-        "ways": Whole(0, 1_000),
-        "steps": Whole(1, 10**9),
-        "parts": Whole(1, 1_000),
-        "imitation": Whole(0, 100),
+        "ways": IntegerSetting(0, 1_000),
+        "steps": IntegerSetting(1, 10**9),
+        "parts": IntegerSetting(1, 1_000),
+        "imitation": IntegerSetting(0, 100),
     },
     "imitation": {
-        "demonstrations": Whole(1, 10_000),
+        "demonstrations": IntegerSetting(1, 10_000),
         "cloning": NumberSetting(0.0, 1.0),
-        "encoding": Whole(1, MAX_WIDTH),
+        "encoding": IntegerSetting(1, MAX_WIDTH),
         "discriminator_rate": NumberSetting(0.0, 1.0, open=True),
         "gradient_penalty": NumberSetting(0.0, 10_000.0),
         "strength": NumberSetting(0.0, 1_000.0),
         "terminal": NumberSetting(0.0, 1_000.0),
     },
     "reward": {
-        "mode": OneOf(monitors.MODES),
-        "termination": OneOf(get_args(monitors.Termination)),
-        "terminal_penalty": OneOf(get_args(monitors.TerminalPenalty)),
-        "penalty_schedule": OneOf(get_args(PenaltySchedule)),
+        "mode": ChoiceSetting(monitors.MODES),
+        "termination": ChoiceSetting(get_args(monitors.Termination)),
+        "terminal_penalty": ChoiceSetting(get_args(monitors.TerminalPenalty)),
+        "penalty_schedule": ChoiceSetting(get_args(PenaltySchedule)),
     },
     "stop": {
-        "windows": Whole(1, 1_000),
-        "episodes": Whole(1, 100_000),
-        "confirmation": Whole(1, 100_000),
-        "steps": Whole(1, 10**15),
+        "windows": IntegerSetting(1, 1_000),
+        "episodes": IntegerSetting(1, 100_000),
+        "confirmation": IntegerSetting(1, 100_000),
+        "steps": IntegerSetting(1, 10**15),
         "minutes": NumberSetting(0.0, 1_000_000.0),
     },
     "classes": {"runner": _CLASS, "algorithm": _CLASS},
@@ -168,7 +171,7 @@ _HELP: Final = 'values are written as in `envs = 32` and `device = "cpu"`'
 
 
 def read_values(source: SourceFile) -> dict[str, dict[str, Any]]:
-    """Return the values of a settings text, by table and key.
+    """Return the values in a settings text, by table and key.
 
     Raises TltlError with all errors: TLT0860, TLT0861, TLT0862.
     """
@@ -180,9 +183,11 @@ def read_values(source: SourceFile) -> dict[str, dict[str, Any]]:
         elif name not in KINDS:
             title = f"there is no setting `{name}`"
             known = [*KINDS[""], *(table for table in KINDS if table)]
-            log.append(Diagnostic("TLT0861", title, (entry.label,), _home(name) or _like(name, known, log)))
+            log.append(
+                Diagnostic("TLT0861", title, (entry.label,), _place_of_key(name) or _suggestion(name, known, log))
+            )
         elif not isinstance(entry.value, dict):
-            log.append(_wrong(entry, name, f"a table: a line `[{name}]` with its keys below"))
+            log.append(_value_error(entry, name, f"a table: a line `[{name}]` with its keys below"))
         else:
             values[name] = _table(name, entry.value, log)
     if log:
@@ -197,7 +202,9 @@ def _table(table: str, tree: Tree, log: list[Diagnostic]) -> dict[str, Any]:
             _read(table, key, entry, values, log)
         else:
             title = f"there is no setting `{key}` in `[{table}]`"
-            log.append(Diagnostic("TLT0861", title, (entry.label,), _home(key) or _like(key, KINDS[table], log)))
+            log.append(
+                Diagnostic("TLT0861", title, (entry.label,), _place_of_key(key) or _suggestion(key, KINDS[table], log))
+            )
     return values
 
 
@@ -205,24 +212,24 @@ def _read(table: str, key: str, entry: Entry, values: dict[str, Any], log: list[
     kind = KINDS[table][key]
     value = kind.read(entry.value)
     if value is None:
-        log.append(_wrong(entry, key, str(kind)))
+        log.append(_value_error(entry, key, str(kind)))
     else:
         values[key] = value
 
 
-def _like(key: str, known: Iterable[str], log: list[Diagnostic]) -> str | None:
-    """Suggest a similar setting, or None.
+def _suggestion(key: str, known: Iterable[str], log: list[Diagnostic]) -> str | None:
+    """Suggest a setting whose name is similar; None if there is none.
 
-    With too many errors there are no suggestions, because each takes time.
+    After too many errors there are no suggestions, because each takes time.
     """
     return suggestion(key, known) if len(log) < MOST_SUGGESTIONS else None
 
 
-def _home(key: str) -> str | None:
-    """Return where a key in the wrong table belongs, or None for an unknown key."""
+def _place_of_key(key: str) -> str | None:
+    """Say where a key in the wrong table belongs; None for an unknown key."""
     places = [f"under `[{table}]`" if table else _TOP for table, kinds in KINDS.items() if key in kinds]
     return f"it belongs {' or '.join(places)}" if places else None
 
 
-def _wrong(entry: Entry, key: str, expected: str) -> Diagnostic:
+def _value_error(entry: Entry, key: str, expected: str) -> Diagnostic:
     return Diagnostic("TLT0862", f"wrong value for `{key}`", (entry.label,), f"expected {expected}")

@@ -1,4 +1,4 @@
-"""Prepare a training: its folder, environments, demonstrations, initial policy and ways."""
+"""Prepare a training: its folder, environments, demonstrations, initial policy and first search."""
 
 from __future__ import annotations
 
@@ -12,23 +12,23 @@ from numpy.typing import NDArray
 from tltl_runtime.game.registry import registered_game
 from tltl_runtime.policies.policy import NoNumbersError, Policy
 from tltl_runtime.spec.wrapper import TltlEnv
-from tltl_runtime.training.exploration.replayed_starts import Replayed
+from tltl_runtime.training.exploration.replayed_starts import ReplayedStartEnv
 from tltl_runtime.training.exploration.reverse_curriculum import ReverseCurriculum
-from tltl_runtime.training.exploration.search import Player, Searched
-from tltl_runtime.training.exploration.search_schedule import Searching, searched_first
+from tltl_runtime.training.exploration.search import Player, SearchProgress
+from tltl_runtime.training.exploration.search_schedule import SearchCallback, search_before_training
 from tltl_runtime.training.exploration.self_imitation import SelfImitation
-from tltl_runtime.training.imitation.demonstrations import Tried
-from tltl_runtime.training.imitation.imitation_data import Demonstrated, read_demonstrations, record_expert
-from tltl_runtime.training.ppo.distributed import Peers, cores
+from tltl_runtime.training.imitation.demonstrations import Attempt
+from tltl_runtime.training.imitation.imitation_data import ImitationData, read_demonstrations, record_expert
+from tltl_runtime.training.ppo.distributed import ProcessGroup, cores
 from tltl_runtime.training.ppo.environment import TrainingEnv
-from tltl_runtime.training.ppo.penalty_weight import raised_penalty
+from tltl_runtime.training.ppo.penalty_weight import penalty_rise
 from tltl_runtime.training.ppo.random_streams import Purpose, stream
-from tltl_runtime.training.run.checkpoint import Checkpoint, damaged, level_changed, read_checkpoint
-from tltl_runtime.training.run.initial_policy import read_initial
+from tltl_runtime.training.run.checkpoint import Checkpoint, checkpoint_error, level_changed_error, read_checkpoint
+from tltl_runtime.training.run.initial_policy import read_initial_policy
 from tltl_runtime.training.run.run_file import (
     CHECKPOINT,
     RUN,
-    Run,
+    TrainingRun,
     demonstrations_of,
     identity,
     read_level_hash,
@@ -41,7 +41,7 @@ from tltl_runtime.vector.env import TLTL_INFO
 from tltlc.api import Diagnostic, TltlError
 
 
-def begun(run: Run, resume: bool) -> Checkpoint | None:
+def start_or_resume(run: TrainingRun, resume: bool) -> Checkpoint | None:
     """Write ``run.json`` if needed; return the checkpoint to resume from, None for a new training.
 
     Raises:
@@ -52,9 +52,9 @@ def begun(run: Run, resume: bool) -> Checkpoint | None:
     if resume:
         checkpoint = read_checkpoint(run.folder / CHECKPOINT, identity(run))
         if checkpoint is None and read_level_hash(run.folder) != identity(run)["level"]:
-            raise level_changed(run.folder)
+            raise level_changed_error(run.folder)
         if read_run(run.folder) != run:
-            # The limits or the path of the level's file have changed: keep them for the next time it is resumed.
+            # The limits or the path of the level's file have changed: store them, for the next time it is resumed.
             write_run(run)
         return checkpoint
     if (run.folder / RUN).exists():
@@ -65,7 +65,7 @@ def begun(run: Run, resume: bool) -> Checkpoint | None:
     return None
 
 
-def environments(run: Run) -> WorkerVectorEnv:
+def make_environments(run: TrainingRun) -> WorkerVectorEnv:
     """Make the environments of this process."""
     settings, rollout = run.settings, run.settings.rollout
     return make_vec(
@@ -77,15 +77,18 @@ def environments(run: Run) -> WorkerVectorEnv:
         sensors=run.sensors,
         reward=settings.rewards,
         params=run.params,
-        wrapper=Replayed if settings.searches else None,
+        wrapper=ReplayedStartEnv if settings.searches else None,
         info={**TLTL_INFO, "cell": np.int64},
     )
 
 
-def demonstrated(run: Run, own: Peers, recording: Callable[[Tried], None]) -> Demonstrated | None:
-    """Return the demonstrations to imitate, None without imitation.
+def load_imitation_data(
+    run: TrainingRun, group: ProcessGroup, on_attempt: Callable[[Attempt], None]
+) -> ImitationData | None:
+    """Return the data to imitate, None without imitation.
 
-    Missing demonstrations of the expert are recorded first.
+    If no demonstrations are given, those of the expert are recorded first.  ``on_attempt`` is called
+    with each attempt.
 
     Raises:
         TltlError: TLT0920, the expert fails; TLT0921, there is nothing to imitate; TLT0005, a
@@ -93,16 +96,16 @@ def demonstrated(run: Run, own: Peers, recording: Callable[[Tried], None]) -> De
     """
     if not run.settings.imitates:
         return None
-    decisions = None
-    if own.rank == 0:
+    imitation_data = None
+    if group.rank == 0:
         folder, make = demonstrations_of(run), _env_of(run)
         if run.demonstrations is None:
-            record_expert(folder, run.settings.imitation.demonstrations, make, recording)
-        decisions = read_demonstrations(folder, make)
-    return own.broadcast(decisions)
+            record_expert(folder, run.settings.imitation.demonstrations, make, on_attempt)
+        imitation_data = read_demonstrations(folder, make)
+    return group.broadcast(imitation_data)
 
 
-def initial_policy(run: Run, own: Peers, checkpoint: Checkpoint | None) -> Policy | None:
+def initial_policy(run: TrainingRun, group: ProcessGroup, checkpoint: Checkpoint | None) -> Policy | None:
     """Return the policy that the training begins with; None with random weights or a checkpoint.
 
     Raises:
@@ -111,48 +114,52 @@ def initial_policy(run: Run, own: Peers, checkpoint: Checkpoint | None) -> Polic
     """
     if run.initial is None or checkpoint is not None:
         return None
-    return own.broadcast(read_initial(run.initial, run.folder) if own.rank == 0 else None)
+    return group.broadcast(read_initial_policy(run.initial, run.folder) if group.rank == 0 else None)
 
 
-def prepared(
-    run: Run,
-    own: Peers,
+def prepare_environment(
+    run: TrainingRun,
+    group: ProcessGroup,
     device: str,
-    played: WorkerVectorEnv,
+    vector_env: WorkerVectorEnv,
     checkpoint: Checkpoint | None,
-    searching: Searching,
-    to_imitate: Demonstrated | None,
+    on_search: SearchCallback,
+    imitation_data: ImitationData | None,
     initial: Policy | None,
-) -> tuple[TrainingEnv, Searched | None]:
-    """Return the environment for rsl-rl, at the start of new episodes, and the result of a search.
+) -> tuple[TrainingEnv, SearchProgress | None]:
+    """Return the environment for rsl-rl, at the start of new episodes, and the progress of a search.
 
-    The seeds depend on process and iteration, so that episodes differ from those played before.
-    The result is None if there is no search.  A search is not repeated, unless a limit broke it off
-    before it found a way.  ``initial``, the policy that the training begins with, plays first in
-    the search.
+    The seeds depend on process and iteration, so that episodes differ from those played before.  The
+    progress is None if there is no search.  A search is not repeated, unless a limit broke it off
+    before it found a demonstration.  In the search, ``initial``, the policy that the training begins
+    with, plays first.  ``on_search`` is called with the progress of the search.
     """
-    searched, restarts, lessons = None, None, None
+    progress, curriculum, self_imitation = None, None, None
     iteration = checkpoint.iteration if checkpoint else 0
     if run.settings.searches:
-        restarts = _restarts(run, own, checkpoint)
-        searched = searched_first(run, own, played, restarts, checkpoint, searching, _player(run, own, initial))
+        curriculum = _curriculum(run, group, checkpoint)
+        progress = search_before_training(
+            run, group, vector_env, curriculum, checkpoint, on_search, _player(run, group, initial)
+        )
         if run.settings.exploration.imitation:
-            lessons = SelfImitation(_env_of(run), restarts)
-    seeds = stream(run, own, Purpose.ENVIRONMENTS, iteration).generate_state(played.num_envs) >> 1
+            self_imitation = SelfImitation(_env_of(run), curriculum)
+    seeds = stream(run, group, Purpose.ENVIRONMENTS, iteration).generate_state(vector_env.num_envs) >> 1
     reset_seeds = [int(seed) for seed in seeds]
     limit_steps = run.fspa.limit_steps
-    env = TrainingEnv(played, reset_seeds, device, restarts, lessons, to_imitate, raised_penalty(run), limit_steps)
-    return env, searched
+    env = TrainingEnv(
+        vector_env, reset_seeds, device, curriculum, self_imitation, imitation_data, penalty_rise(run), limit_steps
+    )
+    return env, progress
 
 
-def _player(run: Run, own: Peers, policy: Policy | None) -> Player | None:
+def _player(run: TrainingRun, group: ProcessGroup, policy: Policy | None) -> Player | None:
     """Return a player that samples the actions of a policy.
 
     The player raises TltlError, TLT0854, if the observation or the policy's output is not finite.
     """
     if policy is None:
         return None
-    generator = np.random.default_rng(stream(run, own, Purpose.INITIAL))
+    generator = np.random.default_rng(stream(run, group, Purpose.INITIAL))
 
     def play(observation: Mapping[str, NDArray[Any]]) -> NDArray[np.int64]:
         try:
@@ -165,22 +172,22 @@ def _player(run: Run, own: Peers, policy: Policy | None) -> Player | None:
     return play
 
 
-def _restarts(run: Run, own: Peers, checkpoint: Checkpoint | None) -> ReverseCurriculum:
-    """Return the restarts of this process, with the ways of the checkpoint."""
+def _curriculum(run: TrainingRun, group: ProcessGroup, checkpoint: Checkpoint | None) -> ReverseCurriculum:
+    """Return the curriculum of this process, with the demonstrations of the checkpoint."""
     iteration = checkpoint.iteration if checkpoint else 0
-    generator = np.random.default_rng(stream(run, own, Purpose.STARTS, iteration))
-    restarts = ReverseCurriculum(run.settings.exploration.parts, generator)
+    generator = np.random.default_rng(stream(run, group, Purpose.STARTS, iteration))
+    curriculum = ReverseCurriculum(run.settings.exploration.parts, generator)
     if checkpoint:
-        # If there are more processes than before, the new ones begin with the ways of older ones.
-        rank = own.rank % len(checkpoint.processes)
+        # If there are more processes than before, the new ones begin with the state of older ones.
+        rank = group.rank % len(checkpoint.processes)
         try:
-            restarts.load({name: tensor.numpy() for name, tensor in checkpoint.processes[rank].items()})
+            curriculum.load({name: tensor.numpy() for name, tensor in checkpoint.processes[rank].items()})
         except (TypeError, ValueError) as error:
-            raise damaged(run.folder / CHECKPOINT, f"`processes` {rank + 1}: {error}") from None
-    return restarts
+            raise checkpoint_error(run.folder / CHECKPOINT, f"`processes` {rank + 1}: {error}") from None
+    return curriculum
 
 
-def _env_of(run: Run) -> Callable[[], TltlEnv]:
+def _env_of(run: TrainingRun) -> Callable[[], TltlEnv]:
     """Return a function that makes an environment of the training."""
     return partial(
         registered_game().make_env,

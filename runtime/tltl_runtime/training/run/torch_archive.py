@@ -44,9 +44,9 @@ def read_torch(data: bytes) -> Any:
     Raises TorchArchiveError if the bytes are something else, are damaged, or exceed
     :data:`tltlc.io.limits.CHECKPOINT`.
     """
-    stored = _checked(data)
+    archive = _checked_archive(data)
     try:
-        content = torch.load(BytesIO(stored), map_location="cpu", weights_only=True)
+        content = torch.load(BytesIO(archive), map_location="cpu", weights_only=True)
     except Exception as error:
         # torch raises exceptions of many classes for invalid files.
         raise TorchArchiveError(f"it is damaged, or no checkpoint ({type(error).__name__})") from None
@@ -54,8 +54,8 @@ def read_torch(data: bytes) -> Any:
     return content
 
 
-def _checked(data: bytes) -> bytes:
-    """Check the members of an archive; return it written again.
+def _checked_archive(data: bytes) -> bytes:
+    """Check the members of an archive; return the archive written again.
 
     Members must be uncompressed and undamaged, and call only what makes plain data.  The archive is
     written again, because in a malicious archive torch may see other members than Python.
@@ -108,9 +108,9 @@ def _check_calls(pickled: bytes) -> None:
             raise TorchArchiveError("it holds more than plain data")
         if opcode.name == "GLOBAL" and argument not in _GLOBALS:
             raise TorchArchiveError(f"it holds more than plain data: {argument:.60}")
-        taken = _taken(stack, marks, opcode)
-        keys = taken[1::2] if opcode.name in ("SETITEM", "SETITEMS") else []
-        if _TUPLE in keys or (opcode.name == "REDUCE" and taken == [_ORDERED, _TUPLE]):
+        operands = _pop_operands(stack, marks, opcode)
+        keys = operands[1::2] if opcode.name in ("SETITEM", "SETITEMS") else []
+        if _TUPLE in keys or (opcode.name == "REDUCE" and operands == [_ORDERED, _TUPLE]):
             raise TorchArchiveError("a key in it is no text and no number")
         if opcode.name in ("BINPUT", "LONG_BINPUT", "PUT"):
             memo[int(str(argument))] = stack[-1]
@@ -119,11 +119,11 @@ def _check_calls(pickled: bytes) -> None:
         else:
             if opcode.name == "MARK":
                 marks.append(len(stack))
-            stack += _given(opcode, argument)
+            stack += _pushed_kinds(opcode, argument)
 
 
-def _taken(stack: list[str], marks: list[int], opcode: pickletools.OpcodeInfo) -> list[str]:
-    """Take the values of an operation from the stack; return their kinds, without the mark.
+def _pop_operands(stack: list[str], marks: list[int], opcode: pickletools.OpcodeInfo) -> list[str]:
+    """Take the operands of an operation from the stack; return their kinds, without the mark.
 
     ``marks`` are the positions at which marks were put on the stack.  Some marks may be gone.
     """
@@ -135,16 +135,16 @@ def _taken(stack: list[str], marks: list[int], opcode: pickletools.OpcodeInfo) -
         while marks[-1] >= len(stack) or stack[marks[-1]] != _MARK:
             marks.pop()
         mark = marks.pop()
-        taken = [*stack[mark - below : mark], *stack[mark + 1 :]]
+        operands = [*stack[mark - below : mark], *stack[mark + 1 :]]
         del stack[mark - below :]
-        return taken
-    taken = stack[len(stack) - count :]
+        return operands
+    operands = stack[len(stack) - count :]
     del stack[len(stack) - count :]
-    return taken
+    return operands
 
 
-def _given(opcode: pickletools.OpcodeInfo, argument: object) -> list[str]:
-    """Return the kinds of the values that an operation puts onto the stack."""
+def _pushed_kinds(opcode: pickletools.OpcodeInfo, argument: object) -> list[str]:
+    """Return the kinds of the values that an operation pushes onto the stack."""
     if opcode.name == "MARK":
         return [_MARK]
     if opcode.name in ("TUPLE", "TUPLE1", "TUPLE2", "TUPLE3"):
@@ -159,19 +159,19 @@ def _check_values(content: object) -> None:
 
     A value in two places counts twice.
     """
-    level: list[object] = [content]
+    values: list[object] = [content]
     count = 0
     for _ in range(fileio.limits.CHECKPOINT.depth or 0):
-        following: list[object] = []
-        for value in level:
+        children: list[object] = []
+        for value in values:
             count += 1
             _check_tensor(value)
-            following += _inside(value)
-            if count + len(following) > (fileio.limits.CHECKPOINT.values or 0):
+            children += _children(value)
+            if count + len(children) > (fileio.limits.CHECKPOINT.values or 0):
                 raise TorchArchiveError(f"it holds more than {fileio.limits.CHECKPOINT.values:,} values")
-        if not following:
+        if not children:
             return
-        level = following
+        values = children
     raise TorchArchiveError(f"it nests deeper than {fileio.limits.CHECKPOINT.depth} levels")
 
 
@@ -180,7 +180,7 @@ def _check_tensor(value: object) -> None:
         raise TorchArchiveError("a tensor in it is larger than the numbers that are there")
 
 
-def _inside(value: object) -> Iterable[object]:
+def _children(value: object) -> Iterable[object]:
     if isinstance(value, Mapping):
         return value.values()
     return value if isinstance(value, (list, tuple, set, frozenset)) else ()

@@ -12,54 +12,60 @@ from rsl_rl.algorithms import PPO
 from tltl_runtime.policies.file import check_size
 from tltl_runtime.policies.threads import threads
 from tltl_runtime.support.record_json import RecordJsonError
-from tltl_runtime.training.exploration.search import Searched, joined_searches
-from tltl_runtime.training.exploration.search_schedule import Searching, searched_again
-from tltl_runtime.training.imitation.demonstrations import Tried
+from tltl_runtime.training.exploration.search import SearchProgress, combined_progress
+from tltl_runtime.training.exploration.search_schedule import SearchCallback, search_after_standstill
+from tltl_runtime.training.imitation.demonstrations import Attempt
 from tltl_runtime.training.imitation.gail import Gail
 from tltl_runtime.training.ppo.checkpoint_restore import restore_checkpoint
-from tltl_runtime.training.ppo.distributed import Peers, joined
-from tltl_runtime.training.ppo.penalty_weight import weighing
+from tltl_runtime.training.ppo.distributed import ProcessGroup, join_process_group
+from tltl_runtime.training.ppo.penalty_weight import scheduled_weights
 from tltl_runtime.training.ppo.policy import card_of, policy_of
-from tltl_runtime.training.ppo.process_exchange import gathered, own_state, set_generators
+from tltl_runtime.training.ppo.process_exchange import gather_iteration, process_state, set_generators
 from tltl_runtime.training.ppo.random_streams import Purpose, stream
 from tltl_runtime.training.ppo.recent_episodes import RecentEpisodes, Standstill
-from tltl_runtime.training.run.checkpoint import BestPolicy, Checkpoint, copied, damaged
+from tltl_runtime.training.run.checkpoint import BestPolicy, Checkpoint, checkpoint_error, deep_copy
 from tltl_runtime.training.run.confirmation import confirm
 from tltl_runtime.training.run.folder import lock_training
 from tltl_runtime.training.run.report import Confirmation, TrainingReport
 from tltl_runtime.training.run.requirements import class_of, device_of
-from tltl_runtime.training.run.run_file import CHECKPOINT, Run, identity
+from tltl_runtime.training.run.run_file import CHECKPOINT, TrainingRun, identity
 from tltl_runtime.training.run.settings import algorithm_name, rsl_config
-from tltl_runtime.training.run.setup import begun, demonstrated, environments, initial_policy, prepared
+from tltl_runtime.training.run.setup import (
+    initial_policy,
+    load_imitation_data,
+    make_environments,
+    prepare_environment,
+    start_or_resume,
+)
 from tltl_runtime.training.run.training_files import TrainingFiles
 from tltl_runtime.training.runner import Iteration, Runner
 from tltlc.api import replace
 
 
 def train(
-    run: Run,
+    run: TrainingRun,
     *,
     resume: bool = False,
-    searching: Searching = lambda searched: None,
-    recording: Callable[[Tried], None] = lambda tried: None,
+    on_search: SearchCallback = lambda searched: None,
+    on_attempt: Callable[[Attempt], None] = lambda attempt: None,
 ) -> Generator[TrainingReport]:
-    """Train in ``run.folder``; yield a report after each iteration.  The last one says why it ends.
+    """Train in ``run.folder``; yield a report after each iteration.  The last report says why the training ends.
 
     The folder gets ``run.json``, ``checkpoint.pt``, ``policy.safetensors`` and the files of
     :class:`~tltl_runtime.training.run.metrics.Metrics`, each before the report of its iteration.
     Any end of the training, even by Ctrl-C or by closing the iterator, leaves a checkpoint of the
-    last complete iteration.  Only a killed process loses the iterations after the last checkpoint.
-    With ``resume``, the training continues from the checkpoint; a training that is over yields its
-    last report again.
+    last complete iteration.  Only if the process is killed, the iterations after the last checkpoint
+    are lost.  With ``resume``, the training continues from the checkpoint; a training that is over
+    yields its last report again.
 
-    First, a search finds ways to meet the spec; ``searching`` is called with its progress.  In the
-    search, the policy that the training begins with plays first, if there is one.  With imitation,
-    the expert's demonstrations are recorded first if none are given; ``recording`` is called with
-    each attempt.
+    First, a search finds demonstrations that meet the spec; ``on_search`` is called with its progress.
+    If the training begins with a policy, that policy plays first in the search.  With imitation, the
+    expert's demonstrations are recorded first if none are given; ``on_attempt`` is called with each
+    attempt.
 
     Equal runs give equal numbers, and so do equal checkpoints that are resumed.  With torchrun,
     each process trains with its own environments.  The reports of all processes are equal, except
-    for losses, times and searches, which are of the process itself, and for checkpoints, which only
+    for losses, times and searches, which each process has for itself, and for checkpoints, which only
     the first process writes.
 
     Raises:
@@ -76,102 +82,104 @@ def train(
     class_of("algorithm", algorithm_name(run.settings), Gail if run.settings.imitates else PPO)
     check_size(run.settings.network, run.fspa, run.sensors)
     with ExitStack() as stack:
-        own, device = stack.enter_context(joined(device_of(run.settings.device)))
+        group, device = stack.enter_context(join_process_group(device_of(run.settings.device)))
         checkpoint = None
-        if own.rank == 0:
+        if group.rank == 0:
             stack.enter_context(lock_training(run.folder))
-            checkpoint = begun(run, resume)
-        checkpoint = own.broadcast(checkpoint)
+            checkpoint = start_or_resume(run, resume)
+        checkpoint = group.broadcast(checkpoint)
         stack.enter_context(threads(1))
-        to_imitate = demonstrated(run, own, recording)
-        initial = initial_policy(run, own, checkpoint)
-        played = stack.enter_context(closing(environments(run)))
-        env, searched = prepared(run, own, device, played, checkpoint, searching, to_imitate, initial)
-        if env.lessons:
-            stack.callback(env.lessons.close)
-        torch.manual_seed(int(stream(run, own, Purpose.TORCH).generate_state(1)[0]))
+        imitation_data = load_imitation_data(run, group, on_attempt)
+        initial = initial_policy(run, group, checkpoint)
+        vector_env = stack.enter_context(closing(make_environments(run)))
+        env, searched = prepare_environment(
+            run, group, device, vector_env, checkpoint, on_search, imitation_data, initial
+        )
+        if env.self_imitation:
+            stack.callback(env.self_imitation.close)
+        torch.manual_seed(int(stream(run, group, Purpose.TORCH).generate_state(1)[0]))
         config = rsl_config(run.settings, env.shapes, env.branches)
         new_runner = runner(env, config | {"warm_up": run.settings.ppo.warm_up if run.initial else 0}, None, device)
         if initial:
-            new_runner.begin_with(initial.weights())
-        training = _Training(run, own, new_runner, checkpoint, searched, searching)
+            new_runner.load_actor(initial.weights())
+        training = _Training(run, group, new_runner, checkpoint, searched, on_search)
         yield from training.reports()
 
 
 class _Training:
-    """The training in process ``own``; ``_state`` is that after the last complete iteration."""
+    """A training in this process; ``_state`` is the state after the last complete iteration."""
 
     def __init__(
         self,
-        run: Run,
-        own: Peers,
+        run: TrainingRun,
+        group: ProcessGroup,
         runner: Runner,
-        begun: Checkpoint | None,
-        searched: Searched | None,
-        searching: Searching,
+        checkpoint: Checkpoint | None,
+        searched: SearchProgress | None,
+        on_search: SearchCallback,
     ) -> None:
-        self._run, self._own, self._runner, self._searching = run, own, runner, searching
+        self._run, self._group, self._runner, self._on_search = run, group, runner, on_search
         self._stop = run.settings.stop
         # The card is made now: later changes of the level's file are not part of this training.
         self._card = card_of(run, runner.env)
-        self._windows = RecentEpisodes(self._stop.windows, self._stop.episodes, run.fspa.limit_steps)
-        if begun is not None:
+        self._episodes = RecentEpisodes(self._stop.windows, self._stop.episodes, run.fspa.limit_steps)
+        if checkpoint is not None:
             try:
-                restore_checkpoint(begun, runner, len(run.fspa.states))
+                restore_checkpoint(checkpoint, runner, len(run.fspa.states))
             except RecordJsonError as error:
-                raise damaged(run.folder / CHECKPOINT, str(error)) from None
-            runner.current_learning_iteration = begun.iteration
-            self._windows.load(begun.window, begun.unbroken)
-            if own.rank < len(begun.processes):
-                set_generators(begun.processes[own.rank], runner)
-        self._sharpness = self._weigh()
-        self._state = begun or _unbegun(run, runner)
+                raise checkpoint_error(run.folder / CHECKPOINT, str(error)) from None
+            runner.current_learning_iteration = checkpoint.iteration
+            self._episodes.load(checkpoint.window, checkpoint.unbroken)
+            if group.rank < len(checkpoint.processes):
+                set_generators(checkpoint.processes[group.rank], runner)
+        self._inverse_temperature = self._apply_weights()
+        self._state = checkpoint or _state_before(run, runner)
         if searched:
-            seconds = own.broadcast(self._state.seconds + searched.seconds)
+            seconds = group.broadcast(self._state.seconds + searched.seconds)
             if before := self._state.searched:
-                searched = joined_searches(before, searched)
+                searched = combined_progress(before, searched)
             self._state = replace(self._state, searched=searched, seconds=seconds)
-        if searched or begun is None:
-            self._state = replace(self._state, processes=tuple(own.gather(own_state(runner))))
-        self._seconds_before, self._began = self._state.seconds, time.perf_counter()
+        if searched or checkpoint is None:
+            self._state = replace(self._state, processes=tuple(group.gather(process_state(runner))))
+        self._seconds_before, self._started = self._state.seconds, time.perf_counter()
         self._replayed_before = self._state.replayed
-        self._standstill, self._stands_still = Standstill(*self._state.standstill), False
-        self._keeping = TrainingFiles(run, self._card, begun) if own.rank == 0 else None
-        self._tell_time()
+        self._standstill, self._is_standstill = Standstill(*self._state.standstill), False
+        self._files = TrainingFiles(run, self._card, checkpoint) if group.rank == 0 else None
+        self._update_gail_time()
 
     def reports(self) -> Generator[TrainingReport]:
-        """Train to the end."""
+        """Train to the end; yield the report of each iteration."""
         try:
-            if self._keeping:
-                self._keeping.take_up(self._state)
+            if self._files:
+                self._files.restore(self._state)
             if self._state.iteration and self._state.reason(self._stop):
                 iteration = Iteration(self._state.iteration, 0, (), dict(self._state.losses), 0.0, 0.0)
                 yield self._report(self._state, iteration, None, checkpointed=False)
                 return
             for iteration in self._runner.iterations():
-                yield (report := self._after(iteration))
+                yield (report := self._finish_iteration(iteration))
                 if report.stop:
                     return
-                if self._stands_still:
+                if self._is_standstill:
                     self._search_again()
         finally:
-            if self._keeping:
-                self._keeping.close(self._state)
+            if self._files:
+                self._files.close(self._state)
 
-    def _after(self, iteration: Iteration) -> TrainingReport:
-        """Update the state with an iteration, and write the metrics and, if due, a checkpoint."""
-        exchange = gathered(self._own, iteration, self._runner)
+    def _finish_iteration(self, iteration: Iteration) -> TrainingReport:
+        """Update the state after an iteration; write its metrics and, if due, a checkpoint."""
+        exchange = gather_iteration(self._group, iteration, self._runner)
         iteration = exchange.iteration
-        self._windows.add(iteration.finished)
-        before, self._sharpness = self._sharpness, self._weigh()
-        self._runner.sharpen(self._sharpness / before)
+        self._episodes.add(iteration.finished)
+        before, self._inverse_temperature = self._inverse_temperature, self._apply_weights()
+        self._runner.scale_inverse_temperature(self._inverse_temperature / before)
         steps = self._state.steps + iteration.steps
         standstill = self._standstill.state()
-        self._stands_still = self._standstill.add(self._windows.window, steps)
-        best = self._best() if iteration.finished else self._state.best
-        confirmation = self._confirmation(best, iteration.number) if best and self._windows.met else None
+        self._is_standstill = self._standstill.add(self._episodes.window, steps)
+        best = self._best_policy() if iteration.finished else self._state.best
+        confirmation = self._confirmation(best, iteration.number) if best and self._episodes.all_met else None
         if confirmation and not confirmation.passed:
-            self._windows.refuse()
+            self._episodes.reset_unbroken()
         state = replace(
             self._state,
             iteration=iteration.number,
@@ -180,82 +188,81 @@ class _Training:
             seconds=self._seconds(),
             replayed=self._replayed_before + exchange.replayed,
             processes=exchange.processes,
-            algorithm=copied(self._runner.alg.save()),
-            window=tuple(self._windows.state()),
-            unbroken=self._windows.unbroken,
+            algorithm=deep_copy(self._runner.alg.save()),
+            window=tuple(self._episodes.state()),
+            unbroken=self._episodes.unbroken,
             best=best,
             met=confirmation is not None and confirmation.passed,
             # At a standstill, keep the old value, so that a resumed training searches again, too.
-            standstill=standstill if self._stands_still else self._standstill.state(),
+            standstill=standstill if self._is_standstill else self._standstill.state(),
         )
-        due = self._keeping is not None and (state.reason(self._stop) is not None or self._keeping.is_due)
+        due = self._files is not None and (state.reason(self._stop) is not None or self._files.is_due)
         report = self._report(state, iteration, confirmation, checkpointed=due)
-        if self._keeping:
-            self._keeping.measure(report)
+        if self._files:
+            self._files.add_metrics(report)
         # An iteration counts once its metrics are written: no checkpoint may be of an iteration without metrics.
         self._state = state
-        self._tell_time()
-        if self._keeping and due:
-            self._keeping.save(state)
+        self._update_gail_time()
+        if self._files and due:
+            self._files.save(state)
         return report
 
     def _search_again(self) -> None:
-        """Search for ways from the agent's failures; each process searches from its own."""
+        """Search for demonstrations from the agent's failed episodes; each process searches from its own."""
         state = self._state
-        searched = searched_again(self._run, self._own, self._runner.env, state, self._searching)
-        processes = tuple(self._own.gather(own_state(self._runner)))
+        searched = search_after_standstill(self._run, self._group, self._runner.env, state, self._on_search)
+        processes = tuple(self._group.gather(process_state(self._runner)))
         seconds = self._seconds()
         if state.searched and searched:
             # `complete` is only about the search before the training.
-            searched = replace(joined_searches(state.searched, searched), complete=state.searched.complete)
+            searched = replace(combined_progress(state.searched, searched), complete=state.searched.complete)
             standstill = self._standstill.state()
             self._state = replace(state, searched=searched, processes=processes, seconds=seconds, standstill=standstill)
-            if self._keeping:
+            if self._files:
                 # Save now, so that a process that is killed soon need not repeat the search.
-                self._keeping.save(self._state)
+                self._files.save(self._state)
 
     def _seconds(self) -> float:
-        """Return the training time so far.
+        """Return the training time so far, in seconds.
 
         It is from the clock of the first process, so that all processes decide alike.
         """
-        return self._own.broadcast(self._seconds_before + time.perf_counter() - self._began)
+        return self._group.broadcast(self._seconds_before + time.perf_counter() - self._started)
 
-    def _weigh(self) -> float:
-        """Set entropy bonus and penalty weight by the last episodes; return the sharpness."""
+    def _apply_weights(self) -> float:
+        """Set entropy bonus and penalty weight by the last episodes; return the inverse temperature."""
         # A few successes say little, so episodes that have not been played yet count as failures.
-        met = self._windows.window.successes / (self._stop.windows * self._stop.episodes)
-        weights = weighing(self._run.settings.ppo, met)
+        pass_rate = self._episodes.window.successes / (self._stop.windows * self._stop.episodes)
+        weights = scheduled_weights(self._run.settings.ppo, pass_rate)
         if weights.entropy is not None:
             self._runner.alg.entropy_coef = weights.entropy
-        self._runner.env.severity = weights.severity
-        return weights.sharpness
+        self._runner.env.penalty_weight = weights.penalty_weight
+        return weights.inverse_temperature
 
-    def _tell_time(self) -> None:
-        """Give GAIL the training time, because it clones for a share of the limit of minutes."""
+    def _update_gail_time(self) -> None:
+        """Tell GAIL the training time, because it clones for a share of the limit of minutes."""
         if isinstance(self._runner.alg, Gail):
             self._runner.alg.seconds = self._state.seconds
 
-    def _best(self) -> BestPolicy | None:
-        """Return the best policy so far.
+    def _best_policy(self) -> BestPolicy | None:
+        """Return the best policy so far, None if there is none yet.
 
-        It is the one that played the end of the last window, unless an older one has a better
-        score.  If all episodes of all windows met the spec, it is always the one of the last
-        window.
+        It is the policy that played the end of the last window, unless an older one has a better score.  If
+        all episodes of all windows met the spec, it is always the policy of the last window.
         """
-        best, score = self._state.best, self._windows.score
-        if score is None or (best is not None and score < best.score and not self._windows.met):
+        best, score = self._state.best, self._episodes.score
+        if score is None or (best is not None and score < best.score and not self._episodes.all_met):
             return best
         # The state still has the weights that played the rollout, from before the update.
         return BestPolicy(score, self._state.algorithm["actor_state_dict"], self._state.steps)
 
     def _confirmation(self, best: BestPolicy, iteration: int) -> Confirmation:
-        """Confirm the policy that met the spec in all windows; the first process plays."""
+        """Confirm the policy that met the spec in all windows: the first process plays fresh episodes."""
         confirmation = None
-        if self._own.rank == 0:
+        if self._group.rank == 0:
             policy = policy_of(self._card, best.actor)
-            confirmation = confirm(self._run, policy, stream(self._run, self._own, Purpose.CONFIRMATION, iteration))
-        confirmation = self._own.broadcast(confirmation)
+            confirmation = confirm(self._run, policy, stream(self._run, self._group, Purpose.CONFIRMATION, iteration))
+        confirmation = self._group.broadcast(confirmation)
         assert confirmation is not None
         return confirmation
 
@@ -263,12 +270,12 @@ class _Training:
         self, state: Checkpoint, iteration: Iteration, confirmation: Confirmation | None, *, checkpointed: bool
     ) -> TrainingReport:
         """Return the report of the iteration that led to ``state``."""
-        demonstrated = self._runner.env.demonstrated
+        imitation_data = self._runner.env.imitation_data
         return TrainingReport(
             iteration=iteration,
             steps=state.steps,
             seconds=state.seconds,
-            window=self._windows.window,
+            window=self._episodes.window,
             unbroken=state.unbroken,
             confirmation=confirmation,
             best_pass_rate=state.best.score[0] if state.best else None,
@@ -277,12 +284,12 @@ class _Training:
             checkpointed=checkpointed,
             searched=state.searched,
             replayed=state.replayed,
-            imitated=demonstrated.about if demonstrated else None,
+            imitated=imitation_data.summary if imitation_data else None,
         )
 
 
-def _unbegun(run: Run, runner: Runner) -> Checkpoint:
-    """Return the state before the first iteration, without the own states of the processes."""
+def _state_before(run: TrainingRun, runner: Runner) -> Checkpoint:
+    """Return the state before the first iteration, without the states of the processes."""
     return Checkpoint(
         run=identity(run),
         iteration=0,
@@ -291,7 +298,7 @@ def _unbegun(run: Run, runner: Runner) -> Checkpoint:
         seconds=0.0,
         replayed=0,
         searched=None,
-        algorithm=copied(runner.alg.save()),
+        algorithm=deep_copy(runner.alg.save()),
         processes=(),
         window=(),
         unbroken=0,

@@ -11,31 +11,30 @@ from tltl_runtime.training.ppo.policy import policy_of
 from tltl_runtime.training.run.checkpoint import BestPolicy, Checkpoint, write_checkpoint
 from tltl_runtime.training.run.metrics import Metrics
 from tltl_runtime.training.run.report import TrainingReport
-from tltl_runtime.training.run.run_file import CHECKPOINT, CURVE, POLICY, RECORD, WRITABLE, Run
+from tltl_runtime.training.run.run_file import CHECKPOINT, CURVE, POLICY, RECORD, WRITABLE, TrainingRun
 
 
 class TrainingFiles:
-    """Writes the folder of a training; only the first process does so.
+    """Writes the files of a training into its folder; only the first process does so.
 
     ``card`` is the card of its policies.  ``saved`` is the checkpoint in the folder, or None.
 
     Raises:
-        TltlError: in any method: TLT0005, a file cannot be written; TLT0001, the metrics cannot be
+        TltlError: from any method: TLT0005, a file cannot be written; TLT0001, the metrics cannot be
             read; TLT0866, a weight is too large for a policy.
     """
 
-    def __init__(self, run: Run, card: Card, saved: Checkpoint | None) -> None:
+    def __init__(self, run: TrainingRun, card: Card, saved: Checkpoint | None) -> None:
         self._run, self._card = run, card
-        self._saved, self._saved_at = saved, time.perf_counter()
-        self._written: BestPolicy | None = None
+        self._saved_state, self._saved_at = saved, time.perf_counter()
+        self._written_best: BestPolicy | None = None
         """The best policy in the policy file."""
         self._metrics: Metrics | None = None
 
-    def take_up(self, state: Checkpoint) -> None:
-        """Bring the folder to the state of the training.
+    def restore(self, state: Checkpoint) -> None:
+        """Bring the files in the folder to the ``state`` of the training.
 
-        The state is saved at once, so that a process that is killed soon need not repeat the
-        search.
+        The state is saved at once.  So even if the process is killed soon, the search need not be repeated.
         """
         for name in (RECORD, CURVE):
             (self._run.folder / name).unlink(missing_ok=True)
@@ -44,31 +43,31 @@ class TrainingFiles:
         self.save(state)
         self._metrics = Metrics(self._run.folder, self._run.fspa, after=state.iteration, steps=state.steps)
 
-    def measure(self, report: TrainingReport) -> None:
+    def add_metrics(self, report: TrainingReport) -> None:
         """Write the metrics of an iteration."""
         assert self._metrics is not None
         self._metrics.add(report)
 
     @property
     def is_due(self) -> bool:
-        """Whether the last checkpoint is old enough that another is due."""
+        """Whether another checkpoint is due, because the last one is old enough."""
         return time.perf_counter() - self._saved_at >= self._run.settings.checkpoint_s
 
     def save(self, state: Checkpoint) -> None:
-        """Write checkpoint and policy, if there is anything new."""
-        if state is self._saved:
+        """Write the checkpoint, and the policy if there is a new best one, unless the state is saved already."""
+        if state is self._saved_state:
             return
         try:
             # Make the policy first: a checkpoint must not contain weights that are invalid for a policy.
-            policy = self._policy(state) if state.best is not self._written or self._is_over(state) else None
+            policy = self._policy(state) if state.best is not self._written_best or self._is_over(state) else None
             write_checkpoint(self._run.folder / CHECKPOINT, state)
             if policy:
                 self._write(policy, state)
         except Exception:
-            # Do not try again at the end.  After Ctrl-C, which is no Exception, it is tried again.
-            self._saved = state
+            # Do not save this state again at the end.  After Ctrl-C, which is no Exception, it is saved again.
+            self._saved_state = state
             raise
-        self._saved, self._saved_at = state, time.perf_counter()
+        self._saved_state, self._saved_at = state, time.perf_counter()
 
     def close(self, state: Checkpoint) -> None:
         """Save the final state and close the metrics."""
@@ -86,4 +85,4 @@ class TrainingFiles:
 
     def _write(self, policy: Policy, state: Checkpoint) -> None:
         write_policy(self._run.folder / POLICY, policy, WRITABLE)
-        self._written = state.best
+        self._written_best = state.best
