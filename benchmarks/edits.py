@@ -26,7 +26,7 @@ from benchmarks.store import Record, Store, measure_missing, source_digest
 
 if TYPE_CHECKING:
     from tltl_runtime.evaluation.figures import Figures
-    from tltl_runtime.regression.explain.account import Account
+    from tltl_runtime.regression.explain.account import ExplainedEpisode
     from tltl_runtime.regression.suite.suite import Case, Suite
     from tltl_runtime.regression.verdict.baseline import Reference
     from tltl_runtime.stealth.recordings.episode import Episode
@@ -169,7 +169,7 @@ def judged(suite: Suite, case: Case) -> Record:
     }
 
 
-def _played(account: Account) -> tuple[object, ...]:
+def _played(account: ExplainedEpisode) -> tuple[object, ...]:
     """What shows that two episodes were alike."""
     return account.summary.steps, account.summary.reward, account.way
 

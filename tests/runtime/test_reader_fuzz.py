@@ -25,8 +25,8 @@ from tltl_runtime.policies.policy import Policy
 from tltl_runtime.policies.shipped import shipped_policy
 from tltl_runtime.policies.summary import summary as policy_summary
 from tltl_runtime.policies.summary import summary_text as policy_summary_text
-from tltl_runtime.regression.explain.account import Account
-from tltl_runtime.regression.suite.result_cache import read_kept
+from tltl_runtime.regression.explain.account import ExplainedEpisode
+from tltl_runtime.regression.suite.result_cache import read_cache
 from tltl_runtime.regression.suite.suite import read_suite
 from tltl_runtime.regression.verdict.baseline import read_baseline
 from tltl_runtime.stealth.env import make_env
@@ -426,7 +426,7 @@ def test_baselines(seed: int, folder: Path) -> None:
 @given(seed=SEEDS)
 @times(60)
 def test_cached_results(seed: int, folder: Path) -> None:
-    path, account = folder / "kept.json", _baseline()["references"][0]["accounts"][0]
-    document = {"identity": "it", "content": account}
+    path, explained = folder / "kept.json", _baseline()["references"][0]["accounts"][0]
+    document = {"identity": "it", "content": explained}
     path.write_bytes(mutated_json(Random(seed), document).encode("utf-8", "surrogatepass"))
-    assert check(lambda: read_kept(Account, path, "it"))
+    assert check(lambda: read_cache(ExplainedEpisode, path, "it"))

@@ -13,7 +13,7 @@ from tltl_runtime.cli.support.closed_output import ignore_closed_pipe
 from tltl_runtime.cli.support.learning import require_learning
 from tltl_runtime.cli.support.level_faults import level_faults
 from tltl_runtime.cli.support.options import output_file
-from tltl_runtime.cli.support.printable import plain
+from tltl_runtime.cli.support.printable import plain_text
 from tltl_runtime.cli.support.suite_argument import check_suite_exists
 from tltl_runtime.cli.support.worker_options import all_cores_option
 from tltl_runtime.cli.support.writable_paths import check_apart, check_writable
@@ -22,7 +22,7 @@ from tltlc.api import TltlError, cli, fileio
 if TYPE_CHECKING:
     from tltl_runtime.regression.suite.suite import Case, Suite
     from tltl_runtime.regression.verdict.baseline import Reference
-    from tltl_runtime.regression.verdict.baseline_run import Compared
+    from tltl_runtime.regression.verdict.baseline_run import RecordedReference
 
 
 @click.command(
@@ -50,21 +50,21 @@ def command(suite: Path | None, path: Path | None, fresh: bool, workers: Any) ->
         from tltl_runtime.cli.support.regression_display import RegressionDisplay
         from tltl_runtime.regression.suite.dependencies import files_of
         from tltl_runtime.regression.suite.suite import SHIPPED, read_suite
-        from tltl_runtime.regression.verdict.baseline import written_to
-        from tltl_runtime.regression.verdict.baseline_run import kept_at, write_recorded
+        from tltl_runtime.regression.verdict.baseline import default_output
+        from tltl_runtime.regression.verdict.baseline_run import partial_path, record_and_write_baseline
 
         loaded = read_suite(suite or SHIPPED)
-        output = path or written_to(loaded.path)
+        output = path or default_output(loaded.path)
         check_apart({"--output": output}, files_of(loaded) - {loaded.baseline.resolve()})
         check_writable({"--output": output})
-        existed, older = fileio.exists(output), _older(output)
+        existed, older = fileio.exists(output), _older_references(output)
         try:
             with RegressionDisplay() as display:
-                for compared in write_recorded(loaded, output, workers, display, older, fresh=fresh):
-                    display.over()
-                    _tell(loaded, compared, older, fresh=fresh)
+                for recorded in record_and_write_baseline(loaded, output, workers, display, older, fresh=fresh):
+                    display.clear()
+                    _print_reference(loaded, recorded, older, fresh=fresh)
         except KeyboardInterrupt:
-            click.echo(f"stopped: {_left(output, kept_at(output), existed=existed)}", err=True)
+            click.echo(f"stopped: {_stopped_text(output, partial_path(output), existed=existed)}", err=True)
             raise
         click.echo(f"wrote {output}", err=True)
         if output.resolve() != loaded.baseline.resolve():
@@ -74,8 +74,8 @@ def command(suite: Path | None, path: Path | None, fresh: bool, workers: Any) ->
     return report.status
 
 
-def _older(path: Path) -> tuple[Reference, ...]:
-    """The baseline in the output file; empty if the file is missing or is not a baseline."""
+def _older_references(path: Path) -> tuple[Reference, ...]:
+    """Return the references in the output file; empty if the file is missing or is not a baseline."""
     from tltl_runtime.regression.verdict.baseline import read_baseline
 
     with suppress(TltlError):
@@ -83,10 +83,11 @@ def _older(path: Path) -> tuple[Reference, ...]:
     return ()
 
 
-def _left(path: Path, partial: Path | None, *, existed: bool) -> str:
+def _stopped_text(path: Path, partial: Path | None, *, existed: bool) -> str:
     """Describe the files of a stopped recording and how to continue.
 
-    ``existed`` says whether the output file existed before.
+    ``partial`` is the file of the finished references, if there is one.  ``existed`` says whether the
+    output file existed before.
     """
     from tltl_runtime.support.shown_path import shown
 
@@ -95,36 +96,36 @@ def _left(path: Path, partial: Path | None, *, existed: bool) -> str:
     return f"`{path}` is as it was; the same command {'goes on with what is over' if partial else 'begins anew'}"
 
 
-def _tell(suite: Suite, compared: Compared, older: tuple[Reference, ...], *, fresh: bool) -> None:
+def _print_reference(suite: Suite, recorded: RecordedReference, older: tuple[Reference, ...], *, fresh: bool) -> None:
     """Print what was recorded, and which cases would not pass even if nothing changed."""
-    from tltl_runtime.regression.verdict.baseline_run import verdict_as_it_is
+    from tltl_runtime.regression.verdict.baseline_run import verdict_if_unchanged
 
-    reference = compared.reference
-    played, passed, count = reference.played, _passed(reference), len(reference.accounts)
-    before = _before(reference, older)
+    reference = recorded.reference
+    played, passed, count = reference.played, _success_count(reference), len(reference.accounts)
+    before = _older_reference(reference, older)
     if reference in older and not fresh:
         note = "  (as before)"
     else:
-        note = f"; before: {_passed(before)} of {len(before.accounts)}" if before else ""
-    click.echo(plain(f"{played.level}:{played.variant}: {played.spec} met in {passed} of {count} episodes") + note)
-    if compared.outdated:
-        click.echo(plain(f"    {compared.outdated}"), err=True)
-    for case in compared.cases:
-        verdict = verdict_as_it_is(suite, case, reference) if case.variant == case.reference else "pass"
+        note = f"; before: {_success_count(before)} of {len(before.accounts)}" if before else ""
+    click.echo(plain_text(f"{played.level}:{played.variant}: {played.spec} met in {passed} of {count} episodes") + note)
+    if recorded.outdated:
+        click.echo(plain_text(f"    {recorded.outdated}"), err=True)
+    for case in recorded.cases:
+        verdict = verdict_if_unchanged(suite, case, reference) if case.variant == case.reference else "pass"
         if verdict != "pass":
             advice = _advice(passed / count, case, suite.error / len(suite.cases))
-            click.echo(plain(f"    `{case.name}` is `{verdict}` even if nothing changes: {advice}"), err=True)
+            click.echo(plain_text(f"    `{case.name}` is `{verdict}` even if nothing changes: {advice}"), err=True)
 
 
-def _passed(reference: Reference) -> int:
-    return sum(account.summary.success for account in reference.accounts)
+def _success_count(reference: Reference) -> int:
+    return sum(episode.summary.success for episode in reference.accounts)
 
 
-def _before(reference: Reference, older: tuple[Reference, ...]) -> Reference | None:
-    """The older reference of the same level, variant and spec.
+def _older_reference(reference: Reference, older: tuple[Reference, ...]) -> Reference | None:
+    """Return the older reference of the same level, variant and spec; None if there is none.
 
-    A reference of the same policy is preferred.  A reference of another policy is returned only if it is
-    the only one.
+    A reference of the same policy is preferred.  A reference of another policy is returned only if it
+    is the only one.
     """
     names = ("level", "variant", "place", "spec")
     played = reference.played
@@ -136,11 +137,11 @@ def _before(reference: Reference, older: tuple[Reference, ...]) -> Reference | N
 
 
 def _advice(pass_rate: float, case: Case, error: float) -> str:
-    """Advise how a case can pass, given the pass rate of its baseline."""
+    """Say how a case can pass, given the pass rate of its baseline."""
     if pass_rate == 1.0:
-        from tltl_runtime.regression.verdict.baseline_run import enough_episodes
+        from tltl_runtime.regression.verdict.baseline_run import episodes_for_certainty
 
-        episodes = enough_episodes(case.thresholds.pass_rate, error)
+        episodes = episodes_for_certainty(case.thresholds.pass_rate, error)
         return f"{case.episodes} `episodes` are too few to be certain, give it {episodes} at least"
     if pass_rate < case.thresholds.pass_rate:
         return "train its policy further, or lower its `pass_rate`"

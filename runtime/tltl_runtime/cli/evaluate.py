@@ -1,4 +1,4 @@
-"""``tltlc evaluate``: a trained policy plays episodes; report its figures."""
+"""``tltlc evaluate``: let a trained policy play episodes, and report its figures."""
 
 from __future__ import annotations
 
@@ -99,7 +99,7 @@ def command(
         check_no_toml(spec)
         check_named(policy, level)
         from tltl_runtime.cli.support.evaluation_files import EvaluationFiles
-        from tltl_runtime.cli.support.policy_path import check_known, policy_place
+        from tltl_runtime.cli.support.policy_path import check_level_is_shipped, policy_place
         from tltl_runtime.evaluation.evaluate import results, set_up
         from tltl_runtime.evaluation.player import EpisodeRequest
         from tltl_runtime.policies.file import MAX_BYTES, from_bytes
@@ -110,40 +110,43 @@ def command(
         path, name, variant = policy_place(policy, level, "tltlc evaluate")
         # Read the file once: a running training may replace it meanwhile.
         data = fileio.read_bytes(path, str(path), MAX_BYTES)
-        trained, kept = from_bytes(data, str(path)), (recorded or "failures") if folder else None
+        loaded_policy, recording = from_bytes(data, str(path)), (recorded or "failures") if folder else None
         sha256 = hashlib.sha256(data).hexdigest()
         if name is None:
-            check_known(trained.card.level, path, "tltlc evaluate")
-        setup = set_up(trained, name, variant, spec, seed, kept)
+            check_level_is_shipped(loaded_policy.card.level, path, "tltlc evaluate")
+        setup = set_up(loaded_policy, name, variant, spec, seed, recording)
         # The spec of a level often has the level's name: do not repeat it.
-        labels = dict.fromkeys((trained.card.level, trained.card.fspa.name))
+        labels = dict.fromkeys((loaded_policy.card.level, loaded_policy.card.fspa.name))
         setup = replace(setup, player=f"policy {' '.join(labels)} {sha256[:8]}")
         report.add(reach_warnings(load_level(setup.level, setup.variant), setup.fspa))
-        again = _command(policy, level, spec, seed)
-        files = EvaluationFiles(setup, path, sha256, first, again, folder, json_file)
+        command_line = _replay_command(policy, level, spec, seed)
+        files = EvaluationFiles(setup, path, sha256, first, command_line, folder, json_file)
         # Check this only now: the report may go into the folder, which EvaluationFiles has created.
         check_writable({"--json": None if cli.is_stdout(json_file) else json_file})
         tasks = [
             EpisodeRequest(index, sampled) for sampled in (True, False) for index in range(first, first + episodes)
         ]
         try:
-            with closing(results(setup, tasks, workers, _waiting)) as playing:
-                for result in _counted(playing, len(tasks)):
+            with closing(results(setup, tasks, workers, _print_waiting)) as playing:
+                for result in _with_progress(playing, len(tasks)):
                     files.add(result)
         finally:
-            _tell(files, json_file, folder, episodes)
+            _print_results(files, json_file, folder, episodes)
     return report.status
 
 
-def _command(policy: Path | None, level: str | None, spec: str | None, seed: int) -> str:
-    """The shell command that plays episodes of the same evaluation again."""
+def _replay_command(policy: Path | None, level: str | None, spec: str | None, seed: int) -> str:
+    """Return the shell command that plays episodes of the same evaluation again."""
     words = ["tltlc", "evaluate", *([] if policy is None else [str(policy)])]
     words += [word for name, value in (("--level", level), ("--spec", spec)) if value for word in (name, value)]
     return join([*words, "--seed", str(seed)])
 
 
-def _counted(playing: Iterator[PlayedEpisode], count: int) -> Iterator[PlayedEpisode]:
-    """Yield the results and report progress on standard error: a bar on a terminal, else a line for each tenth."""
+def _with_progress(playing: Iterator[PlayedEpisode], count: int) -> Iterator[PlayedEpisode]:
+    """Yield the results and report progress on standard error.
+
+    On a terminal this is a bar, else a line for each tenth.
+    """
     from tltl_runtime.evaluation.player import CHOICES
 
     played, passed = Counter[bool](), Counter[bool]()
@@ -161,7 +164,7 @@ def _counted(playing: Iterator[PlayedEpisode], count: int) -> Iterator[PlayedEpi
                 click.echo(f"{number / count:.0%} played; {text}", err=True)
 
 
-def _waiting(left: float) -> None:
+def _print_waiting(left: float) -> None:
     click.echo(f"waiting for a worker to start on the Ray cluster, for {left:.0f} s at the most", err=True)
 
 
@@ -176,22 +179,25 @@ def _bar(count: int) -> Any:
     return bar
 
 
-def _tell(files: EvaluationFiles, json_file: Path | None, folder: Path | None, wanted: int) -> None:
-    """Report on the played episodes: ``wanted`` of each kind, or fewer if the evaluation was stopped."""
-    played = files.played
+def _print_results(files: EvaluationFiles, json_file: Path | None, folder: Path | None, requested: int) -> None:
+    """Print the report on the played episodes, and write the files.
+
+    ``requested`` episodes of each kind were requested; fewer were played if the evaluation was stopped.
+    """
+    played = files.episode_counts
     if not any(played.values()):
         return
-    complete = all(count == wanted for count in played.values())
+    complete = all(count == requested for count in played.values())
     if not complete:
-        counts = " and ".join(f"{count} of {wanted} {name}" for name, count in played.items())
+        counts = " and ".join(f"{count} of {requested} {name}" for name, count in played.items())
         click.echo(f"stopped: {counts} episodes were played", err=True)
     text = json.dumps(files.document(complete), indent=2, ensure_ascii=False) + "\n"
     if not cli.is_stdout(json_file):
         click.echo(files.text(), nl=False)
     else:
         click.echo(text, nl=False)
-    wrote = files.write(text)
-    if removed := files.removed:
+    contents = files.write(text)
+    if removed := files.removed_files:
         click.echo(f"removed from {folder}, of an earlier evaluation: {listed(removed, _MOST_NAMED)}", err=True)
-    if wrote:
-        click.echo(f"wrote {wrote}", err=True)
+    if contents:
+        click.echo(f"wrote {contents}", err=True)

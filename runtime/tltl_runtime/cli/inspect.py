@@ -41,13 +41,13 @@ def command(files: tuple[str, ...], path: Path | None, format: str) -> int:  # n
     with cli.Report(format, results=True) as report, require_learning("`tltlc inspect`"):
         from tltl_runtime.policies.summary import summary, summary_text
 
-        for name, (policy, so_far, ended) in read_each(files, _read, report):
-            fields = {"file": name, **summary(policy), **so_far}
+        for name, (policy, training_so_far, progress_line) in read_each(files, _read, report):
+            fields = {"file": name, **summary(policy), **training_so_far}
             if path is not None:
                 _export(policy, path)
                 report.say(f"wrote {path}")
             elif format == "text":
-                print(f"{name}\n{summary_text(fields)}{ended}")
+                print(f"{name}\n{summary_text(fields)}{progress_line}")
             summaries.append(fields)
         if format == "json" and path is None:
             print(json.dumps(summaries, indent=2, ensure_ascii=False))
@@ -57,8 +57,8 @@ def command(files: tuple[str, ...], path: Path | None, format: str) -> int:  # n
 def _read(name: str) -> tuple[Policy, dict[str, Any], str]:
     """Read a policy.
 
-    If its training has not ended yet, also return the progress of the training, as JSON data and as
-    text; otherwise both are empty.
+    If its training has not ended yet, also return the progress of the training, as JSON data and as a
+    line of text; otherwise both are empty.
     """
     from tltl_runtime.cli.support.policy_path import policy_file, progress
     from tltl_runtime.policies.file import read_policy

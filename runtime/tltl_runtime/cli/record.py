@@ -12,7 +12,7 @@ from tltl_runtime.cli.support.at_keyboard import keyboard_options, play_at_keybo
 from tltl_runtime.cli.support.closed_output import ignore_closed_pipe
 from tltl_runtime.cli.support.level_faults import level_faults
 from tltl_runtime.cli.support.options import output_folder
-from tltl_runtime.cli.support.printable import plain
+from tltl_runtime.cli.support.printable import plain_text
 from tltl_runtime.game.level_name import level_place
 from tltlc.api import TltlError, cli
 
@@ -80,19 +80,19 @@ def command(
         from tltl_runtime.stealth.recording import RecordEpisode
         from tltl_runtime.training.imitation.demonstrations import Demonstrations
 
-        file, variant = _place(level, spec)
+        file, variant = _level_and_variant(level, spec)
         env = RecordEpisode(make_env(file, variant, spec), by)
         demonstrations: Demonstrations | None = None
         try:
             loaded, task = env.get_wrapper_attr("level"), env.get_wrapper_attr("task")
             folder = folder or Path("demonstrations") / f"{loaded.name}-{loaded.variant}-{task.fspa.name}"
             demonstrations = Demonstrations(folder, loaded, task)
-            for line in _begins(demonstrations, episodes):
+            for line in _existing_lines(demonstrations, episodes):
                 click.echo(line, err=True)
             if demonstrations.count < episodes and by == "keyboard":
-                _by_keyboard(env, demonstrations, episodes, seed, view, crouch)
+                _record_person(env, demonstrations, episodes, seed, view, crouch)
             elif demonstrations.count < episodes:
-                _by_expert(env, demonstrations, episodes, seed or 0, report)
+                _record_expert(env, demonstrations, episodes, seed or 0, report)
         except KeyboardInterrupt:
             if demonstrations:
                 click.echo(f"stopped: {_count_text(demonstrations, episodes)}; the same command goes on", err=True)
@@ -109,8 +109,8 @@ def command(
     return report.status
 
 
-def _place(level: str | None, spec: str | None) -> tuple[str, str]:
-    """The level and the variant that are named, or the level that the spec names."""
+def _level_and_variant(level: str | None, spec: str | None) -> tuple[str, str]:
+    """Return the level and the variant that are named, or the level that the spec names."""
     if level is not None:
         file, variant = level_place(level)
         return file, variant or "v0"
@@ -121,54 +121,56 @@ def _place(level: str | None, spec: str | None) -> tuple[str, str]:
     return own_level(spec, "as LEVEL"), "v0"
 
 
-def _begins(demonstrations: Demonstrations, wanted: int) -> list[str]:
-    """Describe the recordings that the folder already contains."""
+def _existing_lines(demonstrations: Demonstrations, requested: int) -> list[str]:
+    """Describe the recordings that the folder already contains, in lines."""
     # If there are enough demonstrations, the last line of the output says so.
-    lines = [f"{_count_text(demonstrations, wanted)} already"] if 0 < demonstrations.count < wanted else []
-    if number := len(demonstrations.others):
-        counted = f"{number} recording{'s' * (number > 1)} there" + (" is none" if number == 1 else " are none")
-        first, suffix = demonstrations.others[0], " and others" * (number > 1)
-        lines.append(plain(f"{counted} of this level and spec: `{first.path.name}` ({first.why}){suffix}"))
+    lines = [f"{_count_text(demonstrations, requested)} already"] if 0 < demonstrations.count < requested else []
+    if number := len(demonstrations.rejected):
+        count_text = f"{number} recording{'s' * (number > 1)} there" + (" is none" if number == 1 else " are none")
+        first, suffix = demonstrations.rejected[0], " and others" * (number > 1)
+        lines.append(plain_text(f"{count_text} of this level and spec: `{first.path.name}` ({first.reason}){suffix}"))
     return lines
 
 
-def _by_expert(env: RecordEpisode, demonstrations: Demonstrations, wanted: int, seed: int, report: cli.Report) -> None:
+def _record_expert(
+    env: RecordEpisode, demonstrations: Demonstrations, requested: int, seed: int, report: cli.Report
+) -> None:
     from tltl_runtime.stealth.capabilities.feasible import reach_warnings
     from tltl_runtime.training.imitation.demonstrations import expert_attempts
 
     report.add(reach_warnings(env.get_wrapper_attr("level"), env.get_wrapper_attr("task").fspa))
-    for attempt in expert_attempts(env, demonstrations, wanted, seed):
-        click.echo(_line(attempt, wanted))
+    for attempt in expert_attempts(env, demonstrations, requested, seed):
+        click.echo(_attempt_line(attempt, requested))
 
 
-def _by_keyboard(
-    env: RecordEpisode, demonstrations: Demonstrations, wanted: int, seed: int | None, view: View, crouch: str
+def _record_person(
+    env: RecordEpisode, demonstrations: Demonstrations, requested: int, seed: int | None, view: View, crouch: str
 ) -> None:
     from tltl_runtime.stealth.recording import writable_folder
 
     writable_folder(demonstrations.folder)
 
     def recordings(_: str) -> Recordings:
-        return _Kept(demonstrations, wanted)
+        return _DemonstrationRecorder(demonstrations, requested)
 
     def enough() -> bool:
-        return demonstrations.count >= wanted
+        return demonstrations.count >= requested
 
     play_at_keyboard(env, recordings, seed=seed, view=view, crouch=crouch, enough=enough)
 
 
-class _Kept:
+class _DemonstrationRecorder:
     """Writes those episodes of a person that meet the spec.
 
     If the folder cannot be written, an episode goes to the folder for temporary files and does not
     count.
 
     Raises:
-        TltlError: TLT0005, from ``save``: that folder cannot be written, either.
+        TltlError: TLT0005, from ``save``: the folder for temporary files cannot be written, either.
     """
 
-    def __init__(self, made: Demonstrations, wanted: int) -> None:
-        self._made, self._wanted = made, wanted
+    def __init__(self, demonstrations: Demonstrations, requested: int) -> None:
+        self._demonstrations, self._requested = demonstrations, requested
 
     def keep(self, episode: Episode) -> None:
         """Do nothing: an unfinished episode has not met the spec yet."""
@@ -176,35 +178,35 @@ class _Kept:
     def save(self, episode: Episode) -> str:
         """Write the episode if it is a demonstration; return the text that the player sees."""
         try:
-            attempt = self._made.add(episode)
+            attempt = self._demonstrations.add(episode)
         except TltlError as error:
-            return self._elsewhere(episode, error)
-        click.echo(_line(attempt, self._wanted))
-        count = f"{attempt.kept} of {self._wanted}"
+            return self._save_elsewhere(episode, error)
+        click.echo(_attempt_line(attempt, self._requested))
+        count = f"{attempt.kept} of {self._requested}"
         return f"{attempt.path.name}, {count}" if attempt.path else f"not kept, {count}"
 
-    def _elsewhere(self, episode: Episode, refused: TltlError) -> str:
+    def _save_elsewhere(self, episode: Episode, error: TltlError) -> str:
         from tltl_runtime.cli.support.episode_text import episode_line
         from tltl_runtime.cli.support.recording_files import write_elsewhere
         from tltl_runtime.game.recording_path import file_stem
 
-        path = write_elsewhere(episode, file_stem(episode), refused)
-        count = f"{self._made.count} of {self._wanted}"
-        click.echo(episode_line(episode, f"{path} ({count}, until it is moved to {self._made.folder})"))
+        path = write_elsewhere(episode, file_stem(episode), error)
+        count = f"{self._demonstrations.count} of {self._requested}"
+        click.echo(episode_line(episode, f"{path} ({count}, until it is moved to {self._demonstrations.folder})"))
         return f"{path}, {count}"
 
 
-def _line(attempt: Attempt, wanted: int) -> str:
+def _attempt_line(attempt: Attempt, requested: int) -> str:
     from tltl_runtime.cli.support.episode_text import episode_line
     from tltl_runtime.stealth.recordings.episode import Episode
 
     assert isinstance(attempt.episode, Episode)
-    count = f"{attempt.kept} of {wanted}"
+    count = f"{attempt.kept} of {requested}"
     return episode_line(attempt.episode, f"{attempt.path} ({count})" if attempt.path else f"not kept ({count})")
 
 
-def _count_text(demonstrations: Demonstrations, wanted: int) -> str:
-    if demonstrations.count > wanted:
-        requested = f"{wanted} {'is' if wanted == 1 else 'are'} asked for"
-        return f"{demonstrations.count} demonstrations are in {demonstrations.folder}, and {requested}"
-    return f"{demonstrations.count} of {wanted} demonstrations are in {demonstrations.folder}"
+def _count_text(demonstrations: Demonstrations, requested: int) -> str:
+    if demonstrations.count > requested:
+        request = f"{requested} {'is' if requested == 1 else 'are'} asked for"
+        return f"{demonstrations.count} demonstrations are in {demonstrations.folder}, and {request}"
+    return f"{demonstrations.count} of {requested} demonstrations are in {demonstrations.folder}"

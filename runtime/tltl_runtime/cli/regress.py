@@ -15,7 +15,7 @@ from tltl_runtime.cli.support.learning import require_learning
 from tltl_runtime.cli.support.options import Function, output_folder
 from tltl_runtime.cli.support.suite_argument import check_suite_exists
 from tltl_runtime.cli.support.worker_options import all_cores_option
-from tltl_runtime.cli.support.writable_paths import is_output
+from tltl_runtime.cli.support.writable_paths import is_standard_output
 from tltlc.api import TltlError, cli, fileio
 
 _MINUTES: Final = 10.0
@@ -23,9 +23,11 @@ _MINUTES: Final = 10.0
 _REPORTS: Final = {"json": "the JSON", "junit": "the XML", "html": "the page"}
 
 
-def _report(name: str, about: str) -> Callable[[Function], Function]:
-    about = f"{about}; `-` prints it in place of the text."
-    return click.option(f"--{name}", metavar="FILE", type=cli.OutputPath("file", stdout=True, checked=True), help=about)
+def _report_option(name: str, help_text: str) -> Callable[[Function], Function]:
+    help_text = f"{help_text}; `-` prints it in place of the text."
+    return click.option(
+        f"--{name}", metavar="FILE", type=cli.OutputPath("file", stdout=True, checked=True), help=help_text
+    )
 
 
 @click.command(
@@ -47,9 +49,9 @@ Examples:
     multiple=True,
     help="Only the cases that depend on one of these files; it takes every word up to the next option.",
 )
-@_report("json", "Write the report as JSON, too")
-@_report("junit", "Write it as JUnit XML, too")
-@_report("html", "Write the page here, too")
+@_report_option("json", "Write the report as JSON, too")
+@_report_option("junit", "Write it as JUnit XML, too")
+@_report_option("html", "Write the page here, too")
 @click.option("--github", is_flag=True, help="Print findings as annotations of GitHub Actions, too.")
 @click.option(
     "--baseline",
@@ -89,12 +91,14 @@ def command(
     which nothing has changed since it was played is not played again.  The exit status is 0 where all cases pass, and
     1 where one is to be reviewed or fails; what --retrain finds changes neither.
     """
-    printed = {name: f"`--{name} {path}`" for name, path in files.items() if path is not None and is_output(path)}
-    if printed and len(users := [*["--github"] * github, *printed.values()]) > 1:
+    printed = {
+        name: f"`--{name} {path}`" for name, path in files.items() if path is not None and is_standard_output(path)
+    }
+    if printed and len(uses := [*["--github"] * github, *printed.values()]) > 1:
         *_, last = (_REPORTS[name] for name in printed)
-        advice = f"write {last} to a file" if len(users) == 2 else "write the reports to files"
-        both = "both" if len(users) == 2 else "all"
-        raise click.UsageError(f"{', '.join(users[:-1])} and {users[-1]} {both} need standard output: {advice}")
+        advice = f"write {last} to a file" if len(uses) == 2 else "write the reports to files"
+        both = "both" if len(uses) == 2 else "all"
+        raise click.UsageError(f"{', '.join(uses[:-1])} and {uses[-1]} {both} need standard output: {advice}")
     if minutes is not None and not retrain:
         raise click.UsageError("--minutes are those of --retrain: give it, too")
     if suite is None and (swallowed := next(filter(_is_suite, changed or ()), None)):
@@ -103,7 +107,7 @@ def command(
         check_suite_exists(suite)
         from tltl_runtime.cli.support.regression_run import RegressOptions, run
 
-        wanted = RegressOptions(
+        options = RegressOptions(
             suite=suite,
             changed=tuple(filter(None, changed)) if changed else None,
             folder=folder or _default_folder(suite),
@@ -114,7 +118,7 @@ def command(
             baseline=baseline,
             minutes=(minutes or _MINUTES) if retrain else None,
         )
-        return run(wanted)
+        return run(options)
     return report.status
 
 
@@ -129,7 +133,7 @@ def _is_suite(word: str) -> bool:
 
 
 def _default_folder(suite: Path | None) -> Path:
-    """The default folder of a run: `regression/levels/game` for `levels/game.toml`.
+    """Return the default folder of a run: `regression/levels/game` for `levels/game.toml`.
 
     It follows the path of the suite relative to the working directory.
     """

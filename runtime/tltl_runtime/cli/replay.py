@@ -30,7 +30,7 @@ _ONLY_FOR: Final = {
     "start": (*FILMS, ".csv"),
     "stop": (*FILMS, ".csv"),
 }
-"""The kinds of output, by file extension, that each option applies to."""
+"""The file extensions of the outputs that each option applies to."""
 
 _SIZES: Final = (160, 4096)
 """The least and the greatest width and height, in pixels."""
@@ -120,16 +120,16 @@ def command(
         for name, episode in read_each(files, read_episode, report):
             fields = {"file": name, **summary(episode, notation)}
             if checked:
-                judged, played = check(episode), check_replay(episode)
-                report.add((*judged, *played))
-                fields |= {"follows_from_spec": not judged, "plays_again": not played}
+                judgement_errors, replay_errors = check(episode), check_replay(episode)
+                report.add((*judgement_errors, *replay_errors))
+                fields |= {"follows_from_spec": not judgement_errors, "plays_again": not replay_errors}
             if path is not None:
                 _write(path, episode, _span(episode, start, stop), film, size)
                 report.say(f"wrote {path}")
                 if path.suffix.lower() == ".csv":
                     report.say(f"judge it with: {judged_with(episode, str(path))}")
             elif format == "text":
-                print(f"{name}\n{summary_text(fields)}{_checked_text(fields)}")
+                print(f"{name}\n{summary_text(fields)}{_check_text(fields)}")
             summaries.append(fields)
         if format == "json" and path is None:
             print(json.dumps(summaries, indent=2, ensure_ascii=False))
@@ -140,25 +140,25 @@ def _check_usage(
     context: click.Context, files: tuple[str, ...], path: Path | None, size: tuple[int, int] | None
 ) -> None:
     """Reject options that would be ignored."""
-    ending = None if path is None else path.suffix.lower()
-    if ending is not None and ending not in _ENDINGS:
+    extension = None if path is None else path.suffix.lower()
+    if extension is not None and extension not in _ENDINGS:
         raise click.UsageError(f"the ending of `{path}` says no kind of output: use one of {', '.join(_ENDINGS)}")
     for option in context.command.params:
         kinds = _ONLY_FOR.get(option.name or "", ())
-        if kinds and context.params[option.name or ""] is not None and ending not in kinds:
-            raise click.UsageError(f"{option.opts[0]} is for what -o writes to a {_listed(kinds)}")
+        if kinds and context.params[option.name or ""] is not None and extension not in kinds:
+            raise click.UsageError(f"{option.opts[0]} is for what -o writes to a {_alternatives(kinds)}")
     if path is not None and len(files) > 1:
         raise click.UsageError("-o takes one FILE")
-    if ending == ".mp4" and size and (size[0] % 2 or size[1] % 2):
+    if extension == ".mp4" and size and (size[0] % 2 or size[1] % 2):
         raise click.UsageError("the width and the height of an .mp4 are even numbers")
 
 
-def _listed(names: Sequence[str]) -> str:
-    *first, last = names
-    return f"{', '.join(first)} or {last}"
+def _alternatives(names: Sequence[str]) -> str:
+    *begin, last = names
+    return f"{', '.join(begin)} or {last}"
 
 
-def _checked_text(fields: dict[str, Any]) -> str:
+def _check_text(fields: dict[str, Any]) -> str:
     if "plays_again" not in fields:
         return ""
     follows = "follows" if fields["follows_from_spec"] else "does NOT follow"
@@ -167,24 +167,27 @@ def _checked_text(fields: dict[str, Any]) -> str:
 
 
 def _span(episode: Episode, start: float | None, stop: float | None) -> tuple[float, float]:
-    """The start and the end of a film or a trace, in seconds."""
+    """Return the start and the end of a film or a trace, in seconds."""
     end = episode.snapshots[-1].time
-    first, last = start or 0.0, end if stop is None else stop
-    if first > min(last, end):
-        raise click.UsageError(f"there is nothing from {first:g} s to {last:g} s: the episode ends at {end:.2f} s")
-    return first, min(last, end)
+    begin, last = start or 0.0, end if stop is None else stop
+    if begin > min(last, end):
+        raise click.UsageError(f"there is nothing from {begin:g} s to {last:g} s: the episode ends at {end:.2f} s")
+    return begin, min(last, end)
 
 
 def _write(path: Path, episode: Episode, span: tuple[float, float], film: Film, size: tuple[int, int] | None) -> None:
-    """Write the output that the extension of the path selects.  ``size`` applies to plans; None: the natural size."""
+    """Write the output that the extension of the path selects.
+
+    ``size``, in pixels, applies to plans; None: the natural size.
+    """
     from tltlc.api import fileio
 
-    ending = path.suffix.lower()
-    if ending == ".csv":
+    extension = path.suffix.lower()
+    if extension == ".csv":
         from tltl_runtime.stealth.recordings.summary import trace_csv
 
         fileio.write_file(path, trace_csv(episode, *span))
-    elif ending == ".png":
+    elif extension == ".png":
         from tltl_runtime.stealth.rendering.plan import draw_episode
 
         fileio.write_file(path, draw_episode(episode, size, film.notation))

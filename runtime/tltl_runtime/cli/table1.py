@@ -23,11 +23,11 @@ if TYPE_CHECKING:
 
 _ELSEWHERE = "name another place with --out"
 _SAVING_S = 20.0
-"""The seconds that an interrupted training gets to write its checkpoint."""
+"""An interrupted training gets this many seconds to write its checkpoint."""
 
 
 @record
-class _Wanted:
+class _Options:
     """The options of the command."""
 
     folder: Path
@@ -36,7 +36,7 @@ class _Wanted:
     workers: Any
 
     @property
-    def again(self) -> str:
+    def resume_command(self) -> str:
         """The shell command that continues the run."""
         words = ["tltlc", "table1", "--out", str(self.folder), *["--shipped"] * self.shipped]
         words += [] if self.minutes is None else ["--minutes", f"{self.minutes:g}"]
@@ -76,11 +76,11 @@ def command(folder: Path, shipped: bool, minutes: float | None, workers: Any) ->
         busy = Diagnostic("TLT0931", title, help="wait for its end, or name another folder with --out")
         check_no_training(folder)
         with lock_folder(folder, busy, _ELSEWHERE):
-            wanted = _Wanted(folder, shipped, minutes, workers)
+            options = _Options(folder, shipped, minutes, workers)
             try:
-                text = _table(wanted)
+                text = _table(options)
             except KeyboardInterrupt:
-                click.echo(f"stopped: what is over is kept in `{folder}`; to go on: {wanted.again}", err=True)
+                click.echo(f"stopped: what is over is kept in `{folder}`; to go on: {options.resume_command}", err=True)
                 raise
             click.echo(text, nl=False)
             fileio.write_files(folder, {"table1.md": text}, _ELSEWHERE)
@@ -88,28 +88,28 @@ def command(folder: Path, shipped: bool, minutes: float | None, workers: Any) ->
     return report.status
 
 
-def _table(wanted: _Wanted) -> str:
-    """The table over the paper's number of episodes, and over all episodes."""
+def _table(options: _Options) -> str:
+    """Return the table over the paper's number of episodes, and the table over all episodes."""
     from tltl_runtime.regression.table1.paper_table import LEVELS, MODELS, RUNS, VARIANTS, TableRow, markdown
-    from tltl_runtime.regression.table1.table_cells import EPISODES, SEED, figures, measured
+    from tltl_runtime.regression.table1.table_cells import EPISODES, SEED, cell_episodes, figures
     from tltl_runtime.training.run.versions import versions
 
     seeds = []
     rows: dict[int, dict[tuple[str, Model], TableRow]] = {RUNS: {}, EPISODES: {}}
     for level in LEVELS:
         for model in MODELS:
-            training = _trained(wanted, level, model)
-            policy, hours, cloned = (
-                (training.policy, training.hours, training.cloned) if training else (None, None, None)
+            training = _training_result(options, level, model)
+            policy, hours, cloning_share = (
+                (training.policy, training.hours, training.cloning_share) if training else (None, None, None)
             )
             seeds += [f"{level} {model} {training.seed}"] if training else []
             cells = {}
             for variant in VARIANTS:
                 click.echo(f"{level}:{variant}, {model}", err=True)
-                cells[variant] = measured(wanted.folder, model, level, variant, policy, wanted.workers)
+                cells[variant] = cell_episodes(options.folder, model, level, variant, policy, options.workers)
             for runs, table in rows.items():
-                shown = {name: figures(cell, runs) for name, cell in cells.items()}
-                table[level, model] = TableRow(shown, hours, cloned)
+                figures_by_variant = {name: figures(cell, runs) for name, cell in cells.items()}
+                table[level, model] = TableRow(figures_by_variant, hours, cloning_share)
     tables = [
         f"{runs} episodes each of ours, {RUNS} of the paper's:\n\n{markdown(table)}" for runs, table in rows.items()
     ]
@@ -120,27 +120,35 @@ def _table(wanted: _Wanted) -> str:
     return "\n".join((*tables, footer))
 
 
-def _trained(wanted: _Wanted, level: str, model: Model) -> TrainedModel | None:
-    """Return the result of a model's training, which continues now if it is unfinished; None for the expert."""
+def _training_result(options: _Options, level: str, model: Model) -> TrainedModel | None:
+    """Return the result of a model's training; None for the expert.
+
+    If the training is unfinished, it continues now.
+    """
     from tltl_runtime.policies.file import read_policy
     from tltl_runtime.policies.shipped import shipped_policies
     from tltl_runtime.regression.table1 import table_trainings
-    from tltl_runtime.regression.table1.table_trainings import TrainedModel, table_training, train_arguments, trained
+    from tltl_runtime.regression.table1.table_trainings import (
+        TrainedModel,
+        finished_training,
+        table_training,
+        train_arguments,
+    )
 
     if model == "expert":
         return None
-    limits = table_trainings.limits(wanted.minutes)
-    if wanted.shipped:
+    limits = table_trainings.limits(options.minutes)
+    if options.shipped:
         path = shipped_policies()[level]
         card = read_policy(path).card
         if model == "ours":
             return TrainedModel(path, card.training["seed"], float(card.training["seconds"]) / 3600, None)
-        limits = table_trainings.limits_as_of(card, wanted.minutes)
-    training = table_training(wanted.folder, level, model, limits)
-    result = trained(training)
+        limits = table_trainings.limits_of_policy(card, options.minutes)
+    training = table_training(options.folder, level, model, limits)
+    result = finished_training(training)
     if result is None:
         _train(train_arguments(training))
-        result = trained(training)
+        result = finished_training(training)
     if result is None:
         title = f"the training in `{training.folder}` did not end"
         raise TltlError([Diagnostic("TLT0930", title, help="run the command again")])
@@ -148,7 +156,7 @@ def _trained(wanted: _Wanted, level: str, model: Model) -> TrainedModel | None:
 
 
 def _train(arguments: list[str]) -> None:
-    """Run ``tltlc train``, which shows its progress.  Ctrl-C reaches it, too."""
+    """Run ``tltlc train``, which shows its progress.  Ctrl-C reaches that process, too."""
     with subprocess.Popen([sys.executable, "-m", "tltlc", "train", *arguments], stdout=sys.stderr) as training:
         try:
             training.wait()

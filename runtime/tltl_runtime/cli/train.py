@@ -18,14 +18,14 @@ from tltl_runtime.training.run.choices import Method
 from tltlc.api import cli
 
 if TYPE_CHECKING:
-    from tltl_runtime.training.run.report import TrainingReport as Trained
+    from tltl_runtime.training.run.report import TrainingReport
     from tltl_runtime.training.run.run_file import TrainingRun
 
 
 def _setting(table: str, key: str) -> Callable[[click.Context, click.Parameter, Any], Any]:
-    """A callback that checks an option by the rules of the settings file."""
+    """Return a callback that checks an option by the rules of the settings file."""
 
-    def checked(_: click.Context, parameter: click.Parameter, value: Any) -> Any:
+    def check(_: click.Context, parameter: click.Parameter, value: Any) -> Any:
         from tltl_runtime.training.run.settings_file import KINDS
 
         kind = KINDS[table][key]
@@ -33,7 +33,7 @@ def _setting(table: str, key: str) -> Callable[[click.Context, click.Parameter, 
             raise click.BadParameter(f"`{value}` is not {kind}", param=parameter)
         return value
 
-    return checked
+    return check
 
 
 @click.command(
@@ -140,8 +140,8 @@ def command(
         check_no_toml(spec, settings="--config")
         from tltl_runtime.cli.support.training_run import (
             TrainOptions,
-            begins_with,
             check_limits,
+            initial_policy_options,
             new_run,
             new_settings,
             resumed_run,
@@ -150,28 +150,30 @@ def command(
         from tltl_runtime.training.run.run_file import resume_command
         from tltl_runtime.training.run.settings import settings_text
 
-        asked = TrainOptions(spec=spec, sensors=sensors, **options)
+        train_options = TrainOptions(spec=spec, sensors=sensors, **options)
         if print_config:
             settings = (
-                new_settings(asked, begins_with(asked)) if resume is None else resumed_run(asked, resume).settings
+                new_settings(train_options, initial_policy_options(train_options))
+                if resume is None
+                else resumed_run(train_options, resume).settings
             )
             click.echo(settings_text(settings), nl=False)
             return cli.exits.CLEAN
-        run = new_run(asked, folder) if resume is None else resumed_run(asked, resume)
+        run = new_run(train_options, folder) if resume is None else resumed_run(train_options, resume)
         again, is_first = resume_command(run.folder), process_group().rank == 0
         if resume is not None:
             from tltl_runtime.training.run.record import finished_record
 
             if record := finished_record(run):
                 if is_first:
-                    click.echo(_over(run, record, again))
+                    click.echo(_finished_text(run, record, again))
                 return cli.exits.CLEAN if record["end"] == "met" else cli.exits.FINDINGS
             check_limits(run)
         if is_first:
-            for line in _begins(run, resume=resume is not None):
+            for line in _start_lines(run, resume=resume is not None):
                 click.echo(line, err=True)
         # These imports take seconds, so they come after the first messages.
-        from tltl_runtime.cli.support.training_progress import stopped_line, train_shown
+        from tltl_runtime.cli.support.training_progress import stopped_line, train_with_display
         from tltl_runtime.stealth.capabilities.feasible import reach_warnings
         from tltl_runtime.stealth.levels.file import load_level
         from tltl_runtime.training.run.record import write_record
@@ -179,7 +181,7 @@ def command(
         if is_first:
             report.add(reach_warnings(load_level(run.level, run.variant), run.fspa))
         try:
-            last = train_shown(run, resume=resume is not None, again=again)
+            last = train_with_display(run, resume=resume is not None, again=again)
         except KeyboardInterrupt:
             if is_first and (stopped := stopped_line(run, again)):
                 click.echo(stopped, err=True)
@@ -188,13 +190,13 @@ def command(
             # Exit cleanly: if one process fails, torchrun ends all, and the first one still writes the record.
             return cli.exits.CLEAN
         write_record(run, last)
-        for line in _ended(run, last, again):
+        for line in _end_lines(run, last, again):
             click.echo(line)
         return cli.exits.CLEAN if last.stop == "met" else cli.exits.FINDINGS
     return report.status
 
 
-def _begins(run: TrainingRun, *, resume: bool) -> Iterator[str]:
+def _start_lines(run: TrainingRun, *, resume: bool) -> Iterator[str]:
     """Describe the training; if it is resumed without a checkpoint, say what happens to its files."""
     from tltl_runtime.training.run.metrics import METRICS
     from tltl_runtime.training.run.run_file import CHECKPOINT, POLICY, RECORD
@@ -203,8 +205,8 @@ def _begins(run: TrainingRun, *, resume: bool) -> Iterator[str]:
     how = f" by {run.settings.method}" if run.settings.imitates else ""
     yield f"training {run.fspa.name} on {place}{how}, seed {run.seed}, in {run.folder}"
     if run.initial and not (run.folder / CHECKPOINT).exists():
-        alone = f"; its critic is new, and learns alone in the first {run.settings.ppo.warm_up} iterations"
-        yield f"it begins with the weights of {run.initial.path}{alone if run.settings.ppo.warm_up else ''}"
+        critic_note = f"; its critic is new, and learns alone in the first {run.settings.ppo.warm_up} iterations"
+        yield f"it begins with the weights of {run.initial.path}{critic_note if run.settings.ppo.warm_up else ''}"
     files = [name for name in (METRICS, RECORD, POLICY) if (run.folder / name).exists()]
     if not resume or not files or (run.folder / CHECKPOINT).exists():
         return
@@ -218,31 +220,36 @@ def _begins(run: TrainingRun, *, resume: bool) -> Iterator[str]:
     yield f"there is no {CHECKPOINT} in {run.folder}: the training begins anew, {fate}{ways}"
 
 
-def _ended(run: TrainingRun, last: Trained, again: str) -> Iterator[str]:
-    """Describe how a training ended, its files and the next steps.  ``again`` is the command that resumes it."""
+def _end_lines(run: TrainingRun, last: TrainingReport, again: str) -> Iterator[str]:
+    """Describe how a training ended, its files and the next steps.
+
+    ``again`` is the command that resumes it.
+    """
     window, folder = last.window, quote(str(run.folder))
-    ended = "the spec is met" if last.stop == "met" else f"ended by the limit of {last.stop}"
+    ending = "the spec is met" if last.stop == "met" else f"ended by the limit of {last.stop}"
     met = f"met in {window.successes} of the last {window.count} episodes, progress {share(window.progress)}"
-    took = f"after {last.steps:,} steps, {duration(last.seconds)}"
-    yield f"{ended} {took}: {met if window.count else 'no episode has ended'}"
+    spent = f"after {last.steps:,} steps, {duration(last.seconds)}"
+    yield f"{ending} {spent}: {met if window.count else 'no episode has ended'}"
     yield f"{folder}: policy.safetensors, record.json, curve.png"
     yield f"to evaluate it: tltlc evaluate {folder}"
     if last.stop != "met":
         yield f"to go on, with a higher limit: {again} --{last.stop} N"
 
 
-def _over(run: TrainingRun, record: Mapping[str, Any], again: str) -> str:
-    """Describe a training that cannot be resumed because it has ended.  ``again`` is the command that resumes it."""
+def _finished_text(run: TrainingRun, record: Mapping[str, Any], again: str) -> str:
+    """Describe a training that cannot be resumed because it has ended.
+
+    ``again`` is the command that resumes it.
+    """
     from tltl_runtime.cli.support.training_text import minutes
 
     prefix, stop = f"the training in `{run.folder}` is over", run.settings.stop
     if record["end"] == "met":
         return f"{prefix}, and stays as it is: the spec was met after {record['steps']:,} steps"
     if record["end"] == "steps":
-        took, limit = f"{record['steps']:,} steps", f"{stop.steps:,}"
+        spent, limit = f"{record['steps']:,} steps", f"{stop.steps:,}"
     else:
-        took, limit = duration(record["seconds"]), minutes(stop.minutes)
+        spent, limit = duration(record["seconds"]), minutes(stop.minutes)
     resume = f"{again} --{record['end']} N"
-    return (
-        f"{prefix}, and stays as it is: it took {took}, and its limit is {limit}; to go on, with a higher one: {resume}"
-    )
+    limit_text = f"it took {spent}, and its limit is {limit}"
+    return f"{prefix}, and stays as it is: {limit_text}; to go on, with a higher one: {resume}"

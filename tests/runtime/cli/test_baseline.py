@@ -84,7 +84,7 @@ def test_a_stopped_first_baseline_reports_its_partial_file(
     def stopped(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("tltl_runtime.regression.verdict.baseline_run._played", stopped)
+    monkeypatch.setattr("tltl_runtime.regression.verdict.baseline_run._play_reference", stopped)
     Path("game.baseline.json").unlink()
     result = tltlc("baseline", "game.toml", *ONE)
     assert (result.status, result.out) == (130, "")

@@ -59,7 +59,7 @@ def test_a_message_on_several_variants_is_printed_once(tltlc) -> None:  # type: 
     assert result.err.count("TLT0810") == 1
 
 
-def test_the_machine_readable_formats(tltlc) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+def test_messages_are_in_the_machine_readable_formats(tltlc) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     arguments = ("check", EXAMPLES / "cover_and_hide.tltl", "--level", "branching:v0", "--format")
     result: Outcome = tltlc(*arguments, "json")
     codes = [diagnostic["code"] for diagnostic in json.loads(result.out)["diagnostics"]]

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from tests.runtime.regression.handmade import case, made
-from tltl_runtime.cli.support.printable import plain
+from tests.runtime.regression.handmade import an_episode, case
+from tltl_runtime.cli.support.printable import plain_text
 from tltl_runtime.cli.support.regression_display import RegressionDisplay
 from tltl_runtime.cli.support.regression_text import case_lines
 from tltl_runtime.regression.report.case_report import CaseReport
@@ -30,7 +30,7 @@ EVIL = "x\n::error::forged\r\n\x1b[31mred\x07"
     ],
 )
 def test_commands_are_defused(text: str, shown: str) -> None:
-    assert plain(text) == shown
+    assert plain_text(text) == shown
 
 
 def commands(text: str) -> list[str]:
@@ -40,7 +40,7 @@ def commands(text: str) -> list[str]:
 
 def test_each_name_and_each_reason_is_one_line() -> None:
     report = CaseReport(f"::error::{EVIL}", "room", "v0", "fail", (EVIL, f"::warning::{EVIL}", "##[error]forged"))
-    lines = list(case_lines(report, 10, kept=False))
+    lines = list(case_lines(report, 10, is_cached=False))
     assert len(lines) == 1 + len(report.reasons)
     verdict, *reasons = lines
     assert "\n".join(lines).count("forged") == 4
@@ -49,6 +49,6 @@ def test_each_name_and_each_reason_is_one_line() -> None:
 
 def test_progress_has_one_line_without_commands(capsys: pytest.CaptureFixture[str]) -> None:
     with RegressionDisplay() as display:
-        display(replace(case(f"::error::{EVIL}"), episodes=1), 1, made())
+        display(replace(case(f"::error::{EVIL}"), episodes=1), 1, an_episode())
     output = capsys.readouterr().err
     assert "forged" in output and len(output.splitlines()) == 1 and commands(output) == []

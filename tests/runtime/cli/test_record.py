@@ -16,7 +16,7 @@ from tests.runtime.cli.test_play import PLAYERS, ended, needs_screen, started
 from tests.runtime.stealth.xvfb import keys, screen
 from tests.runtime.training.imitating import SOON, recorded_episode, write_recordings
 from tests.waiting import HANG_S
-from tltl_runtime.cli.record import _Kept
+from tltl_runtime.cli.record import _DemonstrationRecorder
 from tltl_runtime.stealth.env import make_env
 from tltl_runtime.stealth.recordings.check import check
 from tltl_runtime.stealth.recordings.file import read_episode
@@ -173,7 +173,7 @@ def test_failed_episodes_of_a_person_are_not_kept(tmp_path: Path, capsys: pytest
     env = make_env("cover_and_hide", "v0", SOON)
     demonstrations = Demonstrations(tmp_path, env.unwrapped.level, env.task)  # type: ignore[attr-defined]
     env.close()
-    recorder = _Kept(demonstrations, 2)
+    recorder = _DemonstrationRecorder(demonstrations, 2)
     recorder.keep(recorded_episode(4, steps=3))
     assert recorder.save(recorded_episode(4, steps=5)) == "not kept, 0 of 2"
     assert not list(tmp_path.iterdir())
@@ -193,7 +193,7 @@ def test_a_recording_is_saved_elsewhere_if_its_folder_is_unwritable(
     env = make_env("cover_and_hide", "v0", SOON)
     demonstrations = Demonstrations(folder, env.unwrapped.level, env.task)  # type: ignore[attr-defined]
     env.close()
-    recorder = _Kept(demonstrations, 2)
+    recorder = _DemonstrationRecorder(demonstrations, 2)
     folder.touch()
     saved = spare / "cover_and_hide-v0-4.episode.npz"
     assert recorder.save(recorded_episode(4)) == f"{saved}, 0 of 2"

@@ -99,7 +99,7 @@ def test_the_json_report(tltlc: Run, game: Path) -> None:  # noqa: F811
     for case in report["cases"]:
         assert {"level", "variant", "verdict", "pass_rate", "progress", "reward", "baseline", "reasons"} < case.keys()
         assert case["episodes"] == len(case["accounts"])
-        assert sum(account["success"] for account in case["accounts"]) == pytest.approx(
+        assert sum(explained["success"] for explained in case["accounts"]) == pytest.approx(
             case["pass_rate"] * case["episodes"]
         )
     # The text report is on standard error then.
@@ -157,7 +157,7 @@ def test_a_run_stopped_in_its_first_case_reports_no_case(
     def stopped(*_: object, **__: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("tltl_runtime.regression.verdict.suite_run._done", stopped)
+    monkeypatch.setattr("tltl_runtime.regression.verdict.suite_run._judge", stopped)
     result = tltlc("regress", "game.toml", "--json", "report.json", "--junit", "report.xml", *ONE)
     assert result.status == 130
     assert result.out == "no case was judged\n"
@@ -185,7 +185,7 @@ def test_the_error_that_ended_a_run_is_reported_although_the_page_is_unwritable(
     (folder / CASES / "hopeless" / "case.json").unlink()
     (folder / "report.html").unlink()
     (folder / "report.html").mkdir()
-    monkeypatch.setattr("tltl_runtime.regression.verdict.suite_run.judged", ended)
+    monkeypatch.setattr("tltl_runtime.regression.verdict.suite_run.judge_case", ended)
     result = tltlc("regress", "game.toml", *ONE)
     assert result.status == status
     assert "error[TLT0005]: cannot write `regression/game/report.html`" in result.err
@@ -428,8 +428,10 @@ def _lengthen(baseline: Path, episodes: int) -> None:
     """Repeat the episodes of a baseline up to this number of episodes."""
     document = json.loads(baseline.read_text(encoding="utf-8"))
     for reference in document["references"]:
-        accounts = reference["accounts"]
-        reference["accounts"] = [{**accounts[index % len(accounts)], "index": index} for index in range(episodes)]
+        explained_episodes = reference["accounts"]
+        reference["accounts"] = [
+            {**explained_episodes[index % len(explained_episodes)], "index": index} for index in range(episodes)
+        ]
     baseline.write_text(json.dumps(document), encoding="utf-8")
 
 

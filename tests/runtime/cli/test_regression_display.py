@@ -8,7 +8,7 @@ import sys
 
 import pytest
 
-from tests.runtime.regression.handmade import case, made
+from tests.runtime.regression.handmade import an_episode, case
 from tltl_runtime.cli.support.regression_display import RegressionDisplay
 from tltlc.core.record import replace
 
@@ -22,8 +22,8 @@ def test_without_a_terminal_progress_is_printed_in_lines(capsys: pytest.CaptureF
     with RegressionDisplay("at most") as display:
         for name, episodes in (("one", 60), ("other", 30)):
             for count in range(1, episodes + 1):
-                display(replace(case(name), episodes=episodes), count, made(count - 1, count % 2 == 0))
-            display.over()
+                display(replace(case(name), episodes=episodes), count, an_episode(count - 1, count % 2 == 0))
+            display.clear()
     assert capsys.readouterr().err.splitlines() == [
         "one: 25 of at most 60 episodes, 12 met the spec",
         "one: 50 of at most 60 episodes, 25 met the spec",
@@ -38,8 +38,8 @@ def test_on_a_terminal_a_progress_bar_is_shown_and_removed(monkeypatch: pytest.M
     monkeypatch.setattr(sys, "stderr", Terminal())
     with RegressionDisplay("at most") as display:
         for count in (1, 2, 3):
-            display(replace(case("[b]odd"), episodes=50), count, made(count - 1, count != 2))
-        display.over()
+            display(replace(case("[b]odd"), episodes=50), count, an_episode(count - 1, count != 2))
+        display.clear()
         drawn = sys.stderr.getvalue()  # type: ignore[attr-defined]
     assert "[b]odd: 2 of 3 met" in re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", drawn)
     assert drawn.rstrip().endswith("\x1b[2K") or "\x1b[1A\x1b[2K" in drawn

@@ -11,7 +11,7 @@ from tests.runtime.regression.recorded_game import _game, _recorded  # noqa: F40
 from tltl_runtime.cli.support.regression_files import SuiteRun, json_text, write_reports
 from tltl_runtime.regression.suite.suite import SHIPPED, Suite, read_suite
 from tltl_runtime.regression.verdict.baseline import baseline_of
-from tltl_runtime.regression.verdict.suite_run import Done, regress
+from tltl_runtime.regression.verdict.suite_run import FinishedCase, regress
 from tltlc.core.record import replace
 
 NAMES = ("room:v0", "room:v1", "hopeless")
@@ -28,7 +28,7 @@ def page(outcome: SuiteRun) -> str:
     return path.read_text(encoding="utf-8")
 
 
-def judged(suite: Suite, count: int) -> tuple[Done, ...]:
+def judged(suite: Suite, count: int) -> tuple[FinishedCase, ...]:
     return tuple(regress(suite, suite.cases[:count], baseline_of(suite), Path("run"), 1, Played()))
 
 

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from tests.runtime.regression.handmade import summaries
-from tltl_runtime.cli.support.regression_text import sum_line
+from tltl_runtime.cli.support.regression_text import summary_line
 from tltl_runtime.evaluation.figures import figures_of
 from tltl_runtime.regression.report.case_report import CaseReport
-from tltl_runtime.regression.retrain.retrained import FinishedRetraining, Outcome, Retrained
+from tltl_runtime.regression.retrain.retrained import FinishedRetraining, Outcome, RetrainingResult
 from tltl_runtime.regression.verdict.verdict import Verdict
 
 TRAINED = FinishedRetraining(end="minutes", steps=1, seconds=1.0, searched=0, complete=True, shortest=None)
@@ -14,19 +14,19 @@ TRAINED = FinishedRetraining(end="minutes", steps=1, seconds=1.0, searched=0, co
 
 def report(verdict: Verdict, outcome: Outcome | None = None) -> CaseReport:
     figures, files = figures_of(summaries(25)), ("policy", None)
-    retrained = outcome and Retrained(outcome, "", TRAINED, figures, (0.0, 1.0), None, *files)
+    retrained = outcome and RetrainingResult(outcome, "", TRAINED, figures, (0.0, 1.0), None, *files)
     return CaseReport("a", "room", "v0", verdict, (), retrained=retrained)
 
 
 def test_verdicts_are_counted() -> None:
-    assert sum_line([report("pass")]) == "1 case: 1 pass"
-    assert sum_line([report("fail"), report("review"), report("fail")]) == "3 cases: 1 review, 2 fail"
-    assert sum_line([], ["a"]) == "no case was judged"
-    assert sum_line([]) == "no case was to be played"
+    assert summary_line([report("pass")]) == "1 case: 1 pass"
+    assert summary_line([report("fail"), report("review"), report("fail")]) == "3 cases: 1 review, 2 fail"
+    assert summary_line([], ["a"]) == "no case was judged"
+    assert summary_line([]) == "no case was to be played"
 
 
 def test_outcomes_of_retraining_are_counted() -> None:
     reports = [report("pass"), report("review", "learned"), report("fail", "no_way"), report("fail", "feasible")]
     counted = "trained anew: 1 learned, 1 feasible, 1 no way found"
-    assert sum_line(reports) == f"4 cases: 1 pass, 1 review, 2 fail; {counted}"
-    assert sum_line(reports[:2]) == "2 cases: 1 pass, 1 review; trained anew: 1 learned"
+    assert summary_line(reports) == f"4 cases: 1 pass, 1 review, 2 fail; {counted}"
+    assert summary_line(reports[:2]) == "2 cases: 1 pass, 1 review; trained anew: 1 learned"

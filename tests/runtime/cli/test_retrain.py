@@ -22,7 +22,7 @@ from tests.runtime.regression.recorded_game import _game  # noqa: F401
 from tests.waiting import HANG_S
 from tltl_runtime.evaluation.figures import figures_of
 from tltl_runtime.policies.file import write_policy
-from tltl_runtime.regression.retrain.retrained import FinishedRetraining, Retrained
+from tltl_runtime.regression.retrain.retrained import FinishedRetraining, RetrainingResult
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.stealth.world.physics import WorldError
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
@@ -46,7 +46,7 @@ def _few_environments(monkeypatch: pytest.MonkeyPatch) -> None:
     with_few_environments(monkeypatch)
 
 
-def test_retraining_reports_that_no_way_was_found(tltlc: Run, game: Path) -> None:  # noqa: F811
+def test_retraining_reports_that_no_demonstration_was_found(tltlc: Run, game: Path) -> None:  # noqa: F811
     result = tltlc(*RETRAIN, "--json", "report.json", "--junit", "report.xml")
     assert result.status == 1
     (sentence,) = (line for line in result.out.splitlines() if line.startswith("hopeless, trained anew"))
@@ -109,31 +109,33 @@ def _training(slug: str) -> None:
         (folder / name).touch()
 
 
-def _level_edited(*_: object) -> Retrained:
+def _level_edited(*_: object) -> RetrainingResult:
     raise TltlError([Diagnostic("TLT0905", "`room.toml` changed while `edited` was played")])
 
 
-def _left_the_level(*_: object) -> Retrained:
+def _left_the_level(*_: object) -> RetrainingResult:
     raise WorldError(load_level("navigation"), 3, "player", "it left")
 
 
-def _no_way(*_: object) -> Retrained:
+def _no_way(*_: object) -> RetrainingResult:
     trained = FinishedRetraining("minutes", 100, 1.0, 10, False, None)
-    return Retrained("no_way", "no way found", trained, figures_of(summaries(0, 25)), (0.0, 0.2), None, "policy", None)
+    return RetrainingResult(
+        "no_way", "no way found", trained, figures_of(summaries(0, 25)), (0.0, 0.2), None, "policy", None
+    )
 
 
-def _worker_lost(*_: object) -> Retrained:
+def _worker_lost(*_: object) -> RetrainingResult:
     raise TltlError([Diagnostic("TLT0850", "a worker was lost")])
 
 
-def _write_three_cases(monkeypatch: pytest.MonkeyPatch, *outcomes: Callable[..., Retrained]) -> None:
+def _write_three_cases(monkeypatch: pytest.MonkeyPatch, *outcomes: Callable[..., RetrainingResult]) -> None:
     """Write a suite of three failing cases, whose retraining takes no time and has these outcomes."""
     head, *_, hopeless = Path("game.toml").read_text(encoding="utf-8").split("[[case]]")
     cases = [f"[[case]]{hopeless.replace('hopeless', name)}" for name in ("edited", "left", "told")]
     Path("game.toml").write_text(head + "".join(cases), encoding="utf-8")
     waiting = iter(outcomes)
     monkeypatch.setattr("tltl_runtime.cli.support.retraining._train", lambda *_: None)
-    monkeypatch.setattr("tltl_runtime.cli.support.retraining.retrained", lambda *_: next(waiting)())
+    monkeypatch.setattr("tltl_runtime.cli.support.retraining.retraining_result", lambda *_: next(waiting)())
 
 
 def test_an_error_in_one_training_does_not_stop_the_others(
@@ -181,7 +183,7 @@ def test_fresh_moves_older_trainings_aside(
         assert Path(folder, f"{slug}-2", "policy.safetensors").exists() and not Path(folder, slug).exists()
 
 
-def test_a_policy_in_the_folder_of_its_training_is_reported_before_anything_is_played(tltlc: Run, game: Path) -> None:  # noqa: F811
+def test_a_policy_in_the_folder_of_its_training_is_reported_before_any_play(tltlc: Run, game: Path) -> None:  # noqa: F811
     Path(FOLDER).mkdir(parents=True)
     Path("soon.safetensors").rename(Path(FOLDER, "policy.safetensors"))
     edit("game.toml", '"soon.safetensors"', f'"{FOLDER}"')

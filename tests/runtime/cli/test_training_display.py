@@ -8,10 +8,10 @@ from tests.runtime.training.reports import a_report
 from tltl_runtime.cli.support.training_text import (
     confirmation_line,
     duration,
-    found_line,
-    line,
     minutes,
+    report_line,
     search_line,
+    search_result_line,
     seconds_left,
 )
 from tltl_runtime.training.exploration.search import SearchProgress
@@ -27,14 +27,14 @@ def stop() -> Stop:
 
 def test_the_line_of_an_iteration(stop: Stop) -> None:
     early, late = a_report(count=0, successes=0), a_report(100)
-    assert line(early, stop) == "iteration 1: 4,096 steps in 2 s, 2,048 steps/s, at most 32 min 31 s left"
-    assert line(late, stop) == (
+    assert report_line(early, stop) == "iteration 1: 4,096 steps in 2 s, 2,048 steps/s, at most 32 min 31 s left"
+    assert report_line(late, stop) == (
         "iteration 100: 409,600 steps in 3 min 20 s, met in 40 of the last 50 episodes, progress 0.90, "
         "reward 0.65, 2,048 steps/s, at most 29 min 13 s left"
     )
-    assert line(replace(late, stop="met"), stop).endswith("2,048 steps/s")
+    assert report_line(replace(late, stop="met"), stop).endswith("2,048 steps/s")
     without_times = replace(late, stop="met", iteration=replace(late.iteration, steps=0, collect_s=0.0, learn_s=0.0))
-    assert line(without_times, stop).endswith("reward 0.65")
+    assert report_line(without_times, stop).endswith("reward 0.65")
 
 
 @pytest.mark.parametrize(
@@ -52,7 +52,7 @@ def test_the_line_of_the_search(lengths: tuple[int, ...], said: str) -> None:
 
 def test_the_line_at_the_end_of_the_search() -> None:
     searched = SearchProgress(steps=6400, replayed=3200, seconds=61.0, places=1200, lengths=(90, 80), complete=True)
-    assert found_line(searched) == "search: 2 ways found in 1 min 1 s, the shortest of 80 steps"
+    assert search_result_line(searched) == "search: 2 ways found in 1 min 1 s, the shortest of 80 steps"
 
 
 def test_the_nearer_limit_determines_the_remaining_time(stop: Stop) -> None:
@@ -73,16 +73,16 @@ def test_the_remaining_time_excludes_the_search(stop: Stop) -> None:
 def test_the_line_of_a_confirmation(stop: Stop) -> None:
     assert confirmation_line(92, Confirmation(100, 100)) == "confirmed: the policy met it in 100 fresh episodes, too"
     refused = a_report(92, confirmation=Confirmation(12, 100))
-    assert ", not confirmed after iteration 92: fresh episode 13 of 100 failed, 2,048" in line(refused, stop)
+    assert ", not confirmed after iteration 92: fresh episode 13 of 100 failed, 2,048" in report_line(refused, stop)
 
 
 @pytest.mark.parametrize(
     ("seconds", "said"),
     [(0.2, "0 s"), (59.4, "59 s"), (59.6, "1 min 0 s"), (754, "12 min 34 s"), (12000, "3 h 20 min")],
 )
-def test_durations(seconds: float, said: str) -> None:
+def test_durations_have_fitting_units(seconds: float, said: str) -> None:
     assert duration(seconds) == said
 
 
-def test_limits_in_minutes() -> None:
+def test_a_limit_in_minutes_is_in_words() -> None:
     assert [minutes(limit) for limit in (0.5, 1.0, 30.0)] == ["0.5 minutes", "1 minute", "30 minutes"]

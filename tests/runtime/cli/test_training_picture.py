@@ -23,11 +23,11 @@ def _lines(folder: Path, columns: int, lines: int, report: TrainingReport | Sear
     run = run_in(folder, exploration__ways=10, stop__steps=12_000_000)
     picture = Picture(run, console)
     if isinstance(report, TrainingReport):
-        picture.trained(report)
+        picture.show_report(report)
     elif report is not None:
-        picture.searched(report)
+        picture.show_search(report)
     with console.capture() as captured:
-        console.print(picture.drawn())
+        console.print(picture.picture())
     return captured.get().splitlines()
 
 
@@ -82,7 +82,7 @@ def test_before_the_first_checkpoint_ctrl_c_is_explained(tmp_path: Path, report:
     assert "no checkpoint yet; Ctrl-C writes one to go on from" in text
 
 
-def test_a_search_without_ways_is_shown(tmp_path: Path, report: TrainingReport) -> None:
+def test_a_search_without_demonstrations_is_shown(tmp_path: Path, report: TrainingReport) -> None:
     nothing = replace(report, searched=replace(SEARCHED, lengths=()))
     text = "\n".join(_lines(tmp_path, 80, 24, nothing))
     assert "search: no way found in 1 min 20 s; episodes begin at the level's start" in text

@@ -9,7 +9,7 @@ import pytest
 from tests.runtime.evaluation.untrained import SOON, untrained
 from tests.runtime.regression.handmade import ROOM
 from tltl_runtime.policies.file import write_policy
-from tltl_runtime.regression.explain.account import Account
+from tltl_runtime.regression.explain.account import ExplainedEpisode
 from tltl_runtime.regression.suite.suite import Case, Suite, baseline_path, read_suite
 from tltl_runtime.regression.verdict.baseline import write_baseline
 from tltl_runtime.regression.verdict.baseline_run import record_baseline
@@ -69,7 +69,7 @@ class Played:
     def __init__(self) -> None:
         self.counts: dict[str, int] = {}
 
-    def __call__(self, case: Case, count: int, last: Account) -> None:
+    def __call__(self, case: Case, count: int, last: ExplainedEpisode) -> None:
         assert count == self.counts.get(case.name, 0) + 1
         assert last.summary.index == count - 1
         self.counts[case.name] = count

@@ -1,4 +1,4 @@
-"""Handmade accounts, references, cases and suites for tests."""
+"""Handmade episodes, references, cases and suites for tests."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from tltl_runtime.game.episode import Kind
-from tltl_runtime.regression.explain.account import Account, Arrival, NearestMiss, summaries_of
-from tltl_runtime.regression.explain.path_points import Way
+from tltl_runtime.regression.explain.account import Arrival, ExplainedEpisode, NearestMiss, summaries_of
+from tltl_runtime.regression.explain.path_points import TrajectoryPoints
 from tltl_runtime.regression.suite.suite import Case, Suite, Thresholds, baseline_path
 from tltl_runtime.regression.verdict.baseline import Identity, Reference
 from tltl_runtime.spec.episode_summary import EpisodeSummary
@@ -35,7 +35,7 @@ route = [[5.0, 8.5, 0.0]]
 """The file of a user's level."""
 
 
-def made(
+def an_episode(
     index: int = 0,
     success: bool = True,
     *,
@@ -51,10 +51,10 @@ def made(
     arrived: bool = False,
     place: Point = (5.0, 5.0, 0.0),
     nearest: NearestMiss | None = None,
-    way: Way = ((2.0, 2.0, 0, 0.0), (2.0, 2.0, 0, 1.0)),
-) -> Account:
-    """The account of an episode, by default of one that met its spec."""
-    return Account(
+    way: TrajectoryPoints = ((2.0, 2.0, 0, 0.0), (2.0, 2.0, 0, 1.0)),
+) -> ExplainedEpisode:
+    """An explained episode, by default one that met its spec."""
+    return ExplainedEpisode(
         summary=EpisodeSummary(
             index=index,
             seed=1000 + index,
@@ -77,26 +77,26 @@ def made(
     )
 
 
-def changed(account: Account, **fields: object) -> Account:
-    """The account with other values in its summary."""
-    return replace(account, summary=replace(account.summary, **fields))
+def changed(explained: ExplainedEpisode, **fields: object) -> ExplainedEpisode:
+    """The episode with other values in its summary."""
+    return replace(explained, summary=replace(explained.summary, **fields))
 
 
 def summary(
     index: int = 0, success: bool = True, progress: float | None = None, reward: float | None = None
 ) -> EpisodeSummary:
-    """The summary of an episode, by default of one that met its spec."""
-    return made(index, success, progress=progress, reward=reward).summary
+    """The summary of an episode, by default one that met its spec."""
+    return an_episode(index, success, progress=progress, reward=reward).summary
 
 
 def summaries(passed: int, failed: int = 0) -> list[EpisodeSummary]:
     """Summaries of episodes; the first ``failed`` of them do not meet the spec."""
-    return summaries_of(several(passed, failed))
+    return summaries_of(some_episodes(passed, failed))
 
 
-def several(passed: int, failed: int = 0) -> list[Account]:
-    """Accounts of episodes; the first ``failed`` of them do not meet the spec."""
-    return [made(index, index >= failed) for index in range(passed + failed)]
+def some_episodes(passed: int, failed: int = 0) -> list[ExplainedEpisode]:
+    """Explained episodes; the first ``failed`` of them do not meet the spec."""
+    return [an_episode(index, index >= failed) for index in range(passed + failed)]
 
 
 PLAYED = Identity(
@@ -112,8 +112,8 @@ PLAYED = Identity(
 )
 
 
-def reference(accounts: Sequence[Account] = (), **changed: object) -> Reference:
-    return Reference(replace(PLAYED, **changed), tuple(accounts))
+def reference(explained_episodes: Sequence[ExplainedEpisode] = (), **changed: object) -> Reference:
+    return Reference(replace(PLAYED, **changed), tuple(explained_episodes))
 
 
 def case(name: str, level: str = "navigation", variant: str = "v0", policy: Path = Path("policy")) -> Case:

@@ -8,7 +8,7 @@ from math import dist
 import pytest
 
 from tests.runtime.regression.page import samples
-from tltl_runtime.regression.explain.account import Account
+from tltl_runtime.regression.explain.account import ExplainedEpisode
 from tltl_runtime.regression.explain.explain import findings
 from tltl_runtime.stealth.recordings.episode import Episode
 from tltl_runtime.support.record_json import from_json, to_json
@@ -24,11 +24,11 @@ def _episode(request: pytest.FixtureRequest) -> Episode:
 
 
 @pytest.fixture(name="found", scope="module")
-def _found(episode: Episode) -> Account:
-    return samples.account_of(0, episode)
+def _found(episode: Episode) -> ExplainedEpisode:
+    return samples.explained_of(0, episode)
 
 
-def test_every_entered_state_has_an_arrival(episode: Episode, found: Account) -> None:
+def test_every_entered_state_has_an_arrival(episode: Episode, found: ExplainedEpisode) -> None:
     states = [arrival.state for arrival in found.arrivals]
     assert states[0] == 0 and all(one != other for one, other in pairwise(states))
     assert set(states) == set(episode.states.tolist())
@@ -39,60 +39,60 @@ def test_every_entered_state_has_an_arrival(episode: Episode, found: Account) ->
         assert episode.fspa.states[states[-1]].distance == 0
 
 
-def test_a_success_has_no_cause_of_failure(found: Account) -> None:
+def test_a_success_has_no_cause_of_failure(found: ExplainedEpisode) -> None:
     if found.summary.success:
         assert (found.nearest, found.seen_by, found.cause) == (None, (), "success")
 
 
-def test_an_account_survives_json(found: Account) -> None:
-    assert from_json(Account, to_json(found), "account") == found
+def test_an_explained_episode_survives_json(found: ExplainedEpisode) -> None:
+    assert from_json(ExplainedEpisode, to_json(found), "account") == found
 
 
 def test_a_death_has_its_killers_and_the_closest_approach() -> None:
     episode = samples.cover_and_hide_failed()[0]
-    account = samples.account_of(0, episode)
-    assert not account.summary.success
-    assert account.cause in ("killed", "violated")
-    assert account.by
-    assert account.seen_by == ("guard",)
-    assert account.broke == ("alive",)
-    nearest = account.nearest
+    explained = samples.explained_of(0, episode)
+    assert not explained.summary.success
+    assert explained.cause in ("killed", "violated")
+    assert explained.by
+    assert explained.seen_by == ("guard",)
+    assert explained.broke == ("alive",)
+    nearest = explained.nearest
     assert nearest is not None and nearest.robustness <= 0.0
     if nearest.target is not None:
         column = [signal.name for signal in episode.fspa.signals].index(f"distance({nearest.target})")
-        rows = rows_away(episode, account)
+        rows = rows_away(episode, explained)
         assert nearest.distance == pytest.approx(min(episode.signals[row + 1, column] for row in rows), abs=0.01)
 
 
-def rows_away(episode: Episode, account: Account) -> list[int]:
+def rows_away(episode: Episode, explained: ExplainedEpisode) -> list[int]:
     """The decisions in the state where the episode failed that left the limiting atom false."""
-    assert account.nearest is not None
-    atom = [atom_record.name for atom_record in episode.fspa.atoms].index(account.nearest.atom)
+    assert explained.nearest is not None
+    atom = [atom_record.name for atom_record in episode.fspa.atoms].index(explained.nearest.atom)
     steps = range(len(episode.actions))
     return [
-        step for step in steps if episode.states[step] == account.summary.unmet and episode.atoms[step, atom] <= 0.0
+        step for step in steps if episode.states[step] == explained.summary.unmet and episode.atoms[step, atom] <= 0.0
     ]
 
 
 def test_the_closest_approach_is_the_least_distance_to_the_target() -> None:
     episode = samples.cover_and_hide_failed()[0]
-    account = samples.account_of(0, episode)
-    assert account.nearest is not None and account.nearest.target is not None
-    column = [signal.name for signal in episode.fspa.signals].index(f"distance({account.nearest.target})")
-    rows = rows_away(episode, account)
+    explained = samples.explained_of(0, episode)
+    assert explained.nearest is not None and explained.nearest.target is not None
+    column = [signal.name for signal in episode.fspa.signals].index(f"distance({explained.nearest.target})")
+    rows = rows_away(episode, explained)
     signals = episode.signals.copy()
     signals[rows[0] + 1, column] = 0.25
-    nearer = samples.account_of(0, replace(episode, signals=signals)).nearest
-    assert nearer == replace(account.nearest, distance=0.25), "the guard was as near as before"
+    nearer = samples.explained_of(0, replace(episode, signals=signals)).nearest
+    assert nearer == replace(explained.nearest, distance=0.25), "the guard was as near as before"
 
 
 def test_findings_compare_failures_with_the_baseline() -> None:
     now, before = samples.cover_and_hide_failed(), samples.cover_and_hide_met()
-    accounts, baseline_accounts = (
-        [samples.account_of(index, episode) for index, episode in enumerate(episodes)] for episodes in (now, before)
+    explained_episodes, baseline_episodes = (
+        [samples.explained_of(index, episode) for index, episode in enumerate(episodes)] for episodes in (now, before)
     )
-    stage, *ends = findings(now[0].level, now[0].fspa, accounts, baseline_accounts)
+    stage, *ends = findings(now[0].level, now[0].fspa, explained_episodes, baseline_episodes)
     assert stage.text.endswith("before: in 2 of 2 episodes") and stage.episodes
     assert ends
     assert all("`guard`" in end.text and "before: in 0 of 2 episodes" in end.text for end in ends)
-    assert findings(before[0].level, before[0].fspa, baseline_accounts, baseline_accounts)[0].text.endswith("as before")
+    assert findings(before[0].level, before[0].fspa, baseline_episodes, baseline_episodes)[0].text.endswith("as before")

@@ -8,17 +8,17 @@ from pathlib import Path
 import pytest
 
 from tests.runtime.regression.game import EASY
-from tests.runtime.regression.handmade import PLAYED, made, reference, several, suite
+from tests.runtime.regression.handmade import PLAYED, an_episode, reference, some_episodes, suite
 from tltl_runtime.regression.explain.account import NearestMiss
 from tltl_runtime.regression.suite.suite import SHIPPED, baseline_path, read_suite
 from tltl_runtime.regression.verdict.baseline import (
     baseline_command,
     baseline_of,
     check_states,
+    default_output,
     read_baseline,
     reference_of,
     write_baseline,
-    written_to,
 )
 from tltl_runtime.support.shown_path import shown
 from tltlc import compile_text
@@ -31,8 +31,8 @@ NEAREST = NearestMiss("near(exit)", -0.25, (1.0, 2.0, 0.0), "exit", 3.2)
 
 def test_a_baseline_is_read_as_it_was_written(tmp_path: Path) -> None:
     path = tmp_path / "game.baseline.json"
-    failed = made(1, False, nearest=NEAREST, by=("guard",), seen_by=("guard",), states=(0, 2, 1))
-    references = (reference([made(0), failed]), reference(several(3), level="vault", variant="v1+wide"))
+    failed = an_episode(1, False, nearest=NEAREST, by=("guard",), seen_by=("guard",), states=(0, 2, 1))
+    references = (reference([an_episode(0), failed]), reference(some_episodes(3), level="vault", variant="v1+wide"))
     write_baseline(path, references)
     assert read_baseline(path) == references
     again = tmp_path / "again.json"
@@ -68,7 +68,7 @@ def test_the_baseline_lies_beside_the_suite() -> None:
 )
 def test_a_wrong_value_is_rejected(tmp_path: Path, key: str, value: object) -> None:
     path = tmp_path / "game.baseline.json"
-    write_baseline(path, (reference([made(0)]),))
+    write_baseline(path, (reference([an_episode(0)]),))
     document = json.loads(path.read_text(encoding="utf-8"))
     document["references"][0]["accounts"][0][key] = value
     path.write_text(json.dumps(document), encoding="utf-8")
@@ -81,7 +81,7 @@ def test_a_wrong_value_is_rejected(tmp_path: Path, key: str, value: object) -> N
 
 def test_missing_keys_are_named_in_their_order(tmp_path: Path) -> None:
     path = tmp_path / "game.baseline.json"
-    write_baseline(path, (reference([made(0)]),))
+    write_baseline(path, (reference([an_episode(0)]),))
     document = json.loads(path.read_text(encoding="utf-8"))
     for key in ("cause", "index", "unmet"):
         del document["references"][0]["accounts"][0][key]
@@ -96,15 +96,15 @@ def test_missing_keys_are_named_in_their_order(tmp_path: Path) -> None:
 def test_states_that_the_automaton_lacks_are_rejected(tmp_path: Path, key: str, path: tuple[str | int, ...]) -> None:
     tested_suite, (fspa,) = suite(path=tmp_path / "game.toml"), compile_text(EASY)
     count = len(fspa.states)
-    write_baseline(tested_suite.baseline, (reference(several(2)),))
+    write_baseline(tested_suite.baseline, (reference(some_episodes(2)),))
     document = json.loads(tested_suite.baseline.read_text(encoding="utf-8"))
 
     def with_state(state: int) -> None:
-        account = document["references"][0]["accounts"][1]
+        explained = document["references"][0]["accounts"][1]
         if path:
-            account[key][-1][path[0]] = state
+            explained[key][-1][path[0]] = state
         else:
-            account[key] = state
+            explained[key] = state
         tested_suite.baseline.write_text(json.dumps(document), encoding="utf-8")
 
     with_state(count - 1)
@@ -120,7 +120,7 @@ def test_states_that_the_automaton_lacks_are_rejected(tmp_path: Path, key: str, 
 
 
 def test_a_reward_may_exceed_its_range_by_rounding(tmp_path: Path) -> None:
-    references = (reference([made(0, False, reward=-1.0000000000000002, progress=0.0)]),)
+    references = (reference([an_episode(0, False, reward=-1.0000000000000002, progress=0.0)]),)
     write_baseline(tmp_path / "game.baseline.json", references)
     assert read_baseline(tmp_path / "game.baseline.json") == references
 
@@ -135,19 +135,19 @@ def test_a_file_that_is_no_baseline_is_rejected(tmp_path: Path, text: str) -> No
 
 
 def test_a_reference_is_found_although_the_level_has_changed() -> None:
-    references = (reference(variant="v1"), reference(several(2)))
+    references = (reference(variant="v1"), reference(some_episodes(2)))
     identity = replace(PLAYED, level_hash="0" * 64, files=(), versions={})
     assert reference_of(references, identity, SUITE) == references[1]
 
 
 def test_levels_with_the_same_name_are_told_apart() -> None:
     references = tuple(
-        reference(several(count), place=f"{place}/room.toml") for count, place in ((1, "old"), (2, "new"))
+        reference(some_episodes(count), place=f"{place}/room.toml") for count, place in ((1, "old"), (2, "new"))
     )
     for each in references:
         assert reference_of(references, replace(PLAYED, place=each.played.place), SUITE) == each
     # A shipped level has no place, and is told apart from user levels, too.
-    shipped = reference(several(3), place="")
+    shipped = reference(some_episodes(3), place="")
     for each in ((shipped, *references), (*references, shipped)):
         assert [reference_of(each, replace(PLAYED, place=place), SUITE) for place in ("old/room.toml", "")] == [
             references[0],
@@ -171,7 +171,7 @@ def test_levels_with_the_same_name_are_told_apart() -> None:
 )
 def test_a_missing_reference_is_reported(changed: dict[str, object], title: str) -> None:
     with pytest.raises(TltlError) as error:
-        reference_of((reference(several(2)),), replace(PLAYED, **changed), suite(path=Path("a game.toml")))
+        reference_of((reference(some_episodes(2)),), replace(PLAYED, **changed), suite(path=Path("a game.toml")))
     (diagnostic,) = error.value.diagnostics
     assert (diagnostic.code, diagnostic.title) == ("TLT0903", title)
     assert diagnostic.help == "record it: tltlc baseline 'a game.toml'"
@@ -183,8 +183,8 @@ def test_a_missing_baseline_is_reported(tmp_path: Path) -> None:
     (diagnostic,) = error.value.diagnostics
     assert diagnostic.code == "TLT0903"
     assert diagnostic.help == f"record it: tltlc baseline {tmp_path / 'game.toml'}"
-    write_baseline(tmp_path / "game.baseline.json", (reference(several(1)),))
-    assert baseline_of(suite(path=tmp_path / "game.toml")) == (reference(several(1)),)
+    write_baseline(tmp_path / "game.baseline.json", (reference(some_episodes(1)),))
+    assert baseline_of(suite(path=tmp_path / "game.toml")) == (reference(some_episodes(1)),)
     assert baseline_path(SHIPPED).parent == SHIPPED.parent
 
 
@@ -199,7 +199,7 @@ def test_the_suggested_command_writes_the_missing_baseline(path: Path) -> None:
     named = replace(suite(path=path), baseline=Path("a night.json"))
     words = "" if path == SHIPPED else " game.toml"
     assert baseline_command(named) == f"tltlc baseline{words} --output 'a night.json'"
-    shipped = replace(named, baseline=written_to(path))
+    shipped = replace(named, baseline=default_output(path))
     assert baseline_command(shipped) == f"tltlc baseline{words}"
     assert baseline_command(read_suite(SHIPPED)) == f"tltlc baseline --output {shown(baseline_path(SHIPPED))}"
 
@@ -207,7 +207,7 @@ def test_the_suggested_command_writes_the_missing_baseline(path: Path) -> None:
 @pytest.mark.parametrize("indices", [[], [1], [0, 2], [0, 0], [1, 0]])
 def test_missing_or_unordered_episodes_are_rejected(tmp_path: Path, indices: list[int]) -> None:
     path = tmp_path / "game.baseline.json"
-    write_baseline(path, (reference(several(1)), reference([made(index) for index in indices])))
+    write_baseline(path, (reference(some_episodes(1)), reference([an_episode(index) for index in indices])))
     with pytest.raises(TltlError) as error:
         read_baseline(path)
     (diagnostic,) = error.value.diagnostics

@@ -15,7 +15,11 @@ from tests.runtime.regression.handmade import changed
 from tests.runtime.regression.recorded_game import _game, _recorded  # noqa: F401
 from tltl_runtime.regression.suite.suite import read_suite
 from tltl_runtime.regression.verdict.baseline import baseline_of, read_baseline
-from tltl_runtime.regression.verdict.baseline_run import record_baseline, verdict_as_it_is, write_recorded
+from tltl_runtime.regression.verdict.baseline_run import (
+    record_and_write_baseline,
+    record_baseline,
+    verdict_if_unchanged,
+)
 from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import TltlError
 
@@ -59,7 +63,7 @@ def test_a_case_that_cannot_be_played_is_reported_before_anything_is_played(game
     suite, played = read_suite(Path("game.toml")), Played()
     Path("soon.safetensors").write_bytes(b"no policy")
     with pytest.raises(TltlError, match="case `hopeless`: "):
-        list(write_recorded(suite, Path("new.json"), 1, played))
+        list(record_and_write_baseline(suite, Path("new.json"), 1, played))
     assert played.counts == {} and not list(Path().glob("new.json*"))
 
 
@@ -67,28 +71,29 @@ def test_the_verdict_of_a_case_if_nothing_changes(game: Path) -> None:
     suite = read_suite(Path("game.toml"))
     easy, _, hopeless = suite.cases
     good, bad = baseline_of(suite)
-    assert verdict_as_it_is(suite, easy, good) == "pass"
-    assert verdict_as_it_is(suite, hopeless, bad) == "fail"
+    assert verdict_if_unchanged(suite, easy, good) == "pass"
+    assert verdict_if_unchanged(suite, hopeless, bad) == "fail"
     sometimes_failing = replace(
-        good, accounts=tuple(changed(account, success=account.summary.index % 10 > 0) for account in good.accounts)
+        good,
+        accounts=tuple(changed(explained, success=explained.summary.index % 10 > 0) for explained in good.accounts),
     )
-    assert verdict_as_it_is(suite, easy, sometimes_failing) == "review", "nine of ten are too few to be certain"
-    assert verdict_as_it_is(suite, replace(easy, episodes=25), good) == "review", "so are 25 episodes"
+    assert verdict_if_unchanged(suite, easy, sometimes_failing) == "review", "nine of ten are too few to be certain"
+    assert verdict_if_unchanged(suite, replace(easy, episodes=25), good) == "review", "so are 25 episodes"
 
 
 def test_a_stopped_baseline_resumes(game: Path) -> None:
     suite, path = read_suite(Path("game.toml")), Path("new.json")
-    with closing(write_recorded(suite, path, 1, Played())) as stopped:
+    with closing(record_and_write_baseline(suite, path, 1, Played())) as stopped:
         first = next(stopped)
     assert ([case.name for case in first.cases], len(first.reference.accounts)) == (["room:v0", "room:v1"], 50)
     assert not path.exists()
     played = Played()
-    references = [recorded.reference for recorded in write_recorded(suite, path, 1, played)]
+    references = [recorded.reference for recorded in record_and_write_baseline(suite, path, 1, played)]
     assert played.counts == {"hopeless": 50}
     assert tuple(references) == read_baseline(path) == baseline_of(suite)
     assert sorted(place.name for place in Path().glob("new.json*")) == ["new.json"]
     # A complete baseline is recorded from the start again, since the levels may have changed.
-    list(write_recorded(suite, path, 1, again := Played()))
+    list(record_and_write_baseline(suite, path, 1, again := Played()))
     assert again.counts == {"room:v0": 50, "hopeless": 50}
 
 
@@ -98,7 +103,7 @@ def test_a_baseline_is_written_into_a_pipe(game: Path) -> None:
     with ThreadPoolExecutor(1) as readers, os.fdopen(read_end, encoding="utf-8") as pipe:
         text = readers.submit(pipe.read)
         try:
-            list(write_recorded(read_suite(Path("game.toml")), Path(f"/dev/fd/{write_end}"), 1, Played()))
+            list(record_and_write_baseline(read_suite(Path("game.toml")), Path(f"/dev/fd/{write_end}"), 1, Played()))
         finally:
             os.close(write_end)
         assert text.result() == Path("game.baseline.json").read_text(encoding="utf-8")
@@ -107,7 +112,7 @@ def test_a_baseline_is_written_into_a_pipe(game: Path) -> None:
 def test_the_partial_file_lies_beside_the_target_of_a_link(game: Path) -> None:
     Path("kept").mkdir()
     Path("new.json").symlink_to("kept/new.json")
-    with closing(write_recorded(read_suite(Path("game.toml")), Path("new.json"), 1, Played())) as stopped:
+    with closing(record_and_write_baseline(read_suite(Path("game.toml")), Path("new.json"), 1, Played())) as stopped:
         next(stopped)
     assert [path.name for path in Path("kept").iterdir()] == ["new.json.partial"]
     assert not Path("new.json.partial").exists()
@@ -115,20 +120,20 @@ def test_the_partial_file_lies_beside_the_target_of_a_link(game: Path) -> None:
 
 def test_a_partial_baseline_of_other_code_is_not_used(game: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     suite, path = read_suite(Path("game.toml")), Path("new.json")
-    with closing(write_recorded(suite, path, 1, Played())) as stopped:
+    with closing(record_and_write_baseline(suite, path, 1, Played())) as stopped:
         next(stopped)
     monkeypatch.setattr("tltl_runtime.regression.suite.result_cache.sources_hash", lambda: "0" * 64)
-    list(write_recorded(suite, path, 1, played := Played()))
+    list(record_and_write_baseline(suite, path, 1, played := Played()))
     assert played.counts == {"room:v0": 50, "hopeless": 50}
 
 
 def test_a_fresh_recording_resumes_only_its_own_partial_file(game: Path) -> None:
     suite, path = read_suite(Path("game.toml")), Path("new.json")
-    with closing(write_recorded(suite, path, 1, Played())) as stopped:
+    with closing(record_and_write_baseline(suite, path, 1, Played())) as stopped:
         next(stopped)
     for first in (True, False):
         played = Played()
-        with closing(write_recorded(suite, path, 1, played, fresh=True)) as stopped:
+        with closing(record_and_write_baseline(suite, path, 1, played, fresh=True)) as stopped:
             next(stopped)
         assert bool(played.counts) == first
 
@@ -136,10 +141,10 @@ def test_a_fresh_recording_resumes_only_its_own_partial_file(game: Path) -> None
 def test_an_older_baseline_replaces_playing_where_nothing_has_changed(game: Path) -> None:
     suite, path, played = read_suite(Path("game.toml")), Path("new.json"), Played()
     older = baseline_of(suite)
-    assert tuple(recorded.reference for recorded in write_recorded(suite, path, 1, played, older)) == older
+    assert tuple(recorded.reference for recorded in record_and_write_baseline(suite, path, 1, played, older)) == older
     assert played.counts == {} and read_baseline(path) == older
-    with closing(write_recorded(suite, path, 1, played, older)) as stopped:
+    with closing(record_and_write_baseline(suite, path, 1, played, older)) as stopped:
         next(stopped)
     # References taken from the older baseline are not in the partial file.
-    list(write_recorded(suite, path, 1, played))
+    list(record_and_write_baseline(suite, path, 1, played))
     assert played.counts == {"room:v0": 50, "hopeless": 50}

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from tests import pipes
-from tltl_runtime.regression.suite.result_cache import inputs_hash, kept_text, read_kept
+from tltl_runtime.regression.suite.result_cache import cache_text, inputs_hash, read_cache
 from tltl_runtime.regression.table1.table_cells import EpisodeResult
 
 EPISODES = (EpisodeResult(True, 1.0, 0.5), EpisodeResult(False, 0.25, -0.75))
@@ -16,15 +16,15 @@ KIND = tuple[EpisodeResult, ...]
 
 def test_a_cached_result_is_used_while_its_inputs_are_unchanged(tmp_path: Path) -> None:
     path, inputs = tmp_path / "kept.json", inputs_hash(["level", 3])
-    path.write_text(kept_text(inputs, EPISODES), encoding="utf-8")
-    assert read_kept(KIND, path, inputs) == EPISODES
-    assert read_kept(KIND, path, inputs_hash(["level", 4])) is None
+    path.write_text(cache_text(inputs, EPISODES), encoding="utf-8")
+    assert read_cache(KIND, path, inputs) == EPISODES
+    assert read_cache(KIND, path, inputs_hash(["level", 4])) is None
 
 
 def test_a_pipe_is_not_read_as_a_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     pipes.put_beside(tmp_path / "kept.json")
     pipes.forbid(monkeypatch)
-    assert read_kept(KIND, tmp_path / "kept.json", inputs_hash([1])) is None
+    assert read_cache(KIND, tmp_path / "kept.json", inputs_hash([1])) is None
 
 
 def test_a_change_of_the_code_changes_the_hash(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -54,4 +54,4 @@ def test_an_invalid_cache_file_is_ignored(tmp_path: Path, text: str | None) -> N
     path = tmp_path / "kept.json"
     if text is not None:
         path.write_bytes(text.encode("latin-1"))
-    assert read_kept(KIND, path, "a") is None
+    assert read_cache(KIND, path, "a") is None

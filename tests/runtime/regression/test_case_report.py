@@ -5,13 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 
 from tests.runtime.regression.game import Played, edit
-from tests.runtime.regression.handmade import several
+from tests.runtime.regression.handmade import some_episodes
 from tests.runtime.regression.recorded_game import _game, _recorded  # noqa: F401
 from tltl_runtime.regression.explain.account import summaries_of
 from tltl_runtime.regression.report.case_report import report_on
 from tltl_runtime.regression.suite.suite import read_suite
 from tltl_runtime.regression.verdict.baseline import baseline_of
-from tltl_runtime.regression.verdict.play import JudgedCase, Recorded, ready
+from tltl_runtime.regression.verdict.play import CaseEpisode, JudgedCase, prepare_case
 from tltl_runtime.regression.verdict.suite_run import regress
 from tltl_runtime.regression.verdict.verdict import judge
 from tltlc.core.record import replace
@@ -27,15 +27,15 @@ def test_the_report_lists_the_changed_keys_of_a_file(game: Path) -> None:
 
 def test_the_headline_is_no_failure_that_is_as_frequent_as_before(game: Path) -> None:
     suite = read_suite(Path("game.toml"))
-    ready_case, reference = ready(suite.cases[0], suite.seed), baseline_of(suite)[0]
-    now = several(47, 3)
+    ready_case, reference = prepare_case(suite.cases[0], suite.seed), baseline_of(suite)[0]
+    now = some_episodes(47, 3)
 
     def headline(before: int) -> str:
-        compared = replace(reference, accounts=tuple(several(before, 50 - before)))
+        compared = replace(reference, accounts=tuple(some_episodes(before, 50 - before)))
         judgement = judge(summaries_of(now), summaries_of(compared.accounts), 50, ready_case.case.thresholds, 0.05)
         assert judgement is not None and judgement.verdict == "review"
         return report_on(
-            JudgedCase(ready_case, compared, judgement, tuple(Recorded(account, b"") for account in now))
+            JudgedCase(ready_case, compared, judgement, tuple(CaseEpisode(explained, b"") for explained in now))
         ).headline
 
     assert headline(47).startswith("met in 47 of 50 episodes (94%), before in 47 of 50 (94%): ")

@@ -184,7 +184,7 @@ def test_a_name_may_have_dots(suite: Suite) -> None:
     assert concerned(suite, "assets/crates.v2") == concerned(suite, "assets/crates.v2.toml") == BOTH
 
 
-def test_several_names_and_unknown_names(suite: Suite) -> None:
+def test_several_names_select_all_cases_and_unknown_names_are_listed(suite: Suite) -> None:
     selection = select(suite, ["navigation.toml", "README.md", "src/game.py", "vault", "README.md"])
     assert [suite.cases.index(case) for case in selection.cases] == [0, 1, 2]
     assert [case.name for case in selection.left_out] == ["branching:v0+guard_alert+wide"]

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 import pytest
 
-from tests.runtime.regression.handmade import ROOM, changed, made
-from tltl_runtime.regression.explain.account import Account, NearestMiss
+from tests.runtime.regression.handmade import ROOM, an_episode, changed
+from tltl_runtime.regression.explain.account import ExplainedEpisode, NearestMiss
 from tltl_runtime.regression.explain.explain import findings
 from tltl_runtime.stealth.level import Level, Point
 from tltl_runtime.stealth.levels.file import load_level
@@ -46,11 +46,13 @@ def states_after(fspa: Fspa, stages: int) -> list[int]:
     return [next(state.id for state in fspa.states if state.distance == distance) for distance in distances]
 
 
-def successes(fspa: Fspa, count: int = 25) -> list[Account]:
-    return [made(index, states=states_after(fspa, 3)) for index in range(count)]
+def successes(fspa: Fspa, count: int = 25) -> list[ExplainedEpisode]:
+    return [an_episode(index, states=states_after(fspa, 3)) for index in range(count)]
 
 
-def sentences(level: Level, fspa: Fspa, now: Sequence[Account], before: Sequence[Account] = ()) -> list[str]:
+def sentences(
+    level: Level, fspa: Fspa, now: Sequence[ExplainedEpisode], before: Sequence[ExplainedEpisode] = ()
+) -> list[str]:
     return [finding.text for finding in findings(level, fspa, now, before or successes(fspa))]
 
 
@@ -64,7 +66,7 @@ def test_equal_episodes_are_as_before(level: Level, fspa: Fspa) -> None:
 def test_one_failure_in_twenty_is_not_as_before(level: Level, fspa: Fspa, fewer: int, said: str) -> None:
     now = successes(fspa, 40)
     for index in range(fewer):
-        now[index] = made(index, False, states=states_after(fspa, 2))
+        now[index] = an_episode(index, False, states=states_after(fspa, 2))
     assert said in sentences(level, fspa, now, successes(fspa, 40))[0]
 
 
@@ -73,7 +75,7 @@ def test_the_first_changed_stage_and_the_ends_in_it_are_described(level: Level, 
     died = {"cause": "killed", "by": ("guard",), "seen_by": ("guard",), "place": NORTH, "nearest": near}
     now = successes(fspa)
     for index in range(14):
-        now[index] = made(index, False, states=states_after(fspa, 2), **died)  # type: ignore[arg-type]
+        now[index] = an_episode(index, False, states=states_after(fspa, 2), **died)  # type: ignore[arg-type]
     # The episode with the best robustness was farther from its target.
     now[3] = replace(now[3], nearest=replace(near, robustness=-0.1, distance=6.0))
     stage, end = findings(level, fspa, now, successes(fspa))
@@ -98,11 +100,11 @@ def test_a_share_is_added_for_many_episodes(level: Level, fspa: Fspa) -> None:
 def test_ends_are_grouped_by_kind_and_place_most_frequent_first(level: Level, fspa: Fspa) -> None:
     now = successes(fspa)
     for index in range(5):
-        now[index] = made(
+        now[index] = an_episode(
             index, False, states=states_after(fspa, 0), cause="violated", by=("seen",), seen_by=("guard",)
         )
     for index in range(5, 12):
-        now[index] = made(index, False, states=states_after(fspa, 1), place=(8.5, 8.0, 0.0))
+        now[index] = an_episode(index, False, states=states_after(fspa, 1), place=(8.5, 8.0, 0.0))
     texts = sentences(level, fspa, now)
     assert [text.partition("; in state")[0] for text in texts[1:]] == [
         "runs out of time near `exit` in 7 of 25 episodes; before: in 0 of 25 episodes",
@@ -110,12 +112,12 @@ def test_ends_are_grouped_by_kind_and_place_most_frequent_first(level: Level, fs
     ]
 
 
-def deaths(fspa: Fspa, count: int, **changed: object) -> list[Account]:
+def deaths(fspa: Fspa, count: int, **changed: object) -> list[ExplainedEpisode]:
     died = [
-        made(index, False, states=states_after(fspa, 2), cause="killed", by=("guard",), place=NORTH)
+        an_episode(index, False, states=states_after(fspa, 2), cause="killed", by=("guard",), place=NORTH)
         for index in range(count)
     ]
-    return [*(replace(account, **changed) for account in died), *successes(fspa)[count:]]
+    return [*(replace(explained, **changed) for explained in died), *successes(fspa)[count:]]
 
 
 @pytest.mark.parametrize(
@@ -129,7 +131,7 @@ def deaths(fspa: Fspa, count: int, **changed: object) -> list[Account]:
 )
 def test_an_enemy_that_saw_the_player_in_most_episodes_is_named(level: Level, fspa: Fspa, saw: int, words: str) -> None:
     now = deaths(fspa, 14, seen_by=("guard",))
-    now[:saw] = [replace(account, seen_by=("guard", "camera")) for account in now[:saw]]
+    now[:saw] = [replace(explained, seen_by=("guard", "camera")) for explained in now[:saw]]
     assert sentences(level, fspa, now)[1].startswith(f"dies in the north hall by `guard`{words} in 14 of 25 episodes")
 
 
@@ -140,7 +142,7 @@ def test_a_death_names_the_broken_atom(level: Level, fspa: Fspa) -> None:
 
 
 def test_ends_in_two_stages_have_separate_sentences(level: Level, fspa: Fspa) -> None:
-    now = [made(index, False, states=states_after(fspa, 1 if index < 14 else 2)) for index in range(25)]
+    now = [an_episode(index, False, states=states_after(fspa, 1 if index < 14 else 2)) for index in range(25)]
     ends = [finding for finding in findings(level, fspa, now, successes(fspa)) if "runs out of time" in finding.text]
     prefix = "runs out of time in the middle before it reaches"
     assert [(finding.text.partition(" of 25")[0], len(finding.episodes)) for finding in ends] == [
@@ -149,15 +151,17 @@ def test_ends_in_two_stages_have_separate_sentences(level: Level, fspa: Fspa) ->
     ]
 
 
-def timed_out(fspa: Fspa, index: int, stage: int, place: Point = MIDDLE) -> Account:
-    return made(index, False, states=states_after(fspa, stage), place=place)
+def timed_out(fspa: Fspa, index: int, stage: int, place: Point = MIDDLE) -> ExplainedEpisode:
+    return an_episode(index, False, states=states_after(fspa, stage), place=place)
 
 
-def died(fspa: Fspa, index: int, stage: int, place: Point = MIDDLE) -> Account:
-    return made(index, False, states=states_after(fspa, stage), place=place, cause="killed", by=("guard",))
+def died(fspa: Fspa, index: int, stage: int, place: Point = MIDDLE) -> ExplainedEpisode:
+    return an_episode(index, False, states=states_after(fspa, stage), place=place, cause="killed", by=("guard",))
 
 
-def last_sentence(level: Level, fspa: Fspa, now: Sequence[Account], before: Sequence[Account] = ()) -> str:
+def last_sentence(
+    level: Level, fspa: Fspa, now: Sequence[ExplainedEpisode], before: Sequence[ExplainedEpisode] = ()
+) -> str:
     return sentences(level, fspa, now, before or successes(fspa, 40))[-1]
 
 
@@ -213,7 +217,7 @@ def test_rare_causes_share_one_sentence(level: Level, fspa: Fspa) -> None:
 
 
 def test_ends_show_the_counts_of_the_baseline(level: Level, fspa: Fspa) -> None:
-    now = [made(index, index >= 10, states=states_after(fspa, 3 if index >= 10 else 2)) for index in range(25)]
+    now = [an_episode(index, index >= 10, states=states_after(fspa, 3 if index >= 10 else 2)) for index in range(25)]
     texts = sentences(level, fspa, now, now)
     assert texts[0] == "reaches `s1`, `s2` as before"
     assert texts[1].startswith("runs out of time in the middle in 10 of 25 episodes; before: in 10 of 25 episodes; ")
@@ -222,7 +226,8 @@ def test_ends_show_the_counts_of_the_baseline(level: Level, fspa: Fspa) -> None:
 def test_the_state_of_failure_is_described_with_what_remained(level: Level, fspa: Fspa) -> None:
     first, other = states_after(fspa, 1)
     now = [
-        made(index, False, states=states_after(fspa, 0), unmet=first if index < 14 else other) for index in range(25)
+        an_episode(index, False, states=states_after(fspa, 0), unmet=first if index < 14 else other)
+        for index in range(25)
     ]
     # Each stage has its own sentence with its own state.
     ends = [text for text in sentences(level, fspa, now) if "where this remained" in text]
@@ -251,8 +256,8 @@ def after(fspa: Fspa, *reached: str) -> list[int]:
 def test_stages_in_any_order_are_described_by_what_was_reached(level: Level) -> None:
     (fspa,) = compile_text(ANY_ORDER)
     ways = [("s1", "s2", "exit"), ("s1", "s2")]
-    before = [made(index, states=after(fspa, *ways[0])) for index in range(25)]
-    now = [made(index, index >= 15, states=after(fspa, *ways[index < 15])) for index in range(25)]
+    before = [an_episode(index, states=after(fspa, *ways[0])) for index in range(25)]
+    now = [an_episode(index, index >= 15, states=after(fspa, *ways[index < 15])) for index in range(25)]
     stage = sentences(level, fspa, now, before)[0]
     assert stage.endswith("as before, then reaches `exit` in 10 of 25 episodes; before: in 25 of 25 episodes")
 
@@ -260,9 +265,10 @@ def test_stages_in_any_order_are_described_by_what_was_reached(level: Level) -> 
 def test_stages_that_differ_between_episodes_are_described_by_distance(level: Level) -> None:
     (fspa,) = compile_text(ANY_ORDER)
     ways = [("s1", "s2", "exit"), ("exit", "s1", "s2")]
-    before = [made(index, states=after(fspa, *ways[index % 2])) for index in range(25)]
+    before = [an_episode(index, states=after(fspa, *ways[index % 2])) for index in range(25)]
     now = [
-        made(index, index >= 15, states=after(fspa, *ways[index % 2][: 2 if index < 15 else 3])) for index in range(25)
+        an_episode(index, index >= 15, states=after(fspa, *ways[index % 2][: 2 if index < 15 else 3]))
+        for index in range(25)
     ]
     stage = sentences(level, fspa, now, before)[0]
     assert stage.endswith(
@@ -276,20 +282,21 @@ def test_a_limit_of_less_than_half_is_called_most_often(level: Level, fspa: Fspa
         NearestMiss("alive", -0.5, MIDDLE),
         *(NearestMiss(f"near({name})", -0.4, MIDDLE, name, 2.5) for name in ("s1", "s2")),
     ]
-    now = [made(index, False, states=states_after(fspa, 0), nearest=near[index % 3]) for index in range(25)]
+    now = [an_episode(index, False, states=states_after(fspa, 0), nearest=near[index % 3]) for index in range(25)]
     assert "; most often the limit is `alive`, -0.50 at best; in state 0, " in sentences(level, fspa, now)[1]
 
 
 def test_a_limit_that_is_no_distance_names_the_atom(level: Level, fspa: Fspa) -> None:
     near = [NearestMiss("alive", value, MIDDLE) for value in (-0.75, -0.25, -0.5)]
-    now = [made(index, False, states=states_after(fspa, 0), nearest=near[index % 3]) for index in range(25)]
+    now = [an_episode(index, False, states=states_after(fspa, 0), nearest=near[index % 3]) for index in range(25)]
     assert sentences(level, fspa, now)[1].partition("; in state")[0].endswith("; the limit is `alive`, -0.25 at best")
 
 
 def test_the_limit_of_most_episodes_is_named(level: Level, fspa: Fspa) -> None:
     best, most = NearestMiss("alive", 0.0, MIDDLE), NearestMiss("near(s1)", -0.4, MIDDLE, "s1", 2.5)
     now = [
-        made(index, False, states=states_after(fspa, 0), nearest=best if index == 7 else most) for index in range(25)
+        an_episode(index, False, states=states_after(fspa, 0), nearest=best if index == 7 else most)
+        for index in range(25)
     ]
     assert (
         "; closest approach to `s1`: 2.5 m (`near(s1)` is the limit, below 1.0 m would do); "
@@ -307,7 +314,7 @@ def test_the_limit_of_most_episodes_is_named(level: Level, fspa: Fspa) -> None:
 )
 def test_near_misses_have_enough_decimals(level: Level, fspa: Fspa, came: float, said: str) -> None:
     near = NearestMiss("near(s1)", -0.01, MIDDLE, "s1", came)
-    now = [made(index, False, states=states_after(fspa, 0), nearest=near) for index in range(25)]
+    now = [an_episode(index, False, states=states_after(fspa, 0), nearest=near) for index in range(25)]
     assert f"; closest approach to `s1`: {said}" in sentences(level, fspa, now)[1]
 
 
@@ -316,7 +323,7 @@ def test_a_distance_that_depends_on_a_param_has_no_threshold(level: Level) -> No
         SPEC.replace("near(s1)", "near(s1, close=arm)").replace("spec", "param arm: length = 2 m\nspec")
     )
     near = NearestMiss("near(s1, close=arm)", -0.4, MIDDLE, "s1", 2.5)
-    now = [made(index, False, states=states_after(fspa, 0), nearest=near) for index in range(25)]
+    now = [an_episode(index, False, states=states_after(fspa, 0), nearest=near) for index in range(25)]
     assert (
         "; closest approach to `s1`: 2.5 m (`near(s1, close=arm)` is the limit); "
         in sentences(level, fspa, now, successes(fspa))[1]
@@ -327,31 +334,34 @@ def test_episodes_at_the_target_when_the_spec_broke_are_counted(level: Level, fs
     not_yet = NearestMiss("near(s1)", -0.4, MIDDLE, "s1", 2.5)
     account_fields = {"cause": "killed", "broke": ("alive",), "nearest": not_yet}
     now = [
-        made(index, False, states=states_after(fspa, 0), arrived=index < 14, **account_fields) for index in range(25)
+        an_episode(index, False, states=states_after(fspa, 0), arrived=index < 14, **account_fields)
+        for index in range(25)
     ]  # type: ignore[arg-type]
     end = sentences(level, fspa, now)[1]
     assert "; 14 of them were at `s1` when it broke; in state 0, where this remained: " in end
-    few = [replace(account, arrived=account.summary.index < 3) for account in now]
+    few = [replace(explained, arrived=explained.summary.index < 3) for explained in now]
     approach = "closest approach of the others to `s1`: 2.5 m (`near(s1)` is the limit, below 1.0 m would do); "
     assert f"; 3 of them were at `s1` when it broke; {approach}" in sentences(level, fspa, few)[1]
 
 
 def test_an_atom_that_must_not_hold_is_described_as_such(level: Level, fspa: Fspa) -> None:
     near = NearestMiss("visible", -1.0, MIDDLE, wanted=False)
-    now = [made(index, False, states=states_after(fspa, 0), nearest=near) for index in range(25)]
+    now = [an_episode(index, False, states=states_after(fspa, 0), nearest=near) for index in range(25)]
     assert "; the limit is that `visible` holds; " in sentences(level, fspa, now)[1]
-    with_open = [replace(account, nearest=NearestMiss("open", -1.0, MIDDLE)) for account in now]
+    with_open = [replace(explained, nearest=NearestMiss("open", -1.0, MIDDLE)) for explained in now]
     assert "; the limit is `open`; " in sentences(level, fspa, with_open)[1]
 
 
 def test_the_order_of_killers_does_not_count(level: Level, fspa: Fspa) -> None:
     now = deaths(fspa, 14)
-    now[:14] = [replace(account, by=("b", "a") if account.summary.index % 2 else ("a", "b")) for account in now[:14]]
+    now[:14] = [
+        replace(explained, by=("b", "a") if explained.summary.index % 2 else ("a", "b")) for explained in now[:14]
+    ]
     assert sentences(level, fspa, now)[1].startswith("dies in the north hall by `a` and `b` in 14 of 25")
 
 
 def test_an_obstacle_is_named(level: Level, fspa: Fspa) -> None:
-    now = [made(index, False, states=states_after(fspa, 0), place=(9.5, 5.0, 0.0)) for index in range(25)]
+    now = [an_episode(index, False, states=states_after(fspa, 0), place=(9.5, 5.0, 0.0)) for index in range(25)]
     assert "runs out of time in the east, at `outer_east`, in 25 of 25" in sentences(level, fspa, now)[1]
 
 
@@ -364,13 +374,15 @@ def test_an_obstacle_is_named(level: Level, fspa: Fspa) -> None:
     ],
 )
 def test_longer_and_shorter_successes_are_described(level: Level, fspa: Fspa, steps: int, text: str | None) -> None:
-    now = [changed(account, steps=steps) for account in successes(fspa)]
+    now = [changed(explained, steps=steps) for explained in successes(fspa)]
     assert sentences(level, fspa, now)[1:] == ([text] if text else [])
 
 
 def test_a_new_route_of_successes_is_described(level: Level, fspa: Fspa) -> None:
     through = ((2.0, 2.0, 0, 0.0), (5.0, 9.0, 1, 2.0), (8.0, 8.0, 2, 4.0))
-    now = [replace(account, way=through) if account.summary.index < 20 else account for account in successes(fspa)]
+    now = [
+        replace(explained, way=through) if explained.summary.index < 20 else explained for explained in successes(fspa)
+    ]
     text = "80% of the successful episodes pass through the north hall; before: 0%"
     assert sentences(level, fspa, now)[1:] == [text]
     assert sentences(level, fspa, successes(fspa), now)[1:] == [
@@ -379,8 +391,8 @@ def test_a_new_route_of_successes_is_described(level: Level, fspa: Fspa) -> None
 
 
 def test_findings_refer_to_existing_episodes(level: Level, fspa: Fspa) -> None:
-    now = [made(index, index % 3 > 0, states=states_after(fspa, index % 4)) for index in range(30)]
-    indices = {account.summary.index for account in now}
+    now = [an_episode(index, index % 3 > 0, states=states_after(fspa, index % 4)) for index in range(30)]
+    indices = {explained.summary.index for explained in now}
     for finding in findings(level, fspa, now, successes(fspa)):
         assert set(finding.episodes) <= indices
         assert list(finding.episodes) == sorted(set(finding.episodes))

@@ -10,7 +10,7 @@ import pytest
 
 from tests.runtime.regression.handmade import PLAYED, ROOM, reference
 from tltl_runtime.regression.report.case_report import CaseReport
-from tltl_runtime.regression.report.github import findings_as_commands
+from tltl_runtime.regression.report.github import workflow_commands
 from tltl_runtime.regression.suite.suite import Suite, read_suite
 from tltlc.core.record import replace
 
@@ -30,7 +30,7 @@ def _suite(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Suite:
 
 
 def annotated(suite: Suite, report: CaseReport, root: str = "..") -> tuple[str, ...]:
-    (line,) = findings_as_commands(suite, [report], Path(root))
+    (line,) = workflow_commands(suite, [report], Path(root))
     match = COMMAND.fullmatch(line)
     assert match, line
     return tuple(map(unquote, match.groups()))
@@ -44,10 +44,10 @@ def test_each_fail_and_review_is_a_command(suite: Suite) -> None:
         "the room: 100%, v0: fail",
         "dies: 100% of\n  them\nmore",
     )
-    (line,) = findings_as_commands(suite, [report], Path(".."))
+    (line,) = workflow_commands(suite, [report], Path(".."))
     assert "title=the room%3A 100%25%2C v0%3A fail::dies: 100%25 of%0A  them%0Amore" in line
     assert annotated(suite, replace(report, verdict="review"))[0] == "warning"
-    assert list(findings_as_commands(suite, [replace(report, verdict="pass")], Path())) == []
+    assert list(workflow_commands(suite, [replace(report, verdict="pass")], Path())) == []
 
 
 def test_a_command_names_the_changed_file(suite: Suite) -> None:
@@ -78,5 +78,5 @@ def test_paths_are_relative_to_the_checkout(suite: Suite) -> None:
 
 def test_a_level_that_does_not_load_has_a_line_number(suite: Suite) -> None:
     report = CaseReport(NAME, "room", "v0", "fail", ("why",), fault_at=("levels/assets/guard.toml", 6))
-    (line,) = findings_as_commands(suite, [report], Path(".."))
+    (line,) = workflow_commands(suite, [report], Path(".."))
     assert line.startswith("::error file=game/levels/assets/guard.toml,line=6,title=")

@@ -12,7 +12,7 @@ from tests.runtime.regression.handmade import case, suite, summaries
 from tltl_runtime.evaluation.figures import figures_of
 from tltl_runtime.regression.report.case_report import CaseReport
 from tltl_runtime.regression.report.junit import junit
-from tltl_runtime.regression.retrain.retrained import FinishedRetraining, Retrained
+from tltl_runtime.regression.retrain.retrained import FinishedRetraining, RetrainingResult
 from tltl_runtime.regression.suite.suite import Suite
 from tltlc.core.record import replace
 
@@ -106,7 +106,7 @@ def test_figures_are_properties() -> None:
 
 def test_the_outcome_of_a_retraining_is_included() -> None:
     trained = FinishedRetraining("met", 4096, 60.0, 200_000, True, 97)
-    retrained = Retrained(
+    retrained = RetrainingResult(
         "learned", "feasible: <after> …", trained, figures_of(summaries(3, 1)), (0.2, 0.9), None, "p", None
     )
     root = read((replace(BAD, retrained=retrained), GOOD))

@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 from tests.runtime.regression.game import edit
-from tests.runtime.regression.handmade import PLAYED, several
+from tests.runtime.regression.handmade import PLAYED, some_episodes
 from tests.runtime.regression.recorded_game import _game, _recorded  # noqa: F401
-from tltl_runtime.regression.suite.level_texts import designed, level_texts
+from tltl_runtime.regression.suite.level_texts import baseline_level, level_texts
 from tltl_runtime.regression.suite.suite import SHIPPED, read_suite
 from tltl_runtime.regression.verdict.baseline import Reference, baseline_of, read_baseline, text_sha256, write_baseline
 from tltl_runtime.stealth.levels.file import level_names, load_level, variants
@@ -52,7 +52,7 @@ def test_a_baseline_stores_the_texts_that_were_played(game: Path) -> None:
 def test_the_level_is_rebuilt_although_its_files_have_changed(game: Path) -> None:
     (good, _) = baseline_of(read_suite(Path("game.toml")))
     edit("room.toml", "at = [8.0, 8.0, 0.0]", "at = [2.0, 8.0, 0.0]")
-    level = designed(good)
+    level = baseline_level(good)
     assert level is not None and level_hash(level) == good.played.level_hash
     assert level.exits[0].position == (8.0, 8.0, 0.0)
 
@@ -61,7 +61,7 @@ def test_the_shipped_levels_are_rebuilt() -> None:
     references = read_baseline(read_suite(SHIPPED).baseline)
     assert references
     for reference in references:
-        level = designed(reference)
+        level = baseline_level(reference)
         assert level is not None, reference.played.level
         assert level_hash(level) == reference.played.level_hash, reference.played.level
 
@@ -80,19 +80,19 @@ def test_the_shipped_levels_are_rebuilt() -> None:
 )
 def test_invalid_texts_give_no_level(files: tuple[tuple[str, str], ...]) -> None:
     played = replace(PLAYED, files=tuple((name, text_sha256(text)) for name, text in files))
-    assert designed(Reference(played, tuple(several(1)), files)) is None
+    assert baseline_level(Reference(played, tuple(some_episodes(1)), files)) is None
 
 
 def test_missing_texts_give_no_level(game: Path) -> None:
     (good, _) = baseline_of(read_suite(Path("game.toml")))
-    assert designed(replace(good, texts=good.texts[:1])) is None
-    assert designed(replace(good, texts=())) is None
+    assert baseline_level(replace(good, texts=good.texts[:1])) is None
+    assert baseline_level(replace(good, texts=())) is None
 
 
 def test_edited_texts_are_rejected(tmp_path: Path) -> None:
     path, text = tmp_path / "game.baseline.json", "one\ntwo\n"
     played = replace(PLAYED, files=(("room.toml", text_sha256(text)),))
-    references = (Reference(played, tuple(several(1)), (("room.toml", text),)),)
+    references = (Reference(played, tuple(some_episodes(1)), (("room.toml", text),)),)
     write_baseline(path, references)
     assert read_baseline(path) == references
     document = json.loads(path.read_text(encoding="utf-8"))

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tests.runtime.regression.page import samples
-from tltl_runtime.regression.explain.path_points import EVERY, places_along, way_of
+from tltl_runtime.regression.explain.path_points import POSITION_INTERVAL_S, positions_along, simplified_trajectory
 from tltl_runtime.stealth.recordings.episode import Episode
 
 EPISODES = ("navigation", "branching", "cover_and_hide_met", "cover_and_hide_failed")
@@ -21,7 +21,7 @@ def _episode(request: pytest.FixtureRequest) -> Episode:
 
 
 def test_the_path_is_close_to_the_player_at_all_times(episode: Episode) -> None:
-    way = way_of(episode)
+    way = simplified_trajectory(episode)
     times = [time for *_, time in way]
     assert times == sorted(set(times))
     for shot in episode.snapshots:
@@ -30,11 +30,11 @@ def test_the_path_is_close_to_the_player_at_all_times(episode: Episode) -> None:
 
 
 def test_the_path_has_few_points(episode: Episode) -> None:
-    assert len(way_of(episode)) < 0.7 * len(episode.snapshots)
+    assert len(simplified_trajectory(episode)) < 0.7 * len(episode.snapshots)
 
 
 def test_each_point_has_the_state_of_its_time(episode: Episode) -> None:
-    way = way_of(episode)
+    way = simplified_trajectory(episode)
     states_by_time = {
         round(shot.time, 2): int(state) for shot, state in zip(episode.snapshots, episode.states, strict=True)
     }
@@ -44,10 +44,10 @@ def test_each_point_has_the_state_of_its_time(episode: Episode) -> None:
 
 
 def test_the_places_cover_the_whole_episode(episode: Episode) -> None:
-    places = list(places_along(way_of(episode)))
-    assert len(places) == pytest.approx(episode.snapshots[-1].time / EVERY, abs=1)
+    places = list(positions_along(simplified_trajectory(episode)))
+    assert len(places) == pytest.approx(episode.snapshots[-1].time / POSITION_INTERVAL_S, abs=1)
     assert places[0] == pytest.approx(episode.snapshots[0].player.position[:2], abs=0.01)
 
 
 def test_a_player_that_stands_still_stays_in_one_place() -> None:
-    assert list(places_along(((2.0, 3.0, 0, 0.0), (2.0, 3.0, 0, 0.5)))) == [(2.0, 3.0)] * 5
+    assert list(positions_along(((2.0, 3.0, 0, 0.0), (2.0, 3.0, 0, 0.5)))) == [(2.0, 3.0)] * 5

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.runtime.regression.handmade import ROOM
-from tltl_runtime.regression.explain.places import in_the_way, nearest_entity, place_name
+from tltl_runtime.regression.explain.places import blocking_solids, nearest_entity, place_name
 from tltl_runtime.stealth.level import Box, Level, Point
 from tltl_runtime.stealth.levels.file import load_level
 from tltlc.core.record import replace
@@ -64,29 +64,29 @@ def test_the_nearest_entity_is_within_two_and_a_half_metres(level: Level) -> Non
 
 def test_an_obstacle_of_most_players_is_in_the_way(level: Level) -> None:
     at_pillar = [(6.2, 4.8 + row / 10, 0.0) for row in range(5)]
-    assert in_the_way(level, ends(*at_pillar)) == ["pillar"]
-    assert in_the_way(level, ends((4.0, 5.0, 0.0), (4.0, 5.0, 0.0))) == []
+    assert blocking_solids(level, ends(*at_pillar)) == ["pillar"]
+    assert blocking_solids(level, ends((4.0, 5.0, 0.0), (4.0, 5.0, 0.0))) == []
     # Half of the players are elsewhere, so no obstacle stopped most of them.
-    assert in_the_way(level, ends(*at_pillar[:2], (4.0, 5.0, 0.0), (4.0, 5.0, 0.0))) == []
-    assert in_the_way(level, []) == []
+    assert blocking_solids(level, ends(*at_pillar[:2], (4.0, 5.0, 0.0), (4.0, 5.0, 0.0))) == []
+    assert blocking_solids(level, []) == []
 
 
 def test_in_a_corner_all_touched_walls_are_named_most_frequent_first(level: Level) -> None:
     corner, wall = (9.6, 0.4, 0.0), (9.6, 4.0, 0.0)
-    assert in_the_way(level, ends(corner, corner, wall)) == ["outer_east", "outer_south"]
-    assert in_the_way(level, ends(corner, wall, wall)) == ["outer_east"]
+    assert blocking_solids(level, ends(corner, corner, wall)) == ["outer_east", "outer_south"]
+    assert blocking_solids(level, ends(corner, wall, wall)) == ["outer_east"]
 
 
 def test_a_solid_below_the_feet_is_not_in_the_way(level: Level) -> None:
-    assert in_the_way(level, ends((7.0, 5.0, 3.0))) == []
+    assert blocking_solids(level, ends((7.0, 5.0, 3.0))) == []
 
 
 def test_a_gate_is_in_the_way_while_it_is_closed() -> None:
     level = load_level("navigation")
     (gate, *_) = (barrier for barrier in level.barriers if barrier.kind == "solid")
     at_gate = gate.box.low[0] - 0.4, (gate.box.low[1] + gate.box.high[1]) / 2, gate.box.low[2]
-    assert gate.name in in_the_way(level, [(at_gate, (gate.name,))])
-    assert gate.name not in in_the_way(level, [(at_gate, ())])
+    assert gate.name in blocking_solids(level, [(at_gate, (gate.name,))])
+    assert gate.name not in blocking_solids(level, [(at_gate, ())])
 
 
 def test_a_solid_behind_another_one_is_not_in_the_way(level: Level) -> None:
@@ -96,5 +96,5 @@ def test_a_solid_behind_another_one_is_not_in_the_way(level: Level) -> None:
     thin = replace(pillar, box=Box((low[0] - 0.2, low[1], 0.0), pillar.box.high))
     with_both = replace(level, solids=(*(solid for solid in level.solids if solid is not pillar), thin, behind))
     before = (low[0] - 0.5, 5.0, 0.0)
-    assert in_the_way(with_both, ends(before)) == ["pillar"]
-    assert in_the_way(replace(with_both, solids=with_both.solids[-1:]), ends(before)) == ["behind"]
+    assert blocking_solids(with_both, ends(before)) == ["pillar"]
+    assert blocking_solids(replace(with_both, solids=with_both.solids[-1:]), ends(before)) == ["behind"]

@@ -11,13 +11,13 @@ from typing import get_args
 import pytest
 
 from tests.docs.blocks import DOCS, blocks
-from tests.runtime.regression.handmade import ROOM, case, several, suite, summaries
+from tests.runtime.regression.handmade import ROOM, case, some_episodes, suite, summaries
 from tltl_runtime.evaluation.figures import Figures, figures_of
 from tltl_runtime.policies.shipped import shipped_policies
 from tltl_runtime.regression.report.case_report import CaseReport
 from tltl_runtime.regression.report.junit import junit
 from tltl_runtime.regression.report.report_json import FORMAT, VERSION, document
-from tltl_runtime.regression.retrain.retrained import BestFailedEpisode, FinishedRetraining, Outcome, Retrained
+from tltl_runtime.regression.retrain.retrained import BestFailedEpisode, FinishedRetraining, Outcome, RetrainingResult
 from tltl_runtime.regression.suite import suite as suite_module
 from tltl_runtime.regression.suite.suite import LEAST_EPISODES, MOST_EPISODES, Thresholds, read_suite
 from tltl_runtime.regression.verdict import confidence
@@ -76,7 +76,7 @@ def test_the_suites_on_the_page_are_valid(tmp_path: Path) -> None:
 
 
 def test_the_page_lists_exactly_the_fields_of_the_report() -> None:
-    report = CaseReport("a", "a", "v0", "pass", (), figures=figures_of(summaries(2)), accounts=tuple(several(1)))
+    report = CaseReport("a", "a", "v0", "pass", (), figures=figures_of(summaries(2)), accounts=tuple(some_episodes(1)))
     report_document = document(suite(case("a")), [report], complete=True)
     assert set(rows("field")) - {"tltl"} == set(report_document)
     (case_document,) = report_document["cases"]
@@ -84,7 +84,7 @@ def test_the_page_lists_exactly_the_fields_of_the_report() -> None:
     assert (FORMAT, VERSION) == ("tltl-regression", 1)
     assert f"| `{FORMAT}`, {VERSION} |" in PAGE
     retraining_fields = (
-        *Retrained.__match_args__,
+        *RetrainingResult.__match_args__,
         *FinishedRetraining.__match_args__,
         *BestFailedEpisode.__match_args__,
     )
@@ -95,7 +95,9 @@ def test_the_page_lists_exactly_the_fields_of_the_report() -> None:
 
 def test_the_page_lists_the_properties() -> None:
     trained = FinishedRetraining("met", 1, 1.0, 0, True, None)
-    new = Retrained("learned", "", trained, figures_of(summaries(2)), (0.0, 1.0), None, "retrained/a/policy", None)
+    new = RetrainingResult(
+        "learned", "", trained, figures_of(summaries(2)), (0.0, 1.0), None, "retrained/a/policy", None
+    )
     figures = figures_of(summaries(2))
     report = CaseReport("CASE", "a", "v0", "pass", (), figures=figures, baseline=figures, retrained=new)
     names = set(re.findall(r'name="(CASE\.\w+)"', junit(suite(case("CASE")), [report])))
@@ -114,7 +116,7 @@ def test_the_page_has_the_numbers_of_episodes() -> None:
     assert f"in a suite of nine cases, {most} may fail" in text
 
 
-def test_the_page_has_the_bets() -> None:
+def test_the_page_has_the_shares_of_the_bets() -> None:
     *first, last = (f"{share:g}" for share in confidence._SHARES)
     assert f"for c = {', '.join(first)} and {last}," in " ".join(PAGE.split())
     assert f"1/{confidence._POINTS} · Σ" in PAGE

@@ -15,20 +15,20 @@ from tests.runtime.regression.game import NEVER, edit, with_baseline, with_few_e
 from tests.runtime.regression.handmade import changed
 from tltl_runtime.evaluation.evaluate import Pool
 from tltl_runtime.policies.file import read_policy, write_policy
-from tltl_runtime.regression.explain.account import Account
+from tltl_runtime.regression.explain.account import ExplainedEpisode
 from tltl_runtime.regression.retrain.retrain import (
     EPISODE,
     FOLDER,
-    check_places,
-    is_kept,
+    check_policy_folders,
+    configure_retraining,
+    is_stored,
     make_room,
-    retrained,
-    retraining,
+    retraining_result,
 )
 from tltl_runtime.regression.suite.suite import Suite, read_suite
 from tltl_runtime.regression.verdict.baseline import baseline_of
-from tltl_runtime.regression.verdict.play import Ready, Recorded, episodes, ready
-from tltl_runtime.regression.verdict.suite_run import Done, regress
+from tltl_runtime.regression.verdict.play import CaseEpisode, PreparedCase, play_episodes, prepare_case
+from tltl_runtime.regression.verdict.suite_run import FinishedCase, regress
 from tltl_runtime.spec.task import load_task
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.stealth.recordings.file import read_episode
@@ -42,13 +42,13 @@ SHORT = 0.02
 """The limit of a training in minutes; its search and first iteration take longer."""
 
 
-def judged(suite: Suite) -> list[Done]:
+def judged(suite: Suite) -> list[FinishedCase]:
     return list(regress(suite, suite.cases, baseline_of(suite), Path("run"), 1, lambda *_: None))
 
 
-def training_of(suite: Suite, done: Done, minutes: float = SHORT) -> TrainingRun:
-    assert done.ready is not None
-    return retraining(suite, done.ready, Path("run"), minutes, 1)
+def training_of(suite: Suite, done: FinishedCase, minutes: float = SHORT) -> TrainingRun:
+    assert done.prepared is not None
+    return configure_retraining(suite, done.prepared, Path("run"), minutes, 1)
 
 
 def trained(run: TrainingRun, resume: bool = False) -> None:
@@ -73,32 +73,32 @@ def _made(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
 
 
 @pytest.fixture(name="game")
-def _game(made: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Suite:
+def _game(an_episode: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Suite:
     with_few_environments(monkeypatch)
-    shutil.copytree(made, tmp_path / "game")
+    shutil.copytree(an_episode, tmp_path / "game")
     monkeypatch.chdir(tmp_path / "game")
     return read_suite(Path("game.toml"))
 
 
 def test_only_cases_that_do_not_pass_are_retrained(game: Suite) -> None:
     easy, other, hopeless = judged(game)
-    assert [done.to_train for done in (easy, other, hopeless)] == [None, None, hopeless.ready]
-    assert replace(easy, report=replace(easy.report, verdict="review")).to_train
+    assert [done.case_to_train for done in (easy, other, hopeless)] == [None, None, hopeless.prepared]
+    assert replace(easy, report=replace(easy.report, verdict="review")).case_to_train
     # A level that cannot be played cannot be trained on.
-    assert replace(hopeless, ready=None).to_train is None
-    retrained_report = retrained(game, hopeless, training_of(game, hopeless), 1, lambda *_: None)
-    assert replace(hopeless, report=replace(hopeless.report, retrained=retrained_report)).to_train is None
+    assert replace(hopeless, prepared=None).case_to_train is None
+    retrained_report = retraining_result(game, hopeless, training_of(game, hopeless), 1, lambda *_: None)
+    assert replace(hopeless, report=replace(hopeless.report, retrained=retrained_report)).case_to_train is None
 
 
 def test_a_case_with_an_unreachable_goal_is_not_retrained(game: Suite) -> None:
     *_, hopeless = judged(game)
-    assert hopeless.ready and hopeless.useless_training is None
+    assert hopeless.prepared and hopeless.training_obstacle is None
     level = load_level("navigation", "v2")
-    setup = replace(hopeless.ready.setup, fspa=load_task(level.spec).fspa)
-    shut = replace(hopeless, ready=replace(hopeless.ready, level=level, setup=setup))
-    assert shut.useless_training == "nobody can do what `navigation` asks, as was said above"
-    assert shut.to_train is None
-    assert replace(shut, report=replace(shut.report, verdict="pass")).useless_training is None
+    setup = replace(hopeless.prepared.setup, fspa=load_task(level.spec).fspa)
+    shut = replace(hopeless, prepared=replace(hopeless.prepared, level=level, setup=setup))
+    assert shut.training_obstacle == "nobody can do what `navigation` asks, as was said above"
+    assert shut.case_to_train is None
+    assert replace(shut, report=replace(shut.report, verdict="pass")).training_obstacle is None
 
 
 def test_the_training_uses_the_setup_of_its_case(game: Suite) -> None:
@@ -111,43 +111,43 @@ def test_the_training_uses_the_setup_of_its_case(game: Suite) -> None:
     assert (run.settings.stop.minutes, run.settings.rollout.workers) == (SHORT, 1)
 
 
-def test_a_level_without_a_way_is_reported_as_no_way(game: Suite) -> None:
+def test_an_unsolvable_level_is_reported_as_no_way(game: Suite) -> None:
     *_, hopeless = judged(game)
     counts: list[int] = []
 
-    def count_failures(count: int, last: Account) -> None:
+    def count_failures(count: int, last: ExplainedEpisode) -> None:
         counts.append(count)
         assert not last.summary.success
 
-    result = retrained(game, hopeless, training_of(game, hopeless), 1, count_failures)
+    result = retraining_result(game, hopeless, training_of(game, hopeless), 1, count_failures)
     assert (result.outcome, counts) == ("no_way", list(range(1, 26)))
     assert result.trained.shortest is None and result.trained.end == "minutes" and not result.trained.complete
     assert result.best and 0.0 <= result.best.progress < 1.0 and "exit" in result.best.remained
     assert (result.policy, result.episode) == ("run/retrained/hopeless/policy.safetensors".partition("/")[2], None)
     # The evaluation uses fresh seeds, none of the seeds by which the case was judged.
-    assert retrained(game, hopeless, training_of(game, hopeless), 1, count_failures) == result
+    assert retraining_result(game, hopeless, training_of(game, hopeless), 1, count_failures) == result
     assert len(counts) == 25, "it is kept"
 
 
 def test_a_learned_level_is_reported_as_learned(game: Suite) -> None:
     easy, *_ = judged(game)
     run = training_of(game, easy, minutes=10.0)
-    result = retrained(game, easy, run, 1, lambda *_: None)
+    result = retraining_result(game, easy, run, 1, lambda *_: None)
     assert (result.outcome, result.trained.end) == ("learned", "met")
     assert result.trained.shortest == 1 and result.best is None
     assert result.figures.pass_rate == 1.0 and result.rate_interval[0] >= 0.85
     episode = read_episode(run.folder / EPISODE)
-    assert episode.seed not in {account.summary.seed for account in easy.report.accounts}
+    assert episode.seed not in {explained.summary.seed for explained in easy.report.accounts}
     (run.folder / EPISODE).unlink()
-    assert retrained(game, easy, run, 1, lambda *_: None) == result
+    assert retraining_result(game, easy, run, 1, lambda *_: None) == result
     assert (run.folder / EPISODE).is_file(), "what was removed is played again"
 
 
 def test_a_success_of_the_case_itself_shows_that_the_level_is_feasible(game: Suite) -> None:
     *_, hopeless = judged(game)
-    accounts = (changed(hopeless.report.accounts[0], success=True), *hopeless.report.accounts[1:])
-    lucky = replace(hopeless, report=replace(hopeless.report, accounts=accounts))
-    assert retrained(game, lucky, training_of(game, hopeless), 1, lambda *_: None).outcome == "feasible"
+    explained_episodes = (changed(hopeless.report.accounts[0], success=True), *hopeless.report.accounts[1:])
+    lucky = replace(hopeless, report=replace(hopeless.report, accounts=explained_episodes))
+    assert retraining_result(game, lucky, training_of(game, hopeless), 1, lambda *_: None).outcome == "feasible"
 
 
 def test_a_lost_worker_is_reported_with_the_command_that_plays_its_episode(
@@ -156,13 +156,13 @@ def test_a_lost_worker_is_reported_with_the_command_that_plays_its_episode(
     *_, hopeless = judged(game)
     run = training_of(game, hopeless)
 
-    def deadly(ready: Ready, pool: Pool) -> Generator[Recorded]:
-        policy: Any = Deadly(ready.setup.policy, killed)
-        return episodes(replace(ready, setup=replace(ready.setup, policy=policy)), pool)
+    def deadly(prepare_case: PreparedCase, pool: Pool) -> Generator[CaseEpisode]:
+        policy: Any = Deadly(prepare_case.setup.policy, killed)
+        return play_episodes(replace(prepare_case, setup=replace(prepare_case.setup, policy=policy)), pool)
 
-    monkeypatch.setattr("tltl_runtime.regression.retrain.retrain.episodes", deadly)
+    monkeypatch.setattr("tltl_runtime.regression.retrain.retrain.play_episodes", deadly)
     with pytest.raises(TltlError, match="TLT0850") as error:
-        retrained(game, hopeless, run, 2, lambda *_: None)
+        retraining_result(game, hopeless, run, 2, lambda *_: None)
     (diagnostic,) = error.value.diagnostics
     assert f"tltlc evaluate {run.folder} --level room.toml:v0 --seed {game.seed + 1} --first " in (
         diagnostic.help or ""
@@ -172,55 +172,55 @@ def test_a_lost_worker_is_reported_with_the_command_that_plays_its_episode(
 def test_a_training_is_kept_while_its_inputs_are_unchanged(game: Suite) -> None:
     *_, hopeless = judged(game)
     run = training_of(game, hopeless)
-    assert is_kept(run)
-    assert is_kept(replace(run, settings=replace(run.settings, stop=replace(run.settings.stop, minutes=9.0))))
-    assert not is_kept(replace(run, seed=run.seed + 1))
+    assert is_stored(run)
+    assert is_stored(replace(run, settings=replace(run.settings, stop=replace(run.settings.stop, minutes=9.0))))
+    assert not is_stored(replace(run, seed=run.seed + 1))
     write_policy("soon.safetensors", untrained(NEVER, "room.toml", seed=7))
-    assert not is_kept(retraining(game, ready(game.cases[2], game.seed), Path("run"), SHORT, 1))
+    assert not is_stored(configure_retraining(game, prepare_case(game.cases[2], game.seed), Path("run"), SHORT, 1))
     text = Path("room.toml").read_text(encoding="utf-8")
     Path("room.toml").write_text(text.replace("[8.0, 8.0, 0.0]", "[8.5, 8.0, 0.0]"), encoding="utf-8")
-    assert not is_kept(run)
+    assert not is_stored(run)
     Path("room.toml").write_text(text, encoding="utf-8")
-    assert is_kept(run)
+    assert is_stored(run)
     (run.folder / CHECKPOINT).write_bytes(b"torn")
-    assert not is_kept(run)
+    assert not is_stored(run)
     (run.folder / CHECKPOINT).unlink()
-    assert not is_kept(run), "it is over, and nothing can be told of it"
+    assert not is_stored(run), "it is over, and nothing can be told of it"
     (run.folder / RECORD).unlink()
-    assert is_kept(run), "its search was not over"
+    assert is_stored(run), "its search was not over"
 
 
 def test_a_finished_training_without_a_policy_is_not_kept(game: Suite) -> None:
     *_, hopeless = judged(game)
     run = training_of(game, hopeless)
     (run.folder / POLICY).unlink()
-    assert not is_kept(run)
+    assert not is_stored(run)
 
 
 def test_an_error_in_the_level_is_not_blamed_on_the_training(game: Suite) -> None:
     *_, hopeless = judged(game)
     edit("room.toml", "[start]", "[strat]")
     with pytest.raises(TltlError, match="TLT0803: the level `room` lacks `start`"):
-        is_kept(training_of(game, hopeless))
+        is_stored(training_of(game, hopeless))
 
 
 def test_a_policy_in_the_folder_of_a_training_is_rejected(game: Suite) -> None:
-    check_places(game, game.cases, Path("run"))
+    check_policy_folders(game, game.cases, Path("run"))
     misplaced = replace(game.cases[1], policy=Path("run/retrained/hopeless") / POLICY)
     suite = replace(game, cases=(game.cases[0], misplaced, game.cases[2]))
     with pytest.raises(TltlError, match="TLT0942: the policy of the case `room:v1` lies in `run/retrained/hopeless`"):
-        check_places(suite, suite.cases, Path("run"))
-    check_places(suite, suite.cases[:2], Path("run"))
+        check_policy_folders(suite, suite.cases, Path("run"))
+    check_policy_folders(suite, suite.cases[:2], Path("run"))
     assert not (Path("run/retrained") / "room-v1").exists()
 
 
 def test_a_training_resumes_with_more_minutes(game: Suite) -> None:
     *_, hopeless = judged(game)
     run = training_of(game, hopeless)
-    before = retrained(game, hopeless, run, 1, lambda *_: None)
+    before = retraining_result(game, hopeless, run, 1, lambda *_: None)
     longer = training_of(game, hopeless, minutes=before.trained.seconds / 60 + SHORT)
     trained(longer, resume=True)
-    after = retrained(game, hopeless, longer, 1, lambda *_: None)
+    after = retraining_result(game, hopeless, longer, 1, lambda *_: None)
     # The search that the first limit interrupted starts again.
     assert after.trained.searched > before.trained.searched and after.trained.seconds > before.trained.seconds
 
@@ -229,7 +229,7 @@ def test_make_room_keeps_other_files(game: Suite) -> None:
     *_, hopeless = judged(game)
     folder = training_of(game, hopeless).folder
     (folder / "notes.txt").touch()
-    retrained(game, hopeless, training_of(game, hopeless), 1, lambda *_: None)
+    retraining_result(game, hopeless, training_of(game, hopeless), 1, lambda *_: None)
     assert (folder / RUN).exists() and (folder / POLICY).exists()
     (folder / RECORD).unlink()
     assert make_room(game, folder) is None, "it is not over"

@@ -12,7 +12,7 @@ from tltl_runtime.regression.retrain.retrained import (
     BestFailedEpisode,
     FinishedRetraining,
     Outcome,
-    Retrained,
+    RetrainingResult,
     outcome_of,
     sentence,
 )
@@ -44,7 +44,7 @@ def sentence_of(outcome: Outcome, passed: int, failed: int, **changed: Any) -> s
         (0.0, 0, None, "no_way"),
     ],
 )
-def test_the_outcome_depends_on_successes_and_trajectories(
+def test_the_outcome_depends_on_successes_and_demonstrations(
     low: float, met: int, shortest: int | None, outcome: str
 ) -> None:
     assert outcome_of(replace(TRAINED, shortest=shortest), low, Thresholds(), met) == outcome
@@ -81,5 +81,7 @@ def test_the_sentence_for_a_likely_infeasible_level() -> None:
 
 
 def test_a_retraining_survives_json() -> None:
-    retrained = Retrained("no_way", "no", TRAINED, figures_of(summaries(0, 2)), (0.0, 0.5), BEST, "retrained/a/p", None)
-    assert from_json(Retrained, to_json(retrained), "retrained") == retrained
+    retrained = RetrainingResult(
+        "no_way", "no", TRAINED, figures_of(summaries(0, 2)), (0.0, 0.5), BEST, "retrained/a/p", None
+    )
+    assert from_json(RetrainingResult, to_json(retrained), "retrained") == retrained

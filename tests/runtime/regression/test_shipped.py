@@ -9,7 +9,7 @@ import pytest
 from tltl_runtime.regression.report.case_report import CaseReport
 from tltl_runtime.regression.suite.suite import SHIPPED, Case, read_suite
 from tltl_runtime.regression.verdict.baseline import read_baseline, reference_of
-from tltl_runtime.regression.verdict.play import episodes, ready
+from tltl_runtime.regression.verdict.play import play_episodes, prepare_case
 from tltl_runtime.regression.verdict.suite_run import regress
 from tltl_runtime.stealth.levels.file import level_names, variants
 from tltl_runtime.support.record_json import to_json
@@ -26,22 +26,22 @@ def test_the_suite_has_all_levels_in_all_variants() -> None:
 
 @pytest.mark.parametrize("case", SUITE.cases, ids=lambda case: case.name)
 def test_the_baseline_matches_the_policy_and_the_spec(case: Case) -> None:
-    played = ready(case, SUITE.seed, case.reference).played
+    played = prepare_case(case, SUITE.seed, case.reference).played
     reference = reference_of(read_baseline(SUITE.baseline), played, SUITE)
     assert reference.played.level_hash == played.level_hash, "record it again"
     assert len(reference.accounts) == case.episodes
-    passed = sum(account.summary.success for account in reference.accounts)
+    passed = sum(explained.summary.success for explained in reference.accounts)
     assert passed / case.episodes >= 0.98
 
 
 def test_an_episode_of_the_baseline_can_be_reproduced() -> None:
     case = replace(SUITE.cases[0], episodes=1)
-    ready_case = ready(case, SUITE.seed)
-    (recorded,) = episodes(ready_case, 1)
+    ready_case = prepare_case(case, SUITE.seed)
+    (recorded,) = play_episodes(ready_case, 1)
     reference = reference_of(read_baseline(SUITE.baseline), ready_case.played, SUITE)
     if reference.played.versions != ready_case.played.versions:
         pytest.skip("the baseline was recorded with other versions")
-    assert to_json(recorded.account) == to_json(reference.accounts[0])
+    assert to_json(recorded.explained) == to_json(reference.accounts[0])
 
 
 @pytest.fixture(name="judged", scope="module")

@@ -23,12 +23,20 @@ from tltl_runtime.evaluation.evaluate import results
 from tltl_runtime.policies.file import write_policy
 from tltl_runtime.policies.identity import spec_hash
 from tltl_runtime.policies.policy import Policy
-from tltl_runtime.regression.explain.account import Account
+from tltl_runtime.regression.explain.account import ExplainedEpisode
 from tltl_runtime.regression.suite.dependencies import dependencies
 from tltl_runtime.regression.suite.suite import Case, Suite, read_suite
 from tltl_runtime.regression.verdict.baseline import baseline_of
-from tltl_runtime.regression.verdict.play import Ready, episodes, ready
-from tltl_runtime.regression.verdict.suite_run import CASES, Done, _inputs, case_folder, check, lock_run, regress
+from tltl_runtime.regression.verdict.play import PreparedCase, play_episodes, prepare_case
+from tltl_runtime.regression.verdict.suite_run import (
+    CASES,
+    FinishedCase,
+    _inputs,
+    case_folder,
+    check_references,
+    lock_run,
+    regress,
+)
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.stealth.levels.identity import level_hash
 from tltl_runtime.stealth.levels.made_for import LEVELS
@@ -41,11 +49,11 @@ from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 GUARD = (LEVELS / "assets" / "guard.toml").read_text(encoding="utf-8")
 
 
-def running(suite: Suite, folder: str = "run", callback: Played | None = None) -> Iterator[Done]:
+def running(suite: Suite, folder: str = "run", callback: Played | None = None) -> Iterator[FinishedCase]:
     return regress(suite, suite.cases, baseline_of(suite), Path(folder), 1, callback or Played())
 
 
-def run(folder: str = "run", suite: Suite | None = None) -> tuple[list[Done], dict[str, int]]:
+def run(folder: str = "run", suite: Suite | None = None) -> tuple[list[FinishedCase], dict[str, int]]:
     """Run the suite; return the results, and the number of episodes played per case."""
     played = Played()
     return list(running(suite or read_suite(Path("game.toml")), folder, played)), played.counts
@@ -61,9 +69,9 @@ def test_cases_are_judged_in_order(game: Path) -> None:
     assert played["hopeless"] == 25 and 25 < played["room:v0"] == played["room:v1"] < 50
     for done in results:
         report = done.report
-        assert not done.kept and done.ready and done.reference
+        assert not done.is_cached and done.prepared and done.reference
         assert report.figures and report.figures.episodes == len(report.accounts) == played[report.name]
-        assert [account.summary.index for account in report.accounts] == list(range(played[report.name]))
+        assert [explained.summary.index for explained in report.accounts] == list(range(played[report.name]))
         assert report.recordings
         folder = case_folder(read_suite(Path("game.toml")), report.name, Path("new") / CASES)
         assert {path.name for path in folder.iterdir()} == {"case.json", *dict(report.recordings).values()}
@@ -81,7 +89,7 @@ def test_two_runs_give_equal_results(game: Path) -> None:
 
 def test_a_cached_case_is_not_played_again(game: Path) -> None:
     kept, played = run()
-    assert played == {} and all(done.kept for done in kept)
+    assert played == {} and all(done.is_cached for done in kept)
     new, _ = run("new")
     assert [done.report for done in kept] == [done.report for done in new]
 
@@ -124,7 +132,7 @@ def test_only_changed_cases_are_played_again(game: Path, change: str) -> None:
     edit()
     results, played = run()
     assert list(played) == names
-    assert [done.report.name for done in results if not done.kept] == names
+    assert [done.report.name for done in results if not done.is_cached] == names
     assert run()[1] == {}, "and is kept again"
 
 
@@ -143,7 +151,7 @@ def test_cases_are_played_again_with_other_versions(game: Path, monkeypatch: pyt
 
 def test_names_in_reasons_are_part_of_the_cache_key(game: Path) -> None:
     suite = read_suite(Path("game.toml"))
-    ready_case, reference = ready(suite.cases[0], suite.seed), baseline_of(suite)[0]
+    ready_case, reference = prepare_case(suite.cases[0], suite.seed), baseline_of(suite)[0]
     fspa = ready_case.setup.fspa
     for renamed_fspa in (
         replace(fspa, atoms=tuple(replace(atom, base=f"{atom.name}_2", arguments=()) for atom in fspa.atoms)),
@@ -152,7 +160,7 @@ def test_names_in_reasons_are_part_of_the_cache_key(game: Path) -> None:
         assert spec_hash(renamed_fspa) == spec_hash(fspa)
         renamed = replace(ready_case, setup=replace(ready_case.setup, fspa=renamed_fspa))
         assert _inputs(renamed, reference, 0.01) != _inputs(ready_case, reference, 0.01)
-    assert _inputs(ready_case, reference, 0.01) == _inputs(ready(suite.cases[0], suite.seed), reference, 0.01)
+    assert _inputs(ready_case, reference, 0.01) == _inputs(prepare_case(suite.cases[0], suite.seed), reference, 0.01)
 
 
 def test_a_level_edited_between_cases_is_played_as_edited(game: Path) -> None:
@@ -162,7 +170,7 @@ def test_a_level_edited_between_cases_is_played_as_edited(game: Path) -> None:
     results = [next(cases)]
     edit("room.toml", "8.0, 8.0", "8.0, 7.5")
     results += cases
-    assert [done.kept for done in results] == [False] * 3
+    assert [done.is_cached for done in results] == [False] * 3
     hashes = [done.report.played.level_hash for done in results if done.report.played]
     assert hashes[0] != hashes[1] and hashes[1:] == [
         level_hash(load_level("room.toml", variant)) for variant in ("v1", "v0")
@@ -175,13 +183,13 @@ def test_a_level_edited_between_cases_is_played_as_edited(game: Path) -> None:
 def _edited_after(name: str, edit: Callable[[], object], monkeypatch: pytest.MonkeyPatch) -> None:
     """Call ``edit`` after a case has been prepared, right before it is played."""
 
-    def then(case: Case, seed: int) -> Ready:
-        ready_case = ready(case, seed)
+    def then(case: Case, seed: int) -> PreparedCase:
+        ready_case = prepare_case(case, seed)
         if case.name == name:
             edit()
         return ready_case
 
-    monkeypatch.setattr("tltl_runtime.regression.verdict.suite_run.ready", then)
+    monkeypatch.setattr("tltl_runtime.regression.verdict.suite_run.prepare_case", then)
 
 
 def test_a_level_edited_while_it_is_played_is_reviewed_and_not_cached(
@@ -203,7 +211,7 @@ def test_a_level_edited_while_it_is_played_is_reviewed_and_not_cached(
 @pytest.mark.parametrize("name", ["room.toml", "assets/guard.toml"])
 def test_a_level_edited_after_the_workers_loaded_it_is_reviewed(game: Path, name: str) -> None:
     class Edits(Played):
-        def __call__(self, case: Case, count: int, last: Account) -> None:
+        def __call__(self, case: Case, count: int, last: ExplainedEpisode) -> None:
             super().__call__(case, count, last)
             if (case.name, count) == ("room:v0", 25):
                 Path(name).parent.mkdir(exist_ok=True)
@@ -211,7 +219,7 @@ def test_a_level_edited_after_the_workers_loaded_it_is_reviewed(game: Path, name
                 Path(name).write_text(text + "# later\n", encoding="utf-8")
 
     first, second, _ = running(read_suite(Path("game.toml")), "new", Edits())
-    assert (first.report.verdict, first.report.certain, first.kept) == ("review", False, False)
+    assert (first.report.verdict, first.report.certain, first.is_cached) == ("review", False, False)
     assert first.report.reasons == (
         f"TLT0905, `{name}` changed while `room:v0` was played (give the same command again)",
     )
@@ -220,10 +228,10 @@ def test_a_level_edited_after_the_workers_loaded_it_is_reviewed(game: Path, name
 
 
 def test_a_level_edited_before_the_last_episode_of_a_baseline_is_reported(game: Path) -> None:
-    ready_case = ready(read_suite(Path("game.toml")).cases[0], 3)
+    ready_case = prepare_case(read_suite(Path("game.toml")).cases[0], 3)
     with pytest.raises(TltlError, match=r"TLT0905: `room\.toml` changed while `room:v0` was played"):
-        for recorded in episodes(ready_case, 1):
-            if recorded.account.summary.index == ready_case.case.episodes - 1:
+        for recorded in play_episodes(ready_case, 1):
+            if recorded.explained.summary.index == ready_case.case.episodes - 1:
                 edit("room.toml", "8.0, 8.0", "8.0, 7.5")
 
 
@@ -253,11 +261,11 @@ class Deadly:
 def test_a_lost_worker_ends_the_run(game: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     suite = read_suite(Path("game.toml"))
 
-    def deadly(case: Case, seed: int) -> Ready:
-        ready_case = ready(case, seed)
+    def deadly(case: Case, seed: int) -> PreparedCase:
+        ready_case = prepare_case(case, seed)
         return replace(ready_case, setup=replace(ready_case.setup, policy=Deadly(ready_case.setup.policy)))
 
-    monkeypatch.setattr("tltl_runtime.regression.verdict.suite_run.ready", deadly)
+    monkeypatch.setattr("tltl_runtime.regression.verdict.suite_run.prepare_case", deadly)
     with pytest.raises(TltlError) as error:
         list(regress(suite, suite.cases, baseline_of(suite), Path("new"), 2, Played()))
     (diagnostic,) = error.value.diagnostics
@@ -279,16 +287,17 @@ def test_episodes_after_a_gap_are_not_judged(game: Path, monkeypatch: pytest.Mon
     judged_indices: list[int] = []
     with pytest.raises(TltlError) as error:
         judged_indices.extend(
-            recorded.account.summary.index for recorded in episodes(ready(read_suite(Path("game.toml")).cases[0], 3), 1)
+            recorded.explained.summary.index
+            for recorded in play_episodes(prepare_case(read_suite(Path("game.toml")).cases[0], 3), 1)
         )
     assert (error.value, judged_indices) == (lost, [0, 1])
 
 
 def test_a_level_edited_before_its_baseline_is_recorded_is_reported(game: Path) -> None:
-    ready_case = ready(read_suite(Path("game.toml")).cases[0], 3)
+    ready_case = prepare_case(read_suite(Path("game.toml")).cases[0], 3)
     edit("room.toml", "8.0, 8.0", "8.0, 7.5")
     with pytest.raises(TltlError, match="TLT0905") as error:
-        next(episodes(ready_case, 1))
+        next(play_episodes(ready_case, 1))
     (diagnostic,) = error.value.diagnostics
     assert diagnostic.title == "`room.toml` changed while `room:v0` was played"
 
@@ -306,8 +315,8 @@ def test_a_spec_changed_since_the_training_is_reviewed(game: Path) -> None:
         assert done.report.verdict == "review"
         assert done.report.reasons[0].startswith("the spec `easy` has changed since the policy was trained (")
         assert done.report.headline == done.report.reasons[0]
-        assert done.to_train is None, "a training would be for the old spec"
-    assert results[2].to_train is not None
+        assert done.case_to_train is None, "a training would be for the old spec"
+    assert results[2].case_to_train is not None
     edit("plan.tltl", "reach alive", "reach alve")
     results, _ = run()
     assert [done.report.verdict for done in results] == ["fail", "fail", "fail"]
@@ -331,10 +340,10 @@ def test_a_baseline_with_fewer_episodes_is_rejected(game: Path) -> None:
 def test_a_baseline_with_unknown_states_is_rejected_before_anything_is_played(game: Path) -> None:
     suite = read_suite(Path("game.toml"))
     easy, hopeless = baseline_of(suite)
-    *accounts, last = hopeless.accounts
-    damaged = replace(hopeless, accounts=(*accounts, changed(last, unmet=99)))
+    *explained_episodes, last = hopeless.accounts
+    damaged = replace(hopeless, accounts=(*explained_episodes, changed(last, unmet=99)))
     with pytest.raises(TltlError, match=r"TLT0902: .* episode 49 of `room:v0` has the state 99, and"):
-        check(suite, suite.cases, (easy, damaged))
+        check_references(suite, suite.cases, (easy, damaged))
 
 
 def test_a_folder_may_have_a_plus_in_its_name(game: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -364,7 +373,7 @@ def test_a_stopped_run_resumes(game: Path) -> None:
         assert next(stopped).report.name == "room:v0"
     assert list(played.counts) == ["room:v0"]
     results, played_again = run("new")
-    assert [done.kept for done in results] == [True, False, False]
+    assert [done.is_cached for done in results] == [True, False, False]
     assert list(played_again) == ["room:v1", "hopeless"]
 
 
@@ -372,7 +381,7 @@ def test_an_interrupted_case_is_played_from_its_start(game: Path) -> None:
     class StopError(Exception):
         pass
 
-    def stop_in_the_middle(case: Case, count: int, last: Account) -> None:
+    def stop_in_the_middle(case: Case, count: int, last: ExplainedEpisode) -> None:
         if case.name == "room:v1" and count == 10:
             raise StopError
 
@@ -380,7 +389,7 @@ def test_an_interrupted_case_is_played_from_its_start(game: Path) -> None:
     with pytest.raises(StopError):
         list(regress(suite, suite.cases, baseline_of(suite), Path("new"), 1, stop_in_the_middle))
     results, played = run("new")
-    assert [done.kept for done in results] == [True, False, False]
+    assert [done.is_cached for done in results] == [True, False, False]
     assert [done.report for done in results] == [done.report for done in run()[0]]
     assert played["room:v1"] > 25
 
@@ -416,9 +425,9 @@ def test_a_level_that_does_not_load_fails_its_cases_and_other_levels_are_played(
         "it cannot be played",
         "room.toml:5: TLT0802, `[bounds]` has no key `siez` (did you mean `size`?)",
     )
-    assert results[0].report.figures is None and not results[0].kept
+    assert results[0].report.figures is None and not results[0].is_cached
     # A level that does not load is tried again in each run.
-    assert not run("new", suite)[0][0].kept
+    assert not run("new", suite)[0][0].is_cached
 
 
 def test_a_policy_that_does_not_fit_fails_its_case(game: Path) -> None:
@@ -450,10 +459,10 @@ def test_a_case_missing_in_the_baseline_is_reported_before_anything_is_played(ga
     suite, played = read_suite(Path("game.toml")), Played()
     references = tuple(reference for reference in baseline_of(suite) if reference.played.spec != "soon")
     with pytest.raises(TltlError) as error:
-        check(suite, suite.cases, references)
+        check_references(suite, suite.cases, references)
     assert [diagnostic.code for diagnostic in error.value.diagnostics] == ["TLT0903"]
     # The baseline may lack cases that are not run.
-    check(suite, suite.cases[:2], references)
+    check_references(suite, suite.cases[:2], references)
     assert len(list(regress(suite, suite.cases[:2], references, Path("new"), 1, played))) == 2
 
 

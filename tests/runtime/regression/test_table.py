@@ -14,7 +14,7 @@ from tltl_runtime.evaluation.statistics import Spread
 from tltl_runtime.policies.file import write_policy
 from tltl_runtime.regression.table1 import table_cells
 from tltl_runtime.regression.table1.paper_table import LEVELS, MODELS, PAPER, VARIANTS, CellFigures, TableRow, markdown
-from tltl_runtime.regression.table1.table_cells import EpisodeResult, figures, measured
+from tltl_runtime.regression.table1.table_cells import EpisodeResult, cell_episodes, figures
 from tltlc.diagnostics.diagnostic import TltlError
 
 
@@ -71,24 +71,24 @@ def test_figures_cover_the_first_runs() -> None:
 def test_a_cell_is_cached_until_the_policy_changes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / "policy.safetensors"
     write_policy(path, policy_of(card_of()))
-    cell = measured(tmp_path, "ours", "cover_and_hide", "v0", path, 1)
+    cell = cell_episodes(tmp_path, "ours", "cover_and_hide", "v0", path, 1)
     assert len(cell) == 3
     with monkeypatch.context() as patched:
         patched.setattr(table_cells, "evaluate", lambda *_, **__: pytest.fail("it is played again"))
-        assert measured(tmp_path, "ours", "cover_and_hide", "v0", path, 1) == cell
+        assert cell_episodes(tmp_path, "ours", "cover_and_hide", "v0", path, 1) == cell
     kept = tmp_path / "cover_and_hide-v0-ours.json"
     before = kept.read_bytes()
     write_policy(path, policy_of(card_of(), seed=1))
-    measured(tmp_path, "ours", "cover_and_hide", "v0", path, 1)
+    cell_episodes(tmp_path, "ours", "cover_and_hide", "v0", path, 1)
     assert kept.read_bytes() != before
 
 
 @pytest.mark.slow
 def test_the_expert_plays_the_same_in_any_number_of_processes(tmp_path: Path) -> None:
-    one_process = measured(tmp_path, "expert", "cover_and_hide", "v0", None, 1)
+    one_process = cell_episodes(tmp_path, "expert", "cover_and_hide", "v0", None, 1)
     assert [episode.success for episode in one_process] == [True] * 3
     (tmp_path / "several").mkdir()
-    assert measured(tmp_path / "several", "expert", "cover_and_hide", "v0", None, 2) == one_process
+    assert cell_episodes(tmp_path / "several", "expert", "cover_and_hide", "v0", None, 2) == one_process
 
 
 class Mortal(table_cells._ExpertPlayer):
@@ -102,7 +102,7 @@ class Mortal(table_cells._ExpertPlayer):
 def test_a_lost_process_of_the_expert_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(table_cells, "_ExpertPlayer", Mortal)
     with pytest.raises(TltlError, match="TLT0850: a worker was lost while it played episode") as error:
-        list(table_cells._by_expert("cover_and_hide", "v0", 2))
+        list(table_cells._expert_episodes("cover_and_hide", "v0", 2))
     seed_match = re.search(r"\(seed (\d+) of the level\)", str(error.value))
     assert seed_match is not None
     (diagnostic,) = error.value.diagnostics
@@ -118,11 +118,11 @@ def test_the_expert_plays_again_when_the_spec_or_the_code_changes(
         played.append(f"{level}:{variant}")
         return [EpisodeResult(True, 1.0, 0.5)]
 
-    monkeypatch.setattr(table_cells, "_by_expert", play)
+    monkeypatch.setattr(table_cells, "_expert_episodes", play)
 
     def count() -> int:
         """Measure the cell again; return how often the expert has played so far."""
-        assert measured(tmp_path, "expert", "cover_and_hide", "v0", None, 1) == (EpisodeResult(True, 1.0, 0.5),)
+        assert cell_episodes(tmp_path, "expert", "cover_and_hide", "v0", None, 1) == (EpisodeResult(True, 1.0, 0.5),)
         return len(played)
 
     assert (count(), count()) == (1, 1)
@@ -143,4 +143,4 @@ def test_a_policy_for_another_spec_is_rejected(tmp_path: Path, monkeypatch: pyte
     spec.write_text("import stealth\nentity exit\nspec bold { limit 400 steps\n reach near(exit) }\n", encoding="utf-8")
     monkeypatch.setattr(table_cells, "spec_of", lambda level: str(spec))
     with pytest.raises(TltlError, match="TLT0843"):
-        measured(tmp_path, "ours", "cover_and_hide", "v0", path, 1)
+        cell_episodes(tmp_path, "ours", "cover_and_hide", "v0", path, 1)

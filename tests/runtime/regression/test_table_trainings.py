@@ -16,11 +16,11 @@ from tltl_runtime.regression.table1.paper_table import Model
 from tltl_runtime.regression.table1.table_trainings import (
     Limits,
     TableTraining,
+    finished_training,
     limits,
-    limits_as_of,
+    limits_of_policy,
     table_training,
     train_arguments,
-    trained,
 )
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.stealth.registration import StealthGame
@@ -99,13 +99,13 @@ def test_limits_are_the_defaults_or_the_limits_of_a_policy() -> None:
     for path in shipped_policies().values():
         card = read_policy(path).card
         stop = card.training["settings"]["stop"]
-        assert limits_as_of(card, None) == Limits(stop["steps"], stop["minutes"])
-        assert limits_as_of(card, 5.0) == Limits(stop["steps"], 5.0)
+        assert limits_of_policy(card, None) == Limits(stop["steps"], stop["minutes"])
+        assert limits_of_policy(card, 5.0) == Limits(stop["steps"], 5.0)
 
 
 def test_a_new_training_is_started(tmp_path: Path) -> None:
     cell_training = training(tmp_path, "imitation", 2.5)
-    assert trained(cell_training) is None
+    assert finished_training(cell_training) is None
     assert train_arguments(cell_training) == [
         *(
             "--level",
@@ -138,11 +138,11 @@ def test_a_training_is_finished_if_it_met_its_spec_or_passed_the_limit(
 ) -> None:
     cell_training = training(tmp_path, minutes=wanted)
     write_training(cell_training, limit, seconds=seconds, end=end)
-    finished = trained(cell_training)
+    finished = finished_training(cell_training)
     assert (finished is not None) == over
     if finished:
         assert seconds is not None
-        assert (finished.policy, finished.hours, finished.cloned) == (
+        assert (finished.policy, finished.hours, finished.cloning_share) == (
             cell_training.folder / POLICY,
             seconds / 3600,
             None,
@@ -175,5 +175,5 @@ def test_an_interrupted_training_resumes_to_the_greater_limit(
 def test_the_share_of_cloned_steps_is_reported_for_imitation(tmp_path: Path) -> None:
     cell_training = training(tmp_path, "imitation")
     write_training(cell_training, 60.0, seconds=3601.0)
-    finished = trained(cell_training)
-    assert finished is not None and finished.cloned == 0.05
+    finished = finished_training(cell_training)
+    assert finished is not None and finished.cloning_share == 0.05

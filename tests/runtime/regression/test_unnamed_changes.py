@@ -8,7 +8,7 @@ import pytest
 
 from tests.runtime.regression.handmade import ROOM, reference
 from tltl_runtime.regression.suite.suite import Suite, read_suite
-from tltl_runtime.regression.suite.unnamed_changes import unnamed
+from tltl_runtime.regression.suite.unnamed_changes import unnamed_changes
 from tltl_runtime.regression.verdict.baseline import Reference
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.stealth.levels.made_for import LEVELS
@@ -41,11 +41,11 @@ def recorded() -> tuple[Reference, ...]:
 
 def test_changed_files_are_reported_with_their_cases(suite: Suite) -> None:
     references = recorded()
-    assert unnamed(suite, suite.cases, references) == {}
+    assert unnamed_changes(suite, suite.cases, references) == {}
     Path("room.toml").write_text(ROOM + "# later\n", encoding="utf-8")
-    assert unnamed(suite, suite.cases, references) == {"room.toml": ("room:v0",)}
-    assert unnamed(suite, suite.cases[1:], references) == {}, "the others are played"
-    assert unnamed(suite, suite.cases, ()) == {}
+    assert unnamed_changes(suite, suite.cases, references) == {"room.toml": ("room:v0",)}
+    assert unnamed_changes(suite, suite.cases[1:], references) == {}, "the others are played"
+    assert unnamed_changes(suite, suite.cases, ()) == {}
 
 
 @pytest.mark.parametrize("text", ["# later\n", "[[", "\0"])
@@ -54,12 +54,12 @@ def test_an_asset_that_replaces_a_shipped_one_is_reported(suite: Suite, text: st
     Path("assets").mkdir()
     guard = Path("assets/guard.toml")
     guard.write_text((LEVELS / "assets" / "guard.toml").read_text(encoding="utf-8"), encoding="utf-8", newline="\r\n")
-    assert unnamed(suite, suite.cases, references) == {}
+    assert unnamed_changes(suite, suite.cases, references) == {}
     guard.write_text(guard.read_text(encoding="utf-8") + text, encoding="utf-8")
-    assert unnamed(suite, suite.cases, references) == {"assets/guard.toml": ("room:v0",)}
+    assert unnamed_changes(suite, suite.cases, references) == {"assets/guard.toml": ("room:v0",)}
 
 
 def test_a_deleted_level_counts_as_changed(suite: Suite) -> None:
     references = recorded()
     Path("room.toml").unlink()
-    assert unnamed(suite, suite.cases, references) == {"room.toml": ("room:v0",)}
+    assert unnamed_changes(suite, suite.cases, references) == {"room.toml": ("room:v0",)}

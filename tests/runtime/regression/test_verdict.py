@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from tests.runtime.regression.handmade import summaries, summary
 from tltl_runtime.regression.suite.suite import LEAST_EPISODES, Thresholds
 from tltl_runtime.regression.verdict.confidence import rate_interval
-from tltl_runtime.regression.verdict.verdict import Judgement, beyond, judge
+from tltl_runtime.regression.verdict.verdict import Judgement, differing_figures, judge
 from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltlc.core.record import replace
 
@@ -122,7 +122,7 @@ def test_an_uncertain_change_at_the_end_is_reviewed() -> None:
     now = [replace(episode, reward=episode.reward - 0.053) for episode in before]
     judgement = judged(now, before, episodes=200)
     assert judgement == Judgement("review", False, rate_interval(200, 0, ERROR), ())
-    assert beyond(now, before, DEFAULT) == ("reward",)
+    assert differing_figures(now, before, DEFAULT) == ("reward",)
     assert judged(
         [replace(episode, reward=episode.reward + 0.005) for episode in now], before, episodes=200
     ) == Judgement("pass", False, rate_interval(200, 0, ERROR), ())

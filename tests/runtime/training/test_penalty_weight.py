@@ -13,7 +13,7 @@ from tltlc.core.record import replace
 
 
 @pytest.mark.parametrize(
-    ("met", "entropy", "severity", "sharpness"),
+    ("met", "entropy", "penalty_weight", "inverse_temperature"),
     [(0.0, 0.01, 0.0, 1.0), (0.5, 0.005, 0.0, 1.0), (0.75, 0.0025, 0.5, 2.0), (1.0, 0.0, 1.0, 3.0)],
 )
 def test_the_entropy_weight_falls_and_the_other_weights_rise_from_half_on(

@@ -41,11 +41,11 @@ def play_at_keyboard(
     crouch: str,
     enough: Callable[[], bool] = lambda: False,
 ) -> None:
-    """Open a window and play episodes of ``env`` until the player stops, or ``enough`` returns true after one.
+    """Open a window and play episodes of ``env`` until the player stops.
 
-    ``recordings`` creates the receiver of the episodes from the name LEVEL-VARIANT.  ``seed`` is the seed
-    of the first episode.  Warnings about unreachable goals are printed to standard error before the
-    window opens.
+    The game also ends if ``enough`` returns true after an episode.  ``recordings`` creates the receiver
+    of the episodes from the name LEVEL-VARIANT.  ``seed`` is the seed of the first episode.  Warnings
+    about unreachable goals are printed to standard error before the window opens.
 
     Raises:
         TltlError: TLT0830, no window can be opened; TLT0730, pygame is not installed.
@@ -56,14 +56,14 @@ def play_at_keyboard(
     from tltl_runtime.stealth.window.window import Window
 
     level = env.get_wrapper_attr("level")
-    taking = recordings(f"{level.name}-{level.variant}")
+    receiver = recordings(f"{level.name}-{level.variant}")
     # Reset first: if the level lacks something that the spec needs, the error comes before the window opens.
     env.reset()
     cli.show(reach_warnings(level, env.get_wrapper_attr("task").fspa), "text", sys.stderr)
     window = Window(f"{level.name} {level.variant}", _SIZE, side=True, sticky_crouch=crouch == "toggle")
     renderer = Renderer(level, *_SIZE)
     try:
-        KeyboardPlayer(env, window, renderer, view, taking, enough).play(seed)
+        KeyboardPlayer(env, window, renderer, view, receiver, enough).play(seed)
     finally:
         renderer.close()
         window.close()

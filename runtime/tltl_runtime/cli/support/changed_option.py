@@ -19,18 +19,18 @@ class ChangedCommand(click.Command):
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         """Parse the arguments of the command."""
-        return super().parse_args(ctx, list(_one_by_one(args)))
+        return super().parse_args(ctx, list(_with_repeated_option(args)))
 
 
-def _one_by_one(words: Sequence[str]) -> Iterator[str]:
-    """The words, with ``--changed=`` before each value of the option."""
-    taking = False
-    for number, word in enumerate(words):
+def _with_repeated_option(words: Sequence[str]) -> Iterator[str]:
+    """Yield the words, with ``--changed=`` before each value of the option."""
+    is_value = False
+    for index, word in enumerate(words):
         if word == "--":
-            yield from words[number:]
+            yield from words[index:]
             return
         if word.startswith("-") and word != "-":
-            taking = word == _OPTION
-            yield f"{_OPTION}=" if taking else word
+            is_value = word == _OPTION
+            yield f"{_OPTION}=" if is_value else word
         else:
-            yield f"{_OPTION}={word}" if taking else word
+            yield f"{_OPTION}={word}" if is_value else word

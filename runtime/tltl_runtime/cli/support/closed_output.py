@@ -1,4 +1,4 @@
-"""Let a command whose results are files continue after its output pipe is closed."""
+"""Let a command that writes files go on after its output pipe is closed."""
 
 from __future__ import annotations
 

@@ -53,7 +53,7 @@ class EvaluationFiles:
     index of the first episode.  ``command`` evaluates the same episodes again.  ``folder``, which is
     created if it is missing, gets recordings and pictures.  ``json_file`` gets the JSON report.  Both are
     optional.  The first result removes from the folder the report and the pictures of an earlier
-    evaluation, and the recordings of another policy on this level; ``removed`` are their names.
+    evaluation, and the recordings of another policy on this level: see ``removed_files``.
 
     Raises:
         TltlError: TLT0005, a file cannot be written, also from ``add`` and ``write``; TLT0722, a file has
@@ -74,30 +74,30 @@ class EvaluationFiles:
         self._command = command
         self._json = None if cli.is_stdout(json_file) else json_file
         self._level = load_level(setup.level, setup.variant)
-        self._played: dict[bool, list[EpisodeSummary]] = {True: [], False: []}
+        self._summaries: dict[bool, list[EpisodeSummary]] = {True: [], False: []}
         self._trajectories: dict[bool, list[Trajectory]] = {True: [], False: []}
         self._recorded: list[str] = []
         self._removed: tuple[str, ...] = ()
         if folder is not None:
-            _check_place(folder)
+            _check_folder(folder)
             writable_folder(folder)
 
     @property
-    def played(self) -> dict[str, int]:
+    def episode_counts(self) -> dict[str, int]:
         """The number of played episodes, by how actions were chosen."""
-        return {CHOICES[sampled]: len(played) for sampled, played in self._played.items()}
+        return {CHOICES[sampled]: len(summaries) for sampled, summaries in self._summaries.items()}
 
     @property
-    def removed(self) -> tuple[str, ...]:
+    def removed_files(self) -> tuple[str, ...]:
         """The names of files of an earlier evaluation that were removed and not written again."""
         return tuple(name for name in self._removed if self._folder and not (self._folder / name).exists())
 
     def add(self, result: PlayedEpisode) -> None:
         """Add the next result, and write its recording if it has one."""
         sampled = result.task.sampled
-        if self._folder is not None and not any(self._played.values()):
+        if self._folder is not None and not any(self._summaries.values()):
             self._removed = self._remove_older(self._folder)
-        self._played[sampled].append(result.played)
+        self._summaries[sampled].append(result.played)
         if result.trajectory is not None:
             self._trajectories[sampled].append(result.trajectory)
         if result.recording and self._folder is not None:
@@ -109,23 +109,24 @@ class EvaluationFiles:
             self._recorded.append(path.name)
 
     def text(self) -> str:
-        """The text report."""
+        """Return the text report."""
         setup = self._setup
         # Show the path of a user's level, which may have the name of a level of the package.
         level = shown(Path(setup.level)) if setup.level.endswith(".toml") else self._level.name
         head = f"{level} {self._level.variant}, spec {setup.fspa.name}, seed {setup.seed}: {self._path}"
         evaluations = {CHOICES[sampled]: evaluation for sampled, evaluation in self._evaluations().items()}
         text = f"{head}\n{self._note()}\n{report_text(evaluations)}"
-        failed = [episode.index for episodes in self._played.values() for episode in episodes if not episode.success]
+        failed = [episode.index for episodes in self._summaries.values() for episode in episodes if not episode.success]
         if failed and self._folder is None:
-            again = f"{self._command} --first {failed[0]} --episodes 1 --out evaluation"
-            text += f"\nTo record one of them, for `tltlc replay`:\n  {again}\n"
+            command = f"{self._command} --first {failed[0]} --episodes 1 --out evaluation"
+            text += f"\nTo record one of them, for `tltlc replay`:\n  {command}\n"
         return text
 
     def document(self, complete: bool) -> dict[str, Any]:
-        """The JSON report: the figures with sampled actions, and under ``argmax`` with the likeliest actions.
+        """Return the JSON report: figures with sampled actions, and under ``argmax`` with the likeliest actions.
 
-        It does not depend on which workers played.  ``complete`` says whether all episodes were played.
+        The report does not depend on which workers played.  ``complete`` says whether all episodes were
+        played.
         """
         setup, evaluations = self._setup, self._evaluations()
         card = setup.policy.card
@@ -165,12 +166,12 @@ class EvaluationFiles:
                 pictures[_PICTURES[sampled]] = draw_trajectories(self._level, self._setup.fspa, trajectories, title)
         fileio.write_files(self._folder, {_REPORT: text, **pictures})
         count = len(self._recorded)
-        recorded = f"{count or 'no'} recording{'s' * (count != 1)}{' with plans' * (count > 0)}"
-        look_at = f"; look at {next(iter(pictures))} first" if pictures else ""
-        return f"{self._folder}: {recorded}, {', '.join((*pictures, _REPORT))}{look_at}"
+        recordings_text = f"{count or 'no'} recording{'s' * (count != 1)}{' with plans' * (count > 0)}"
+        hint = f"; look at {next(iter(pictures))} first" if pictures else ""
+        return f"{self._folder}: {recordings_text}, {', '.join((*pictures, _REPORT))}{hint}"
 
     def _note(self) -> str:
-        """A note if the level is not the one that the policy was trained on; else empty."""
+        """Return a note if the level is not the one that the policy was trained on; else an empty text."""
         card, level = self._setup.policy.card, self._level
         if level_hash(level) == card.level_hash:
             return ""
@@ -186,18 +187,18 @@ class EvaluationFiles:
         choices = "|".join(CHOICES.values())
         recording = re.compile(rf"({re.escape(self._name)}-\d+-\d+-({choices})(-\d+)?){re.escape(SUFFIX)}")
         # Remove the report last: it shows that the pictures belong to an evaluation.
-        older = [folder / name for name in (*_PICTURES.values(), _REPORT)]
+        paths = [folder / name for name in (*_PICTURES.values(), _REPORT)]
         for path in sorted(filter(fileio.may_be_file, folder.iterdir())):
-            if (match := recording.fullmatch(path.name)) and self._is_of_another(path):
-                older += [path, folder / f"{match[1]}.png"]
-        existing = [path for path in older if path.is_file()]
+            if (match := recording.fullmatch(path.name)) and self._is_by_another_policy(path):
+                paths += [path, folder / f"{match[1]}.png"]
+        existing = [path for path in paths if path.is_file()]
         for path in existing:
             # If a file cannot be removed, it cannot be replaced, either, and `write` raises an error.
             with suppress(OSError):
                 path.unlink()
         return tuple(path.name for path in existing)
 
-    def _is_of_another(self, path: Path) -> bool:
+    def _is_by_another_policy(self, path: Path) -> bool:
         """Whether a file is a recording of another policy."""
         try:
             player = read_episode(path).player
@@ -210,10 +211,10 @@ class EvaluationFiles:
         return f"{self._level.name}-{self._level.variant}"
 
     def _evaluations(self) -> dict[bool, Evaluation]:
-        return {sampled: evaluation_of(played) for sampled, played in self._played.items() if played}
+        return {sampled: evaluation_of(summaries) for sampled, summaries in self._summaries.items() if summaries}
 
 
-def _check_place(folder: Path) -> None:
+def _check_folder(folder: Path) -> None:
     """Raise TltlError, TLT0722, if the report or a picture would replace a file of the user."""
     existing = [folder / name for name in (_REPORT, *_PICTURES.values()) if fileio.exists(folder / name)]
     if existing and not _is_report(folder / _REPORT):
@@ -231,7 +232,10 @@ def _is_report(path: Path) -> bool:
 
 
 def _as_json(evaluation: Evaluation) -> dict[str, Any]:
-    """The figures, how failed episodes ended, and the list of episodes; it replaces their number in the figures."""
+    """Return the figures, how failed episodes ended, and the list of episodes.
+
+    The list replaces the number of episodes in the figures.
+    """
     figures = {name: value for name, value in to_json(evaluation.figures).items() if name != "episodes"}
     return {
         **figures,
@@ -241,5 +245,5 @@ def _as_json(evaluation: Evaluation) -> dict[str, Any]:
 
 
 def _episode_json(episode: EpisodeSummary) -> dict[str, Any]:
-    """An episode in the JSON report."""
+    """Return an episode in the JSON report."""
     return {key: getattr(episode, key) for key in _EPISODE_KEYS}

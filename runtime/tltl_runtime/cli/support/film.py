@@ -20,13 +20,16 @@ T = TypeVar("T")
 FILMS: Final = (".gif", ".mp4")
 """The file extensions of films."""
 
-_MOST_FRAMES_A_SECOND: Final = 30.0
+_MAX_FRAMES_PER_SECOND: Final = 30.0
 """The greatest default frame rate.  A faster film leaves steps out."""
 
 
 @record
 class Film:
-    """The options of a film: ``rate`` in frames per second, None for one frame per decision; ``size`` in pixels."""
+    """The options of a film.
+
+    ``rate`` is in frames per second; None: one frame per decision.  ``size`` is in pixels.
+    """
 
     view: View = "third_person"
     speed: float = 1.0
@@ -36,7 +39,9 @@ class Film:
 
 
 def write_film(path: Path, episode: Episode, span: tuple[float, float], film: Film) -> None:
-    """Write the film of an episode over a span of time, in seconds.  The path's extension selects the format.
+    """Write the film of an episode over a ``span`` of time, in seconds.
+
+    The path's extension selects the format.
 
     Raises:
         TltlError: TLT0005, the file cannot be written; TLT0730, no encoder for .mp4 is installed.
@@ -45,14 +50,14 @@ def write_film(path: Path, episode: Episode, span: tuple[float, float], film: Fi
     from tltl_runtime.stealth.rendering.film_file import NoEncoderError, write_gif, write_mp4
     from tltlc.api import fileio
 
-    rate = film.rate or min(film.speed / DECISION, _MOST_FRAMES_A_SECOND)
+    rate = film.rate or min(film.speed / DECISION, _MAX_FRAMES_PER_SECOND)
     start, stop = span
     count = int((stop - start) / film.speed * rate + 1e-6) + 1
     times = [start + number * film.speed / rate for number in range(count)]
     if times[-1] < stop - 1e-6 and stop == episode.snapshots[-1].time:
         # Always show the end of the episode.
         times.append(stop)
-    pictures = _counted(frames(episode, times, film.view, film.size, film.notation), len(times))
+    pictures = _with_progress(frames(episode, times, film.view, film.size, film.notation), len(times))
     write: Callable[..., None] = write_gif if path.suffix.lower() == ".gif" else write_mp4
     try:
         with fileio.replace_file(path) as temporary:
@@ -61,7 +66,7 @@ def write_film(path: Path, episode: Episode, span: tuple[float, float], film: Fi
         raise cli.exits.missing_component("an .mp4", "imageio-ffmpeg", "imageio-ffmpeg") from error
 
 
-def _counted(pictures: Iterable[T], count: int) -> Iterator[T]:
+def _with_progress(pictures: Iterable[T], count: int) -> Iterator[T]:
     """Yield the pictures, with a progress bar if standard error is a terminal."""
     if not sys.stderr.isatty():
         yield from pictures

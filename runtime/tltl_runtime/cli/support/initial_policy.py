@@ -8,7 +8,7 @@ from typing import Any
 
 import click
 
-from tltl_runtime.cli.support.policy_path import check_known, policy_file, policy_place
+from tltl_runtime.cli.support.policy_path import check_level_is_shipped, policy_file, policy_place
 from tltl_runtime.cli.support.sensor_options import option_of
 from tltl_runtime.policies.card import Card
 from tltl_runtime.policies.file import read_policy
@@ -38,22 +38,30 @@ class InitialPolicyOptions:
         return self.policy.card
 
 
-def beginning(named: Path) -> InitialPolicyOptions:
-    """Read the policy of ``--from``, named as for `tltlc evaluate`; raises TltlError if it cannot be read."""
+def read_policy_option(named: Path) -> InitialPolicyOptions:
+    """Read the policy of ``--from``, named as for `tltlc evaluate`.
+
+    Raises TltlError if the policy cannot be read.
+    """
     path = policy_file(named)
     return InitialPolicyOptions(read_policy(path), path)
 
 
-def own_place(named: Path, begun: InitialPolicyOptions) -> tuple[str, str]:
-    """The level and the variant that a policy was trained on; raises TltlError if they are unknown."""
+def level_of_policy(named: Path, initial: InitialPolicyOptions) -> tuple[str, str]:
+    """Return the level and the variant that a policy was trained on.
+
+    Raises TltlError if they are unknown.
+    """
     path, name, variant = policy_place(named, None, _COMMAND)
     if name is None:
-        check_known(begun.card.level, path, _COMMAND)
-        name, variant = begun.card.level, begun.card.variant
+        check_level_is_shipped(initial.card.level, path, _COMMAND)
+        name, variant = initial.card.level, initial.card.variant
     return name, variant or "v0"
 
 
-def as_its_policy(settings: TrainingSettings, begun: InitialPolicyOptions, config: Path | None) -> TrainingSettings:
+def with_policy_network(
+    settings: TrainingSettings, initial: InitialPolicyOptions, config: Path | None
+) -> TrainingSettings:
     """Return the settings with the policy's network.
 
     Raises:
@@ -63,31 +71,35 @@ def as_its_policy(settings: TrainingSettings, begun: InitialPolicyOptions, confi
     if settings.imitates:
         message = "--from is for the method `automaton`: an agent that imitates begins with what it is shown"
         raise click.UsageError(message, click.get_current_context())
-    network = begun.card.network
-    asked = {} if config is None else read_values(fileio.read_source(config)).get("network", {})
-    if replace(network, **asked) != network:
-        title = f"`{begun.path}` has another network than `[network]` in `{config}` asks for"
+    network = initial.card.network
+    network_settings = {} if config is None else read_values(fileio.read_source(config)).get("network", {})
+    if replace(network, **network_settings) != network:
+        title = f"`{initial.path}` has another network than `[network]` in `{config}` asks for"
         raise TltlError([Diagnostic("TLT0941", title, help=f"leave `[network]` out of `{config}`, or --from")])
     return replace(settings, network=network)
 
 
-def check_beginning(begun: InitialPolicyOptions, level: Level, fspa: Fspa, asked: Mapping[str, Any]) -> Sensors:
-    """Check the initial policy and return its sensors, which the agent uses.  ``asked`` are the sensor options.
+def check_initial_policy(
+    initial: InitialPolicyOptions, level: Level, fspa: Fspa, sensor_options: Mapping[str, Any]
+) -> Sensors:
+    """Check the initial policy; return its sensors, which the agent uses.
+
+    ``sensor_options`` are the values of the sensor options.
 
     Raises:
         TltlError: TLT0843, the policy does not fit the level or the spec; TLT0941, the options ask for
             other sensors.
     """
-    check_policy(begun.card, level, fspa)
-    titles = list(_other_senses(begun, level, asked))
+    check_policy(initial.card, level, fspa)
+    titles = list(_sensor_differences(initial, level, sensor_options))
     if titles:
         help_ = "leave the option out, or train without --from"
         raise TltlError([Diagnostic("TLT0941", title, help=help_) for title in titles])
-    return begun.card.sensors
+    return initial.card.sensors
 
 
-def is_another(run: TrainingRun, named: Path) -> str | None:
-    """A sentence if a training did not start with this policy; None if it did."""
+def policy_difference(run: TrainingRun, named: Path) -> str | None:
+    """Return a sentence if a training did not start with this policy; None if it did."""
     where = f"the training in `{run.folder}` begins with"
     if run.initial is None:
         return f"{where} weights that are drawn, not with the policy `{named}`"
@@ -95,14 +107,17 @@ def is_another(run: TrainingRun, named: Path) -> str | None:
     return None if same else f"{where} another policy than `{named}`"
 
 
-def moved(run: TrainingRun, named: Path) -> TrainingRun:
-    """Update the path of the initial policy."""
+def with_policy_path(run: TrainingRun, named: Path) -> TrainingRun:
+    """Return the training with the path that now names its initial policy."""
     assert run.initial is not None
     return replace(run, initial=replace(run.initial, path=str(policy_file(named))))
 
 
-def _other_senses(begun: InitialPolicyOptions, level: Level, asked: Mapping[str, Any]) -> Iterator[str]:
-    own, sensors = begun.card.sensors, chosen(level, asked) if asked else begun.card.sensors
-    for key in asked:
+def _sensor_differences(
+    initial: InitialPolicyOptions, level: Level, sensor_options: Mapping[str, Any]
+) -> Iterator[str]:
+    """Yield a sentence for each option that asks for other sensors than those of the policy."""
+    own, sensors = initial.card.sensors, chosen(level, sensor_options) if sensor_options else initial.card.sensors
+    for key in sensor_options:
         if getattr(sensors, key) != getattr(own, key):
-            yield f"`{begun.path}` senses as `{option_of(key, own)}` says, not as `{option_of(key, sensors)}`"
+            yield f"`{initial.path}` senses as `{option_of(key, own)}` says, not as `{option_of(key, sensors)}`"

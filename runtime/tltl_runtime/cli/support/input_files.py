@@ -1,4 +1,4 @@
-"""Read several files; errors of one do not stop the others."""
+"""Read several files, so that errors in one do not stop the others."""
 
 from __future__ import annotations
 

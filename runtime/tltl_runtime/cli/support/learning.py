@@ -13,7 +13,10 @@ _MODULES: Final = {"torch", "rsl_rl", "tensordict", "safetensors", "tensorboard"
 
 @contextmanager
 def require_learning(command: str) -> Iterator[None]:
-    """Raise TltlError, TLT0730, with the command to install it, if a package of the extra ``rl`` is missing."""
+    """Raise TltlError, TLT0730, if a package of the extra ``rl`` is missing.
+
+    The help of the error is the command that installs it.
+    """
     try:
         yield
     except ModuleNotFoundError as error:

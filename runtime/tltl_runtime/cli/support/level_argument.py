@@ -30,7 +30,7 @@ def check_spelling(text: str) -> None:
 
 
 def check_named(policy: Path | None, level: str | None) -> None:
-    """Check early that the policy and the level exist, before torch is imported, which takes seconds.
+    """Check that the policy and the level exist, before the import of torch, which takes seconds.
 
     Raises:
         TltlError: the same error as reading the policy or the level would raise.
@@ -46,7 +46,7 @@ def check_named(policy: Path | None, level: str | None) -> None:
 def check_no_toml(spec: str | None, settings: str = "") -> None:
     """Raise UsageError if a ``.toml`` file is given as a spec.
 
-    It is probably a level, or a file for the option ``settings``.
+    The file is probably a level, or a file for the option ``settings``.
     """
     path = fileio.split_spec_name(spec)[0] if spec else ""
     if path.endswith(".toml"):
@@ -56,7 +56,10 @@ def check_no_toml(spec: str | None, settings: str = "") -> None:
 
 
 def check_level_exists(level: str, variant: str, command: str) -> None:
-    """Raise TltlError, TLT0001, if a level's file is missing.  The help suggests ``command`` with --level."""
+    """Raise TltlError, TLT0001, if a level's file is missing.
+
+    The help suggests ``command`` with ``--level``.
+    """
     if level.endswith(".toml") and not fileio.exists(level):
         suffix = "" if variant == "v0" else f":{variant}"
         title = f"the level's file `{level}` is not there any more"
@@ -65,7 +68,7 @@ def check_level_exists(level: str, variant: str, command: str) -> None:
 
 
 def own_level(spec: str, how: str = "with --level") -> str:
-    """Return the level that a spec names: a file beside it, or a level of the package.
+    """Return the level that a spec names: a file beside the spec, or a level of the package.
 
     ``how`` says in messages how to name a level.
 

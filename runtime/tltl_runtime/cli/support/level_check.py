@@ -42,33 +42,33 @@ def command(
     if plan is not None and plan.suffix.lower() != ".png":
         raise click.UsageError(f"--plan writes a .png, not `{plan}`", click.get_current_context())
     check = _Check(inputs, settings, report, sensors)
-    seen: list[tuple[Level, Reach]] = []
+    checked: list[tuple[Level, Reach]] = []
     for path, variant in map(level_place, levels):
         for name in level_names() if path == "all" else (path,):
             try:
-                seen += [check(name, variant_name) for variant_name in ((variant,) if variant else variants(name))]
+                checked += [check(name, variant_name) for variant_name in ((variant,) if variant else variants(name))]
             except TltlError as error:
                 report.add(error.diagnostics)
-    if plan is not None and seen:
-        _draw(plan, seen)
+    if plan is not None and checked:
+        _draw(plan, checked)
 
 
 class _Check:
-    """Checks levels and reports each remark only once, even if it applies to several variants."""
+    """Checks levels, and reports each message only once, even if it applies to several variants."""
 
     def __init__(
         self, inputs: Sequence[cli.Input], settings: cli.CompileSettings, report: cli.Report, sensors: Mapping[str, Any]
     ) -> None:
         self._inputs, self._settings, self._report, self._sensors = inputs, settings, report, sensors
-        self._said: set[object] = set()
+        self._reported: set[object] = set()
 
     def __call__(self, path: str, variant: str) -> tuple[Level, Reach]:
-        """Check one variant of a level and report the remarks."""
+        """Check one variant of a level and report the messages; return the level and what can be reached in it."""
         level, remarks = read_level(path, variant)
         senses, reach = Senses(level, self._sensors), reachable(level)
         warnings = [*remarks, *check_height(level, reach)]
         self._add(warnings)
-        inputs = self._inputs or self._own(level)
+        inputs = self._inputs or self._compile_own_spec(level)
         has_several = len(inputs) > 1 or any(len(opened.automata) > 1 for opened in inputs)
         for opened in inputs:
             for fspa, places in _specs(opened):
@@ -78,12 +78,12 @@ class _Check:
                 self._add(diagnostics)
                 if not diagnostics:
                     receiver = f" to `{fspa.name}`" if has_several else ""
-                    remark = "" if warnings or opened.diagnostics else " (nothing to report)"
-                    self._say(f"{level.name}:{variant} supplies {_supplied(level, fspa)}{receiver}{remark}")
-        self._say(f"{level.name}: the agent senses {_sensed(senses)}")
+                    note = "" if warnings or opened.diagnostics else " (nothing to report)"
+                    self._say(f"{level.name}:{variant} supplies {_supply_text(level, fspa)}{receiver}{note}")
+        self._say(f"{level.name}: the agent senses {_sensor_text(senses)}")
         return level, reach
 
-    def _own(self, level: Level) -> list[cli.Input]:
+    def _compile_own_spec(self, level: Level) -> list[cli.Input]:
         """Compile the spec that a level is made for."""
         if not level.spec:
             advice = 'name one before --level, or in the level: `spec = "FILE.tltl:NAME"`'
@@ -94,23 +94,23 @@ class _Check:
         return [opened]
 
     def _add(self, diagnostics: Iterable[Diagnostic]) -> None:
-        new = [diagnostic for diagnostic in diagnostics if diagnostic not in self._said]
-        self._said.update(new)
+        new = [diagnostic for diagnostic in diagnostics if diagnostic not in self._reported]
+        self._reported.update(new)
         self._report.add(new)
 
     def _say(self, line: str) -> None:
-        if line not in self._said:
-            self._said.add(line)
+        if line not in self._reported:
+            self._reported.add(line)
             self._report.say(line)
 
 
-def _draw(path: Path, seen: list[tuple[Level, Reach]]) -> None:
-    if len(seen) != 1:
-        wanted = "one level and variant, e.g. `--level navigation:v2`"
-        raise click.UsageError(f"--plan is for {wanted}; there are {len(seen)}", click.get_current_context())
+def _draw(path: Path, checked: list[tuple[Level, Reach]]) -> None:
+    if len(checked) != 1:
+        expected = "one level and variant, e.g. `--level navigation:v2`"
+        raise click.UsageError(f"--plan is for {expected}; there are {len(checked)}", click.get_current_context())
     from tltl_runtime.stealth.rendering.plan import draw_level
 
-    level, reach = seen[0]
+    level, reach = checked[0]
     fileio.write_file(path, draw_level(level, reach), "name another place with --plan")
 
 
@@ -120,21 +120,25 @@ def _specs(opened: cli.Input) -> Iterator[tuple[Fspa, SpecPlaces]]:
         yield fspa, SpecPlaces(specs.get(fspa.name))
 
 
-def _supplied(level: Level, fspa: Fspa) -> str:
-    """The entities, other signals and parameters that a level supplies to a spec, as text."""
+def _supply_text(level: Level, fspa: Fspa) -> str:
+    """Return, as text, the entities, other signals and params that a level supplies to a spec."""
     names = list(used_entities(level, fspa))
     names += [signal.name for signal in fspa.signals if "(" not in signal.name]
     names += [f"{name} = {value:.4g} m" for name, value in given_params(level, fspa).items()]
     return ", ".join(names) or "all that it needs, which is nothing,"
 
 
-def _sensed(senses: Senses) -> str:
-    """The parts of the observation that depend on the level, with their sizes, as text."""
-    own = senses.sensors
-    names = {"entities": own.entities, "variables": own.variables, "map": own.map.types if own.map else ()}
-    shown = [
+def _sensor_text(senses: Senses) -> str:
+    """Return, as text, the parts of the observation that depend on the level, with their sizes."""
+    sensors = senses.sensors
+    names = {
+        "entities": sensors.entities,
+        "variables": sensors.variables,
+        "map": sensors.map.types if sensors.map else (),
+    }
+    parts = [
         f"{key} {' x '.join(map(str, space.shape))} ({', '.join(names[key])})"
         for key, space in senses.space.spaces.items()
         if isinstance(space, spaces.Box)
     ]
-    return "; ".join(shown) or "nothing of the level"
+    return "; ".join(parts) or "nothing of the level"

@@ -8,7 +8,10 @@ from contextlib import contextmanager
 
 @contextmanager
 def level_faults() -> Iterator[None]:
-    """Raise TltlError, TLT0806, if a player leaves the level.  Other errors of the physics are bugs: they propagate."""
+    """Raise TltlError, TLT0806, if a player leaves the level.
+
+    Other errors of the physics are bugs: they propagate.
+    """
     try:
         yield
     except RuntimeError as error:

@@ -15,8 +15,8 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 _OUTPUT: Final = ("--output", "--out", "-o")
 
 
-def output_folder(about: str, default: Path | None = None) -> Callable[[Function], Function]:
-    """The option ``-o DIR``, passed to the command as ``folder``."""
+def output_folder(help_text: str, default: Path | None = None) -> Callable[[Function], Function]:
+    """Return the option ``-o DIR``, which the command gets as ``folder``."""
     return click.option(
         *_OUTPUT,
         "folder",
@@ -24,19 +24,19 @@ def output_folder(about: str, default: Path | None = None) -> Callable[[Function
         type=cli.OutputPath("folder", checked=True),
         default=default,
         show_default=default is not None,
-        help=about,
+        help=help_text,
     )
 
 
-def output_file(metavar: str, about: str) -> Callable[[Function], Function]:
-    """The option ``-o FILE``, passed to the command as ``path``."""
-    return click.option(*_OUTPUT, "path", metavar=metavar, type=cli.OutputPath("file", checked=True), help=about)
+def output_file(metavar: str, help_text: str) -> Callable[[Function], Function]:
+    """Return the option ``-o FILE``, which the command gets as ``path``."""
+    return click.option(*_OUTPUT, "path", metavar=metavar, type=cli.OutputPath("file", checked=True), help=help_text)
 
 
-def seed_option(about: str) -> Callable[[Function], Function]:
-    """The option ``--seed N``, by default 0."""
+def seed_option(help_text: str) -> Callable[[Function], Function]:
+    """Return the option ``--seed N``, by default 0."""
     kind = cli.WholeRange(min=0)
-    return click.option("--seed", metavar="N", type=kind, default=0, show_default=True, help=about)
+    return click.option("--seed", metavar="N", type=kind, default=0, show_default=True, help=help_text)
 
 
 summary_format = click.option(

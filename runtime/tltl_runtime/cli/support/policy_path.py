@@ -15,11 +15,12 @@ from tltlc.api import Diagnostic, TltlError, fileio
 
 
 def policy_place(policy: Path | None, level: str | None, command: str) -> tuple[Path, str | None, str | None]:
-    """Return the file of a policy, and the level and the variant to play; None means as in the policy's card.
+    """Return the file of a policy, and the level and the variant to play.
 
-    ``policy`` is a path, or ``LEVEL`` or ``LEVEL:VARIANT`` for the policy that comes with a level.
-    Without ``policy``, the policy that comes with ``level`` is used.  At least one of the two is given.
-    ``command`` is the command for messages; it takes a policy as its argument.
+    Level and variant are None if those in the policy's card are to be played.  ``policy`` is a path, or
+    ``LEVEL`` or ``LEVEL:VARIANT`` for the policy that comes with a level.  Without ``policy``, the policy
+    that comes with ``level`` is used.  At least one of the two must be given.  ``command`` is the command
+    for messages; it takes a policy as its argument.
 
     Raises:
         TltlError: TLT0853, no policy comes with the level; TLT0800, the level does not exist; TLT0001,
@@ -31,7 +32,7 @@ def policy_place(policy: Path | None, level: str | None, command: str) -> tuple[
         return policy_file(policy), name or policy_level, variant if name else policy_variant
     if policy is None:
         assert name is not None
-        return _shipped(name), name, variant
+        return _shipped_policy_file(name), name, variant
     path = policy_path(policy)
     if name is None and fileio.is_file(policy / RUN):
         # The card has only the level's name; the folder of the training has the path of its file.
@@ -46,11 +47,14 @@ def policy_file(policy: Path) -> Path:
     Raises:
         TltlError: TLT0853, no policy comes with the level; and the errors of :func:`policy_path`.
     """
-    return _shipped(level_place(str(policy))[0]) if names_level(str(policy)) else policy_path(policy)
+    return _shipped_policy_file(level_place(str(policy))[0]) if names_level(str(policy)) else policy_path(policy)
 
 
-def check_known(level: str, policy: Path, command: str) -> None:
-    """Raise TltlError, TLT0800, if a policy was trained on a user's level, whose path its file does not contain."""
+def check_level_is_shipped(level: str, policy: Path, command: str) -> None:
+    """Raise TltlError, TLT0800, if a policy was trained on a user's level.
+
+    The policy's file does not contain the path of that level.
+    """
     if level not in level_names():
         title = f"there is no level `{level}`: the policy was trained on a level of your own"
         help_ = f"name its file: `{command} {quote(str(policy))} --level {level}.toml`"
@@ -89,16 +93,19 @@ def policy_path(path: Path) -> Path:
 
 
 def progress(folder: Path) -> str:
-    """Describe the progress of the training in a folder; raises TltlError, TLT0001, if its metrics cannot be read."""
-    measured = read_metrics(folder / METRICS)
-    if not measured:
+    """Describe the progress of the training in a folder.
+
+    Raises TltlError, TLT0001, if its metrics cannot be read.
+    """
+    metrics = read_metrics(folder / METRICS)
+    if not metrics:
         return "its first iteration is not over"
-    episodes = sum(iteration["episodes"] for iteration in measured)
-    return f"after {measured[-1]['steps']:,} steps, {episodes or 'no'} episode{'s' * (episodes != 1)} ended"
+    episodes = sum(iteration["episodes"] for iteration in metrics)
+    return f"after {metrics[-1]['steps']:,} steps, {episodes or 'no'} episode{'s' * (episodes != 1)} ended"
 
 
-def _shipped(level: str) -> Path:
-    """The policy that comes with a level; raises TltlError, TLT0853, if there is none."""
+def _shipped_policy_file(level: str) -> Path:
+    """Return the policy that comes with a level; raises TltlError, TLT0853, if there is none."""
     path = shipped_policy(level)
     if path is None:
         load_level(level)

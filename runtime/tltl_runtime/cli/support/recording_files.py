@@ -39,9 +39,9 @@ class RecordingFiles:
                     f"--output is a folder or a name with {SUFFIX}, not `{out}`", click.get_current_context(silent=True)
                 )
             self._folder = out
-        why = _refusal(self._folder, make=self._folder == out)
-        if why:
-            title = f"cannot record to `{self._folder}`: {why}"
+        problem = _write_problem(self._folder, make=self._folder == out)
+        if problem:
+            title = f"cannot record to `{self._folder}`: {problem}"
             raise TltlError([Diagnostic("TLT0005", title, help="name another place with -o")])
 
     def keep(self, episode: Episode) -> None:
@@ -61,24 +61,24 @@ class RecordingFiles:
         if self._unfinished is not None:
             self._unfinished.unlink(missing_ok=True)
             self._unfinished = None
-        click.echo(f"{path}: {_judged(episode)}")
+        click.echo(f"{path}: {_result_text(episode)}")
         return str(path)
 
 
-def write_elsewhere(episode: Episode, name: str, refused: TltlError) -> Path:
-    """Print the error ``refused`` and write the episode to the folder for temporary files instead.
+def write_elsewhere(episode: Episode, name: str, error: TltlError) -> Path:
+    """Print an error and write the episode to the folder for temporary files instead; return its path.
 
     Raises:
-        TltlError: TLT0005, this folder cannot be written, either.
+        TltlError: TLT0005, that folder cannot be written, either.
     """
-    click.echo(f"{refused}", err=True)
+    click.echo(f"{error}", err=True)
     path = new_path(Path(gettempdir()), name)
     write_episode(path, episode)
     return path
 
 
-def _refusal(folder: Path, make: bool) -> str:
-    """The reason why a folder cannot be written; empty if it can.  With ``make``, create it first."""
+def _write_problem(folder: Path, make: bool) -> str:
+    """Return why a folder cannot be written; empty if it can.  With ``make``, create it first."""
     try:
         if make:
             folder.mkdir(parents=True, exist_ok=True)
@@ -89,5 +89,5 @@ def _refusal(folder: Path, make: bool) -> str:
     return "" if os.access(folder, os.W_OK) else "permission denied"
 
 
-def _judged(episode: Episode) -> str:
+def _result_text(episode: Episode) -> str:
     return f"{cause(episode).text}; {episode.verdict}, progress {share(episode.progress[-1])}, seed {episode.seed}"

@@ -7,11 +7,11 @@ from typing import Any, Final
 
 import click
 
-from tltl_runtime.cli.support.printable import plain
-from tltl_runtime.regression.explain.account import Account
+from tltl_runtime.cli.support.printable import plain_text
+from tltl_runtime.regression.explain.account import ExplainedEpisode
 from tltl_runtime.regression.suite.suite import Case
 
-_EACH: Final = 25
+_EPISODES_BETWEEN_LINES: Final = 25
 """The number of episodes between two lines."""
 
 
@@ -27,16 +27,16 @@ class RegressionDisplay:
         self._bar: Any = None
         self._name = ""
 
-    def __call__(self, case: Case, count: int, last: Account) -> None:
-        """Show that ``count`` episodes of a case are finished; ``last`` is the account of the last one."""
+    def __call__(self, case: Case, count: int, last: ExplainedEpisode) -> None:
+        """Show that ``count`` episodes of a case are finished; ``last`` is the last one."""
         self._met = last.summary.success + (self._met if count > 1 else 0)
         if sys.stderr.isatty():
             self._draw(case, count)
-        elif count % _EACH == 0 or count == case.episodes:
+        elif count % _EPISODES_BETWEEN_LINES == 0 or count == case.episodes:
             text = f"{count} of {self._most}{case.episodes} episodes, {self._met} met the spec"
-            click.echo(f"{plain(case.name)}: {text}", err=True)
+            click.echo(f"{plain_text(case.name)}: {text}", err=True)
 
-    def over(self) -> None:
+    def clear(self) -> None:
         """Remove the bar of a finished case, so that other lines can be printed."""
         if self._bar is not None:
             self._bar.stop()
@@ -49,7 +49,7 @@ class RegressionDisplay:
             from rich.progress import Progress
 
             self._bar = Progress(console=Console(stderr=True), transient=True)
-            self._name = escape(plain(case.name))
+            self._name = escape(plain_text(case.name))
             self._bar.add_task(self._name, total=case.episodes)
             self._bar.start()
         self._bar.update(
@@ -60,4 +60,4 @@ class RegressionDisplay:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self.over()
+        self.clear()

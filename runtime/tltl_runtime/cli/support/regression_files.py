@@ -14,11 +14,11 @@ from tltl_runtime.regression.report.junit import junit
 from tltl_runtime.regression.report.page.contents import NotRun, ReportedCase, SuiteReport
 from tltl_runtime.regression.report.page.page import html_report
 from tltl_runtime.regression.report.report_json import document
-from tltl_runtime.regression.suite.level_texts import designed
+from tltl_runtime.regression.suite.level_texts import baseline_level
 from tltl_runtime.regression.suite.suite import SHIPPED, Suite
 from tltl_runtime.regression.verdict.baseline import Reference
-from tltl_runtime.regression.verdict.play import Ready
-from tltl_runtime.regression.verdict.suite_run import CASES, Done, case_folder
+from tltl_runtime.regression.verdict.play import PreparedCase
+from tltl_runtime.regression.verdict.suite_run import CASES, FinishedCase, case_folder
 from tltl_runtime.regression.verdict.verdict import Verdict
 from tltl_runtime.stealth.recordings.episode import Episode
 from tltl_runtime.stealth.recordings.file import read_episode
@@ -38,7 +38,7 @@ _NOTE: Final = "Its variants v1 and v2 were changed on purpose: reviews and fail
 _MOST_NAMED: Final = 8
 """The most files given to --changed that the page names."""
 
-_NO_UTF8: Final = re.compile("[\ud800-\udfff]")
+_NOT_UTF8: Final = re.compile("[\ud800-\udfff]")
 """Surrogates, which stand for non-UTF-8 bytes in names of files and cannot be encoded as UTF-8."""
 
 
@@ -53,7 +53,7 @@ class SuiteRun:
 
     suite: Suite
     folder: Path
-    cases: tuple[Done, ...]
+    cases: tuple[FinishedCase, ...]
     complete: bool
     left_out: tuple[str, ...] = ()
     missing: tuple[str, ...] = ()
@@ -61,18 +61,18 @@ class SuiteRun:
 
 
 def json_text(outcome: SuiteRun) -> str:
-    """The JSON report."""
-    reports = [done.report for done in outcome.cases]
+    """Return the JSON report."""
+    reports = [case.report for case in outcome.cases]
     data = document(outcome.suite, reports, complete=outcome.complete, left_out=outcome.left_out)
     return _encodable(json.dumps(data, indent=2, ensure_ascii=False)) + "\n"
 
 
 def _junit_text(outcome: SuiteRun) -> str:
-    return junit(outcome.suite, [done.report for done in outcome.cases], outcome.missing)
+    return junit(outcome.suite, [case.report for case in outcome.cases], outcome.missing)
 
 
 def _page_text(outcome: SuiteRun) -> str:
-    """The HTML page."""
+    """Return the HTML page."""
     suite = outcome.suite
     is_shipped = suite.path == SHIPPED
     contents = SuiteReport(
@@ -80,15 +80,15 @@ def _page_text(outcome: SuiteRun) -> str:
         seed=suite.seed,
         error=suite.error,
         versions=versions(),
-        cases=tuple(_reported(done, suite, outcome.folder) for done in outcome.cases),
+        cases=tuple(_reported_case(case, suite, outcome.folder) for case in outcome.cases),
         complete=outcome.complete,
-        not_run=tuple(_not_run(outcome)),
+        not_run=tuple(_cases_not_run(outcome)),
         note=_NOTE if is_shipped else "",
     )
     return _encodable(html_report(contents))
 
 
-def _not_run(outcome: SuiteRun) -> Iterator[NotRun]:
+def _cases_not_run(outcome: SuiteRun) -> Iterator[NotRun]:
     """Yield the cases that were not judged, in the suite's order."""
     unaffected = "--changed names no file"
     if outcome.changed:
@@ -100,11 +100,11 @@ def _not_run(outcome: SuiteRun) -> Iterator[NotRun]:
     }
     for case in outcome.suite.cases:
         if case.name in reasons:
-            yield NotRun(case.name, reasons[case.name], _earlier(outcome, case.name))
+            yield NotRun(case.name, reasons[case.name], _earlier_verdict(outcome, case.name))
 
 
-def _earlier(outcome: SuiteRun, name: str) -> Verdict | None:
-    """The verdict of an earlier run in the folder on a case, or None."""
+def _earlier_verdict(outcome: SuiteRun, name: str) -> Verdict | None:
+    """Return the verdict of an earlier run in the folder on a case, or None."""
     path = case_folder(outcome.suite, name, outcome.folder / CASES) / _REPORT
     with suppress(OSError, ValueError, KeyError, TypeError, RecursionError):
         verdict = fileio.load_json(path, fileio.limits.REPORT)["content"]["verdict"]
@@ -114,7 +114,7 @@ def _earlier(outcome: SuiteRun, name: str) -> Verdict | None:
 
 
 def _encodable(text: str) -> str:
-    return _NO_UTF8.sub("\N{REPLACEMENT CHARACTER}", text)
+    return _NOT_UTF8.sub("\N{REPLACEMENT CHARACTER}", text)
 
 
 REPORTS: Final[Mapping[str, Callable[[SuiteRun], str]]] = {
@@ -126,7 +126,7 @@ REPORTS: Final[Mapping[str, Callable[[SuiteRun], str]]] = {
 
 
 def write_reports(outcome: SuiteRun, files: Mapping[str, Path]) -> Path | None:
-    """Write the requested reports, and the page into the folder of the run.  Return the path of a page, or None.
+    """Write the requested reports, and the page into the folder of the run; return the path of a page, or None.
 
     The keys of ``files`` are options.  The folder gets no page if the run was stopped before its first
     case and no page was requested.
@@ -146,40 +146,43 @@ def write_reports(outcome: SuiteRun, files: Mapping[str, Path]) -> Path | None:
     return files.get("--html", outcome.folder / PAGE)
 
 
-def _reported(done: Done, suite: Suite, folder: Path) -> ReportedCase:
+def _reported_case(case: FinishedCase, suite: Suite, folder: Path) -> ReportedCase:
     """Return a case with the data that the page draws."""
-    if done.ready is None or done.reference is None:
-        return ReportedCase(done.report)
-    episodes = _episodes(done, case_folder(suite, done.report.name, folder / CASES))
+    if case.prepared is None or case.reference is None:
+        return ReportedCase(case.report)
+    episodes = _episodes(case, case_folder(suite, case.report.name, folder / CASES))
     return ReportedCase(
-        report=done.report,
-        level=done.ready.level,
-        fspa=done.ready.setup.fspa,
+        report=case.report,
+        level=case.prepared.level,
+        fspa=case.prepared.setup.fspa,
         episodes=episodes,
-        before=done.reference.accounts,
-        designed=_designed(done.ready, done.reference),
-        curve=_curve(done, folder),
+        before=case.reference.accounts,
+        baseline_level=_baseline_level(case.prepared, case.reference),
+        curve=_curve(case, folder),
     )
 
 
-def _designed(ready: Ready, reference: Reference) -> Level | None:
-    """The level that the baseline was recorded on.  If it has changed, it is loaded from the baseline's texts."""
-    return ready.level if ready.played.files == reference.played.files else designed(reference)
+def _baseline_level(ready: PreparedCase, reference: Reference) -> Level | None:
+    """Return the level that the baseline was recorded on; None if it is unknown.
+
+    If the level has changed, it is loaded from the texts in the baseline.
+    """
+    return ready.level if ready.played.files == reference.played.files else baseline_level(reference)
 
 
-def _curve(done: Done, folder: Path) -> bytes:
-    """The plot of the case's training, as PNG bytes; empty if there is none or it was removed."""
-    if done.report.retrained is None:
+def _curve(case: FinishedCase, folder: Path) -> bytes:
+    """Return the plot of the case's training, as PNG bytes; empty if there is none or it was removed."""
+    if case.report.retrained is None:
         return b""
     with suppress(OSError):
-        return (folder / done.report.retrained.policy).with_name("curve.png").read_bytes()
+        return (folder / case.report.retrained.policy).with_name("curve.png").read_bytes()
     return b""
 
 
-def _episodes(done: Done, folder: Path) -> dict[int, Episode]:
-    """The recorded episodes by index.  Damaged recordings are left out."""
+def _episodes(case: FinishedCase, folder: Path) -> dict[int, Episode]:
+    """Return the recorded episodes by index.  Damaged recordings are left out."""
     episodes: dict[int, Episode] = {}
-    for index, name in done.report.recordings:
+    for index, name in case.report.recordings:
         with suppress(TltlError):
             episodes[index] = read_episode(folder / name)
     return episodes

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 import click
 
-from tltl_runtime.cli.support.printable import plain
+from tltl_runtime.cli.support.printable import plain_text
 from tltl_runtime.evaluation.figures import Figures
 from tltl_runtime.regression.report.case_report import CaseReport
 from tltl_runtime.regression.retrain.retrained import OUTCOMES
@@ -14,23 +14,23 @@ from tltl_runtime.regression.retrain.retrained import OUTCOMES
 _COLORS = {"pass": "green", "review": "yellow", "fail": "red"}
 
 
-def case_lines(report: CaseReport, width: int, *, kept: bool) -> Iterator[str]:
-    """The lines of a case.  Its name is padded to ``width`` columns."""
+def case_lines(report: CaseReport, width: int, *, is_cached: bool) -> Iterator[str]:
+    """Yield the lines of a case.  Its name is padded to ``width`` columns."""
     verdict = click.style(report.verdict, fg=_COLORS[report.verdict], bold=True)
     # Keep the padding outside of the coloured text, so that `rstrip` can remove it at the end of a line.
-    beside = f"{' ' * (6 - len(report.verdict))}  {_figures(report)}{'  (as before)' if kept else ''}"
-    yield f"{plain(report.name):<{width}}  {verdict}{beside.rstrip()}"
+    beside = f"{' ' * (6 - len(report.verdict))}  {_figures(report)}{'  (as before)' if is_cached else ''}"
+    yield f"{plain_text(report.name):<{width}}  {verdict}{beside.rstrip()}"
     if report.verdict != "pass":
-        yield from (f"    {plain(reason)}" for reason in report.reasons)
+        yield from (f"    {plain_text(reason)}" for reason in report.reasons)
 
 
-def sum_line(reports: Sequence[CaseReport], missing: Sequence[str] = ()) -> str:
-    """The counts of verdicts and of the outcomes of trainings; ``missing`` cases were not judged."""
+def summary_line(reports: Sequence[CaseReport], missing: Sequence[str] = ()) -> str:
+    """Return the counts of verdicts and of the outcomes of trainings; ``missing`` cases were not judged."""
     if not reports:
         return "no case was judged" if missing else "no case was to be played"
     text = f"{len(reports)} case{'s' * (len(reports) != 1)}: {_counts([report.verdict for report in reports], _COLORS)}"
-    trained = [OUTCOMES[report.retrained.outcome] for report in reports if report.retrained]
-    return f"{text}; trained anew: {_counts(trained, OUTCOMES.values())}" if trained else text
+    outcomes = [OUTCOMES[report.retrained.outcome] for report in reports if report.retrained]
+    return f"{text}; trained anew: {_counts(outcomes, OUTCOMES.values())}" if outcomes else text
 
 
 def _counts(words: Sequence[str], order: Iterable[str]) -> str:
@@ -42,9 +42,13 @@ def _figures(report: CaseReport) -> str:
     if now is None or before is None:
         return ""
     passed = round(now.pass_rate * now.episodes)
-    parts = [f"{passed:>3} of {now.episodes:<3}", _against("progress", now, before), _against("reward", now, before)]
+    parts = [
+        f"{passed:>3} of {now.episodes:<3}",
+        _comparison("progress", now, before),
+        _comparison("reward", now, before),
+    ]
     return "  ".join(parts)
 
 
-def _against(name: str, now: Figures, before: Figures) -> str:
+def _comparison(name: str, now: Figures, before: Figures) -> str:
     return f"{name} {getattr(now, name).mean:5.2f} ({getattr(before, name).mean:5.2f})"

@@ -13,22 +13,22 @@ from typing import Final
 import click
 
 from tltl_runtime.cli.support.level_faults import level_faults
-from tltl_runtime.cli.support.printable import plain
+from tltl_runtime.cli.support.printable import plain_text
 from tltl_runtime.cli.support.regression_display import RegressionDisplay
-from tltl_runtime.cli.support.training_progress import train_shown
-from tltl_runtime.cli.support.training_text import minutes as said_minutes
+from tltl_runtime.cli.support.training_progress import train_with_display
+from tltl_runtime.cli.support.training_text import minutes as minutes_text
 from tltl_runtime.evaluation.evaluate import Pool
-from tltl_runtime.regression.retrain.retrain import is_kept, make_room, retrained, retraining
-from tltl_runtime.regression.retrain.retrained import Retrained
+from tltl_runtime.regression.retrain.retrain import configure_retraining, is_stored, make_room, retraining_result
+from tltl_runtime.regression.retrain.retrained import RetrainingResult
 from tltl_runtime.regression.suite.suite import SHIPPED, Suite
 from tltl_runtime.regression.verdict.baseline import baseline_command
-from tltl_runtime.regression.verdict.suite_run import NOT_THE_CASE, Done
+from tltl_runtime.regression.verdict.suite_run import WORKER_ERRORS, FinishedCase
 from tltl_runtime.training.run.record import finished_record, write_record
 from tltl_runtime.training.run.run_file import RUN, TrainingRun
 from tltlc.api import TltlError, cli, record, replace
 
-_NOT_THE_CASE: Final = NOT_THE_CASE | {"TLT0005"}
-"""Codes of errors of the workers or of the folder, which are no faults of a case."""
+_FATAL_ERRORS: Final = WORKER_ERRORS | {"TLT0005"}
+"""The codes of errors of worker processes or of the folder: they are no faults of a case."""
 
 
 @record
@@ -47,95 +47,97 @@ class Retraining:
     fresh: bool
 
 
-def retrain_cases(asked: Retraining, results: list[Done], *, to_stderr: bool) -> None:
+def retrain_cases(options: Retraining, results: list[FinishedCase], *, to_stderr: bool) -> None:
     """Train for each case that needs it; print each result at once and store it in ``results``.
 
-    Errors of one case, for example a level that was edited meanwhile, are printed to standard error, and
-    the next case continues.
+    An error of one case, for example because its level was edited meanwhile, is printed to standard
+    error, and the next case follows.
 
     Raises:
         TltlError: TLT0942, a policy lies in the folder of a training; TLT0730, TLT0850 and TLT0852,
             errors of the workers; TLT0005, a file cannot be written.
     """
-    for done in results:
-        if why := done.useless_training:
-            click.echo(plain(f"{done.report.name}: its policy is not trained further, since {why}"), err=True)
+    for case in results:
+        if reason := case.training_obstacle:
+            click.echo(plain_text(f"{case.report.name}: its policy is not trained further, since {reason}"), err=True)
     runs = {
-        row: retraining(asked.suite, ready, asked.folder, asked.minutes, asked.pool)
-        for row, done in enumerate(results)
-        if (ready := done.to_train)
+        row: configure_retraining(options.suite, prepared, options.folder, options.minutes, options.pool)
+        for row, case in enumerate(results)
+        if (prepared := case.case_to_train)
     }
-    if asked.fresh:
+    if options.fresh:
         # Clear all folders first, so that a stopped run does not continue with old trainings.
         for row, run in runs.items():
-            with _one_case(results[row].report.name):
-                _make_room(asked, results[row].report.name, run)
+            with _case_errors(results[row].report.name):
+                _make_room(options, results[row].report.name, run)
     for row, run in runs.items():
-        done = results[row]
-        with _one_case(done.report.name):
-            _train(asked, done.report.name, run)
-            outcome = _played(asked, done, run)
-            results[row] = replace(done, report=replace(done.report, retrained=outcome))
-            for line in _lines(asked, done.report.name, outcome):
-                click.echo(plain(line), err=to_stderr)
+        case = results[row]
+        with _case_errors(case.report.name):
+            _train(options, case.report.name, run)
+            result = _result(options, case, run)
+            results[row] = replace(case, report=replace(case.report, retrained=result))
+            for line in _lines(options, case.report.name, result):
+                click.echo(plain_text(line), err=to_stderr)
 
 
 @contextmanager
-def _one_case(name: str) -> Iterator[None]:
+def _case_errors(name: str) -> Iterator[None]:
     """Print errors of a case; raise TltlError for errors that affect all cases."""
     try:
         with level_faults():
             yield
     except TltlError as error:
-        if _NOT_THE_CASE & {diagnostic.code for diagnostic in error.diagnostics}:
+        if _FATAL_ERRORS & {diagnostic.code for diagnostic in error.diagnostics}:
             raise
-        click.echo(f"{plain(name)}: nothing can be said of its training", err=True)
+        click.echo(f"{plain_text(name)}: nothing can be said of its training", err=True)
         cli.show(error.diagnostics, "text", sys.stderr)
 
 
-def _train(asked: Retraining, name: str, run: TrainingRun) -> None:
+def _train(options: Retraining, name: str, run: TrainingRun) -> None:
     """Start or continue the training to its end, unless it is already finished."""
     exists = (run.folder / RUN).exists()
-    kept = exists and is_kept(run)
+    kept = exists and is_stored(run)
     if kept and finished_record(run):
         return
     verb = "goes on" if kept else "begins with its policy"
     cause = "what is kept is of another level, policy, spec, seed or settings, or cannot be read"
     reason = f", anew, since {cause}" if exists and not kept else ""
-    limit = said_minutes(asked.minutes)
-    click.echo(f"{plain(name)}: a training {verb}{reason}, for {limit} at the most, in {run.folder}", err=True)
+    limit = minutes_text(options.minutes)
+    click.echo(f"{plain_text(name)}: a training {verb}{reason}, for {limit} at the most, in {run.folder}", err=True)
     if exists and not kept:
-        _make_room(asked, name, run)
-    write_record(run, train_shown(run, resume=kept, again=f"{asked.again} --minutes {asked.minutes:g}"))
+        _make_room(options, name, run)
+    write_record(run, train_with_display(run, resume=kept, again=f"{options.again} --minutes {options.minutes:g}"))
 
 
-def _make_room(asked: Retraining, name: str, run: TrainingRun) -> None:
+def _make_room(options: Retraining, name: str, run: TrainingRun) -> None:
     """Make room for a new training, and print where an earlier one was moved."""
-    if run.folder.is_dir() and (moved_to := make_room(asked.suite, run.folder)):
-        click.echo(f"{plain(name)}: the training that was in {run.folder} is now in {moved_to}", err=True)
+    if run.folder.is_dir() and (new_folder := make_room(options.suite, run.folder)):
+        click.echo(f"{plain_text(name)}: the training that was in {run.folder} is now in {new_folder}", err=True)
 
 
-def _played(asked: Retraining, done: Done, run: TrainingRun) -> Retrained:
-    """Return the result of the training, showing the progress of its episodes on standard error."""
-    assert done.ready is not None
-    case = replace(done.ready.case, name=f"{done.report.name}, trained anew")
+def _result(options: Retraining, case: FinishedCase, run: TrainingRun) -> RetrainingResult:
+    """Return the result of the training, and show the progress of its episodes on standard error."""
+    assert case.prepared is not None
+    shown_case = replace(case.prepared.case, name=f"{case.report.name}, trained anew")
     with RegressionDisplay("at most") as display:
-        return retrained(asked.suite, done, run, asked.pool, lambda count, last: display(case, count, last))
+        return retraining_result(
+            options.suite, case, run, options.pool, lambda count, last: display(shown_case, count, last)
+        )
 
 
-def _lines(asked: Retraining, name: str, outcome: Retrained) -> Iterator[str]:
-    """The result of a training and the next steps, as lines."""
-    yield f"{name}, trained anew: {outcome.text}"
-    policy = quote(str(asked.folder / outcome.policy))
-    if outcome.outcome != "learned":
-        if outcome.trained.end == "minutes":
-            longer = 2 * max(asked.minutes, outcome.trained.seconds / 60)
+def _lines(options: Retraining, name: str, result: RetrainingResult) -> Iterator[str]:
+    """Yield the lines that describe the result of a training and the next steps."""
+    yield f"{name}, trained anew: {result.text}"
+    policy = quote(str(options.folder / result.policy))
+    if result.outcome != "learned":
+        if result.trained.end == "minutes":
+            longer = 2 * max(options.minutes, result.trained.seconds / 60)
             longer = ceil(longer) if longer > 1 else round(longer, 2)
-            yield f"    to train longer: {asked.again} --minutes {longer:g}"
-    elif asked.suite.path == SHIPPED:
+            yield f"    to train longer: {options.again} --minutes {longer:g}"
+    elif options.suite.path == SHIPPED:
         yield f"    the new policy: {policy}"
     else:
-        then = baseline_command(asked.suite)
+        then = baseline_command(options.suite)
         yield f"    where the change was meant: copy {policy} beside the suite, name it there as `policy`, then: {then}"
-    if outcome.episode:
-        yield f"    an episode that met the spec: tltlc replay {quote(str(asked.folder / outcome.episode))}"
+    if result.episode:
+        yield f"    an episode that met the spec: tltlc replay {quote(str(options.folder / result.episode))}"

@@ -57,7 +57,10 @@ def senses_options(command: Function) -> Function:
 
 
 def option_of(key: str, sensors: Sensors) -> str:
-    """The option, quoted for a shell, that selects ``entities``, ``variables`` or ``map`` as in these sensors."""
+    """Return the option that selects ``entities``, ``variables`` or ``map`` as in these sensors.
+
+    It is quoted for a shell.
+    """
     if key == "map" and sensors.map is not None:
         value = f"cell={sensors.map.cell!r},extent={sensors.map.extent},types={','.join(sensors.map.types)}"
     else:
@@ -80,7 +83,7 @@ class _Names(_Type):
 
 
 class _Map(_Type):
-    """A map ``cell=0.5,extent=15,types=wall,low``: keys with values in any order; ``types`` can have several."""
+    """A map ``cell=0.5,extent=15,types=wall,low``: keys with values, in any order; ``types`` may have several."""
 
     name = "map"
 

@@ -8,7 +8,7 @@ from tltlc.api import fileio
 
 
 def check_suite_exists(suite: Path | None) -> None:
-    """Check early that the suite exists, before torch is imported, which takes seconds.
+    """Check that the suite exists, before the import of torch, which takes seconds.
 
     Raises:
         TltlError: TLT0001, the same error as reading the suite would raise.

@@ -15,12 +15,12 @@ from tltl_runtime.cli.support.training_picture import Picture
 from tltl_runtime.cli.support.training_text import (
     SEARCH_IS_LOST,
     SEARCHED_AGAIN,
-    found_line,
-    imitated_line,
-    line,
+    demonstrations_line,
     recording_line,
+    report_line,
     search_end,
     search_line,
+    search_result_line,
 )
 from tltl_runtime.training.exploration.search import SearchProgress
 from tltl_runtime.training.imitation.demonstrations import Attempt
@@ -34,47 +34,48 @@ _SECONDS_BETWEEN_LINES: Final = 10.0
 class Display(Protocol):
     """Shows the progress of a training."""
 
-    def searched(self, searched: SearchProgress) -> None:
+    def show_search(self, progress: SearchProgress) -> None:
         """Show the progress of the search that precedes the training."""
 
-    def recorded(self, attempt: Attempt) -> None:
+    def show_attempt(self, attempt: Attempt) -> None:
         """Show the progress of recording the demonstrations that precede the training."""
 
-    def trained(self, report: TrainingReport) -> None:
+    def show_report(self, report: TrainingReport) -> None:
         """Show a report of the training."""
 
 
 @contextmanager
 def display(run: TrainingRun, again: str) -> Iterator[Display]:
-    """Yield a display that writes to standard error.  ``again`` is the command that resumes the training.
+    """Yield a display that writes to standard error.
 
-    If torchrun started several processes, only the first one writes.
+    ``again`` is the command that resumes the training.  If torchrun started several processes, only the
+    first one writes.
     """
     if process_group().rank > 0:
-        yield _Nothing()
+        yield _NoDisplay()
         return
     console = Console(stderr=True, highlight=False)
     if not console.is_terminal or console.is_dumb_terminal:
-        yield _Lines(run, again)
+        yield _LineDisplay(run, again)
         return
     picture = Picture(run, console)
-    with Live(get_renderable=picture.drawn, console=console, refresh_per_second=2) as live:
+    with Live(get_renderable=picture.picture, console=console, refresh_per_second=2) as live:
         live.refresh()
         yield picture
 
 
-class _Nothing:
-    def searched(self, searched: SearchProgress) -> None:
+class _NoDisplay:
+    def show_search(self, progress: SearchProgress) -> None:
         pass
 
-    def recorded(self, attempt: Attempt) -> None:
+    def show_attempt(self, attempt: Attempt) -> None:
         pass
 
-    def trained(self, report: TrainingReport) -> None:
+    def show_report(self, report: TrainingReport) -> None:
         pass
 
 
-class _Lines:
+class _LineDisplay:
     """Prints a line at the first report, then every ten seconds, and at the last report."""
 
     def __init__(self, run: TrainingRun, again: str) -> None:
@@ -82,32 +83,32 @@ class _Lines:
         self._next = 0.0
         self._has_searched = self._has_trained = False
 
-    def searched(self, searched: SearchProgress) -> None:
+    def show_search(self, progress: SearchProgress) -> None:
         if not self._has_searched and self._has_trained:
             self._print(SEARCHED_AGAIN, always=True)
         elif not self._has_searched:
             begins = self._run.initial and not (self._run.folder / CHECKPOINT).exists()
-            how = "the policy plays, and then chance" if begins else "by chance"
+            method = "the policy plays, and then chance" if begins else "by chance"
             end = search_end(self._run.settings.exploration)
-            self._print(f"ways to meet the spec are searched first: {how}. {end}", always=True)
+            self._print(f"ways to meet the spec are searched first: {method}. {end}", always=True)
             self._print(SEARCH_IS_LOST, always=True)
             self._next = 0.0
         self._has_searched = True
-        self._print(search_line(searched), always=self._has_trained and searched.complete)
+        self._print(search_line(progress), always=self._has_trained and progress.complete)
 
-    def recorded(self, attempt: Attempt) -> None:
-        wanted = self._run.settings.imitation.demonstrations
-        self._print(recording_line(attempt, wanted), always=attempt.path is None or attempt.kept == wanted)
+    def show_attempt(self, attempt: Attempt) -> None:
+        requested = self._run.settings.imitation.demonstrations
+        self._print(recording_line(attempt, requested), always=attempt.path is None or attempt.kept == requested)
 
-    def trained(self, report: TrainingReport) -> None:
+    def show_report(self, report: TrainingReport) -> None:
         first, self._has_trained, self._has_searched = not self._has_trained, True, False
         if first and report.imitated:
-            self._print(imitated_line(report.imitated), always=True)
+            self._print(demonstrations_line(report.imitated), always=True)
         if first and report.searched:
-            self._print(found_line(report.searched), always=True)
+            self._print(search_result_line(report.searched), always=True)
         if first:
             self._print(f"Ctrl-C stops it and keeps what was learned; to go on: {self._again}", always=True)
-        self._print(line(report, self._run.settings.stop), always=first or report.stop is not None)
+        self._print(report_line(report, self._run.settings.stop), always=first or report.stop is not None)
 
     def _print(self, text: str, *, always: bool = False) -> None:
         now = time.monotonic()

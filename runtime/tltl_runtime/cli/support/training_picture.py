@@ -15,12 +15,12 @@ from rich.text import Text
 from tltl_runtime.cli.support.training_text import (
     SEARCH_IS_LOST,
     confirmation_line,
-    found_line,
-    imitated_line,
+    demonstrations_line,
     rate,
     recording_line,
     search_end,
     search_line,
+    search_result_line,
     seconds_left,
 )
 from tltl_runtime.support.number_text import duration, number, percent, share
@@ -34,45 +34,45 @@ from tltlc.api import Fspa, State, label_text
 _WIDTH: Final = 100
 """The greatest width of the picture, in characters."""
 _MARGIN: Final = 4
-"""The free columns at the right.  The terminal prints `^C` there, and the next picture covers it."""
+"""The free columns at the right.  The terminal prints `^C` there, and the next picture covers that."""
 _MOST_STATES: Final = 8
-_SPACED: Final = 17
-"""The least number of lines within the border at which empty lines separate the parts."""
+_LINES_FOR_SPACE: Final = 17
+"""With at least this many lines inside the border, empty lines separate the parts."""
 _NAME: Final = 12
 _BAR: Final = 24, 10
-"""The width of a bar, in characters, in a picture of full width and in a narrower one."""
+"""The width of a bar, in characters: in a picture of full width, and in a narrower one."""
 
 
 class Picture:
-    """Draws the last report.  The clock advances between reports."""
+    """Draws the last report.  Between reports, the times go on."""
 
     def __init__(self, run: TrainingRun, console: Console) -> None:
         self._run, self._console = run, console
-        self._last: TrainingReport | None = None
-        self._searched: SearchProgress | None = None
-        self._recorded: Attempt | None = None
+        self._report: TrainingReport | None = None
+        self._search: SearchProgress | None = None
+        self._attempt: Attempt | None = None
         self._confirmation = ""
-        self._at = time.monotonic()
+        self._report_time = time.monotonic()
         self._checkpoint: float | None = None
         self._resumed = (run.folder / CHECKPOINT).exists()
 
-    def searched(self, searched: SearchProgress) -> None:
+    def show_search(self, progress: SearchProgress) -> None:
         """Store the progress of the search."""
-        self._searched = searched
+        self._search = progress
 
-    def recorded(self, attempt: Attempt) -> None:
+    def show_attempt(self, attempt: Attempt) -> None:
         """Store the progress of recording demonstrations."""
-        self._recorded = attempt
+        self._attempt = attempt
 
-    def trained(self, report: TrainingReport) -> None:
+    def show_report(self, report: TrainingReport) -> None:
         """Store a report of the training."""
-        self._last, self._at, self._searched = report, time.monotonic(), None
+        self._report, self._report_time, self._search = report, time.monotonic(), None
         if report.confirmation:
             self._confirmation = confirmation_line(report.iteration.number, report.confirmation)
         if report.checkpointed:
-            self._checkpoint = self._at
+            self._checkpoint = self._report_time
 
-    def drawn(self) -> RenderableType:
+    def picture(self) -> RenderableType:
         """Return the current picture, fitted to the current size of the terminal."""
         run, (columns, lines) = self._run, self._console.size
         width = min(_WIDTH, columns - _MARGIN)
@@ -80,50 +80,52 @@ class Picture:
         bar = _BAR[width < _WIDTH]
         return Panel(
             # Two lines are the border, and one line below it stays free.
-            self._before(bar) if self._last is None else self._body(self._last, bar, lines - 3),
+            self._before_first_iteration(bar)
+            if self._report is None
+            else self._after_iteration(self._report, bar, lines - 3),
             title=Text(title, "bold", overflow="ellipsis"),
             subtitle=Text(_tail(str(run.folder), width - 6), "dim"),
             width=width,
             title_align="left",
         )
 
-    def _before(self, bar: int) -> RenderableType:
-        """The picture before the first iteration."""
-        exploration, searched = self._run.settings.exploration, self._searched
-        if attempt := self._recorded:
+    def _before_first_iteration(self, bar: int) -> RenderableType:
+        """Return the picture before the first iteration."""
+        exploration, searched = self._run.settings.exploration, self._search
+        if attempt := self._attempt:
             return Text(recording_line(attempt, self._run.settings.imitation.demonstrations))
         if searched is None:
             return Text("playing the first steps …")
         count = len(searched.lengths)
         table = _grid(bar)
-        wanted = f"of at least {exploration.ways}"
-        table.add_row("ways found", _bar(count / exploration.ways, "green", bar), f"{count:4}", wanted)
+        required = f"of at least {exploration.ways}"
+        table.add_row("ways found", _bar(count / exploration.ways, "green", bar), f"{count:4}", required)
         fraction = min(1.0, searched.steps / exploration.steps)
         most = f"of {exploration.steps:,} steps at the most"
         table.add_row("searched", _bar(fraction, "blue", bar), f"{percent(fraction):>4}", most)
         return Group(table, Text(f"\n{search_line(searched)}\n\n{search_end(exploration)}\n\n{SEARCH_IS_LOST}"))
 
-    def _body(self, report: TrainingReport, bar: int, room: int) -> RenderableType:
-        """The picture after an iteration, in ``room`` lines.  With less room, it shows fewer states."""
+    def _after_iteration(self, report: TrainingReport, bar: int, room: int) -> RenderableType:
+        """Return the picture after an iteration, in ``room`` lines.  With less room, it shows fewer states."""
         now, run, window, stop = time.monotonic(), self._run, report.window, self._run.settings.stop
-        space = [Text()] if room >= _SPACED else []
-        since = 0.0 if report.stop else now - self._at
+        space = [Text()] if room >= _LINES_FOR_SPACE else []
+        since = 0.0 if report.stop else now - self._report_time
         messages = [self._confirmation] if self._confirmation else []
-        messages += [search_line(self._searched)] if self._searched else []
-        lines = [*_figures(report, stop, since), *messages, self._kept(now, report)]
+        messages += [search_line(self._search)] if self._search else []
+        lines = [*_figures(report, stop, since), *messages, self._checkpoint_text(now, report)]
         # Leave out violated states: an episode that violated the spec counts at the state before.
         states = tuple(state for state in run.fspa.states if state.verdict != "violated")
         count = max(1, min(_MOST_STATES, room - len(lines) - 2 * len(space) - 4))
         return Group(
-            _success(report, stop, bar),
+            _success_table(report, stop, bar),
             *space,
-            Text(_ended(window, count, len(states)), "dim", no_wrap=True, overflow="ellipsis"),
-            _states(window, run.fspa, states, count, bar),
+            Text(_ends_title(window, count, len(states)), "dim", no_wrap=True, overflow="ellipsis"),
+            _state_table(window, run.fspa, states, count, bar),
             *space,
             *(Text(line, no_wrap=True, overflow="ellipsis") for line in lines),
         )
 
-    def _kept(self, now: float, report: TrainingReport) -> str:
+    def _checkpoint_text(self, now: float, report: TrainingReport) -> str:
         if self._checkpoint is not None:
             text = f"last checkpoint {duration(now - self._checkpoint)} ago"
         else:
@@ -131,41 +133,41 @@ class Picture:
         return text if report.stop else f"{text}; Ctrl-C writes one to go on from"
 
 
-def _success(report: TrainingReport, stop: Stop, bar: int) -> Table:
-    """The pass rate, and the progress towards the stopping rule."""
-    window, row, wanted = report.window, report.unbroken, stop.windows * stop.episodes
+def _success_table(report: TrainingReport, stop: Stop, bar: int) -> Table:
+    """Return the pass rate, and the progress towards the stopping rule."""
+    window, row, required = report.window, report.unbroken, stop.windows * stop.episodes
     table = _grid(bar)
     rate_of = f"of {window.count} episodes"
     table.add_row("spec met", _bar(window.pass_rate, "green", bar), f"{percent(window.pass_rate):>4}", rate_of)
-    ends = f"of {wanted}, then the policy is confirmed"
-    table.add_row("met in a row", _bar(row / wanted, "green", bar), f"{row:4}", ends)
+    ends = f"of {required}, then the policy is confirmed"
+    table.add_row("met in a row", _bar(row / required, "green", bar), f"{row:4}", ends)
     table.add_row("progress", _bar(window.progress, "blue", bar), share(window.progress))
     return table
 
 
-def _ended(window: EpisodeWindow, shown: int, states: int) -> str:
+def _ends_title(window: EpisodeWindow, shown_states: int, states: int) -> str:
     if not window.count:
         return "no episode has ended yet"
-    of_states = f" ({shown} of {states} states)" if shown < states else ""
+    of_states = f" ({shown_states} of {states} states)" if shown_states < states else ""
     return f"where the last {window.count} episodes ended{of_states}"
 
 
-def _states(window: EpisodeWindow, fspa: Fspa, states: tuple[State, ...], count: int, bar: int) -> Table:
-    """The ``count`` states in which most of the last episodes ended, with what remained to be satisfied there."""
-    shown = sorted(states, key=lambda state: -window.states.get(state.id, 0.0))[:count]
+def _state_table(window: EpisodeWindow, fspa: Fspa, states: tuple[State, ...], count: int, bar: int) -> Table:
+    """Return the ``count`` states in which most of the last episodes ended, with what remained to be done there."""
+    shown_states = sorted(states, key=lambda state: -window.states.get(state.id, 0.0))[:count]
     table = _grid(bar)
-    for state in sorted(shown, key=lambda state: state.id):
-        ended, violated = window.states.get(state.id, 0.0), window.violated.get(state.id, 0.0)
-        colour = "red" if violated > ended / 2 else "green" if state.accepting else "cyan"
-        label = Text(label_text(fspa, state.id), "" if ended else "dim")
+    for state in sorted(shown_states, key=lambda state: state.id):
+        fraction, violated = window.states.get(state.id, 0.0), window.violated.get(state.id, 0.0)
+        colour = "red" if violated > fraction / 2 else "green" if state.accepting else "cyan"
+        label = Text(label_text(fspa, state.id), "" if fraction else "dim")
         if violated:
             label = Text.assemble((f"{percent(violated)} violated: ", "red"), label)
-        table.add_row(f"state {state.id}", _bar(ended, colour, bar), f"{percent(ended):>4}", label)
+        table.add_row(f"state {state.id}", _bar(fraction, colour, bar), f"{percent(fraction):>4}", label)
     return table
 
 
 def _figures(report: TrainingReport, stop: Stop, since: float) -> list[str]:
-    """The lines with figures, ``since`` seconds after the report."""
+    """Return the lines with figures, ``since`` seconds after the report."""
     window, iteration = report.window, report.iteration
     best = "" if report.best_pass_rate is None else f"; best so far: met in {percent(report.best_pass_rate)}"
     learning = iteration.learn_s / ((iteration.learn_s + iteration.collect_s) or 1.0)
@@ -176,8 +178,8 @@ def _figures(report: TrainingReport, stop: Stop, since: float) -> list[str]:
         f"reward {number(window.reward, 2)}, {window.steps:.0f} steps an episode{best}",
         f"{report.steps:,} of at most {stop.steps:,} steps{speed}",
         f"{duration(report.seconds + since)} so far, {end}",
-        *([found_line(report.searched)] if report.searched else ()),
-        *([imitated_line(report.imitated)] if report.imitated else ()),
+        *([search_result_line(report.searched)] if report.searched else ()),
+        *([demonstrations_line(report.imitated)] if report.imitated else ()),
     ]
 
 
@@ -194,5 +196,5 @@ def _bar(share: float, colour: str, width: int) -> ProgressBar:
 
 
 def _tail(text: str, width: int) -> str:
-    """Shorten a text at its start: the end of a path says most."""
+    """Shorten a text at its start, because the end of a path says most."""
     return text if len(text) <= width else f"…{text[1 - width :]}"

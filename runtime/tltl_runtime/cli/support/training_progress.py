@@ -13,7 +13,7 @@ from tltl_runtime.vector.errors import WorkerError
 from tltlc.api import Diagnostic, TltlError
 
 
-def train_shown(run: TrainingRun, *, resume: bool, again: str) -> TrainingReport:
+def train_with_display(run: TrainingRun, *, resume: bool, again: str) -> TrainingReport:
     """Train to the end, show the progress, and return the last report.
 
     ``again`` is the command that resumes a stopped training.
@@ -21,11 +21,11 @@ def train_shown(run: TrainingRun, *, resume: bool, again: str) -> TrainingReport
     Raises:
         TltlError: TLT0871, a worker was lost; errors from training.
     """
-    with _broken_off(again), display(run, again) as shown:
-        training = train(run, resume=resume, on_search=shown.searched, on_attempt=shown.recorded)
+    with _worker_errors(again), display(run, again) as progress:
+        training = train(run, resume=resume, on_search=progress.show_search, on_attempt=progress.show_attempt)
         with closing(training) as reports:
             for last in reports:
-                shown.trained(last)
+                progress.show_report(last)
         return last
 
 
@@ -38,8 +38,8 @@ def stopped_line(run: TrainingRun, again: str) -> str | None:
 
 
 @contextmanager
-def _broken_off(again: str) -> Iterator[None]:
-    """Raise TltlError, TLT0871, if a worker is lost."""
+def _worker_errors(again: str) -> Iterator[None]:
+    """Raise TltlError, TLT0871, if a worker is lost.  ``again`` is the command that resumes the training."""
     try:
         yield
     except WorkerError as error:

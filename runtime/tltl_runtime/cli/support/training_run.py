@@ -11,12 +11,12 @@ import click
 
 from tltl_runtime.cli.support.initial_policy import (
     InitialPolicyOptions,
-    as_its_policy,
-    beginning,
-    check_beginning,
-    is_another,
-    moved,
-    own_place,
+    check_initial_policy,
+    level_of_policy,
+    policy_difference,
+    read_policy_option,
+    with_policy_network,
+    with_policy_path,
 )
 from tltl_runtime.cli.support.level_argument import check_level_exists, check_spelling, names_level, own_level
 from tltl_runtime.cli.support.sensor_options import option_of
@@ -59,7 +59,10 @@ T = TypeVar("T")
 
 @record
 class TrainOptions:
-    """The options of ``tltlc train``; None, or an empty mapping of sensors, if an option is not given."""
+    """The options of ``tltlc train``.
+
+    An option that is not given is None; without sensor options, ``sensors`` is empty.
+    """
 
     spec: str | None
     level: str | None
@@ -75,39 +78,39 @@ class TrainOptions:
     policy: Path | None = None
 
 
-def new_run(asked: TrainOptions, folder: Path | None) -> TrainingRun:
+def new_run(options: TrainOptions, folder: Path | None) -> TrainingRun:
     """Set up a new training, by default in a folder that is named after it.
 
     Raises:
         TltlError: the spec, the level, the sensors or the settings are invalid, or the initial policy
             does not fit them; TLT0873, the folder contains other files.
     """
-    if asked.spec is not None and names_level(asked.spec):
-        if asked.level is not None:
-            raise _usage(f"`{asked.spec}` is a level, and so is `{asked.level}`: name a spec, or one of them alone")
-        asked = replace(asked, level=asked.spec, spec=None)
-    elif asked.spec is not None:
-        check_spelling(fileio.split_spec_name(asked.spec)[0])
-    begun = begins_with(asked)
-    path, variant = _place(asked, begun)
-    settings = new_settings(asked, begun)
-    _check_demonstrations(asked.demonstrations, settings)
+    if options.spec is not None and names_level(options.spec):
+        if options.level is not None:
+            raise _usage(f"`{options.spec}` is a level, and so is `{options.level}`: name a spec, or one of them alone")
+        options = replace(options, level=options.spec, spec=None)
+    elif options.spec is not None:
+        check_spelling(fileio.split_spec_name(options.spec)[0])
+    initial = initial_policy_options(options)
+    path, variant = _level_and_variant(options, initial)
+    settings = new_settings(options, initial)
+    _check_demonstrations(options.demonstrations, settings)
     level = load_level(path, variant)
     offered = params(level)
-    spec: str | Fspa = asked.spec or (begun.card.fspa if begun else spec_of(level))
+    spec: str | Fspa = options.spec or (initial.card.fspa if initial else spec_of(level))
     # If the policy's spec is used, keep the policy's parameters, except for those that the level supplies.
-    known = begun.card.params if begun and asked.spec is None else {}
+    known = initial.card.params if initial and options.spec is None else {}
     own = {name: value for name, value in known.items() if name not in offered}
     task = load_task(spec, own, offered=offered)
     check_fit(level, task.fspa, spec)
     check_limit(task.fspa)
-    seed = asked.seed or 0
+    seed = options.seed or 0
     sensors = (
-        chosen(level, asked.sensors or None)
-        if begun is None
-        else check_beginning(begun, level, task.fspa, asked.sensors)
+        chosen(level, options.sensors or None)
+        if initial is None
+        else check_initial_policy(initial, level, task.fspa, options.sensors)
     )
-    suffix = f"-{settings.method}" if settings.imitates else "-tuned" if begun else ""
+    suffix = f"-{settings.method}" if settings.imitates else "-tuned" if initial else ""
     folder = folder or Path("training") / f"{level.name}-{level.variant}-{task.fspa.name}-{seed}{suffix}"
     _check_folder(folder)
     return TrainingRun(
@@ -119,24 +122,30 @@ def new_run(asked: TrainOptions, folder: Path | None) -> TrainingRun:
         sensors=sensors,
         settings=settings,
         seed=seed,
-        demonstrations=str(asked.demonstrations) if asked.demonstrations else None,
-        initial=initial_policy_of(begun.path, begun.policy) if begun else None,
+        demonstrations=str(options.demonstrations) if options.demonstrations else None,
+        initial=initial_policy_of(initial.path, initial.policy) if initial else None,
     )
 
 
-def begins_with(asked: TrainOptions) -> InitialPolicyOptions | None:
-    """The initial policy of a new training, or None; raises the errors of :func:`beginning`."""
-    return None if asked.policy is None else beginning(asked.policy)
+def initial_policy_options(options: TrainOptions) -> InitialPolicyOptions | None:
+    """Return the initial policy of a new training, or None.
+
+    Raises the errors of :func:`read_policy_option`.
+    """
+    return None if options.policy is None else read_policy_option(options.policy)
 
 
-def new_settings(asked: TrainOptions, begun: InitialPolicyOptions | None) -> TrainingSettings:
-    """The settings of a new training; raises the errors of :func:`read_settings` and :func:`as_its_policy`."""
-    settings = _with_limits(read_settings(asked.config), asked)
-    settings = replace(settings, method=_or(asked.method, settings.method))
-    return settings if begun is None else as_its_policy(settings, begun, asked.config)
+def new_settings(options: TrainOptions, initial: InitialPolicyOptions | None) -> TrainingSettings:
+    """Return the settings of a new training.
+
+    Raises the errors of :func:`read_settings` and :func:`with_policy_network`.
+    """
+    settings = _with_limits(read_settings(options.config), options)
+    settings = replace(settings, method=_value_or(options.method, settings.method))
+    return settings if initial is None else with_policy_network(settings, initial, options.config)
 
 
-def resumed_run(asked: TrainOptions, folder: Path) -> TrainingRun:
+def resumed_run(options: TrainOptions, folder: Path) -> TrainingRun:
     """Set up the training in ``folder`` to be resumed.
 
     Only some settings may change.  Level, demonstrations and initial policy must be the same, but their
@@ -146,18 +155,18 @@ def resumed_run(asked: TrainOptions, folder: Path) -> TrainingRun:
         TltlError: the folder cannot be read; TLT0001, the level's file is missing; TLT0870, the options
             disagree with the training.
     """
-    run = _at_its_level(read_run(folder), asked)
-    settings = run.settings if asked.config is None else _with_file(run.settings, asked.config)
-    titles = list(_differences(run, asked, settings))
+    run = _with_level_path(read_run(folder), options)
+    settings = run.settings if options.config is None else _with_file(run.settings, options.config)
+    titles = list(_differences(run, options, settings))
     if titles:
         help_ = f"leave it out to go on with `{folder}`, or begin another training with --out"
         raise TltlError([Diagnostic("TLT0870", title, help=help_) for title in titles])
-    if asked.demonstrations is not None:
-        _check_demonstrations(asked.demonstrations, settings)
-        run = replace(run, demonstrations=str(asked.demonstrations))
-    if asked.policy is not None:
-        run = moved(run, asked.policy)
-    return replace(run, settings=_with_limits(settings, asked))
+    if options.demonstrations is not None:
+        _check_demonstrations(options.demonstrations, settings)
+        run = replace(run, demonstrations=str(options.demonstrations))
+    if options.policy is not None:
+        run = with_policy_path(run, options.policy)
+    return replace(run, settings=_with_limits(settings, options))
 
 
 def check_limits(run: TrainingRun) -> None:
@@ -177,24 +186,30 @@ def check_limits(run: TrainingRun) -> None:
         raise TltlError([Diagnostic("TLT0862", title, help=help_) for title in titles])
 
 
-def _place(asked: TrainOptions, begun: InitialPolicyOptions | None) -> tuple[str, str]:
-    """The level and the variant of a new training: from ``--level``, else from the spec, else from the policy."""
-    if asked.level is not None:
-        path, variant = level_place(asked.level)
+def _level_and_variant(options: TrainOptions, initial: InitialPolicyOptions | None) -> tuple[str, str]:
+    """Return the level and the variant of a new training.
+
+    They are from ``--level``, else from the spec, else from the policy.
+    """
+    if options.level is not None:
+        path, variant = level_place(options.level)
         return path, variant or "v0"
-    if asked.spec is not None:
-        return own_level(asked.spec), "v0"
-    if begun is not None and asked.policy is not None:
-        return own_place(asked.policy, begun)
+    if options.spec is not None:
+        return own_level(options.spec), "v0"
+    if initial is not None and options.policy is not None:
+        return level_of_policy(options.policy, initial)
     raise _usage("say what to train for: a spec, a level, or both")
 
 
-def _at_its_level(run: TrainingRun, asked: TrainOptions) -> TrainingRun:
-    """Update the path of the level's file if ``--level`` names the same level; check that the file exists."""
-    if asked.level is None:
+def _with_level_path(run: TrainingRun, options: TrainOptions) -> TrainingRun:
+    """Return the training with the path of ``--level``, if that is the same level.
+
+    Otherwise check that the level's file exists.
+    """
+    if options.level is None:
         check_level_exists(run.level, run.variant, resume_command(run.folder))
         return run
-    path, variant = level_place(asked.level)
+    path, variant = level_place(options.level)
     if level_hash(load_level(path, variant or "v0")) != read_level_hash(run.folder):
         return run
     return replace(run, level=path, variant=variant or "v0")
@@ -203,7 +218,7 @@ def _at_its_level(run: TrainingRun, asked: TrainOptions) -> TrainingRun:
 def _check_folder(folder: Path) -> None:
     """Raise TltlError, TLT0873, if the folder contains other files.
 
-    They could be lost when the training is deleted.
+    They could be lost when the user deletes the training.
     """
     if process_group().rank > 0 or not folder.is_dir() or (folder / RUN).exists():
         return
@@ -237,59 +252,61 @@ def _usage(message: str) -> click.UsageError:
 
 
 def _with_file(settings: TrainingSettings, path: Path) -> TrainingSettings:
-    """Update settings from a file; raises the errors of :func:`read_settings`."""
+    """Return settings with those that a file changes; raises the errors of :func:`read_settings`."""
     for table, values in read_values(fileio.read_source(path)).items():
         changed = {table: replace(getattr(settings, table), **values)} if table else values
         settings = replace(settings, **changed)
     return settings
 
 
-def _with_limits(settings: TrainingSettings, asked: TrainOptions) -> TrainingSettings:
-    """Update settings with the options for limits, workers and device."""
+def _with_limits(settings: TrainingSettings, options: TrainOptions) -> TrainingSettings:
+    """Return settings with the options for limits, workers and device."""
     stop, rollout = settings.stop, settings.rollout
-    if asked.workers == "ray":
+    if options.workers == "ray":
         rollout = replace(rollout, pool="ray")
-    elif asked.workers is not None:
-        rollout = replace(rollout, pool="processes", workers=asked.workers)
+    elif options.workers is not None:
+        rollout = replace(rollout, pool="processes", workers=options.workers)
     return replace(
         settings,
-        stop=replace(stop, steps=_or(asked.steps, stop.steps), minutes=_or(asked.minutes, stop.minutes)),
+        stop=replace(
+            stop, steps=_value_or(options.steps, stop.steps), minutes=_value_or(options.minutes, stop.minutes)
+        ),
         rollout=rollout,
-        device=_or(asked.device, settings.device),
+        device=_value_or(options.device, settings.device),
     )
 
 
-def _or(asked: T | None, known: T) -> T:
-    return known if asked is None else asked
+def _value_or(value: T | None, default: T) -> T:
+    return default if value is None else value
 
 
-def _differences(run: TrainingRun, asked: TrainOptions, settings: TrainingSettings) -> Iterator[str]:
+def _differences(run: TrainingRun, options: TrainOptions, settings: TrainingSettings) -> Iterator[str]:
     """Yield a sentence for each difference between a training and the options."""
     where = f"the training in `{run.folder}`"
-    if asked.level is not None:
-        path, variant = level_place(asked.level)
+    if options.level is not None:
+        path, variant = level_place(options.level)
         ours = level_path(run.level).resolve(), absolute_variant(run.variant)
         if (level_path(path).resolve(), absolute_variant(variant or "v0")) != ours:
             yield f"{where} is on the level `{run.level}:{run.variant}`, not on `{path}:{variant or 'v0'}`"
-    if asked.spec is not None:
-        fspa, _ = read_spec(asked.spec)
+    if options.spec is not None:
+        fspa, _ = read_spec(options.spec)
         if spec_hash(fspa) != spec_hash(run.fspa) and fspa.name == run.fspa.name:
             details = differences(run.fspa, fspa)
-            yield f"{where} is for another spec `{fspa.name}` than that of `{asked.spec}`: {details}"
+            yield f"{where} is for another spec `{fspa.name}` than that of `{options.spec}`: {details}"
         elif spec_hash(fspa) != spec_hash(run.fspa):
-            yield f"{where} is for the spec `{run.fspa.name}`, not for `{fspa.name}` of `{asked.spec}`"
-    if asked.seed is not None and asked.seed != run.seed:
-        yield f"{where} has the seed {run.seed}, not {asked.seed}"
-    if asked.method is not None and asked.method != run.settings.method:
-        yield f"{where} is by the method `{run.settings.method}`, not by `{asked.method}`"
-    if asked.policy is not None and (difference := is_another(run, asked.policy)):
+            yield f"{where} is for the spec `{run.fspa.name}`, not for `{fspa.name}` of `{options.spec}`"
+    if options.seed is not None and options.seed != run.seed:
+        yield f"{where} has the seed {run.seed}, not {options.seed}"
+    if options.method is not None and options.method != run.settings.method:
+        yield f"{where} is by the method `{run.settings.method}`, not by `{options.method}`"
+    if options.policy is not None and (difference := policy_difference(run, options.policy)):
         yield difference
-    sensors = chosen(load_level(run.level, run.variant), asked.sensors) if asked.sensors else run.sensors
+    sensors = chosen(load_level(run.level, run.variant), options.sensors) if options.sensors else run.sensors
     # Sensors without an option stay as they are in the training, whatever the level's own sensors are.
-    for key in asked.sensors:
+    for key in options.sensors:
         if getattr(sensors, key) != getattr(run.sensors, key):
             yield f"{where} senses as `{option_of(key, run.sensors)}` says, not as `{option_of(key, sensors)}`"
-    wanted = dict(leaves(to_json(settings)))
+    requested = dict(leaves(to_json(settings)))
     for path, value in leaves(to_json(run.settings)):
-        if path not in MAY_CHANGE and value != wanted[path]:
-            yield f"{where} has another `{path}` than `{asked.config}`"
+        if path not in MAY_CHANGE and value != requested[path]:
+            yield f"{where} has another `{path}` than `{options.config}`"

@@ -15,7 +15,7 @@ SEARCH_IS_LOST: Final = "Ctrl-C stops it; a search that is not over then begins 
 SEARCHED_AGAIN: Final = "the pass rate rises no more: ways are searched by chance from where episodes failed"
 
 
-def line(report: TrainingReport, stop: Stop) -> str:
+def report_line(report: TrainingReport, stop: Stop) -> str:
     """Describe a report in one line."""
     window = report.window
     parts = [f"iteration {report.iteration.number}: {report.steps:,} steps in {duration(report.seconds)}"]
@@ -34,28 +34,28 @@ def line(report: TrainingReport, stop: Stop) -> str:
     return ", ".join(parts)
 
 
-def recording_line(attempt: Attempt, wanted: int) -> str:
+def recording_line(attempt: Attempt, requested: int) -> str:
     """Describe the progress of recording the expert's demonstrations in one line."""
     seed, fate = attempt.episode.seed, "is kept" if attempt.path else "fails, and is not kept"
-    return f"recording the expert: {attempt.kept} of {wanted} demonstrations, the episode of seed {seed} {fate}"
+    return f"recording the expert: {attempt.kept} of {requested} demonstrations, the episode of seed {seed} {fate}"
 
 
-def imitated_line(imitated: ImitationSummary) -> str:
+def demonstrations_line(summary: ImitationSummary) -> str:
     """Describe the imitated demonstrations in one line."""
-    count = f"{imitated.episodes} demonstration{'s' * (imitated.episodes != 1)}"
-    text = f"imitating {count} of {imitated.decisions:,} decisions, by {' and '.join(imitated.players)}"
-    left = len(imitated.left_out)
-    return f"{text}; {left} recording{'s' * (left > 1)} left out: {imitated.left_out[0]}" if left else text
+    count = f"{summary.episodes} demonstration{'s' * (summary.episodes != 1)}"
+    text = f"imitating {count} of {summary.decisions:,} decisions, by {' and '.join(summary.players)}"
+    left = len(summary.left_out)
+    return f"{text}; {left} recording{'s' * (left > 1)} left out: {summary.left_out[0]}" if left else text
 
 
-def search_line(searched: SearchProgress) -> str:
+def search_line(progress: SearchProgress) -> str:
     """Describe the progress of the search in one line."""
-    if count := len(searched.lengths):
-        ways = f"{count} way{'s' * (count > 1)} to meet the spec, the shortest of {min(searched.lengths)} steps"
+    if count := len(progress.lengths):
+        ways = f"{count} way{'s' * (count > 1)} to meet the spec, the shortest of {min(progress.lengths)} steps"
     else:
         ways = "no way to meet the spec yet"
-    took = f"{searched.steps:,} steps in {duration(searched.seconds)}"
-    return f"searching: {took}, {searched.places:,} places, {ways}"
+    spent = f"{progress.steps:,} steps in {duration(progress.seconds)}"
+    return f"searching: {spent}, {progress.places:,} places, {ways}"
 
 
 def search_end(exploration: Exploration) -> str:
@@ -64,12 +64,12 @@ def search_end(exploration: Exploration) -> str:
     return f"The search ends when {ways} are found, at the latest after {exploration.steps:,} steps."
 
 
-def found_line(searched: SearchProgress) -> str:
+def search_result_line(progress: SearchProgress) -> str:
     """Describe the result of the search in one line of at most 72 characters."""
-    took, count = duration(searched.seconds), len(searched.lengths)
+    spent, count = duration(progress.seconds), len(progress.lengths)
     if not count:
-        return f"search: no way found in {took}; episodes begin at the level's start"
-    return f"search: {count} way{'s' * (count > 1)} found in {took}, the shortest of {min(searched.lengths)} steps"
+        return f"search: no way found in {spent}; episodes begin at the level's start"
+    return f"search: {count} way{'s' * (count > 1)} found in {spent}, the shortest of {min(progress.lengths)} steps"
 
 
 def confirmation_line(number: int, confirmation: Confirmation) -> str:
@@ -80,7 +80,7 @@ def confirmation_line(number: int, confirmation: Confirmation) -> str:
 
 
 def seconds_left(report: TrainingReport, stop: Stop) -> float:
-    """The estimated seconds until a limit ends the training, at its speed since the search."""
+    """Return the estimated seconds until a limit ends the training, at its speed since the search."""
     trained_s = max(0.0, report.seconds - (report.searched.seconds if report.searched else 0.0))
     left = max(0.0, (stop.steps - report.steps) * trained_s / max(report.steps, 1))
     return min(left, max(0.0, stop.minutes * 60 - report.seconds)) if stop.minutes else left
@@ -92,5 +92,5 @@ def minutes(number: float) -> str:
 
 
 def rate(report: TrainingReport) -> float:
-    """Steps per second of the last iteration; 0 if a finished training had no iteration."""
+    """Return the steps per second of the last iteration; 0 if a finished training had no iteration."""
     return report.iteration.steps / ((report.iteration.collect_s + report.iteration.learn_s) or 1.0)

@@ -17,10 +17,10 @@ def check_writable(files: Mapping[str, Path | None]) -> None:
     """Check, before minutes of play, that files can be written.  The keys of ``files`` are options.
 
     Raises:
-        TltlError: TLT0005 if one cannot be written, TLT0700 if one is an input of the command.
+        TltlError: TLT0005 if a file cannot be written, TLT0700 if a file is an input of the command.
     """
     for option, path in files.items():
-        if path is None or not _takes_a_place(path):
+        if path is None or not _creates_file(path):
             continue
         fileio.check_not_read(path, f"name another place with {option}")
         try:
@@ -31,29 +31,29 @@ def check_writable(files: Mapping[str, Path | None]) -> None:
             with TemporaryFile(dir=path.resolve().parent):
                 pass
         except OSError as error:
-            why = "there is no such folder" if isinstance(error, FileNotFoundError) else fileio.reason(error)
+            reason = "there is no such folder" if isinstance(error, FileNotFoundError) else fileio.reason(error)
             help_ = f"name another place with {option}"
-            raise TltlError([Diagnostic("TLT0005", f"cannot write `{path}`: {why}", help=help_)]) from None
+            raise TltlError([Diagnostic("TLT0005", f"cannot write `{path}`: {reason}", help=help_)]) from None
 
 
-def check_apart(files: Mapping[str, Path | None], read: Iterable[Path]) -> None:
-    """Raise TltlError, TLT0005, if a file would overwrite one in ``read`` or another output file.
+def check_apart(files: Mapping[str, Path | None], inputs: Iterable[Path]) -> None:
+    """Raise TltlError, TLT0005, if a file would overwrite one of ``inputs`` or another output file.
 
     The keys of ``files`` are options.
     """
-    taken = {path.resolve(): "the suite reads it" for path in read}
+    uses = {path.resolve(): "the suite reads it" for path in inputs}
     for option, path in files.items():
-        if path is None or not _takes_a_place(path):
+        if path is None or not _creates_file(path):
             continue
-        place = path.resolve()
-        if place in taken:
+        target = path.resolve()
+        if target in uses:
             help_ = f"name another place with {option}"
-            raise TltlError([Diagnostic("TLT0005", f"cannot write `{path}`: {taken[place]}", help=help_)])
-        taken[place] = f"{option} writes it, too"
+            raise TltlError([Diagnostic("TLT0005", f"cannot write `{path}`: {uses[target]}", help=help_)])
+        uses[target] = f"{option} writes it, too"
 
 
 def check_no_training(folder: Path) -> None:
-    """Raise TltlError, TLT0005, if a folder contains a training: other files must not go there."""
+    """Raise TltlError, TLT0005, if a folder contains a training: no other files may go there."""
     from tltl_runtime.training.run.run_file import RUN
 
     if fileio.exists(folder / RUN):
@@ -61,11 +61,11 @@ def check_no_training(folder: Path) -> None:
         raise TltlError([Diagnostic("TLT0005", title, help="name another folder with --out")])
 
 
-def is_output(path: Path) -> bool:
+def is_standard_output(path: Path) -> bool:
     """Whether a path is standard output: `-`, its device, or the file that standard output is redirected to."""
     return str(path) in _OUTPUT or fileio.descriptor_of(path) == 1
 
 
-def _takes_a_place(path: Path) -> bool:
-    """Whether writing creates or replaces a file.  Pipes and devices are written directly."""
+def _creates_file(path: Path) -> bool:
+    """Whether writing to a path creates or replaces a file.  Pipes and devices are written directly."""
     return not fileio.exists(path) or fileio.is_file(path)

@@ -8,17 +8,17 @@ from typing import Final, TypeVar
 
 from tltl_runtime.game.episode import Kind
 from tltl_runtime.game.level import Level
-from tltl_runtime.regression.explain.account import Account
-from tltl_runtime.regression.explain.nearest_miss import approach, remained
-from tltl_runtime.regression.explain.places import in_the_way, place_name
+from tltl_runtime.regression.explain.account import ExplainedEpisode
+from tltl_runtime.regression.explain.nearest_miss import approach_text, remaining_text
+from tltl_runtime.regression.explain.places import blocking_solids, place_name
 from tltl_runtime.regression.explain.stages import Subgoal, subgoal
 from tltlc.api import Fspa, record, replace
 
 _T = TypeVar("_T")
-_What = tuple[Kind, tuple[str, ...]]
+_FailureKind = tuple[Kind, tuple[str, ...]]
 
 _FEW: Final = 3
-"""Both the most kinds of ends that get texts of their own, and the least number of episodes of such a kind.
+"""The most kinds of ends that get a text each, and also the least number of episodes of such a kind.
 
 One tenth of all episodes is enough, too.
 """
@@ -26,7 +26,7 @@ One tenth of all episodes is enough, too.
 
 @record
 class FailureEnd:
-    """How and where an episode failed, and what it had to do next."""
+    """How and where an episode failed, and which subgoal it had not reached."""
 
     cause: Kind
     by: tuple[str, ...]
@@ -34,128 +34,143 @@ class FailureEnd:
     undone: Subgoal
 
     @property
-    def what(self) -> _What:
-        """The cause and the names in ``by``, without place and stage."""
+    def kind(self) -> _FailureKind:
+        """The cause and the names in ``by``, without place and subgoal."""
         return self.cause, self.by
 
 
 @record
 class Failures:
-    """Episodes that fail alike.
+    """A group of episodes that fail alike.
 
-    ``text`` describes the failures and ``more`` adds details.  ``alike`` tells whether an end belongs to
-    the group, provided that it belongs to no earlier group.
+    ``text`` describes the failures and ``more`` adds details.  ``matches`` says whether an end belongs
+    to this group, provided that it belongs to no earlier group.
     """
 
     text: str
-    accounts: tuple[Account, ...]
-    alike: Callable[[FailureEnd], bool]
+    episodes: tuple[ExplainedEpisode, ...]
+    matches: Callable[[FailureEnd], bool]
     more: str = ""
 
 
-def end_of(level: Level, fspa: Fspa, account: Account) -> FailureEnd:
+def end_of(level: Level, fspa: Fspa, episode: ExplainedEpisode) -> FailureEnd:
     """Return how a failed episode ended."""
-    by = tuple(sorted(account.by))
-    return FailureEnd(account.cause, by, place_name(level, account.place), subgoal(fspa, account.summary.unmet))
+    by = tuple(sorted(episode.by))
+    return FailureEnd(episode.cause, by, place_name(level, episode.place), subgoal(fspa, episode.summary.unmet))
 
 
-def failures(level: Level, fspa: Fspa, accounts: Sequence[Account]) -> Iterator[Failures]:
-    """Group the failed episodes, most frequent ends first.  All texts are distinct."""
-    groups: dict[FailureEnd, list[Account]] = {}
-    for account in accounts:
-        if not account.summary.success:
-            groups.setdefault(end_of(level, fspa, account), []).append(account)
-    frequent = _often(groups, len(accounts))
+def failures(level: Level, fspa: Fspa, episodes: Sequence[ExplainedEpisode]) -> Iterator[Failures]:
+    """Group the failed episodes by how they end, most frequent first.  All texts are distinct."""
+    groups: dict[FailureEnd, list[ExplainedEpisode]] = {}
+    for episode in episodes:
+        if not episode.summary.success:
+            groups.setdefault(end_of(level, fspa, episode), []).append(episode)
+    frequent = _frequent_groups(groups, len(episodes))
     stages = Counter(replace(end, undone=Subgoal()) for end in groups)
     for end in frequent:
         # If the same end occurs in several stages, the texts must differ.
         stage = f" before it {end.undone.text}" if stages[replace(end, undone=Subgoal())] > 1 else ""
         group = groups[end]
-        details = f"{approach(level, fspa, end.undone, group)}; {remained(fspa, group)}"
+        details = f"{approach_text(level, fspa, end.undone, group)}; {remaining_text(fspa, group)}"
         yield Failures(_end_text(level, end, group) + stage, tuple(group), end.__eq__, details)
-    few = {end: group for end, group in groups.items() if end not in frequent}
-    yield from _few(level, few, frequent, len(accounts))
+    remaining = {end: group for end, group in groups.items() if end not in frequent}
+    yield from _remaining_failures(level, remaining, frequent, len(episodes))
 
 
-def _often(groups: Mapping[_T, Sequence[Account]], episodes: int) -> list[_T]:
-    """The keys of the most frequent groups that are large enough."""
+def _frequent_groups(groups: Mapping[_T, Sequence[ExplainedEpisode]], episode_count: int) -> list[_T]:
+    """Return the keys of the largest groups, if they are large enough: see ``_FEW``."""
     largest = sorted(groups, key=lambda key: -len(groups[key]))[:_FEW]
-    return [key for key in largest if len(groups[key]) >= _FEW or 10 * len(groups[key]) >= episodes]
+    return [key for key in largest if len(groups[key]) >= _FEW or 10 * len(groups[key]) >= episode_count]
 
 
-def _few(
-    level: Level, groups: Mapping[FailureEnd, Sequence[Account]], frequent: Collection[FailureEnd], episodes: int
+def _remaining_failures(
+    level: Level,
+    groups: Mapping[FailureEnd, Sequence[ExplainedEpisode]],
+    frequent: Collection[FailureEnd],
+    episode_count: int,
 ) -> Iterator[Failures]:
-    """Group the remaining ends: by cause if frequent, then all others together."""
-    causes: dict[_What, list[Account]] = {}
-    for end, accounts in groups.items():
-        causes.setdefault(end.what, []).extend(accounts)
-    frequent_causes = _often(causes, episodes)
+    """Group the remaining ends: by cause if the cause is frequent, then all others together."""
+    causes: dict[_FailureKind, list[ExplainedEpisode]] = {}
+    for end, episodes in groups.items():
+        causes.setdefault(end.kind, []).extend(episodes)
+    frequent_causes = _frequent_groups(causes, episode_count)
     rare_causes = [cause for cause in causes if cause not in frequent_causes]
     if len(rare_causes) == 1:
         frequent_causes += rare_causes
         rare_causes = []
     for cause in frequent_causes:
-        same_cause = [end for end in groups if end.what == cause]
-        text, alike = _one_cause(level, same_cause, causes[cause], frequent)
-        yield Failures(text, tuple(causes[cause]), alike)
+        same_cause = [end for end in groups if end.kind == cause]
+        text, matches = _text_for_cause(level, same_cause, causes[cause], frequent)
+        yield Failures(text, tuple(causes[cause]), matches)
     if rare_causes:
         otherwise = " otherwise" if frequent or frequent_causes else ""
         yield Failures(
-            f"fails{otherwise}", tuple(account for cause in rare_causes for account in causes[cause]), lambda _: True
+            f"fails{otherwise}", tuple(episode for cause in rare_causes for episode in causes[cause]), lambda _: True
         )
 
 
-def _one_cause(
-    level: Level, ends: Sequence[FailureEnd], accounts: Sequence[Account], frequent: Collection[FailureEnd]
+def _text_for_cause(
+    level: Level, ends: Sequence[FailureEnd], episodes: Sequence[ExplainedEpisode], frequent: Collection[FailureEnd]
 ) -> tuple[str, Callable[[FailureEnd], bool]]:
-    """A text for these ends of one cause, and a predicate for further ends that it covers.
+    """Return a text for these ends of one cause, and a predicate for all ends that the text describes.
 
     The ends in ``frequent`` have texts of their own.
     """
-    cause, places, stages = ends[0].what, {end.where for end in ends}, {end.undone for end in ends}
-    apart = {end.where for end in frequent if end.what == cause}
+    cause, places, stages = ends[0].kind, {end.where for end in ends}, {end.undone for end in ends}
+    frequent_places = {end.where for end in frequent if end.kind == cause}
     if len(places) == 1:
         (where,) = places
     else:
-        where = "elsewhere" if apart and apart.isdisjoint(places) else "in different places"
+        where = "elsewhere" if frequent_places and frequent_places.isdisjoint(places) else "in different places"
     stage = ""
     is_one_stage = len(stages) == 1 and len({end.undone for end in (*frequent, *ends)}) > 1
     if is_one_stage:
         stage = f" before it {ends[0].undone.text}"
-    elif places <= apart:
+    elif places <= frequent_places:
         stage = " at other stages"
 
-    def alike(end: FailureEnd) -> bool:
-        same_place = end.where in places if len(places) == 1 else where != "elsewhere" or end.where not in apart
-        return end.what == cause and same_place and (not is_one_stage or end.undone in stages)
+    def matches(end: FailureEnd) -> bool:
+        same_place = (
+            end.where in places if len(places) == 1 else where != "elsewhere" or end.where not in frequent_places
+        )
+        return end.kind == cause and same_place and (not is_one_stage or end.undone in stages)
 
-    return _end_text(level, replace(ends[0], where=where), accounts) + stage, alike
+    return _end_text(level, replace(ends[0], where=where), episodes) + stage, matches
 
 
-def _end_text(level: Level, end: FailureEnd, accounts: Sequence[Account]) -> str:
-    """Describe the end of these episodes.  Asides end with a comma, since the number of episodes follows."""
+def _end_text(level: Level, end: FailureEnd, episodes: Sequence[ExplainedEpisode]) -> str:
+    """Describe the end of these episodes.
+
+    An aside ends with a comma, because the number of episodes follows.
+    """
     by = f" by {_names(end.by)}" if end.by else ""
-    broke = _mostly("breaking", [account.broke for account in accounts])
-    saw = _mostly("seen by", [[name for name in account.seen_by if name not in end.by] for account in accounts])
+    broke = _majority_clause("breaking", [episode.broke for episode in episodes])
+    saw = _majority_clause(
+        "seen by", [[name for name in episode.seen_by if name not in end.by] for episode in episodes]
+    )
     if end.cause == "killed":
         return f"dies {end.where}{by}{broke}{saw}" + "," * bool(broke or saw)
     if end.cause == "violated":
         return f"breaks the spec {end.where} ({_names(end.by)}){saw}" + "," * bool(saw)
-    ends = [(account.place, account.shut) for account in accounts]
-    stopped = in_the_way(level, ends)
-    mostly = "" if all(set(stopped) <= set(in_the_way(level, [account])) for account in ends) else "mostly "
-    return f"runs out of time {end.where}" + (f", {mostly}at {_names(stopped)}," if stopped else "")
+    positions = [(episode.place, episode.shut) for episode in episodes]
+    obstacles = blocking_solids(level, positions)
+    mostly = (
+        "" if all(set(obstacles) <= set(blocking_solids(level, [position])) for position in positions) else "mostly "
+    )
+    return f"runs out of time {end.where}" + (f", {mostly}at {_names(obstacles)}," if obstacles else "")
 
 
-def _mostly(verb: str, named: Sequence[Sequence[str]]) -> str:
-    """A clause, starting with a comma, with the names that more than half of the episodes have; empty without any."""
-    counts = Counter(name for names in named for name in names)
-    often = [name for name, count in counts.items() if 2 * count > len(named)]
-    if not often:
+def _majority_clause(verb: str, names_by_episode: Sequence[Sequence[str]]) -> str:
+    """Return a clause with the names that more than half of the episodes have; empty if there are none.
+
+    The clause starts with a comma.
+    """
+    counts = Counter(name for names in names_by_episode for name in names)
+    frequent = [name for name, count in counts.items() if 2 * count > len(names_by_episode)]
+    if not frequent:
         return ""
-    rarely = any(counts[name] < len(named) for name in often)
-    return f", {'mostly ' if rarely else ''}{verb} {_names(often)}"
+    is_partial = any(counts[name] < len(names_by_episode) for name in frequent)
+    return f", {'mostly ' if is_partial else ''}{verb} {_names(frequent)}"
 
 
 def _names(names: Sequence[str]) -> str:

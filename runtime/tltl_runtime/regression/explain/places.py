@@ -1,4 +1,4 @@
-"""Names, in words, of places in a level."""
+"""Describe places in a level in words."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from tltl_runtime.game.geometry import Box, Point
 from tltl_runtime.game.level import Level
 from tltl_runtime.game.registry import registered_game
 
-_NEAR: Final = 2.5
-"""A place within this many metres of an entity is near it."""
+_NEAR_M: Final = 2.5
+"""A place is near an entity if it is within this many metres."""
 
 _BESIDE: Final = 0.99
-"""A box hides another one only if it is met before this share of the way to it; otherwise it stands beside it."""
+"""A box hides a target only if the line to the target meets the box before this share of its length."""
 
-_TOUCHING: Final = 0.7
-"""A solid is in the way of a player if it is within this many metres of the player's centre."""
+_TOUCHING_M: Final = 0.7
+"""A solid blocks a player if it is within this many metres of the player's centre."""
 
 
 def place_name(level: Level, point: Point) -> str:
@@ -31,54 +31,65 @@ def place_name(level: Level, point: Point) -> str:
 
 
 def nearest_entity(level: Level, point: Point) -> str | None:
-    """The nearest switch, exit or barrier; None if none is within 2.5 m."""
+    """Return the nearest switch, exit or barrier; None if none is within 2.5 m."""
     positions = registered_game().landmarks(level)
     near = [(hypot(x - point[0], y - point[1]), name) for name, (x, y, _) in positions.items()]
-    distance, name = min(near, default=(2 * _NEAR, ""))
-    return name if distance <= _NEAR else None
+    distance, name = min(near, default=(2 * _NEAR_M, ""))
+    return name if distance <= _NEAR_M else None
 
 
-def in_the_way(level: Level, ends: Sequence[tuple[Point, Sequence[str]]]) -> list[str]:
-    """The solids and closed barriers that more than half of the players touch, most frequent and nearest first.
+def blocking_solids(level: Level, players: Sequence[tuple[Point, Sequence[str]]]) -> list[str]:
+    """Return the solids and closed barriers that more than half of the players touch.
 
-    The floor does not count.  ``ends`` are the positions of the players' feet, each with the names of
-    the barriers that were closed then.
+    The order is most frequent first, then nearest first.  The floor does not count.  ``players`` are
+    the positions of the players' feet, each with the names of the barriers that were closed then.
     """
     game = registered_game()
     solids, barriers = game.solids(level), game.barriers(level)
     touched: dict[str, list[float]] = {}
-    for feet, shut in ends:
-        boxes = solids | {name: barriers[name] for name in shut if name in barriers}
-        near = {name: distance for name, box in boxes.items() if (distance := _beside(feet, box)) <= _TOUCHING}
+    for feet, closed in players:
+        boxes = solids | {name: barriers[name] for name in closed if name in barriers}
+        near = {
+            name: distance for name, box in boxes.items() if (distance := _distance_to_body(feet, box)) <= _TOUCHING_M
+        }
         for name, distance in near.items():
-            if not any(_hides(boxes[other], feet, boxes[name]) for other in near if near[other] < distance):
+            if not any(_hides(boxes[nearer], feet, boxes[name]) for nearer in near if near[nearer] < distance):
                 touched.setdefault(name, []).append(distance)
-    often = [name for name, distances in touched.items() if 2 * len(distances) > len(ends)]
-    return sorted(often, key=lambda name: (-len(touched[name]), fmean(touched[name])))
+    frequent = [name for name, distances in touched.items() if 2 * len(distances) > len(players)]
+    return sorted(frequent, key=lambda name: (-len(touched[name]), fmean(touched[name])))
 
 
-def _beside(feet: Point, box: Box) -> float:
-    """The horizontal distance from a player to a box; infinite for a box below the feet, such as one to stand on."""
+def _distance_to_body(feet: Point, box: Box) -> float:
+    """Return the horizontal distance from a player to a box, in metres.
+
+    It is infinite for a box below the feet, such as one to stand on.
+    """
     body = (*feet[:2], max(feet[2], box.low[2]))
     return _distance(body, box) if box.high[2] > feet[2] + 0.1 else float("inf")
 
 
-def _hides(box: Box, feet: Point, other: Box) -> bool:
-    """Whether a box stands between a player and another box, seen from above; both boxes must overlap in height."""
+def _hides(box: Box, feet: Point, target: Box) -> bool:
+    """Whether a box stands between a player and the box ``target``, seen from above.
+
+    The two boxes must also overlap in height.
+    """
     first, last = 0.0, 1.0
-    for at, low, high, near, far in zip(feet[:2], box.low, box.high, other.low, other.high, strict=False):
-        way = min(max(at, near), far) - at
-        if way == 0.0:
+    for at, low, high, near, far in zip(feet[:2], box.low, box.high, target.low, target.high, strict=False):
+        offset = min(max(at, near), far) - at
+        if offset == 0.0:
             first, last = (first, last) if low <= at <= high else (1.0, 0.0)
         else:
-            enters, leaves = sorted(((low - at) / way, (high - at) / way))
+            enters, leaves = sorted(((low - at) / offset, (high - at) / offset))
             first, last = max(first, enters), min(last, leaves)
-    # A box that is met at the very end of the way stands beside the other box.
-    return first <= last and first < _BESIDE and box.low[2] < other.high[2] and other.low[2] < box.high[2]
+    # A box that the line meets only at its very end stands beside the target.
+    return first <= last and first < _BESIDE and box.low[2] < target.high[2] and target.low[2] < box.high[2]
 
 
 def _distance(point: Point, box: Box) -> float:
-    """The horizontal distance from a point to a box; infinite if the point is over 0.5 m below or above the box."""
+    """Return the horizontal distance from a point to a box, in metres.
+
+    It is infinite if the point is over 0.5 m below or above the box.
+    """
     if not box.low[2] - 0.5 <= point[2] <= box.high[2] + 0.5:
         return float("inf")
     offsets = [max(low - at, 0.0, at - high) for at, low, high in zip(point[:2], box.low, box.high, strict=False)]
@@ -86,7 +97,7 @@ def _distance(point: Point, box: Box) -> float:
 
 
 def _quarter(bounds: Box, point: Point) -> str:
-    """The part of the level in which a point lies, by compass direction, or ``middle``."""
+    """Return the part of the level in which a point lies: a compass direction, or ``middle``."""
     share = [(at - low) / (high - low) for at, low, high in zip(point, bounds.low, bounds.high, strict=True)]
     north = "north" if share[1] > 2 / 3 else "south" if share[1] < 1 / 3 else ""
     east = "east" if share[0] > 2 / 3 else "west" if share[0] < 1 / 3 else ""

@@ -1,4 +1,4 @@
-"""The reasons of a verdict, in sentences, most important first."""
+"""The reasons of a verdict, as sentences, most important first."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from tltl_runtime.regression.suite.changed_keys import changed_keys
 from tltl_runtime.regression.suite.level_texts import Texts
 from tltl_runtime.regression.suite.suite import Thresholds
 from tltl_runtime.regression.verdict.baseline import Identity
-from tltl_runtime.regression.verdict.verdict import Judgement, beyond
+from tltl_runtime.regression.verdict.verdict import Judgement, differing_figures
 from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltl_runtime.support.number_text import between, counted, percent_exactly
 from tltlc.api import Fspa
@@ -24,36 +24,40 @@ _OVERLAYS: Final = "overlays/"
 def reasons(
     judgement: Judgement, thresholds: Thresholds, now: Sequence[EpisodeSummary], before: Sequence[EpisodeSummary]
 ) -> Iterator[str]:
-    """Describe the statistics of a verdict: the pass rate and the changed figures."""
+    """Describe the statistics of a verdict: the pass rate and the figures that have changed.
+
+    ``now`` and ``before`` are the episodes and those of the baseline.
+    """
     passed, passed_before = (sum(episode.success for episode in episodes) for episodes in (now, before))
-    good, bad = percent_exactly(thresholds.pass_rate), percent_exactly(thresholds.fail_rate)
+    pass_rate, fail_rate = percent_exactly(thresholds.pass_rate), percent_exactly(thresholds.fail_rate)
     met = f"met in {counted(passed, len(now), 'episodes')}, before in {counted(passed_before, len(before))}"
     if judgement.verdict == "fail":
-        yield f"{met}: certainly in less than {bad}"
+        yield f"{met}: certainly in less than {fail_rate}"
     elif judgement.rate_interval[0] >= thresholds.pass_rate:
-        yield f"{met}: certainly in {good} or more"
+        yield f"{met}: certainly in {pass_rate} or more"
     elif judgement.certain and judgement.rate_interval[1] < thresholds.pass_rate:
-        yield f"{met}: certainly in {bad} to {good}"
+        yield f"{met}: certainly in {fail_rate} to {pass_rate}"
     else:
-        yield f"{met}: {between(judgement.rate_interval)} can be said for certain, and {good} are asked for"
+        yield f"{met}: {between(judgement.rate_interval)} can be said for certain, and {pass_rate} are asked for"
     for change in judgement.changes:
-        yield _moved(change.figure, change.now, change.before)
+        yield _change_text(change.figure, change.now, change.before)
     if judgement.verdict == "review" and not judgement.certain:
         certain = {change.figure for change in judgement.changes}
-        for figure in (name for name in beyond(now, before, thresholds) if name not in certain):
-            yield f"{_apart(figure, now, before)}; that is {getattr(thresholds, figure):g} or more, but not certain"
+        for figure in (name for name in differing_figures(now, before, thresholds) if name not in certain):
+            text = _uncertain_change_text(figure, now, before)
+            yield f"{text}; that is {getattr(thresholds, figure):g} or more, but not certain"
 
 
-def _moved(figure: str, now: float, before: float) -> str:
-    """Say that the mean of a figure has changed."""
-    how = "lower" if now < before else "higher"
-    return f"{figure} is {how}, {now:.2f} on average; before: {before:.2f}"
+def _change_text(figure: str, now: float, before: float) -> str:
+    """Say how the mean of a figure has changed."""
+    direction = "lower" if now < before else "higher"
+    return f"{figure} is {direction}, {now:.2f} on average; before: {before:.2f}"
 
 
-def _apart(figure: str, now: Sequence[EpisodeSummary], before: Sequence[EpisodeSummary]) -> str:
-    """Say that the mean of a figure has changed over the seeds that both have.
+def _uncertain_change_text(figure: str, now: Sequence[EpisodeSummary], before: Sequence[EpisodeSummary]) -> str:
+    """Say how the mean of a figure has changed over the seeds that both sides have.
 
-    Reports also show the mean over all episodes of the baseline.  The sentence mentions it if it
+    Reports also show the mean over all episodes of the baseline.  The sentence mentions that mean if it
     looks different.
     """
     count = min(len(now), len(before))
@@ -61,14 +65,14 @@ def _apart(figure: str, now: Sequence[EpisodeSummary], before: Sequence[EpisodeS
         fmean(getattr(episode, figure) for episode in episodes) for episodes in (now[:count], before[:count], before)
     )
     if f"{old:.2f}" == f"{overall:.2f}":
-        return _moved(figure, new, old)
-    how = "lower" if new < old else "higher"
-    same = f"before, in the same {count} episodes: {old:.2f} (in all {len(before)}: {overall:.2f})"
-    return f"{figure} is {how}, {new:.2f} on average; {same}"
+        return _change_text(figure, new, old)
+    direction = "lower" if new < old else "higher"
+    compared = f"before, in the same {count} episodes: {old:.2f} (in all {len(before)}: {overall:.2f})"
+    return f"{figure} is {direction}, {new:.2f} on average; {compared}"
 
 
 def obstacles(level: Level, fspa: Fspa) -> Iterator[str]:
-    """Describe what is unreachable in the level for any player.
+    """Describe what no player can reach in the level.
 
     If several things have the same cause, only the first one is described.
     """
@@ -81,26 +85,29 @@ def edits(
 ) -> Iterator[str]:
     """Describe the differences from the baseline: files, versions and ``changes``.
 
-    ``changes`` are the descriptions of the overlays.  If both texts of a file are known, its changed
-    keys are named.
+    ``changes`` are the descriptions of the overlays.  If both texts of a file are known, the sentence
+    names the keys that have changed.
     """
     old, new = dict(before.files), dict(now.files)
-    differ = [name for name in dict.fromkeys((*new, *old)) if old.get(name) != new.get(name)]
-    # Overlays that only one of two different variants uses are no changes since the baseline.
-    variant_overlays = {name for name in differ if now.variant != before.variant and name.startswith(_OVERLAYS)}
+    changed_names = [name for name in dict.fromkeys((*new, *old)) if old.get(name) != new.get(name)]
+    # If the variants differ, an overlay that only one of them uses has not changed since the baseline.
+    variant_overlays = {name for name in changed_names if now.variant != before.variant and name.startswith(_OVERLAYS)}
     variant_overlays -= old.keys() & new.keys()
-    if changed := [name for name in differ if name not in variant_overlays]:
-        words = (f"{name}{_keys(dict(texts_before).get(name), dict(texts).get(name))}" for name in changed)
-        yield f"changed since the baseline: {', '.join(words)}"
+    if own_changes := [name for name in changed_names if name not in variant_overlays]:
+        files = (
+            f"{name}{_changed_keys_text(dict(texts_before).get(name), dict(texts).get(name))}" for name in own_changes
+        )
+        yield f"changed since the baseline: {', '.join(files)}"
     if variant_overlays:
-        yield f"differs from `{before.variant}` by {', '.join(name for name in differ if name in variant_overlays)}"
+        overlays = ", ".join(name for name in changed_names if name in variant_overlays)
+        yield f"differs from `{before.variant}` by {overlays}"
     yield from changes
     for name, version in before.versions.items():
         if (version_now := now.versions.get(name)) != version:
             yield f"the baseline was recorded with {name} {version}, and this is {version_now or 'without it'}"
 
 
-def _keys(before: str | None, now: str | None) -> str:
-    """The changed keys of a file, in parentheses; empty if they are unknown."""
+def _changed_keys_text(before: str | None, now: str | None) -> str:
+    """Return the changed keys of a file, in parentheses; empty if they are unknown."""
     keys = "" if before is None or now is None else changed_keys(before, now)
     return f" ({keys})" if keys else ""

@@ -1,4 +1,4 @@
-"""The stages of a spec: what to do next in a state of its automaton, in terms of its atoms."""
+"""The stages of a spec: the next subgoal in each state of its automaton, in terms of its atoms."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ _PRECISION: Final = 1e-4
 class Subgoal:
     """What leads from a state towards acceptance.
 
-    ``place`` names the entities at which it is reached, for example ```a` or `b```; it is empty if
-    something else leads on, which ``other`` describes, for example ``makes `open` true``.
+    ``place`` names the entities to reach, for example ```a` or `b```.  It is empty if something else
+    leads towards acceptance; ``other`` then describes that, for example ``makes `open` true``.
     """
 
     place: str = ""
@@ -40,7 +40,10 @@ _MEETS: Final = Subgoal(other="meets the spec")
 
 
 def target_of(fspa: Fspa, atom: int) -> str | None:
-    """The entity that the player must approach for an atom to hold; None unless the atom depends on just that."""
+    """Return the entity that the player must approach for an atom to hold.
+
+    None unless the atom depends only on the distance to one entity.
+    """
     expression = fspa.atoms[atom].expression
     names = {node.name for node in expressions.nodes(expression) if isinstance(node, expressions.SignalValue)}
     if len(names) != 1:
@@ -51,9 +54,9 @@ def target_of(fspa: Fspa, atom: int) -> str | None:
 
 
 def near_enough(fspa: Fspa, atom: int, params: Mapping[str, float]) -> float | None:
-    """The distance, in metres, below which an atom with a target holds.
+    """Return the distance to its target, in metres, below which an atom holds.
 
-    None if the atom has no target or depends on parameters that are not in ``params``.
+    None if the atom has no target or depends on params that are not in ``params``.
     """
     target, expression = target_of(fspa, atom), fspa.atoms[atom].expression
     if (
@@ -93,31 +96,31 @@ def subgoal(fspa: Fspa, state: int) -> Subgoal:
 def _subgoal(fspa: Fspa, prime: Implicant) -> Subgoal | None:
     """Return what makes a prime implicant true; None if nothing has to be done for it.
 
-    Targets come first and are named alone; otherwise the atoms that must hold; otherwise the atoms
-    that must not hold.  Literals that every accepting run needs all the time are left out.
+    If it has targets, only they are named; otherwise the atoms that must hold; otherwise the atoms that
+    must not hold.  Literals that every accepting run needs all the time are left out.
     """
-    literals = [(atom, holds) for atom, holds in prime if not _is_kept(fspa, atom, holds)]
+    literals = [(atom, holds) for atom, holds in prime if not _is_invariant(fspa, atom, holds)]
     if targets := [f"`{target}`" for atom, holds in literals if holds and (target := target_of(fspa, atom))]:
         return Subgoal(place=" and ".join(targets))
     for truth in (True, False):
-        if wanted := [f"`{fspa.atoms[atom].name}`" for atom, holds in literals if holds == truth]:
-            return Subgoal(other=f"makes {' and '.join(wanted)} {str(truth).lower()}")
+        if atoms := [f"`{fspa.atoms[atom].name}`" for atom, holds in literals if holds == truth]:
+            return Subgoal(other=f"makes {' and '.join(atoms)} {str(truth).lower()}")
     return None
 
 
 def subgoal_of_all(fspa: Fspa, states: Collection[int], distance: int) -> Subgoal:
     """Return what leads from these states, all at the same distance, towards acceptance.
 
-    If that differs between the states, say how near to acceptance it leads.
+    If that differs between the states, the subgoal says how near to acceptance it leads.
     """
     subgoals = {subgoal(fspa, state) for state in states}
     if len(subgoals) == 1:
         return subgoals.pop()
-    left = f"{distance - 1} transition{'s' * (distance > 2)}"
-    return Subgoal(other=f"comes within {left} of acceptance") if distance > 1 else _MEETS
+    transitions = f"{distance - 1} transition{'s' * (distance > 2)}"
+    return Subgoal(other=f"comes within {transitions} of acceptance") if distance > 1 else _MEETS
 
 
-def _is_kept(fspa: Fspa, atom: int, truth: bool) -> bool:
+def _is_invariant(fspa: Fspa, atom: int, truth: bool) -> bool:
     """Whether accepting runs need this truth value of an atom all the time.
 
     This is so if every edge that does not lead to a trap requires it.

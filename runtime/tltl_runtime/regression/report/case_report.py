@@ -1,4 +1,4 @@
-"""The report on a case: verdict, figures, reasons and accounts."""
+"""The report on a case: verdict, figures, reasons and episodes."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ from pathlib import Path
 
 from tltl_runtime.evaluation.figures import Figures, figures_of
 from tltl_runtime.game.level_name import shown_variant
-from tltl_runtime.regression.explain.account import Account, summaries_of
+from tltl_runtime.regression.explain.account import ExplainedEpisode, summaries_of
 from tltl_runtime.regression.explain.explain import Finding, findings, most_frequent_end
 from tltl_runtime.regression.explain.reasons import edits, obstacles, reasons
-from tltl_runtime.regression.retrain.retrained import Retrained
+from tltl_runtime.regression.retrain.retrained import RetrainingResult
 from tltl_runtime.regression.suite.level_texts import level_texts
 from tltl_runtime.regression.suite.suite import Case, Thresholds
 from tltl_runtime.regression.verdict.baseline import Identity
@@ -26,7 +26,8 @@ class CaseReport:
     ``causes`` are sentences that justify the verdict.  ``explanation`` are findings about episodes.
     ``edits`` describe the differences from the baseline.  ``certain`` and ``rate_interval`` are as in
     :class:`~tltl_runtime.regression.verdict.verdict.Judgement`.  ``baseline`` are the figures that the
-    case is compared with.  A case that cannot be played has ``causes`` only.
+    case is compared with.  ``accounts`` are the played episodes.  A case that cannot be played has
+    ``causes`` only.
     """
 
     name: str
@@ -43,19 +44,19 @@ class CaseReport:
     edits: tuple[str, ...] = ()
     played: Identity | None = None
     reference: Identity | None = None
-    accounts: tuple[Account, ...] = ()
+    accounts: tuple[ExplainedEpisode, ...] = ()
     recordings: tuple[tuple[int, str], ...] = ()
     """The indices of the recorded episodes and the names of their files."""
-    retrained: Retrained | None = None
+    retrained: RetrainingResult | None = None
     """The result of retraining the policy; None if it was not requested or not needed."""
     told: str = ""
-    """The headline; if empty, the first reason is the headline."""
+    """The headline; if it is empty, the first reason is the headline."""
     fault_at: tuple[str, int] | None = None
-    """The file and the line, counted from 1, of the error for which a case cannot be played."""
+    """The file and the line, counted from 1, of the error because of which the case cannot be played."""
 
     @property
     def headline(self) -> str:
-        """The most important sentence."""
+        """The most important sentence; empty if there is none."""
         return self.told or next(iter(self.reasons), "")
 
     @property
@@ -66,17 +67,17 @@ class CaseReport:
 
 def report_on(result: JudgedCase) -> CaseReport:
     """Return the report on a case that was played."""
-    case, setup = result.ready.case, result.ready.setup
-    now = [episode.account for episode in result.episodes]
+    case, setup = result.prepared.case, result.prepared.setup
+    now = [episode.explained for episode in result.episodes]
     before = result.reference.accounts
-    level, outdated = result.ready.level, result.ready.outdated
+    level, outdated = result.prepared.level, result.prepared.outdated
     summaries, summaries_before = summaries_of(now), summaries_of(before)
     statistics = tuple(reasons(result.judgement, case.thresholds, summaries, summaries_before))
     blocked = tuple(obstacles(level, setup.fspa))
     figures, baseline = figures_of(summaries), figures_of(summaries_before)
     # If a case fails no more often than before, its failures do not explain an uncertain verdict.
     is_worse = result.judgement.verdict == "fail" or figures.pass_rate < baseline.pass_rate
-    failed = most_frequent_end(level, setup.fspa, now, before) if is_worse else None
+    most_frequent = most_frequent_end(level, setup.fspa, now, before) if is_worse else None
     return CaseReport(
         name=case.name,
         level=level.name,
@@ -89,36 +90,49 @@ def report_on(result: JudgedCase) -> CaseReport:
         baseline=baseline,
         changes=result.judgement.changes,
         causes=(*([outdated] if outdated else []), *statistics[:1], *blocked, *statistics[1:]),
-        told=outdated or next(iter(blocked), None) or _headline(result.judgement, case.thresholds, statistics, failed),
+        told=outdated
+        or next(iter(blocked), None)
+        or _headline(result.judgement, case.thresholds, statistics, most_frequent),
         explanation=findings(level, setup.fspa, now, before),
         edits=tuple(_edits(result)),
-        played=result.ready.played,
+        played=result.prepared.played,
         reference=result.reference.played,
         accounts=tuple(now),
     )
 
 
 def _edits(result: JudgedCase) -> Iterator[str]:
-    """The differences from the baseline.  For a file that was edited meanwhile, the changed keys are unknown."""
-    ready, before = result.ready, result.reference
-    texts = level_texts(ready.setup.level, ready.setup.variant, ready.played.files)
-    return edits(ready.played, before.played, ready.changes, texts, before.texts)
+    """Describe the differences from the baseline.
+
+    If a file was edited meanwhile, its changed keys are unknown.
+    """
+    prepared, before = result.prepared, result.reference
+    texts = level_texts(prepared.setup.level, prepared.setup.variant, prepared.played.files)
+    return edits(prepared.played, before.played, prepared.changes, texts, before.texts)
 
 
-def _headline(judgement: Judgement, thresholds: Thresholds, statistics: Sequence[str], failed: str | None) -> str:
-    """The headline: how the case fails if its pass rate may be too low; else a changed figure; else the pass rate."""
-    if failed and judgement.rate_interval[0] < thresholds.pass_rate:
-        return failed
+def _headline(
+    judgement: Judgement, thresholds: Thresholds, statistics: Sequence[str], most_frequent: str | None
+) -> str:
+    """Return the headline.
+
+    It says how the case fails if its pass rate may be too low; else which figure has changed; else the
+    pass rate.
+    """
+    if most_frequent and judgement.rate_interval[0] < thresholds.pass_rate:
+        return most_frequent
     return statistics[1] if len(statistics) > 1 else statistics[0]
 
 
 def report_on_broken(case: Case, error: TltlError) -> CaseReport:
-    """Return the report on a case that cannot be played, which is a failure of the level, not of the suite."""
+    """Return the report on a case that cannot be played: a failure of the level, not of the suite."""
     causes = ("it cannot be played", *map(_one_line, error.diagnostics))
     # Name the variant as for a level that loads, without the paths of overlay files.
     variant = shown_variant(case.variant)
     name = Path(case.level).stem
-    return CaseReport(case.name, name, variant, "fail", causes, told=": ".join(causes[:2]), fault_at=_place(error))
+    return CaseReport(
+        case.name, name, variant, "fail", causes, told=": ".join(causes[:2]), fault_at=_error_location(error)
+    )
 
 
 def report_on_edited(case: Case, error: TltlError) -> CaseReport:
@@ -130,17 +144,17 @@ def report_on_edited(case: Case, error: TltlError) -> CaseReport:
 
 def _one_line(diagnostic: Diagnostic) -> str:
     """Format a diagnostic in one line, with its file and line."""
-    where = message = ""
+    location = message = ""
     if diagnostic.labels:
         label = diagnostic.labels[0]
-        where = f"{label.source.name}:{label.source.position(label.span.start)[0]}: "
+        location = f"{label.source.name}:{label.source.position(label.span.start)[0]}: "
         message = f": {label.message}" if label.message else ""
-    return f"{where}{diagnostic.code}, {diagnostic.title}{message}" + (
+    return f"{location}{diagnostic.code}, {diagnostic.title}{message}" + (
         f" ({diagnostic.help})" if diagnostic.help else ""
     )
 
 
-def _place(error: TltlError) -> tuple[str, int] | None:
-    """The file and the line of the first diagnostic that has a label."""
+def _error_location(error: TltlError) -> tuple[str, int] | None:
+    """Return the file and the line, from 1, of the first diagnostic that has a label; None if none has one."""
     label = next((diagnostic.labels[0] for diagnostic in error.diagnostics if diagnostic.labels), None)
     return (label.source.name, label.source.position(label.span.start)[0]) if label else None

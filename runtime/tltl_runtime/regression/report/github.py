@@ -15,7 +15,7 @@ from tltlc.api import fileio, workflow_command
 _COMMANDS: Final = {"fail": "error", "review": "warning"}
 
 
-def findings_as_commands(suite: Suite, reports: Sequence[CaseReport], root: Path) -> Iterator[str]:
+def workflow_commands(suite: Suite, reports: Sequence[CaseReport], root: Path) -> Iterator[str]:
     """Yield an ``::error`` for each case with verdict ``fail`` and a ``::warning`` for each ``review``.
 
     If a level does not load, the annotation is at the file and line of the error.  Otherwise it is at a
@@ -25,15 +25,15 @@ def findings_as_commands(suite: Suite, reports: Sequence[CaseReport], root: Path
     cases = {case.name: case for case in suite.cases}
     for report in reports:
         if report.verdict in _COMMANDS:
-            path, line = report.fault_at or (_blamed(suite, cases[report.name], report), None)
-            place = {"file": _inside(Path(path), root), **({"line": str(line)} if line else {})}
+            path, line = report.fault_at or (_file_to_annotate(suite, cases[report.name], report), None)
+            location = {"file": _path_from_root(Path(path), root), **({"line": str(line)} if line else {})}
             title = f"{report.name}: {report.verdict}"
             text = "\n".join(report.reasons)
-            yield workflow_command(_COMMANDS[report.verdict], text, {**place, "title": title})
+            yield workflow_command(_COMMANDS[report.verdict], text, {**location, "title": title})
 
 
-def _blamed(suite: Suite, case: Case, report: CaseReport) -> Path:
-    """The file to annotate: the level, a file that has changed since the baseline, or the suite."""
+def _file_to_annotate(suite: Suite, case: Case, report: CaseReport) -> Path:
+    """Return the file to annotate: the level, a file that has changed since the baseline, or the suite."""
     if report.played is None:
         return registered_game().level_files.path(case.level)
     before = dict(report.reference.files) if report.reference else {}
@@ -48,7 +48,8 @@ def _blamed(suite: Suite, case: Case, report: CaseReport) -> Path:
     return suite.path
 
 
-def _inside(path: Path, root: Path) -> str:
+def _path_from_root(path: Path, root: Path) -> str:
+    """Return a path relative to ``root`` if it is inside, else unchanged."""
     try:
         return path.resolve().relative_to(root.resolve()).as_posix()
     except ValueError:

@@ -11,7 +11,7 @@ from tltl_runtime.evaluation.figures import Figures
 from tltl_runtime.regression.report.case_report import CaseReport
 from tltl_runtime.regression.suite.suite import Suite
 
-_NO_XML: Final = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+_NOT_IN_XML: Final = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 """The characters that XML 1.0 does not allow, not even escaped."""
 
 _ELEMENTS: Final = {"fail": "failure", "review": "error"}
@@ -25,8 +25,8 @@ def junit(suite: Suite, reports: Sequence[CaseReport], missing: Sequence[str] = 
     """Format a ``testsuite`` with a ``testcase`` for each case, by the schema junit-10 of Jenkins' xUnit plugin.
 
     Reasons are the texts of elements.  Figures are properties of the ``testsuite``, for example
-    ``CASE.pass_rate``, since a ``testcase`` has no properties.  ``missing`` cases, which were not judged
-    because the run was stopped, are errors.
+    ``CASE.pass_rate``, because a ``testcase`` has no properties.  ``missing`` are the names of cases that
+    were not judged because the run was stopped; they count as errors.
     """
     verdicts = [report.verdict for report in reports]
     counts = {
@@ -35,29 +35,29 @@ def junit(suite: Suite, reports: Sequence[CaseReport], missing: Sequence[str] = 
         "errors": str(verdicts.count("review") + len(missing)),
     }
     root = ET.Element("testsuites", {"name": "tltlc regress", **counts})
-    tests = ET.SubElement(root, "testsuite", {"name": _legal(suite.path.stem), **counts, "skipped": "0"})
+    tests = ET.SubElement(root, "testsuite", {"name": _xml_text(suite.path.stem), **counts, "skipped": "0"})
     properties = ET.SubElement(tests, "properties")
     for name, value in _properties(suite, reports):
-        ET.SubElement(properties, "property", {"name": _legal(name), "value": _legal(value)})
+        ET.SubElement(properties, "property", {"name": _xml_text(name), "value": _xml_text(value)})
     for report in reports:
         tests.append(_testcase(suite, report))
     for name in missing:
-        test = ET.SubElement(tests, "testcase", {"name": _legal(name), "classname": _legal(suite.path.stem)})
+        test = ET.SubElement(tests, "testcase", {"name": _xml_text(name), "classname": _xml_text(suite.path.stem)})
         ET.SubElement(test, "error", {"type": "missing", "message": "not judged: the run was stopped before"})
     ET.indent(root)
     return '<?xml version="1.0" encoding="UTF-8"?>\n' + ET.tostring(root, encoding="unicode") + "\n"
 
 
 def _testcase(suite: Suite, report: CaseReport) -> ET.Element:
-    test = ET.Element("testcase", {"name": _legal(report.name), "classname": _legal(suite.path.stem)})
-    text = _legal("\n".join(report.reasons))
+    test = ET.Element("testcase", {"name": _xml_text(report.name), "classname": _xml_text(suite.path.stem)})
+    text = _xml_text("\n".join(report.reasons))
     if report.verdict in _ELEMENTS:
-        message = _legal(f"{report.verdict}: {report.headline}")
+        message = _xml_text(f"{report.verdict}: {report.headline}")
         ET.SubElement(test, _ELEMENTS[report.verdict], {"type": report.verdict, "message": message}).text = text
     elif text:
         ET.SubElement(test, "system-out").text = text
     if report.retrained:
-        ET.SubElement(test, "system-out").text = _legal(report.retrained.text)
+        ET.SubElement(test, "system-out").text = _xml_text(report.retrained.text)
     return test
 
 
@@ -81,5 +81,6 @@ def _figures(figures: Figures) -> Iterator[tuple[str, str]]:
     yield "reward", f"{figures.reward.mean:.4f}"
 
 
-def _legal(text: str) -> str:
-    return _NO_XML.sub("\N{REPLACEMENT CHARACTER}", text)
+def _xml_text(text: str) -> str:
+    """Return the text, with a replacement character for each character that XML does not allow."""
+    return _NOT_IN_XML.sub("\N{REPLACEMENT CHARACTER}", text)

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Any, Final
 
 from tltl_runtime.evaluation.figures import Figures
-from tltl_runtime.regression.explain.account import Account
+from tltl_runtime.regression.explain.account import ExplainedEpisode
 from tltl_runtime.regression.report.case_report import CaseReport
 from tltl_runtime.regression.suite.suite import Suite
 from tltl_runtime.support.record_json import to_json
@@ -14,7 +14,7 @@ from tltl_runtime.support.record_json import to_json
 FORMAT: Final = "tltl-regression"
 VERSION: Final = 1
 
-_OF_EPISODES: Final = (
+_EPISODE_FIELDS: Final = (
     "index",
     "seed",
     "success",
@@ -70,10 +70,10 @@ def _case(report: CaseReport) -> dict[str, Any]:
         "explanation": to_json(report.explanation),
         "played": to_json(played),
         "retrained": to_json(report.retrained),
-        "accounts": [_episode(account) for account in report.accounts],
+        "accounts": [_episode(episode) for episode in report.accounts],
     }
 
 
-def _episode(account: Account) -> dict[str, Any]:
-    data = to_json(account)
-    return {name: data[name] for name in _OF_EPISODES}
+def _episode(episode: ExplainedEpisode) -> dict[str, Any]:
+    data = to_json(episode)
+    return {name: data[name] for name in _EPISODE_FIELDS}

@@ -1,4 +1,4 @@
-"""Continue the training of policies on changed levels, to find out whether these levels are feasible."""
+"""Continue the training of policies on changed levels, to find out whether the levels are feasible."""
 
 from __future__ import annotations
 
@@ -11,20 +11,20 @@ from typing import Final
 from tltl_runtime.evaluation.evaluate import Pool
 from tltl_runtime.evaluation.figures import figures_of
 from tltl_runtime.policies.file import read_policy
-from tltl_runtime.regression.explain.account import Account, summaries_of
+from tltl_runtime.regression.explain.account import ExplainedEpisode, summaries_of
 from tltl_runtime.regression.retrain.retrained import (
     BestFailedEpisode,
     FinishedRetraining,
-    Retrained,
+    RetrainingResult,
     outcome_of,
     sentence,
 )
 from tltl_runtime.regression.suite.named_files import policy_file
-from tltl_runtime.regression.suite.result_cache import inputs_hash, kept_text, read_kept
+from tltl_runtime.regression.suite.result_cache import cache_text, inputs_hash, read_cache
 from tltl_runtime.regression.suite.suite import LEAST_EPISODES, Case, Suite
 from tltl_runtime.regression.verdict.confidence import rate_interval
-from tltl_runtime.regression.verdict.play import Ready, episodes
-from tltl_runtime.regression.verdict.suite_run import WRITABLE, Done, case_folder
+from tltl_runtime.regression.verdict.play import PreparedCase, play_episodes
+from tltl_runtime.regression.verdict.suite_run import WRITABLE, FinishedCase, case_folder
 from tltl_runtime.support.record_json import to_json
 from tltl_runtime.training.run.checkpoint import read_checkpoint
 from tltl_runtime.training.run.folder import lock_training
@@ -46,7 +46,7 @@ from tltl_runtime.training.run.settings import read_settings
 from tltlc.api import Diagnostic, Fspa, TltlError, fileio, label_text, replace
 
 FOLDER: Final = "retrained"
-"""The name of the folder, in the folder of a run, that contains the training of each case."""
+"""The name of the folder, in the folder of a run, that has a folder with the training of each case."""
 EPISODE: Final = "met.episode.npz"
 """The file, in the folder of a training, with an episode of the retrained policy that met the spec."""
 
@@ -54,16 +54,16 @@ _RESULT: Final = "retrained.json"
 _VERSION: Final = 1
 
 
-def retraining(suite: Suite, ready: Ready, folder: Path, minutes: float, pool: Pool) -> TrainingRun:
+def configure_retraining(suite: Suite, prepared: PreparedCase, folder: Path, minutes: float, pool: Pool) -> TrainingRun:
     """Configure the retraining of a case's policy on its level, below the ``folder`` of a run.
 
-    It stops after ``minutes`` at the latest.
+    The training stops after ``minutes`` at the latest.
 
     Raises:
         TltlError: TLT0942, the policy of a case lies in the folder of the training.
     """
-    place, path = _place(suite, ready.case, folder), policy_file(ready.case.policy)
-    setup, card, settings = ready.setup, ready.setup.policy.card, read_settings()
+    place, path = _training_folder(suite, prepared.case, folder), policy_file(prepared.case.policy)
+    setup, card, settings = prepared.setup, prepared.setup.policy.card, read_settings()
     rollout = replace(
         settings.rollout, pool="ray" if pool == "ray" else "processes", workers=0 if pool == "ray" else pool
     )
@@ -80,19 +80,21 @@ def retraining(suite: Suite, ready: Ready, folder: Path, minutes: float, pool: P
     )
 
 
-def is_kept(run: TrainingRun) -> bool:
-    """Whether the folder contains this training, finished or not: same level, spec, policy, seed and settings.
+def is_stored(run: TrainingRun) -> bool:
+    """Whether ``run.folder`` contains this training, finished or not.
+
+    Level, spec, policy, seed and settings must be the same.
 
     Raises:
         TltlError: the level does not load, which is no fault of the folder.
     """
-    wanted = identity(run)
+    expected = identity(run)
     try:
         # The folder may name the level differently.  Compare the hash of its content instead.
         stored = replace(read_run(run.folder), level=run.level, variant=run.variant)
-        if {**identity(stored), "level": read_level_hash(run.folder)} != wanted:
+        if {**identity(stored), "level": read_level_hash(run.folder)} != expected:
             return False
-        checkpoint = read_checkpoint(run.folder / CHECKPOINT, wanted)
+        checkpoint = read_checkpoint(run.folder / CHECKPOINT, expected)
     except TltlError:
         # The training is damaged or has another version.
         return False
@@ -101,19 +103,23 @@ def is_kept(run: TrainingRun) -> bool:
     return not is_finished or (checkpoint is not None and (run.folder / POLICY).exists())
 
 
-def check_places(suite: Suite, cases: Sequence[Case], folder: Path) -> None:
+def check_policy_folders(suite: Suite, cases: Sequence[Case], folder: Path) -> None:
     """Raise TltlError, TLT0942, if a policy lies in the folder of the training for one of the cases."""
     for case in cases:
-        _place(suite, case, folder)
+        _training_folder(suite, case, folder)
 
 
-def _place(suite: Suite, case: Case, folder: Path) -> Path:
-    """The folder of the training for a case; raises TltlError, TLT0942, if the policy of a case lies there."""
+def _training_folder(suite: Suite, case: Case, folder: Path) -> Path:
+    """Return the folder of the training for a case.
+
+    Raises:
+        TltlError: TLT0942, the policy of a case lies in that folder.
+    """
     place = case_folder(suite, case.name, folder / FOLDER)
-    for other in suite.cases:
-        if policy_file(other.policy).resolve().parent == place.resolve():
-            whose = "its training" if other.name == case.name else f"the training for `{case.name}`"
-            title = f"the policy of the case `{other.name}` lies in `{place}`, where {whose} goes"
+    for suite_case in suite.cases:
+        if policy_file(suite_case.policy).resolve().parent == place.resolve():
+            whose = "its training" if suite_case.name == case.name else f"the training for `{case.name}`"
+            title = f"the policy of the case `{suite_case.name}` lies in `{place}`, where {whose} goes"
             help_ = "move it beside the suite, and name that place there as `policy`"
             raise TltlError([Diagnostic("TLT0942", title, help=help_)])
     return place
@@ -136,7 +142,7 @@ def make_room(suite: Suite, folder: Path) -> Path | None:
                 fileio.remove_file(path, WRITABLE)
             return None
     # Windows refuses to move the folder before the lock file is closed.
-    new_folder = _free_beside(suite, folder)
+    new_folder = _free_folder(suite, folder)
     try:
         folder.rename(new_folder)
     except OSError as error:
@@ -145,45 +151,52 @@ def make_room(suite: Suite, folder: Path) -> Path | None:
     return new_folder
 
 
-def _free_beside(suite: Suite, folder: Path) -> Path:
-    """The first of ``FOLDER-2``, ``FOLDER-3`` and so on that does not exist and is not reserved for another case."""
-    taken = {case_folder(suite, case.name, folder.parent) for case in suite.cases}
+def _free_folder(suite: Suite, folder: Path) -> Path:
+    """Return the first of ``FOLDER-2``, ``FOLDER-3`` and so on that is free.
+
+    The folder does not exist and is not reserved for another case.
+    """
+    reserved = {case_folder(suite, case.name, folder.parent) for case in suite.cases}
     candidates = (folder.with_name(f"{folder.name}-{number}") for number in count(2))
-    return next(path for path in candidates if path not in taken and not path.exists())
+    return next(path for path in candidates if path not in reserved and not path.exists())
 
 
-def retrained(
-    suite: Suite, done: Done, run: TrainingRun, pool: Pool, on_episode: Callable[[int, Account], None]
-) -> Retrained:
+def retraining_result(
+    suite: Suite,
+    finished: FinishedCase,
+    run: TrainingRun,
+    pool: Pool,
+    on_episode: Callable[[int, ExplainedEpisode], None],
+) -> RetrainingResult:
     """Return the result of the finished training in ``run.folder``.
 
     The retrained policy plays fresh episodes, unless the result is cached.  It stops as soon as it is
     certain whether the pass rate reaches the case's threshold.  After each episode, ``on_episode``
-    gets the number of episodes so far and the last account.
+    gets the number of episodes so far and the last episode.
 
     Raises:
         TltlError: the policy's file cannot be read; errors from playing; TLT0005, a file cannot be
             written.
     """
-    assert done.ready is not None
-    policy, trained = read_policy(run.folder / POLICY), trained_of(run)
+    assert finished.prepared is not None
+    policy, training = read_policy(run.folder / POLICY), training_summary(run)
     error = suite.error / len(suite.cases)
     # Use another seed: the original policy has already played the episodes of the suite's seed.
-    setup = replace(done.ready.setup, policy=policy, seed=(suite.seed + 1) % 2**31)
-    ready = replace(done.ready, setup=setup, case=replace(done.ready.case, policy=run.folder))
-    inputs = _inputs(ready, weights_hash(policy), trained, error, done.report.accounts)
-    if cached := _kept(run.folder, inputs):
+    setup = replace(finished.prepared.setup, policy=policy, seed=(suite.seed + 1) % 2**31)
+    prepared = replace(finished.prepared, setup=setup, case=replace(finished.prepared.case, policy=run.folder))
+    inputs = _inputs(prepared, weights_hash(policy), training, error, finished.report.accounts)
+    if cached := _cached_result(run.folder, inputs):
         return cached
-    accounts, recording, interval = _played(ready, error, pool, on_episode)
-    thresholds = ready.case.thresholds
-    met = sum(account.summary.success for account in (*accounts, *done.report.accounts))
-    outcome = outcome_of(trained, interval[0], thresholds, met)
-    overall, best = figures_of(summaries_of(accounts)), _best(accounts, setup.fspa)
+    played, recording, interval = _play_until_certain(prepared, error, pool, on_episode)
+    thresholds = prepared.case.thresholds
+    met = sum(episode.summary.success for episode in (*played, *finished.report.accounts))
+    outcome = outcome_of(training, interval[0], thresholds, met)
+    overall, best = figures_of(summaries_of(played)), _best(played, setup.fspa)
     place = f"{FOLDER}/{run.folder.name}"
-    result = Retrained(
+    result = RetrainingResult(
         outcome=outcome,
-        text=sentence(outcome, trained, overall, interval, thresholds, best),
-        trained=trained,
+        text=sentence(outcome, training, overall, interval, thresholds, best),
+        trained=training,
         figures=overall,
         rate_interval=interval,
         best=best,
@@ -191,11 +204,11 @@ def retrained(
         episode=f"{place}/{EPISODE}" if recording else None,
     )
     files: dict[str, str | bytes] = {EPISODE: recording} if recording else {}
-    fileio.write_files(run.folder, {**files, _RESULT: kept_text(inputs, result)}, WRITABLE, over_inputs=True)
+    fileio.write_files(run.folder, {**files, _RESULT: cache_text(inputs, result)}, WRITABLE, over_inputs=True)
     return result
 
 
-def trained_of(run: TrainingRun) -> FinishedRetraining:
+def training_summary(run: TrainingRun) -> FinishedRetraining:
     """Summarize the finished training in ``run.folder``.
 
     Raises:
@@ -219,43 +232,61 @@ def trained_of(run: TrainingRun) -> FinishedRetraining:
     )
 
 
-def _played(
-    ready: Ready, error: float, pool: Pool, on_episode: Callable[[int, Account], None]
-) -> tuple[list[Account], bytes, tuple[float, float]]:
+def _play_until_certain(
+    prepared: PreparedCase, error: float, pool: Pool, on_episode: Callable[[int, ExplainedEpisode], None]
+) -> tuple[list[ExplainedEpisode], bytes, tuple[float, float]]:
     """Play episodes until it is certain whether the pass rate reaches the case's threshold.
 
-    Return their accounts, the recording of the first that met the spec (or empty bytes), and the
-    confidence interval of the pass rate.
+    Returns the episodes, the recording of the first one that met the spec (empty if there is none), and
+    the confidence interval of the pass rate.
     """
-    wanted, accounts, recording, interval = ready.case.thresholds.pass_rate, list[Account](), b"", (0.0, 1.0)
-    with closing(episodes(ready, pool)) as playing:
+    threshold = prepared.case.thresholds.pass_rate
+    played, recording, interval = list[ExplainedEpisode](), b"", (0.0, 1.0)
+    with closing(play_episodes(prepared, pool)) as playing:
         for episode in playing:
-            accounts.append(episode.account)
-            on_episode(len(accounts), episode.account)
-            recording = recording or (episode.recording if episode.account.summary.success else b"")
-            passed = sum(account.summary.success for account in accounts)
-            interval = rate_interval(passed, len(accounts) - passed, error)
-            if len(accounts) >= LEAST_EPISODES and (interval[0] >= wanted or interval[1] < wanted):
+            played.append(episode.explained)
+            on_episode(len(played), episode.explained)
+            recording = recording or (episode.recording if episode.explained.summary.success else b"")
+            passed = sum(explained.summary.success for explained in played)
+            interval = rate_interval(passed, len(played) - passed, error)
+            if len(played) >= LEAST_EPISODES and (interval[0] >= threshold or interval[1] < threshold):
                 break
-    return accounts, recording, interval
+    return played, recording, interval
 
 
-def _best(accounts: Sequence[Account], fspa: Fspa) -> BestFailedEpisode | None:
-    failed = [account for account in accounts if not account.summary.success]
+def _best(played: Sequence[ExplainedEpisode], fspa: Fspa) -> BestFailedEpisode | None:
+    failed = [episode for episode in played if not episode.summary.success]
     if not failed:
         return None
-    farthest = max(failed, key=lambda account: account.summary.progress)
+    farthest = max(failed, key=lambda episode: episode.summary.progress)
     return BestFailedEpisode(farthest.summary.progress, label_text(fspa, farthest.summary.unmet))
 
 
-def _inputs(ready: Ready, weights: str, trained: FinishedRetraining, error: float, own: Sequence[Account]) -> str:
-    """The hash of everything that the outcome depends on; ``own`` are the episodes by which the case was judged."""
-    case = ready.case
-    parts = [_VERSION, case.episodes, to_json(case.thresholds), error, to_json(ready.played), weights, to_json(trained)]
-    return inputs_hash([*parts, sum(account.summary.success for account in own)])
+def _inputs(
+    prepared: PreparedCase,
+    weights: str,
+    training: FinishedRetraining,
+    error: float,
+    judged_episodes: Sequence[ExplainedEpisode],
+) -> str:
+    """Return the hash of everything that the outcome depends on.
+
+    ``judged_episodes`` are the episodes by which the case was judged.
+    """
+    case = prepared.case
+    parts = [
+        _VERSION,
+        case.episodes,
+        to_json(case.thresholds),
+        error,
+        to_json(prepared.played),
+        weights,
+        to_json(training),
+    ]
+    return inputs_hash([*parts, sum(episode.summary.success for episode in judged_episodes)])
 
 
-def _kept(folder: Path, inputs: str) -> Retrained | None:
-    """The cached result, if nothing has changed since and its episode's file exists; else None."""
-    result = read_kept(Retrained, folder / _RESULT, inputs)
+def _cached_result(folder: Path, inputs: str) -> RetrainingResult | None:
+    """Return the cached result, if nothing has changed since and its episode's file exists; else None."""
+    result = read_cache(RetrainingResult, folder / _RESULT, inputs)
     return result if result and (result.episode is None or (folder / EPISODE).is_file()) else None

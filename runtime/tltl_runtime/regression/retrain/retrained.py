@@ -22,7 +22,7 @@ class FinishedRetraining:
 
     ``steps`` are the agent's steps.  ``seconds`` include the search, which took ``searched`` decisions
     and was ``complete`` unless a limit stopped it.  ``shortest`` is the length, in steps, of the
-    shortest known trajectory that meets the spec, by the search or by the agent; None if none is known.
+    shortest known demonstration, by the search or by the agent; None if none is known.
     """
 
     end: Literal["met", "steps", "minutes"]
@@ -35,22 +35,22 @@ class FinishedRetraining:
 
 @record
 class BestFailedEpisode:
-    """The best failed episode: its progress, in [0, 1], and in English what remained to be done at that point."""
+    """The best failed episode: its progress, in [0, 1], and what remained to be done then, in English."""
 
     progress: float
     remained: str
 
 
 @record
-class Retrained:
+class RetrainingResult:
     """Whether a changed level is feasible, according to a training.
 
     ``outcome`` is ``learned`` if the retrained policy's pass rate is certainly at least the case's
     ``pass_rate``; ``feasible`` if the search or any policy met the spec; ``no_way`` if none did.
-    ``figures`` are the figures of the retrained policy in fresh episodes, and ``rate_interval`` is the
-    confidence interval of its pass rate.  ``best`` is the best failed episode, or None if all episodes
-    met the spec.  ``policy`` and ``episode`` are paths relative to the folder of the run; ``episode``
-    is a recording of an episode that met the spec.
+    ``text`` says so in a sentence.  ``figures`` are the figures of the retrained policy in fresh
+    episodes, and ``rate_interval`` is the confidence interval of its pass rate.  ``best`` is the best
+    failed episode, or None if all episodes met the spec.  ``policy`` and ``episode`` are paths relative
+    to the folder of the run; ``episode`` is a recording of an episode that met the spec.
     """
 
     outcome: Outcome
@@ -64,10 +64,10 @@ class Retrained:
 
 
 def outcome_of(trained: FinishedRetraining, low: float, thresholds: Thresholds, met: int) -> Outcome:
-    """The outcome of a training.
+    """Return the outcome of a training.
 
     ``low`` is the lower bound of the pass rate.  ``met`` counts the episodes that met the spec,
-    including the case's own.
+    including those by which the case was judged.
     """
     if low >= thresholds.pass_rate:
         return "learned"
@@ -83,19 +83,21 @@ def sentence(
     best: BestFailedEpisode | None,
 ) -> str:
     """Describe the outcome in a sentence."""
-    took = f"{duration(trained.seconds)} of training ({trained.steps:,} steps)"
+    effort = f"{duration(trained.seconds)} of training ({trained.steps:,} steps)"
     if trained.searched:
         counts = f"{trained.searched:,} and {trained.steps:,} steps"
-        took = f"{duration(trained.seconds)} of search and training ({counts})"
+        effort = f"{duration(trained.seconds)} of search and training ({counts})"
     count, passed = figures.episodes, round(figures.pass_rate * figures.episodes)
-    now = f"the policy meets the spec in {passed} of {count} fresh episodes ({between(rate_interval)} for certain)"
+    fresh_result = (
+        f"the policy meets the spec in {passed} of {count} fresh episodes ({between(rate_interval)} for certain)"
+    )
     if outcome == "learned":
-        return f"feasible: after {took} {now}"
+        return f"feasible: after {effort} {fresh_result}"
     if outcome == "feasible":
         clauses = ["feasible, but not learned"]
         if trained.shortest is not None:
             clauses.append(f"there are ways, the shortest that is known takes {trained.shortest:,} steps")
-        clauses.append(f"after {took} {now}, and {percent_exactly(thresholds.pass_rate)} are asked for")
+        clauses.append(f"after {effort} {fresh_result}, and {percent_exactly(thresholds.pass_rate)} are asked for")
     else:
         broken = "" if trained.complete else ", which the limit broke off,"
         search, training = f"a search of {trained.searched:,} steps{broken}", f"a training of {trained.steps:,} steps"

@@ -9,45 +9,45 @@ from typing import Any, Final, TypeGuard
 from tltl_runtime.support.number_text import listed
 from tltlc.api import SourceFile, TltlError, fileio
 
-_MOST: Final = 3
-"""The most keys of a file that are named.  Further keys are counted."""
+_MOST_KEYS: Final = 3
+"""The most keys of a file that are named.  The others are counted."""
 
-_SHORT: Final = 24
-"""The most characters of a value that is shown.  For a longer value, only the key is shown."""
+_MOST_CHARACTERS: Final = 24
+"""The most characters of a value that is shown.  If a value is longer, only its key is shown."""
 
 
 def changed_keys(before: str, now: str) -> str:
     """Describe the keys whose values differ between two TOML texts, with short values.
 
-    Tables in lists are matched by `name` if all names are present and distinct, else by position,
+    Tables in lists are matched by ``name`` if all names are present and distinct, else by position,
     counted from 1.  The description is empty if a text is not TOML.
     """
     try:
         old, new = (fileio.parse_toml(SourceFile("", text), "TLT0801", "") for text in (before, now))
     except TltlError:
         return ""
-    return listed(list(_changes((), old, new)), _MOST) or "its layout"
+    return listed(list(_changes((), old, new)), _MOST_KEYS) or "its layout"
 
 
 def _changes(path: tuple[str, ...], old: Mapping[str, Any], new: Mapping[str, Any]) -> Iterator[str]:
-    """Describe the differences between two tables at a path, in the order of the new table."""
+    """Describe the differences between two tables at ``path``, in the order of the new table."""
     for key in dict.fromkeys((*new, *old)):
         key_path = (*path, key)
         name, before, now = f"`{'.'.join(key_path)}`", old.get(key), new.get(key)
         if key not in old:
-            yield f"{name} new{_shown(': ', now)}"
+            yield f"{name} new{_value_text(': ', now)}"
         elif key not in new:
             yield f"{name} gone"
         elif isinstance(before, dict) and isinstance(now, dict):
             yield from _changes(key_path, before, now)
         elif _are_tables(before) and _are_tables(now):
-            named = _have_names(before) and _have_names(now)
-            old_tables, new_tables = map(_names if named else _positions, (before, now))
-            if named and before != now and old_tables == new_tables:
+            have_names = _have_names(before) and _have_names(now)
+            old_tables, new_tables = map(_names if have_names else _positions, (before, now))
+            if have_names and before != now and old_tables == new_tables:
                 yield f"the order of {name}"
             yield from _changes(key_path, old_tables, new_tables)
         elif (type(before), before) != (type(now), now):
-            values = _shown(" ", before), _shown(" → ", now)
+            values = _value_text(" ", before), _value_text(" → ", now)
             yield name + "".join(values) if all(values) else name
 
 
@@ -68,7 +68,7 @@ def _positions(tables: Sequence[Mapping[str, Any]]) -> dict[str, Mapping[str, An
     return {str(row): table for row, table in enumerate(tables, 1)}
 
 
-def _shown(before: str, value: Any) -> str:
-    """The value as JSON after the prefix ``before``; empty if the value is too long."""
+def _value_text(before: str, value: Any) -> str:
+    """Return ``before`` and the value as JSON; empty if the value is too long."""
     text = json.dumps(value, ensure_ascii=False, default=str)
-    return before + text if len(text) <= _SHORT else ""
+    return before + text if len(text) <= _MOST_CHARACTERS else ""

@@ -29,13 +29,14 @@ class Selection:
     """The result of selecting cases by changed files.
 
     ``cases`` depend on the changed files, ``left_out`` do not.  No case depends on the names in
-    ``unknown``.  ``slips`` are unknown names that resemble a dependency, each with the suggested name.
+    ``unknown``.  ``suggestions`` are the unknown names that resemble a dependency, each with the
+    suggested name.
     """
 
     cases: tuple[Case, ...]
     left_out: tuple[Case, ...] = ()
     unknown: tuple[str, ...] = ()
-    slips: tuple[tuple[str, str], ...] = ()
+    suggestions: tuple[tuple[str, str], ...] = ()
 
 
 def select(suite: Suite, changed: Sequence[str]) -> Selection:
@@ -46,7 +47,7 @@ def select(suite: Suite, changed: Sequence[str]) -> Selection:
     accepted, too (``"assets/w\303\244chter.toml"``).
     """
     dependencies_of = {case.name: dependencies(suite, case) for case in suite.cases}
-    concerned = {
+    affected = {
         case.name for case in suite.cases if any(_matches_any(name, dependencies_of[case.name]) for name in changed)
     }
     known = {path for paths in dependencies_of.values() for path in paths}
@@ -57,15 +58,15 @@ def select(suite: Suite, changed: Sequence[str]) -> Selection:
     }
     suggestions = ((name, _similar_name(name, candidates)) for name in unknown)
     return Selection(
-        tuple(case for case in suite.cases if case.name in concerned),
-        tuple(case for case in suite.cases if case.name not in concerned),
+        tuple(case for case in suite.cases if case.name in affected),
+        tuple(case for case in suite.cases if case.name not in affected),
         unknown,
         tuple((name, suggestion) for name, suggestion in suggestions if suggestion),
     )
 
 
 def dependencies(suite: Suite, case: Case) -> tuple[Path, ...]:
-    """The files that a case depends on, as absolute paths, both as named and with links resolved.
+    """Return the files that a case depends on, as absolute paths, both as named and with links resolved.
 
     Paths that do not exist but would take precedence over a file count, too: creating or deleting
     such a file affects the case.
@@ -74,39 +75,44 @@ def dependencies(suite: Suite, case: Case) -> tuple[Path, ...]:
     files += registered_game().level_files.dependencies(case.level, case.variant)
     if case.spec is not None:
         files += spec_files(Path(fileio.split_spec_name(case.spec)[0]))
-    return tuple(dict.fromkeys(form for path in files for form in (Path(normpath(path.absolute())), path.resolve())))
+    return tuple(
+        dict.fromkeys(spelling for path in files for spelling in (Path(normpath(path.absolute())), path.resolve()))
+    )
 
 
 def files_of(suite: Suite) -> frozenset[Path]:
-    """The files that the cases of a suite depend on, including the baseline."""
+    """Return the files that the cases of a suite depend on, including the baseline."""
     return frozenset(path for case in suite.cases for path in dependencies(suite, case))
 
 
 def _matches_any(name: str, paths: Iterable[Path]) -> bool:
-    """Whether a name as in :func:`select` stands for one of the paths."""
-    given = Path(_unquoted(name))
-    place, parts = given.resolve(), given.parts
+    """Whether a name, as in :func:`select`, means one of the paths."""
+    named_path = Path(_unquote(name))
+    resolved, parts = named_path.resolve(), named_path.parts
     return any(
-        place == path
-        or place in path.parents
+        resolved == path
+        or resolved in path.parents
         or path.parts[-len(parts) :] == parts
-        or any((*path.parts[-len(parts) : -1], bare) == parts for bare in (path.stem, path.name.partition(".")[0]))
+        or any((*path.parts[-len(parts) : -1], stem) == parts for stem in (path.stem, path.name.partition(".")[0]))
         for path in paths
     )
 
 
 def _similar_name(name: str, paths: Iterable[Path]) -> str | None:
-    """Suggest a correction of a name; None for a name with a folder, which may be a deleted file listed by git."""
-    given = Path(_unquoted(name))
-    if len(given.parts) > 1 or fileio.exists(given):
+    """Suggest a correction of a name; None if there is none.
+
+    None also for a name with a folder, which may be a deleted file that git lists.
+    """
+    named_path = Path(_unquote(name))
+    if len(named_path.parts) > 1 or fileio.exists(named_path):
         return None
-    stems = sorted({path.stem for path in paths if given.suffix in ("", path.suffix)})
-    close = get_close_matches(given.stem, stems, n=1, cutoff=0.7)
-    return f"{close[0]}{given.suffix}" if close else None
+    stems = sorted({path.stem for path in paths if named_path.suffix in ("", path.suffix)})
+    matches = get_close_matches(named_path.stem, stems, n=1, cutoff=0.7)
+    return f"{matches[0]}{named_path.suffix}" if matches else None
 
 
-def _unquoted(name: str) -> str:
-    """Undo git's quoting: double quotes, with bytes of non-ASCII characters in octal.  Other names are unchanged."""
+def _unquote(name: str) -> str:
+    """Undo git's quoting: double quotes, and non-ASCII bytes in octal.  Other names are unchanged."""
     if len(name) < 2 or not (name.startswith('"') and name.endswith('"')):
         return name
     parts = _ESCAPE.split(os.fsencode(name[1:-1]))

@@ -12,7 +12,7 @@ from tltl_runtime.regression.verdict.baseline import Reference, text_sha256
 from tltlc.api import TltlError, fileio
 
 Texts = tuple[tuple[str, str], ...]
-"""Names of files, as in ``files`` of a :class:`~tltl_runtime.game.level.Level`, each with a text or a hash."""
+"""Names of files, as in ``files`` of a :class:`~tltl_runtime.game.level.Level`, each with its text or its hash."""
 
 _NAME: Final = re.compile(r"(?:(?:assets|overlays)/)?[^/\\:\0]+\.toml")
 _BASELINE: Final = fileio.Archive(
@@ -22,7 +22,7 @@ _SPEC: Final = re.compile(r"^spec\s*=.*$", re.MULTILINE)
 
 
 def level_texts(name_or_path: str, variant: str, files: Texts) -> Texts:
-    """Read the texts of a level's ``files``, which are names with SHA-256 hashes, in order.
+    """Return the names and texts of a level's ``files``, which are names with SHA-256 hashes, in order.
 
     A file that was edited since, and so has another hash, is left out.
     """
@@ -36,15 +36,15 @@ def level_texts(name_or_path: str, variant: str, files: Texts) -> Texts:
     return tuple(texts)
 
 
-def text_now(name_or_path: str, variant: str, name: str) -> str | None:
-    """The current text of a file of a level; None if it cannot be read."""
+def current_text(name_or_path: str, variant: str, name: str) -> str | None:
+    """Return the current text of a file of a level; None if it cannot be read."""
     level_files = registered_game().level_files
     candidates = level_files.candidates(name_or_path, variant, name)
     return _text(next(filter(fileio.is_file, candidates), level_files.path(name_or_path)))
 
 
-def designed(reference: Reference) -> Level | None:
-    """Load the level from the texts of a baseline, as it was recorded; None if they do not load."""
+def baseline_level(reference: Reference) -> Level | None:
+    """Load the level of a reference from the texts in the baseline, as it was recorded; None if they do not load."""
     played, texts = reference.played, dict(reference.texts)
     # Two overlays of the same name do not fit into one folder.  Reject names that lead out of the folder.
     if len(texts) != len(played.files) or not texts or not all(map(_NAME.fullmatch, texts)):

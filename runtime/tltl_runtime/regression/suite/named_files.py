@@ -18,7 +18,7 @@ _NO_SUCH_SPEC: Final = {"TLT0720", "TLT0721"}
 
 
 def policy_file(path: Path) -> Path:
-    """The file of a case's policy: ``path`` itself, or the policy in the folder of a training."""
+    """Return the file of a case's policy: ``path`` itself, or the policy in the folder of a training."""
     if not fileio.is_dir(path):
         return path
     from tltl_runtime.training.run.run_file import POLICY
@@ -26,44 +26,47 @@ def policy_file(path: Path) -> Path:
     return path / POLICY
 
 
-def policy_faults(path: Path, label: Label) -> list[Diagnostic]:
-    """Diagnostics, at the ``label``, of a policy that cannot be read.
+def policy_diagnostics(path: Path, label: Label) -> list[Diagnostic]:
+    """Return the diagnostics, at ``label``, of a policy that cannot be read; none if it can.
 
     TLT0872 if the folder contains no policy; otherwise the diagnostics of ``read_policy``.
     """
     file = policy_file(path)
     if file != path and not fileio.exists(file):
-        return _at(label, [_no_policy(path)])
+        return _with_label(label, [_no_policy(path)])
     try:
         read_policy(file)
     except TltlError as error:
-        return _at(label, error.diagnostics)
+        return _with_label(label, error.diagnostics)
     return []
 
 
-def spec_faults(spec: str, label: Label) -> list[Diagnostic]:
-    """Diagnostics, at the ``label``, of a spec that is not found.
+def spec_diagnostics(spec: str, label: Label) -> list[Diagnostic]:
+    """Return the diagnostics, at ``label``, of a spec that is not found; none if it is.
 
     TLT0720 if the file has no spec of that name; TLT0721 if no spec is named and the file does not
-    have exactly one.  A change of the file may cause other errors, which are reported when the case is
-    played.
+    have exactly one.  Other errors in the file are reported when the case is played, because a change
+    of the file may have caused them.
     """
     try:
         read_spec(spec)
     except TltlError as error:
-        return _at(label, [diagnostic for diagnostic in error.diagnostics if diagnostic.code in _NO_SUCH_SPEC])
+        return _with_label(label, [diagnostic for diagnostic in error.diagnostics if diagnostic.code in _NO_SUCH_SPEC])
     return []
 
 
-def level_like(name: str, folder: Path) -> str | None:
-    """Suggest a similar level for an unknown name in a suite in ``folder``: a file or a level of the package."""
-    beside: list[str] = []
+def similar_level(name: str, folder: Path) -> str | None:
+    """Suggest a level for an unknown ``name`` in a suite in ``folder``; None if no name is similar.
+
+    Candidates are the files there and the levels of the package.
+    """
+    names: list[str] = []
     # The name may not be a valid path on this system.
     with suppress(OSError, ValueError):
         files = sorted(filter(_is_level, (folder / name).parent.glob("*.toml")))
-        beside = [(Path(name).parent / path.name).as_posix() for path in files]
-    close = get_close_matches(name, (*beside, *registered_game().level_files.names()), n=1)
-    return f"did you mean `{close[0]}`?" if close else None
+        names = [(Path(name).parent / path.name).as_posix() for path in files]
+    matches = get_close_matches(name, (*names, *registered_game().level_files.names()), n=1)
+    return f"did you mean `{matches[0]}`?" if matches else None
 
 
 def _is_level(path: Path) -> bool:
@@ -76,20 +79,20 @@ def _is_level(path: Path) -> bool:
         return False
 
 
-def policy_for_its_spec(level: str) -> str | None:
-    """The level of the package whose policy may play this level: both have specs of the same name.
+def level_with_fitting_policy(level: str) -> str | None:
+    """Return the level of the package whose policy may play ``level``; None if there is none.
 
-    This level may be a copy of it.
+    Both levels have specs of the same name: ``level`` may be a copy of that one.
     """
     game = registered_game()
     with suppress(TltlError):
-        made_for = {Path(game.load_level(name).spec).name: name for name in shipped_policies()}
+        levels_by_spec = {Path(game.load_level(name).spec).name: name for name in shipped_policies()}
         first_variant = game.level_files.variants(level)[0]
-        return made_for.get(Path(game.load_level(level, first_variant).spec).name)
+        return levels_by_spec.get(Path(game.load_level(level, first_variant).spec).name)
     return None
 
 
-def _at(label: Label, diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
+def _with_label(label: Label, diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
     return [replace(diagnostic, labels=(label, *diagnostic.labels)) for diagnostic in diagnostics]
 
 

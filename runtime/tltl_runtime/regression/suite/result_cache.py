@@ -1,4 +1,4 @@
-"""The cache of results between runs: some content, with a hash of everything that it depends on."""
+"""The cache of results between runs: a result, with a hash of everything that it depends on."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ T = TypeVar("T")
 
 
 def inputs_hash(parts: Sequence[Any]) -> str:
-    """The SHA-256, in hexadecimal, of JSON data and of the source code."""
+    """Return the SHA-256, in hexadecimal, of JSON data and of the source code."""
     return hashlib.sha256(json.dumps([*parts, sources_hash()], sort_keys=True).encode()).hexdigest()
 
 
-def kept_text(inputs: str, content: object) -> str:
-    """The text of a cache file with some content, which depends on inputs with the hash ``inputs``."""
+def cache_text(inputs: str, content: object) -> str:
+    """Return the text of a cache file with ``content``, which depends on inputs with the hash ``inputs``."""
     return json.dumps({"identity": inputs, "content": to_json(content)}, ensure_ascii=False) + "\n"
 
 
-def read_kept(kind: type[T], path: Path, inputs: str) -> T | None:
+def read_cache(kind: type[T], path: Path, inputs: str) -> T | None:
     """Read the content of a cache file with :func:`~tltl_runtime.support.record_json.from_json`.
 
     None if the file does not exist, cannot be read, or has another hash: compute the content again.

@@ -6,9 +6,9 @@ import re
 from collections.abc import Sequence
 from typing import Final
 
-_OTHER: Final = re.compile(r"[^A-Za-z0-9_.+]+")
-_LONGEST: Final = 80
-_TAKEN: Final = re.compile(r"(con|prn|aux|nul|com[0-9]|lpt[0-9])(\..*)?\Z", re.IGNORECASE)
+_NOT_ALLOWED: Final = re.compile(r"[^A-Za-z0-9_.+]+")
+_MAX_LENGTH: Final = 80
+_RESERVED: Final = re.compile(r"(con|prn|aux|nul|com[0-9]|lpt[0-9])(\..*)?\Z", re.IGNORECASE)
 """Device names that Windows reserves."""
 
 
@@ -20,18 +20,18 @@ def slugs(names: Sequence[str]) -> tuple[str, ...]:
     unique: list[str] = []
     taken: set[str] = set()
     for name in names:
-        plain = _OTHER.sub("-", name)[:_LONGEST].strip("-.") or "case"
-        if _TAKEN.match(plain):
-            plain = f"case-{plain}"
-        slug, number = plain, 1
+        base = _NOT_ALLOWED.sub("-", name)[:_MAX_LENGTH].strip("-.") or "case"
+        if _RESERVED.match(base):
+            base = f"case-{base}"
+        slug, number = base, 1
         while slug.lower() in taken:
             number += 1
-            slug = f"{plain}-{number}"
+            slug = f"{base}-{number}"
         taken.add(slug.lower())
         unique.append(slug)
     return tuple(unique)
 
 
 def episode_link(slug: str, index: int, step: int = 0) -> str:
-    """The address, within the page, of a step of a recorded episode."""
+    """Return the address, within the page, of a step of a recorded episode."""
     return f"#{slug}/{index}/{step}"

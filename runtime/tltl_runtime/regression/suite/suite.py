@@ -11,7 +11,12 @@ from tltl_runtime.game.level_name import level_place, overlays_of, with_overlays
 from tltl_runtime.game.registry import registered_game
 from tltl_runtime.policies.file import SUFFIX
 from tltl_runtime.policies.shipped import shipped_policies, shipped_policy
-from tltl_runtime.regression.suite.named_files import level_like, policy_faults, policy_for_its_spec, spec_faults
+from tltl_runtime.regression.suite.named_files import (
+    level_with_fitting_policy,
+    policy_diagnostics,
+    similar_level,
+    spec_diagnostics,
+)
 from tltl_runtime.support.checked_table import REQUIRED, CheckedTable, wrong
 from tltl_runtime.support.shown_path import shown
 from tltl_runtime.support.suggestion import suggestion
@@ -27,11 +32,11 @@ LEAST_EPISODES: Final = 25
 MOST_EPISODES: Final = 300
 """The default limit of episodes of a case."""
 
-_MOST_FAULTS: Final = 100
-"""After this many faults, no further cases of a suite are read, since checking a case can take long."""
+_MOST_ERRORS: Final = 100
+"""After this many errors, no further cases of a suite are read, because checking a case can take long."""
 
-_LIMIT: Final = 10_000
-_MOST: Final = {"pass_rate": 0.999}
+_MAX_EPISODES: Final = 10_000
+_GREATEST: Final = {"pass_rate": 0.999}
 """The greatest values of thresholds.  No number of episodes can make a pass rate of 1 certain."""
 _HELP: Final = 'values are written as in `episodes = 100`, texts as in `level = "navigation"`'
 
@@ -42,7 +47,7 @@ class Thresholds:
 
     A case passes if its pass rate is certainly at least ``pass_rate``.  It fails if its pass rate is
     certainly below ``fail_rate``.  Both are in [0, 1].  ``progress`` and ``reward`` are the least
-    changes of the means that count.
+    changes of these means that count.
     """
 
     pass_rate: float = 0.85
@@ -53,13 +58,13 @@ class Thresholds:
 
 @record
 class Case:
-    """A regression test: a policy plays a level in a variant, and a spec judges it.
+    """A regression test: a policy plays a level in a variant, and a spec judges the episodes.
 
-    ``level`` and ``variant`` are arguments of
-    :meth:`~tltl_runtime.game.game.Game.load_level`.  ``reference`` is the variant whose figures
-    the case is compared with.  ``spec`` is ``FILE:NAME``, or None for the policy's own spec.
-    ``episodes`` is the most that are played.  ``place`` distinguishes levels of the same name: it is
-    the level's path relative to the suite, or empty for a level of the package.
+    ``level`` and ``variant`` are arguments of :meth:`~tltl_runtime.game.game.Game.load_level`.
+    ``reference`` is the variant whose figures the case is compared with.  ``spec`` is ``FILE:NAME``, or
+    None for the policy's own spec.  ``episodes`` is the most that are played.  ``place`` distinguishes
+    levels of the same name: it is the level's path relative to the suite, or empty for a level of the
+    package.
     """
 
     name: str
@@ -90,7 +95,7 @@ class Suite:
 
 
 def baseline_path(suite: Path) -> Path:
-    """The default path of a suite's baseline: ``NAME.baseline.json`` beside ``NAME.toml``."""
+    """Return the default path of a suite's baseline: ``NAME.baseline.json`` beside ``NAME.toml``."""
     return suite.with_name(f"{suite.stem}.baseline.json")
 
 
@@ -112,7 +117,7 @@ def read_suite(path: Path, baseline: Path | None = None) -> Suite:
     table = CheckedTable(Entry(read_tree(source, help_=_HELP), Label(source, Span(0, 0))), "the suite", log)
     if "case" not in table.entries:
         help_ = "a suite lists cases that name levels, each under `[[case]]`"
-        if kind := _something_else(table):
+        if kind := _other_kind_of_file(table):
             raise TltlError([Diagnostic("TLT0803", f"this is {kind}, and no suite", (table.label,), help_)])
         if "level" in table.entries:
             title, help_ = "the suite has no cases, and `level` is a key of one", "write `[[case]]` in a line above it"
@@ -125,13 +130,13 @@ def read_suite(path: Path, baseline: Path | None = None) -> Suite:
     if len(case_tables) > (fileio.limits.SUITE.values or 0):
         title, help_ = f"the suite has more than {fileio.limits.SUITE.values:,} cases", "make several suites of it"
         raise TltlError([Diagnostic("TLT0006", title, (table.label,), help_)])
-    known: dict[str, tuple[str, ...]] = {}
+    known_variants: dict[str, tuple[str, ...]] = {}
     cases = []
     for number, case_table in enumerate(case_tables):
-        if len(log) >= _MOST_FAULTS:
-            log.append(_unread(len(case_tables) - number, case_table.label))
+        if len(log) >= _MOST_ERRORS:
+            log.append(_unread_cases_error(len(case_tables) - number, case_table.label))
             break
-        cases.append(_case(case_table, path.parent, episodes, thresholds, known))
+        cases.append(_case(case_table, path.parent, episodes, thresholds, known_variants))
     table.done()
     if not cases and not log:
         log.append(Diagnostic("TLT0803", "the suite has no cases", (table.label,), "give one, under `[[case]]`"))
@@ -146,13 +151,13 @@ def read_suite(path: Path, baseline: Path | None = None) -> Suite:
     return Suite(path, seed, error, tuple(case for case, _ in filter(None, cases)), baseline or baseline_path(path))
 
 
-def _something_else(table: CheckedTable) -> str | None:
-    """The kind of file that this table is instead of a suite, by its keys; None if unknown."""
+def _other_kind_of_file(table: CheckedTable) -> str | None:
+    """Return what kind of file this is instead of a suite, by its keys; None if unknown."""
     kinds = {"an asset": {"type"}, "a level": {"bounds", "start"}, "an overlay": {"change", "add"}}
     return next((kind for kind, keys in kinds.items() if keys & table.entries.keys()), None)
 
 
-def _unread(count: int, label: Label) -> Diagnostic:
+def _unread_cases_error(count: int, label: Label) -> Diagnostic:
     title = f"so much is wrong that the last {count:,} cases were not read"
     return Diagnostic("TLT0803", title, (label,), "mend what is above, and try again")
 
@@ -174,10 +179,10 @@ def _case(
     if len(table.log) > before or policy is None:
         return None
     variant_names = _variants(table, level, known_variants)
-    for key, given in (("variant", variant), ("reference", reference)):
-        if given and given not in variant_names:
-            title = f"the level `{level}` has no variant `{given}`"
-            table.log.append(Diagnostic("TLT0800", title, (table.place(key),), suggestion(given, variant_names)))
+    for key, value in (("variant", variant), ("reference", reference)):
+        if value and value not in variant_names:
+            title = f"the level `{level}` has no variant `{value}`"
+            table.log.append(Diagnostic("TLT0800", title, (table.place(key),), suggestion(value, variant_names)))
     overlay_names = registered_game().level_files.overlays(level)
     for overlay in overlays:
         if not overlay.endswith(".toml") and overlay not in overlay_names:
@@ -201,19 +206,19 @@ def _text(table: CheckedTable, key: str, default: str = REQUIRED) -> str:
     return text
 
 
-def _variants(table: CheckedTable, level: str, known: dict[str, tuple[str, ...]]) -> tuple[str, ...]:
-    """The variants of a level.  If the level does not load, the variants that the case names.
+def _variants(table: CheckedTable, level: str, known_variants: dict[str, tuple[str, ...]]) -> tuple[str, ...]:
+    """Return the variants of a level.  If the level does not load, return those that the case names.
 
-    A level that does not load is a finding of the case, not an error of the suite.  ``known`` caches
-    the variants of levels; it maps a level that does not load to an empty tuple.
+    A level that does not load is a finding of the case, not an error of the suite.  ``known_variants``
+    caches the variants of levels; it maps a level that does not load to an empty tuple.
     """
-    if level not in known:
+    if level not in known_variants:
         try:
-            known[level] = registered_game().level_files.variants(level)
+            known_variants[level] = registered_game().level_files.variants(level)
         except TltlError:
-            known[level] = ()
-    named = (table.entries[key].value for key in ("reference", "variant") if key in table.entries)
-    return known[level] or (*named, "v0")
+            known_variants[level] = ()
+    named_variants = (table.entries[key].value for key in ("reference", "variant") if key in table.entries)
+    return known_variants[level] or (*named_variants, "v0")
 
 
 def _level(table: CheckedTable, folder: Path) -> tuple[str, str]:
@@ -223,7 +228,7 @@ def _level(table: CheckedTable, folder: Path) -> tuple[str, str]:
         return "", ""
     if level.endswith(".toml"):
         if not fileio.is_file(folder / level):
-            help_ = level_like(level, folder) or "paths are relative to the suite"
+            help_ = similar_level(level, folder) or "paths are relative to the suite"
             table.log.append(Diagnostic("TLT0800", f"there is no level `{level}`", (table.place("level"),), help_))
         return str(folder / level), Path(normpath(level)).as_posix()
     level_files = registered_game().level_files
@@ -232,20 +237,24 @@ def _level(table: CheckedTable, folder: Path) -> tuple[str, str]:
     except TltlError as error:
         (diagnostic,) = error.diagnostics
         name, variant = level_place(level)
-        is_there = name in level_files.names() or fileio.is_file(folder / name)
-        advice = diagnostic.help
-        if variant and is_there:
-            advice = _apart(name, variant)
+        exists = name in level_files.names() or fileio.is_file(folder / name)
+        help_text = diagnostic.help
+        if variant and exists:
+            help_text = _separate_keys_help(name, variant)
         elif not level.endswith((".tltl", ".json")) and "+" not in level:
-            advice = level_like(level, folder) or diagnostic.help
-        table.log.append(Diagnostic(diagnostic.code, diagnostic.title, (table.place("level"),), advice))
+            help_text = similar_level(level, folder) or diagnostic.help
+        table.log.append(Diagnostic(diagnostic.code, diagnostic.title, (table.place("level"),), help_text))
     return level, ""
 
 
-def _apart(level: str, variant: str) -> str:
-    """A help text: how a suite writes ``LEVEL:VARIANT+OVERLAY``, the notation of the commands."""
-    base, added = overlays_of(variant)
-    lines = [f'`level = "{level}"`', f'`variant = "{base}"`', *([f"`overlay = {json.dumps(added)}`"] if added else [])]
+def _separate_keys_help(level: str, variant: str) -> str:
+    """Return a help text: how a suite writes ``LEVEL:VARIANT+OVERLAY``, the notation of the commands."""
+    base, overlays = overlays_of(variant)
+    lines = [
+        f'`level = "{level}"`',
+        f'`variant = "{base}"`',
+        *([f"`overlay = {json.dumps(overlays)}`"] if overlays else []),
+    ]
     return f"write {', '.join(lines)}"
 
 
@@ -258,7 +267,7 @@ def _overlays(table: CheckedTable, folder: Path) -> tuple[str, ...]:
     for name in names:
         path = folder / name
         if name.endswith(".toml") and not fileio.is_file(path):
-            table.log.append(_missing("overlay", name, table.place("overlay")))
+            table.log.append(_missing_file_error("overlay", name, table.place("overlay")))
         overlays.append(str(path) if name.endswith(".toml") else name)
     return tuple(overlays)
 
@@ -269,36 +278,39 @@ def _spec(table: CheckedTable, folder: Path) -> str | None:
         return None
     file, name = fileio.split_spec_name(text)
     if not fileio.is_file(folder / file):
-        table.log.append(_missing("spec", file, table.place("spec")))
+        table.log.append(_missing_file_error("spec", file, table.place("spec")))
     spec = f"{folder / file}:{name}" if name else str(folder / file)
     if fileio.is_file(folder / file):
-        table.log += spec_faults(spec, table.place("spec"))
+        table.log += spec_diagnostics(spec, table.place("spec"))
     return spec
 
 
 def _policy(table: CheckedTable, folder: Path, level: str) -> Path | None:
-    """Read the policy: a file or the folder of a training, by default the policy that comes with the level."""
-    named = _text(table, "policy", "")
-    if not named or named in shipped_policies():
-        shipped = shipped_policy(named or level)
+    """Read the policy: a file or the folder of a training; by default the policy that comes with the level.
+
+    Returns its path, or None if no policy comes with the level.
+    """
+    name = _text(table, "policy", "")
+    if not name or name in shipped_policies():
+        shipped = shipped_policy(name or level)
         if shipped is None and level and not table.log:
             title, label = f"no policy comes with the level `{level}`", table.place("level")
             help_ = f'name one that was trained, e.g. `policy = "training/{Path(level).stem}"`'
-            if related_level := policy_for_its_spec(level):
+            if related_level := level_with_fitting_policy(level):
                 help_ += f', or the one for the same spec that comes with tltlc: `policy = "{related_level}"`'
             table.log.append(Diagnostic("TLT0853", title, (label,), help_))
         return shipped
-    path = folder / named
+    path = folder / name
     if not fileio.exists(path):
-        known = (*shipped_policies(), *sorted(file.name for file in folder.glob(f"*{SUFFIX}")))
-        table.log.append(_missing("policy", named, table.place("policy"), known))
+        candidates = (*shipped_policies(), *sorted(file.name for file in folder.glob(f"*{SUFFIX}")))
+        table.log.append(_missing_file_error("policy", name, table.place("policy"), candidates))
     else:
-        table.log += policy_faults(path, table.place("policy"))
+        table.log += policy_diagnostics(path, table.place("policy"))
     return path
 
 
 def _episodes(table: CheckedTable, default: int) -> int:
-    return table.whole("episodes", default, low=LEAST_EPISODES, high=_LIMIT)
+    return table.whole("episodes", default, low=LEAST_EPISODES, high=_MAX_EPISODES)
 
 
 def _thresholds(table: CheckedTable, defaults: Thresholds) -> Thresholds:
@@ -307,24 +319,23 @@ def _thresholds(table: CheckedTable, defaults: Thresholds) -> Thresholds:
         return defaults
     before = len(table.log)
     values = [
-        subtable.number(key, getattr(defaults, key), low=0.0, high=_MOST.get(key, 1.0), unit="")
+        subtable.number(key, getattr(defaults, key), low=0.0, high=_GREATEST.get(key, 1.0), unit="")
         for key in defaults.__match_args__
     ]
     subtable.done()
-    limits = Thresholds(*values)
-    if limits.fail_rate > limits.pass_rate and len(table.log) == before:
+    thresholds = Thresholds(*values)
+    if thresholds.fail_rate > thresholds.pass_rate and len(table.log) == before:
         if "fail_rate" in subtable.entries:
-            expected = f"a `fail_rate` of {limits.pass_rate:g}, the `pass_rate`, at the most"
+            expected = f"a `fail_rate` of {thresholds.pass_rate:g}, the `pass_rate`, at the most"
             table.log.append(wrong(subtable.entries["fail_rate"], "fail_rate", expected))
         else:
-            title = (
-                f"`pass_rate` is {limits.pass_rate:g}, below the `fail_rate`, which is {limits.fail_rate:g} by default"
-            )
-            help_ = f"give a `fail_rate`, too, of {limits.pass_rate:g} at the most"
+            default = f"`fail_rate`, which is {thresholds.fail_rate:g} by default"
+            title = f"`pass_rate` is {thresholds.pass_rate:g}, below the {default}"
+            help_ = f"give a `fail_rate`, too, of {thresholds.pass_rate:g} at the most"
             table.log.append(Diagnostic("TLT0803", title, (subtable.place("pass_rate"),), help_))
-    return limits
+    return thresholds
 
 
-def _missing(kind: str, name: str, label: Label, known: tuple[str, ...] = ()) -> Diagnostic:
-    help_ = suggestion(name, known) if known else "paths are relative to the suite"
+def _missing_file_error(kind: str, name: str, label: Label, candidates: tuple[str, ...] = ()) -> Diagnostic:
+    help_ = suggestion(name, candidates) if candidates else "paths are relative to the suite"
     return Diagnostic("TLT0805", f"there is no {kind} `{name}`", (label,), help_)

@@ -15,7 +15,7 @@ LEVELS: Final = ("navigation", "cover_and_hide", "branching")
 """Cases 1 to 3 of the paper."""
 VARIANTS: Final = ("v0", "v1", "v2")
 RUNS: Final = 25
-"""The number of simulations for each figure in the paper."""
+"""The number of episodes for each figure in the paper."""
 
 
 @record
@@ -35,24 +35,24 @@ class CellFigures:
 class TableRow:
     """The figures of one model on one level, by variant.
 
-    ``hours`` is the duration of the training, or None without a training.  ``cloned`` is the share of
-    steps with behavioural cloning alone, or None if the model does not imitate.
+    ``hours`` is the duration of the training, or None without a training.  ``cloning_share`` is the
+    share of steps with behavioural cloning alone, or None if the model does not imitate.
     """
 
     figures: Mapping[str, CellFigures]
     hours: float | None
-    cloned: float | None = None
+    cloning_share: float | None = None
 
 
 def _row(
-    hours: float | None, *figures: tuple[float, float, float, float, float], cloned: float | None = None
+    hours: float | None, *figures: tuple[float, float, float, float, float], cloning_share: float | None = None
 ) -> TableRow:
-    """A row of the paper.
+    """Return a row of the paper.
 
     For each of v0, v1 and v2: pass rate, mean and deviation of progress, mean and deviation of reward.
     """
     cells = (CellFigures(RUNS, rate, Spread(p, dp), Spread(r, dr)) for rate, p, dp, r, dr in figures)
-    return TableRow(dict(zip(VARIANTS, cells, strict=True)), hours, cloned)
+    return TableRow(dict(zip(VARIANTS, cells, strict=True)), hours, cloning_share)
 
 
 PAPER: Final[Mapping[tuple[str, Model], TableRow]] = {
@@ -64,7 +64,7 @@ PAPER: Final[Mapping[tuple[str, Model], TableRow]] = {
         (0.92, 0.98, 0.05, 0.50, 0.19),
         (0.32, 0.79, 0.22, -0.09, 0.37),
         (0.00, 0.47, 0.07, -0.53, 0.08),
-        cloned=0.05,
+        cloning_share=0.05,
     ),
     ("navigation", "ours"): _row(
         3.5, (1.00, 1.00, 0.00, 0.64, 0.01), (0.90, 0.93, 0.21, 0.39, 0.37), (0.00, 0.49, 0.05, -0.51, 0.05)
@@ -77,7 +77,7 @@ PAPER: Final[Mapping[tuple[str, Model], TableRow]] = {
         (0.05, 0.74, 0.27, -0.25, 0.27),
         (0.00, 0.49, 0.26, -0.50, 0.27),
         (0.00, 0.41, 0.22, -0.58, 0.22),
-        cloned=0.05,
+        cloning_share=0.05,
     ),
     ("cover_and_hide", "ours"): _row(
         2.7, (1.00, 1.00, 0.00, 0.74, 0.03), (0.50, 0.85, 0.20, 0.21, 0.55), (0.20, 0.70, 0.25, -0.14, 0.51)
@@ -90,7 +90,7 @@ PAPER: Final[Mapping[tuple[str, Model], TableRow]] = {
         (0.40, 0.82, 0.37, 0.01, 0.51),
         (0.24, 0.80, 0.36, -0.11, 0.45),
         (0.10, 0.71, 0.24, -0.24, 0.33),
-        cloned=0.05,
+        cloning_share=0.05,
     ),
     ("branching", "ours"): _row(
         6.8, (1.00, 1.00, 0.00, 0.66, 0.01), (0.93, 0.96, 0.17, 0.64, 0.36), (0.47, 0.89, 0.23, 0.27, 0.46)
@@ -127,7 +127,7 @@ def _line(level: str, model: str, row: TableRow) -> str:
 
 
 def _rate(figures: CellFigures) -> str:
-    """Format a pass rate, with its confidence interval if there are more runs than in the paper."""
+    """Format a pass rate, with its confidence interval if there are more episodes than in the paper."""
     if figures.runs <= RUNS:
         return f"{figures.pass_rate:.2f}"
     low, high = wilson(round(figures.pass_rate * figures.runs), figures.runs)
@@ -138,4 +138,4 @@ def _time(row: TableRow) -> str:
     if row.hours is None:
         return "–"
     time = f"{row.hours:.1f} h" if row.hours >= 1 else f"{row.hours * 60:.0f} min"
-    return time if row.cloned is None else f"{time}, {100 * row.cloned:.1f} % cloned"
+    return time if row.cloning_share is None else f"{time}, {100 * row.cloning_share:.1f} % cloned"

@@ -16,7 +16,7 @@ from tltl_runtime.evaluation.statistics import spread_of
 from tltl_runtime.game.level import spec_of
 from tltl_runtime.game.registry import registered_game
 from tltl_runtime.policies.identity import spec_hash
-from tltl_runtime.regression.suite.result_cache import inputs_hash, kept_text, read_kept
+from tltl_runtime.regression.suite.result_cache import cache_text, inputs_hash, read_cache
 from tltl_runtime.regression.table1.paper_table import CellFigures, Model
 from tltl_runtime.spec.task import load_task
 from tltl_runtime.training.run.versions import versions
@@ -24,12 +24,12 @@ from tltlc.api import fileio, record
 
 EPISODES: Final = 100
 SEED: Final = 25_000
-"""The seed of the evaluations.  Only by chance do the seeds of their episodes occur in a training."""
+"""The seed of the evaluations.  A training uses the seeds of their episodes only by chance."""
 
 
 @record
 class EpisodeResult:
-    """The result of an episode."""
+    """The result of an episode, as the cache stores it."""
 
     success: bool
     progress: float
@@ -47,7 +47,7 @@ def figures(episodes: Sequence[EpisodeResult], runs: int) -> CellFigures:
     )
 
 
-def measured(
+def cell_episodes(
     folder: Path, model: Model, level: str, variant: str, policy: Path | None, pool: Pool
 ) -> tuple[EpisodeResult, ...]:
     """Return the episodes of a cell: cached in ``folder``, or played now and stored there.
@@ -60,37 +60,39 @@ def measured(
     """
     path = folder / f"{level}-{variant}-{model}.json"
     inputs = _inputs(level, variant, policy)
-    if (cached := read_kept(tuple[EpisodeResult, ...], path, inputs)) is not None:
+    if (cached := read_cache(tuple[EpisodeResult, ...], path, inputs)) is not None:
         return cached
-    episodes = tuple(_by_policy(policy, level, variant, pool) if policy else _by_expert(level, variant, pool))
-    fileio.write_file(path, kept_text(inputs, episodes), over_inputs=True)
+    episodes = tuple(
+        _policy_episodes(policy, level, variant, pool) if policy else _expert_episodes(level, variant, pool)
+    )
+    fileio.write_file(path, cache_text(inputs, episodes), over_inputs=True)
     return episodes
 
 
 def _inputs(level: str, variant: str, policy: Path | None) -> str:
-    """The hash of everything that a cell depends on."""
+    """Return the hash of everything that a cell depends on."""
     game = registered_game()
-    place = game.load_level(level, variant)
-    spec = load_task(spec_of(place), offered=game.params(place)).fspa
-    played = sha256(policy.read_bytes()).hexdigest() if policy else "expert"
-    return inputs_hash([game.level_hash(place), spec_hash(spec), played, EPISODES, SEED, versions()])
+    loaded_level = game.load_level(level, variant)
+    spec = load_task(spec_of(loaded_level), offered=game.params(loaded_level)).fspa
+    player_hash = sha256(policy.read_bytes()).hexdigest() if policy else "expert"
+    return inputs_hash([game.level_hash(loaded_level), spec_hash(spec), player_hash, EPISODES, SEED, versions()])
 
 
-def _by_policy(policy: Path, level: str, variant: str, pool: Pool) -> Iterator[EpisodeResult]:
+def _policy_episodes(policy: Path, level: str, variant: str, pool: Pool) -> Iterator[EpisodeResult]:
     spec = spec_of(registered_game().load_level(level, variant))
     for episode in evaluate(policy, level, variant, episodes=EPISODES, seed=SEED, workers=pool, spec=spec):
         yield EpisodeResult(episode.success, episode.progress, episode.reward)
 
 
-def _by_expert(level: str, variant: str, pool: Pool) -> Generator[EpisodeResult]:
+def _expert_episodes(level: str, variant: str, pool: Pool) -> Generator[EpisodeResult]:
     """Play the careful expert's episodes on this machine, with the same seeds as the policies."""
     tasks = [EpisodeRequest(index) for index in range(EPISODES)]
     workers = 0 if pool == "ray" else pool
 
-    def alone(task: EpisodeRequest) -> str:
+    def replay_command(task: EpisodeRequest) -> str:
         return f"tltlc demonstrate {level}:{variant} --seed {episode_seed(SEED, task.index)}"
 
-    for result in results_here(partial(_ExpertPlayer, level, variant), tasks, workers, SEED, alone):
+    for result in results_here(partial(_ExpertPlayer, level, variant), tasks, workers, SEED, replay_command):
         yield EpisodeResult(result.played.success, result.played.progress, result.played.reward)
 
 
@@ -101,7 +103,7 @@ class _ExpertPlayer:
         self._game = registered_game()
         self._env = self._game.recorder(self._game.make_env(level, variant))
         self._seeds: deque[int] = deque()
-        """The seeds of the next episodes.  The expert, which keeps what it knows of the level, takes them from here."""
+        """The seeds of the next episodes.  One expert plays them all: it keeps what it knows of the level."""
         self._episodes = self._game.expert_episodes(self._env, iter(self._seeds.popleft, None))
 
     def play(self, task: EpisodeRequest) -> PlayedEpisode:

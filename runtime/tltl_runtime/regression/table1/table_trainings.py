@@ -44,22 +44,23 @@ class TableTraining:
 class TrainedModel:
     """The result of a training with a ``seed``: its policy and the hours that it took.
 
-    ``cloned`` is the share of its steps with behavioural cloning, or None if the model does not imitate.
+    ``cloning_share`` is the share of its steps with behavioural cloning, or None if the model does not
+    imitate.
     """
 
     policy: Path
     seed: int
     hours: float
-    cloned: float | None
+    cloning_share: float | None
 
 
 def limits(minutes: float | None) -> Limits:
-    """The limits of our trainings, by default one hour."""
+    """Return the limits of our trainings, by default one hour."""
     return Limits(read_settings().stop.steps, _MINUTES if minutes is None else minutes)
 
 
-def limits_as_of(card: Card, minutes: float | None) -> Limits:
-    """The limits of the training that made a policy, except for ``minutes`` if given.
+def limits_of_policy(card: Card, minutes: float | None) -> Limits:
+    """Return the limits of the training that made a policy, except for ``minutes`` if given.
 
     Trainings with the same limits can be compared.
     """
@@ -80,13 +81,13 @@ def table_training(folder: Path, level: str, model: Model, limits: Limits) -> Ta
     """
     settings = replace(read_settings(), method="imitation" if model == "imitation" else "automaton")
     game = registered_game()
-    level_now = game.load_level(level, "v0")
-    task = load_task(spec_of(level_now), offered=game.params(level_now))
+    loaded_level = game.load_level(level, "v0")
+    task = load_task(spec_of(loaded_level), offered=game.params(loaded_level))
     parts = [
-        game.level_hash(level_now),
+        game.level_hash(loaded_level),
         spec_hash(task.fspa),
         OBSERVATION,
-        to_json(level_now.sensors),
+        to_json(loaded_level.sensors),
         {path: value for path, value in leaves(to_json(settings)) if path not in MAY_CHANGE},
         to_json(limits) if settings.imitates else None,
     ]
@@ -95,9 +96,9 @@ def table_training(folder: Path, level: str, model: Model, limits: Limits) -> Ta
 
 
 def train_arguments(training: TableTraining) -> list[str]:
-    """The arguments with which ``tltlc train`` starts or continues the training.
+    """Return the arguments with which ``tltlc train`` starts or continues the training.
 
-    A stopped training keeps the limits that it started with if they are greater, since it may already
+    A stopped training keeps the limits that it started with if they are greater, because it may already
     have passed the new limits.
     """
     steps, minutes = training.limits.steps, training.limits.minutes
@@ -114,7 +115,7 @@ def train_arguments(training: TableTraining) -> list[str]:
     return [*arguments, "--steps", str(steps), "--minutes", f"{minutes:g}"]
 
 
-def trained(training: TableTraining) -> TrainedModel | None:
+def finished_training(training: TableTraining) -> TrainedModel | None:
     """Return the result of a training that reached its goal or its limits; None for any other training.
 
     Raises:
@@ -124,8 +125,8 @@ def trained(training: TableTraining) -> TrainedModel | None:
         return None
     run = read_run(training.folder)
     stop = replace(run.settings.stop, steps=training.limits.steps, minutes=training.limits.minutes)
-    ending = finished_record(replace(run, settings=replace(run.settings, stop=stop)))
-    if ending is None:
+    document = finished_record(replace(run, settings=replace(run.settings, stop=stop)))
+    if document is None:
         return None
-    cloned = ending["imitated"]["cloned"] / ending["steps"] if training.imitates else None
-    return TrainedModel(training.folder / POLICY, run.seed, ending["seconds"] / 3600, cloned)
+    cloning_share = document["imitated"]["cloned"] / document["steps"] if training.imitates else None
+    return TrainedModel(training.folder / POLICY, run.seed, document["seconds"] / 3600, cloning_share)

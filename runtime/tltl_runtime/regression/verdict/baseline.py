@@ -9,7 +9,7 @@ from pathlib import Path
 from shlex import join
 from typing import Final
 
-from tltl_runtime.regression.explain.account import Account
+from tltl_runtime.regression.explain.account import ExplainedEpisode
 from tltl_runtime.regression.suite.suite import SHIPPED, Suite, baseline_path
 from tltl_runtime.regression.verdict.verdict import FIGURES
 from tltl_runtime.support.load_errors import Refusals
@@ -31,7 +31,7 @@ _REFUSALS: Final = Refusals(
 
 @record
 class Identity:
-    """Identifies what was played: policy, level, variant, spec and seed of the episodes.
+    """What was played: policy, level, variant, spec and seed of the episodes.
 
     ``level`` and ``spec`` are names.  ``level_hash`` is from
     :meth:`~tltl_runtime.game.game.Game.level_hash`, ``spec_hash`` from
@@ -56,13 +56,13 @@ class Identity:
 class Reference:
     """The recorded episodes that cases are compared with.
 
-    ``accounts`` are the accounts of all episodes, in order from episode 0.  ``texts`` are the texts
-    of the level's files, by their names in ``played.files``.  ``sources`` is the hash of the code
-    that played, or empty if unknown.
+    ``accounts`` are all episodes, in order from episode 0.  ``texts`` are the texts of the level's
+    files, by their names in ``played.files``.  ``sources`` is the hash of the code that played, or
+    empty if unknown.
     """
 
     played: Identity
-    accounts: tuple[Account, ...]
+    accounts: tuple[ExplainedEpisode, ...]
     texts: tuple[tuple[str, str], ...] = ()
     sources: str = ""
 
@@ -70,15 +70,15 @@ class Reference:
 def write_baseline(path: Path, references: tuple[Reference, ...]) -> None:
     """Write the baseline of a suite; raises TltlError, TLT0005."""
     references_without_texts = tuple(
-        _Written(reference.played, reference.accounts, reference.sources) for reference in references
+        _StoredReference(reference.played, reference.accounts, reference.sources) for reference in references
     )
     document = _json({"format": FORMAT, "version": VERSION, "references": to_json(references_without_texts)})
     # Each episode and each line of a text gets its own line, so that diffs of the file are readable.
-    episodes = document.removesuffix("}").replace('{"index":', '\n{"index":')
+    references_text = document.removesuffix("}").replace('{"index":', '\n{"index":')
     texts = {text_sha256(text): text.split("\n") for reference in references for _, text in reference.texts}
     lines = ",\n".join(_lines(sha256, text_lines) for sha256, text_lines in texts.items())
     fileio.write_file(
-        path, f'{episodes},\n"texts":{{{lines}}}}}\n', "name another place with --output", over_inputs=True
+        path, f'{references_text},\n"texts":{{{lines}}}}}\n', "name another place with --output", over_inputs=True
     )
 
 
@@ -110,12 +110,12 @@ def read_baseline(path: Path) -> tuple[Reference, ...]:
         where = f"baseline.references[{row}].accounts"
         # Episodes are compared by index, and the mean of no episodes is undefined.
         if not reference.accounts or any(
-            account.summary.index != place for place, account in enumerate(reference.accounts)
+            episode.summary.index != place for place, episode in enumerate(reference.accounts)
         ):
             raise _REFUSALS.broken(name, f"{where}: the episodes must be there from number 0 on, without a gap")
-        for account in reference.accounts:
-            for flaw in _flaws(account):
-                raise _REFUSALS.broken(name, f"{where}[{account.summary.index}]: {flaw}")
+        for episode in reference.accounts:
+            for flaw in _flaws(episode):
+                raise _REFUSALS.broken(name, f"{where}[{episode.summary.index}]: {flaw}")
     return tuple(
         Reference(reference.played, reference.accounts, _texts(reference.played, texts), reference.sources)
         for reference in parsed.references
@@ -123,7 +123,7 @@ def read_baseline(path: Path) -> tuple[Reference, ...]:
 
 
 def _texts(played: Identity, texts: Mapping[str, str]) -> tuple[tuple[str, str], ...]:
-    """The names and texts of the files of ``played``, as far as ``texts`` contains them."""
+    """Return the names and texts of the files of ``played``, as far as ``texts`` contains them."""
     return tuple((name, texts[sha256]) for name, sha256 in played.files if sha256 in texts)
 
 
@@ -137,32 +137,32 @@ def _json(value: object) -> str:
 
 
 def text_sha256(text: str) -> str:
-    """The SHA-256 of a text, in hexadecimal, as in ``Level.files``."""
+    """Return the SHA-256 of a text, in hexadecimal, as in ``Level.files``."""
     return hashlib.sha256(text.encode("utf-8", "surrogatepass")).hexdigest()
 
 
-def _flaws(account: Account) -> Iterator[str]:
-    """Yield a message for each impossible value in an account."""
+def _flaws(episode: ExplainedEpisode) -> Iterator[str]:
+    """Yield a message for each impossible value in an episode."""
     for key in ("arrivals", "way"):
-        if not getattr(account, key):
+        if not getattr(episode, key):
             yield f"`{key}` is empty, and begins where the player does"
-    if account.summary.seed is None:
+    if episode.summary.seed is None:
         yield "`seed` is None, and a whole number was expected"
-    if account.summary.steps < 1:
-        yield f"`steps` is {account.summary.steps}, and an episode has one at least"
-    if min(_states(account)) < 0:
-        yield f"it has the state {min(_states(account))}, and states are counted from 0"
+    if episode.summary.steps < 1:
+        yield f"`steps` is {episode.summary.steps}, and an episode has one at least"
+    if min(_states(episode)) < 0:
+        yield f"it has the state {min(_states(episode))}, and states are counted from 0"
     for key, (least, most) in FIGURES.items():
-        value = getattr(account.summary, key)
+        value = getattr(episode.summary, key)
         if not least - _ROUNDING <= value <= most + _ROUNDING:
             yield f"`{key}` is {value:g}, and a number from {least:g} to {most:g} was expected"
 
 
-def _states(account: Account) -> Iterator[int]:
-    """The states of the automaton that an account mentions."""
-    yield account.summary.unmet
-    yield from (arrival.state for arrival in account.arrivals)
-    yield from (state for *_, state, _ in account.way)
+def _states(episode: ExplainedEpisode) -> Iterator[int]:
+    """Yield the states of the automaton that an episode mentions."""
+    yield episode.summary.unmet
+    yield from (arrival.state for arrival in episode.arrivals)
+    yield from (state for *_, state, _ in episode.way)
 
 
 def baseline_of(suite: Suite) -> tuple[Reference, ...]:
@@ -178,7 +178,10 @@ def baseline_of(suite: Suite) -> tuple[Reference, ...]:
 
 
 def _is_missing(path: Path) -> bool:
-    """Whether there is no such file.  False for an inaccessible one: reading it reports the reason."""
+    """Whether a file does not exist.
+
+    False if it cannot be accessed: reading the file then reports why.
+    """
     try:
         path.stat()
     except (OSError, ValueError) as error:
@@ -186,25 +189,27 @@ def _is_missing(path: Path) -> bool:
     return False
 
 
-def reference_of(references: tuple[Reference, ...], wanted: Identity, suite: Suite) -> Reference:
-    """Return the reference with the same level, variant, spec, policy and seed as ``wanted``.
+def reference_of(references: tuple[Reference, ...], identity: Identity, suite: Suite) -> Reference:
+    """Return the reference that has the level, variant, spec, policy and seed of ``identity``.
 
     The level may have been edited since: its hash is not compared.
 
     Raises:
         TltlError: TLT0903, the baseline has no such reference.
     """
-    by_name = [reference for reference in references if _same(reference.played, wanted, ("level", "variant"))]
-    by_place = [reference for reference in by_name if reference.played.place == wanted.place]
-    matches = [reference for reference in by_place if _same(reference.played, wanted, ("policy", "spec_hash", "seed"))]
+    with_name = [reference for reference in references if _agree(reference.played, identity, ("level", "variant"))]
+    with_place = [reference for reference in with_name if reference.played.place == identity.place]
+    matches = [
+        reference for reference in with_place if _agree(reference.played, identity, ("policy", "spec_hash", "seed"))
+    ]
     if matches:
         return matches[0]
     # If only another level has this name, name the level by its place.
-    level = wanted.place if by_name and not by_place and wanted.place else wanted.level
-    title = f"the baseline has no figures of `{level}:{wanted.variant}`"
-    if by_place:
+    level = identity.place if with_name and not with_place and identity.place else identity.level
+    title = f"the baseline has no figures of `{level}:{identity.variant}`"
+    if with_place:
         names = {"policy": "policy", "spec_hash": "spec", "seed": "seed"}
-        differing = [word for name, word in names.items() if not _same(by_place[0].played, wanted, (name,))]
+        differing = [word for name, word in names.items() if not _agree(with_place[0].played, identity, (name,))]
         title += f" with this {differing[0]}"
     raise TltlError([Diagnostic("TLT0903", title, help=f"record it: {baseline_command(suite)}")])
 
@@ -212,38 +217,38 @@ def reference_of(references: tuple[Reference, ...], wanted: Identity, suite: Sui
 def check_states(reference: Reference, fspa: Fspa, suite: Suite) -> None:
     """Raise TltlError, TLT0902, if an episode was in a state that the automaton does not have."""
     count, played = len(fspa.states), reference.played
-    for account in reference.accounts:
-        if (state := max(_states(account))) >= count:
-            where = f"episode {account.summary.index} of `{played.level}:{played.variant}`"
+    for episode in reference.accounts:
+        if (state := max(_states(episode))) >= count:
+            where = f"episode {episode.summary.index} of `{played.level}:{played.variant}`"
             why = f"{where} has the state {state}, and those of `{played.spec}` are 0 to {count - 1}"
             raise _REFUSALS.broken(str(suite.baseline), why)
 
 
-def written_to(suite: Path) -> Path:
-    """The default output path of `tltlc baseline`.
+def default_output(suite: Path) -> Path:
+    """Return the default output path of `tltlc baseline` for a suite.
 
-    For the suite that comes with the package, it lies in the working directory, not in the package.
+    For the suite that comes with the package, the file is in the working directory, not in the package.
     """
     return Path("shipped.baseline.json") if suite == SHIPPED else baseline_path(suite)
 
 
 def baseline_command(suite: Suite) -> str:
-    """The shell command that records the baseline of a suite."""
+    """Return the shell command that records the baseline of a suite."""
     words = ["tltlc", "baseline", *([] if suite.path == SHIPPED else [shown(suite.path)])]
-    if suite.baseline != written_to(suite.path):
+    if suite.baseline != default_output(suite.path):
         words += ["--output", shown(suite.baseline)]
     return join(words)
 
 
 @record
-class _Written:
-    """A reference without its texts.
+class _StoredReference:
+    """A reference without its texts, as the file stores it.
 
-    The file stores all texts in one table, since levels and variants share files.
+    The file stores all texts in one table, because levels and variants share files.
     """
 
     played: Identity
-    accounts: tuple[Account, ...]
+    accounts: tuple[ExplainedEpisode, ...]
     sources: str = ""
 
 
@@ -251,10 +256,11 @@ class _Written:
 class _Document:
     format: str
     version: int
-    references: tuple[_Written, ...]
+    references: tuple[_StoredReference, ...]
     texts: Mapping[str, tuple[str, ...]] = EMPTY
     """The lines of each text, by the SHA-256 of the text."""
 
 
-def _same(one: Identity, other: Identity, names: tuple[str, ...]) -> bool:
-    return all(getattr(one, name) == getattr(other, name) for name in names)
+def _agree(first: Identity, second: Identity, names: tuple[str, ...]) -> bool:
+    """Whether two identities agree in the fields called ``names``."""
+    return all(getattr(first, name) == getattr(second, name) for name in names)

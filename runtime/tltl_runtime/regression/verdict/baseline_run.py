@@ -9,13 +9,13 @@ from pathlib import Path
 from typing import Final
 
 from tltl_runtime.evaluation.evaluate import Pool
-from tltl_runtime.regression.explain.account import Account, summaries_of
+from tltl_runtime.regression.explain.account import ExplainedEpisode, summaries_of
 from tltl_runtime.regression.suite.level_texts import level_texts
-from tltl_runtime.regression.suite.result_cache import inputs_hash, kept_text, read_kept
+from tltl_runtime.regression.suite.result_cache import cache_text, inputs_hash, read_cache
 from tltl_runtime.regression.suite.suite import LEAST_EPISODES, Case, Suite
 from tltl_runtime.regression.verdict.baseline import Reference, write_baseline
 from tltl_runtime.regression.verdict.confidence import rate_interval
-from tltl_runtime.regression.verdict.play import OnEpisode, Ready, episodes, ready
+from tltl_runtime.regression.verdict.play import OnEpisode, PreparedCase, play_episodes, prepare_case
 from tltl_runtime.regression.verdict.verdict import Verdict, judge
 from tltl_runtime.support.source_hash import sources_hash
 from tltlc.api import TltlError, fileio, record, replace
@@ -24,7 +24,7 @@ _ADVICE: Final = "name another place with --output"
 
 
 @record
-class Compared:
+class RecordedReference:
     """A recorded reference and the cases that are compared with it.
 
     ``outdated`` says why none of the cases passes if the level's spec has changed; otherwise None.
@@ -36,24 +36,24 @@ class Compared:
 
 
 def record_baseline(
-    suite: Suite, pool: Pool, on_episode: OnEpisode, kept: tuple[Reference, ...] = ()
-) -> Generator[Compared]:
+    suite: Suite, pool: Pool, on_episode: OnEpisode, finished: tuple[Reference, ...] = ()
+) -> Generator[RecordedReference]:
     """Play all episodes of each combination of level, variant, spec and policy in the suite.
 
-    ``on_episode`` is called after each episode.
+    Yields each recorded reference.  ``on_episode`` is called after each episode.
 
     Cases that are compared with the same reference share its episodes.  The case with the most
-    episodes sets their number.  A reference in ``kept``, from an earlier recording, is not played
+    episodes sets their number.  A reference in ``finished``, from an earlier recording, is not played
     again if nothing has changed since.
 
     Raises:
         TltlError: a case cannot be set up (raised before anything is played); TLT0905, a level was
             edited meanwhile; errors from playing.
     """
-    yield from _recorded(_groups(suite), pool, on_episode, kept)
+    yield from _record_references(_groups(suite), pool, on_episode, finished)
 
 
-def write_recorded(
+def record_and_write_baseline(
     suite: Suite,
     path: Path,
     pool: Pool,
@@ -61,10 +61,10 @@ def write_recorded(
     older: tuple[Reference, ...] = (),
     *,
     fresh: bool = False,
-) -> Generator[Compared]:
+) -> Generator[RecordedReference]:
     """Record the baseline of a suite with :func:`record_baseline` and write it to ``path`` at the end.
 
-    Until then, finished references are stored in the file :func:`kept_at`, so that a stopped
+    Until then, finished references are stored in the file :func:`partial_path`, so that a stopped
     recording can continue.  References of an ``older`` baseline are not played again if neither they
     nor the code that plays have changed.  With ``fresh``, only references from an earlier ``fresh``
     recording are reused.
@@ -72,25 +72,25 @@ def write_recorded(
     Raises:
         TltlError: TLT0005, a file cannot be written; errors of :func:`record_baseline`.
     """
-    groups, partial, recorded = _groups(suite), kept_at(path), list[Reference]()
+    groups, partial, references = _groups(suite), partial_path(path), list[Reference]()
     inputs = inputs_hash([fresh])
-    kept = (partial and read_kept(tuple[Reference, ...], partial, inputs)) or ()
+    finished = (partial and read_cache(tuple[Reference, ...], partial, inputs)) or ()
     # Check that the file can be written before minutes of play.
-    _keep(partial, inputs, kept)
+    _write_partial(partial, inputs, finished)
     reusable = () if fresh else tuple(reference for reference in older if reference.sources == sources_hash())
-    for compared in _recorded(groups, pool, on_episode, (*kept, *reusable)):
-        recorded.append(compared.reference)
+    for recorded in _record_references(groups, pool, on_episode, (*finished, *reusable)):
+        references.append(recorded.reference)
         # References of the older baseline stay in that file.
-        new = tuple(reference for reference in recorded if reference not in reusable)
-        _keep(partial, inputs, (*new, *(earlier for earlier in kept if earlier not in new)))
-        yield compared
-    write_baseline(path, tuple(recorded))
+        new = tuple(reference for reference in references if reference not in reusable)
+        _write_partial(partial, inputs, (*new, *(earlier for earlier in finished if earlier not in new)))
+        yield recorded
+    write_baseline(path, tuple(references))
     if partial:
         fileio.remove_file(partial, _ADVICE)
 
 
-def kept_at(path: Path) -> Path | None:
-    """The path for the finished references of a recording: beside the file that ``path`` resolves to.
+def partial_path(path: Path) -> Path | None:
+    """Return the path for the finished references of a recording: beside the file that ``path`` resolves to.
 
     None if ``path`` is a device or a pipe.
     """
@@ -99,8 +99,8 @@ def kept_at(path: Path) -> Path | None:
     return Path(f"{os.path.realpath(path)}.partial")
 
 
-def verdict_as_it_is(suite: Suite, case: Case, reference: Reference) -> Verdict:
-    """The verdict of a case if it played exactly the episodes of its reference."""
+def verdict_if_unchanged(suite: Suite, case: Case, reference: Reference) -> Verdict:
+    """Return the verdict of a case if it played exactly the episodes of its reference."""
     summaries, error = summaries_of(reference.accounts), suite.error / len(suite.cases)
     for played in range(LEAST_EPISODES, case.episodes + 1):
         if judgement := judge(summaries[:played], summaries, case.episodes, case.thresholds, error):
@@ -108,16 +108,16 @@ def verdict_as_it_is(suite: Suite, case: Case, reference: Reference) -> Verdict:
     raise AssertionError("the last episode settles every verdict")
 
 
-def enough_episodes(pass_rate: float, error: float) -> int:
-    """The least number of episodes, all passed, after which the pass rate is certain at that error."""
-    return next(met for met in count(LEAST_EPISODES) if rate_interval(met, 0, error)[0] >= pass_rate)
+def episodes_for_certainty(pass_rate: float, error: float) -> int:
+    """Return the least number of episodes after which the pass rate is certain at ``error``, if all succeed."""
+    return next(successes for successes in count(LEAST_EPISODES) if rate_interval(successes, 0, error)[0] >= pass_rate)
 
 
-def _groups(suite: Suite) -> list[list[Ready]]:
-    """The cases, set up to play their references, in groups that share a reference."""
-    groups: list[list[Ready]] = []
+def _groups(suite: Suite) -> list[list[PreparedCase]]:
+    """Return the cases, set up to play their references, in groups that share a reference."""
+    groups: list[list[PreparedCase]] = []
     for case in suite.cases:
-        prepared = _ready(case, suite.seed)
+        prepared = _prepare(case, suite.seed)
         matches = [group for group in groups if group[0].played == prepared.played]
         if matches:
             matches[0].append(prepared)
@@ -126,10 +126,10 @@ def _groups(suite: Suite) -> list[list[Ready]]:
     return groups
 
 
-def _ready(case: Case, seed: int) -> Ready:
+def _prepare(case: Case, seed: int) -> PreparedCase:
     """Set up a case to play its reference.  Errors name the case."""
     try:
-        return ready(case, seed, case.reference)
+        return prepare_case(case, seed, case.reference)
     except TltlError as error:
         diagnostics = [
             replace(diagnostic, title=f"case `{case.name}`: {diagnostic.title}") for diagnostic in error.diagnostics
@@ -137,31 +137,31 @@ def _ready(case: Case, seed: int) -> Ready:
         raise TltlError(diagnostics) from None
 
 
-def _recorded(
-    groups: Sequence[Sequence[Ready]], pool: Pool, on_episode: OnEpisode, kept: tuple[Reference, ...]
-) -> Generator[Compared]:
+def _record_references(
+    groups: Sequence[Sequence[PreparedCase]], pool: Pool, on_episode: OnEpisode, finished: tuple[Reference, ...]
+) -> Generator[RecordedReference]:
     for group in groups:
         longest = max(group, key=lambda prepared: prepared.case.episodes)
         matches = [
             reference
-            for reference in kept
+            for reference in finished
             if reference.played == longest.played and len(reference.accounts) == longest.case.episodes
         ]
-        reference = matches[0] if matches else _played(longest, pool, on_episode)
+        reference = matches[0] if matches else _play_reference(longest, pool, on_episode)
         outdated = next((prepared.outdated for prepared in group if prepared.outdated), None)
-        yield Compared(reference, tuple(prepared.case for prepared in group), outdated)
+        yield RecordedReference(reference, tuple(prepared.case for prepared in group), outdated)
 
 
-def _played(prepared: Ready, pool: Pool, on_episode: OnEpisode) -> Reference:
-    accounts: list[Account] = []
+def _play_reference(prepared: PreparedCase, pool: Pool, on_episode: OnEpisode) -> Reference:
+    played: list[ExplainedEpisode] = []
     # Read the texts first: an edit during play raises an error, so these are the texts that are played.
     texts = level_texts(prepared.setup.level, prepared.setup.variant, prepared.played.files)
-    for episode in episodes(prepared, pool):
-        accounts.append(episode.account)
-        on_episode(prepared.case, len(accounts), episode.account)
-    return Reference(prepared.played, tuple(accounts), texts, sources_hash())
+    for episode in play_episodes(prepared, pool):
+        played.append(episode.explained)
+        on_episode(prepared.case, len(played), episode.explained)
+    return Reference(prepared.played, tuple(played), texts, sources_hash())
 
 
-def _keep(path: Path | None, inputs: str, references: tuple[Reference, ...]) -> None:
+def _write_partial(path: Path | None, inputs: str, references: tuple[Reference, ...]) -> None:
     if path:
-        fileio.write_file(path, kept_text(inputs, references), _ADVICE, over_inputs=True)
+        fileio.write_file(path, cache_text(inputs, references), _ADVICE, over_inputs=True)

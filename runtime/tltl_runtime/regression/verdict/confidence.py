@@ -1,9 +1,9 @@
 """The statistics of a verdict: anytime-valid tests of a pass rate and of means against a baseline.
 
-Both tests may be evaluated after each episode.  Both bet at fair odds against the hypothesis to be
-refuted.  If the hypothesis holds, the stake is never negative and its mean stays 1.  Such a stake
-ever exceeds 1/e with probability e at most, whenever you stop (J. Ville 1939; H. Robbins, Ann. Math.
-Stat. 41 (1970), 1397-1409; G. Shafer, J. R. Stat. Soc. A 184 (2021), 407-431).
+Both tests may be evaluated after each episode.  Both bet at fair odds against the hypothesis that
+they try to refute.  If the hypothesis holds, the stake is never negative and its mean stays 1.  Such
+a stake ever exceeds 1/e with probability e at most, whenever you stop (J. Ville 1939; H. Robbins,
+Ann. Math. Stat. 41 (1970), 1397-1409; G. Shafer, J. R. Stat. Soc. A 184 (2021), 407-431).
 """
 
 from __future__ import annotations
@@ -71,7 +71,7 @@ def mean_p_value(values: Sequence[float], low: float, high: float, least: float 
 
 @lru_cache(maxsize=1 << 16)
 def _lower_end(successes: int, failures: int, error: float) -> float:
-    """The greatest rate that is refuted as too low, found by bisection.  All lower rates are refuted, too."""
+    """Return the greatest rate that is refuted as too low, by bisection.  All lower rates are refuted, too."""
     if successes == 0:
         return 0.0
     refuted, possible = 0.0, successes / (successes + failures)
@@ -85,7 +85,7 @@ def _lower_end(successes: int, failures: int, error: float) -> float:
 
 
 def _log_stake(successes: int, failures: int, rate: float) -> float:
-    """The logarithm of a stake, initially 1, that bets against ``rate``, in (0, 1), on the rates above it."""
+    """Return the logarithm of a stake, initially 1, that bets against ``rate``, in (0, 1), on the rates above it."""
     start = asin(sqrt(rate))
     rates = np.sin(start + (pi / 2 - start) * _PLACES) ** 2
     stakes = successes * np.log(rates / rate) + failures * np.log((1.0 - rates) / (1.0 - rate))
@@ -93,7 +93,7 @@ def _log_stake(successes: int, failures: int, rate: float) -> float:
 
 
 def _log_means(logarithms: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The logarithms of the means over the first axis, given the logarithms of the values."""
+    """Return the logarithms of the means over the first axis, given the logarithms of the values."""
     greatest = logarithms.max(axis=0)
     # A sum and a division: `np.mean` takes much longer for a few values.
     means: NDArray[np.float64] = greatest + np.log(np.exp(logarithms - greatest).sum(axis=0) / len(logarithms))

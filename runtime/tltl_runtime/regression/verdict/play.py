@@ -16,7 +16,7 @@ from tltl_runtime.game.registry import registered_game
 from tltl_runtime.policies.file import MAX_BYTES, from_bytes
 from tltl_runtime.policies.fit import differences
 from tltl_runtime.policies.identity import spec_hash
-from tltl_runtime.regression.explain.account import Account, account, summaries_of
+from tltl_runtime.regression.explain.account import ExplainedEpisode, explain_episode, summaries_of
 from tltl_runtime.regression.suite.named_files import policy_file
 from tltl_runtime.regression.suite.suite import Case
 from tltl_runtime.regression.verdict.baseline import Identity, Reference
@@ -25,19 +25,19 @@ from tltl_runtime.spec.task import read_spec
 from tltl_runtime.training.run.versions import versions
 from tltlc.api import Diagnostic, TltlError, fileio, record
 
-OnEpisode = Callable[[Case, int, Account], None]
-"""A callback for each played episode: the case, the number of episodes so far, and the last account."""
+OnEpisode = Callable[[Case, int, ExplainedEpisode], None]
+"""A callback for each played episode: the case, the number of episodes so far, and the last episode."""
 
 _PLAYER: Final = "policy"
 
 
 @record
-class Ready:
+class PreparedCase:
     """A case that is set up to be played.
 
     ``setup`` describes the evaluation and ``played`` identifies what it depends on.  ``changes`` are
-    the descriptions of the overlays of the variant.  ``outdated`` is a message if the spec of the
-    level has changed since the policy was trained (the old spec then judges the policy), else None.
+    the descriptions of the variant's overlays.  ``outdated`` is a message if the spec of the level has
+    changed since the policy was trained; the old spec then judges the policy.  Otherwise it is None.
     """
 
     case: Case
@@ -49,24 +49,24 @@ class Ready:
 
 
 @record
-class Recorded:
-    """A played episode: its account and the bytes of its recording."""
+class CaseEpisode:
+    """A played episode of a case, with what explains its result, and the bytes of its recording."""
 
-    account: Account
+    explained: ExplainedEpisode
     recording: bytes
 
 
 @record
 class JudgedCase:
-    """A judged case, with the played episodes in order."""
+    """A case with its judgement, and the played episodes in order."""
 
-    ready: Ready
+    prepared: PreparedCase
     reference: Reference
     judgement: Judgement
-    episodes: tuple[Recorded, ...]
+    episodes: tuple[CaseEpisode, ...]
 
 
-def ready(case: Case, seed: int, variant: str | None = None) -> Ready:
+def prepare_case(case: Case, seed: int, variant: str | None = None) -> PreparedCase:
     """Set up a case to be played, by default in its own variant.
 
     Raises:
@@ -91,11 +91,11 @@ def ready(case: Case, seed: int, variant: str | None = None) -> Ready:
         versions=versions(),
         place=case.place,
     )
-    return Ready(case, setup, played, level, changes, _outdated(case, setup, level))
+    return PreparedCase(case, setup, played, level, changes, _outdated_message(case, setup, level))
 
 
-def episodes(prepared: Ready, pool: Pool) -> Generator[Recorded]:
-    """Play the episodes of a case and yield each.  Closing the iterator ends the workers.
+def play_episodes(prepared: PreparedCase, pool: Pool) -> Generator[CaseEpisode]:
+    """Play the episodes of a case in order and yield each.  Closing the iterator ends the workers.
 
     Raises:
         TltlError: TLT0905, the level was edited since the setup, or before the last episode ended;
@@ -111,20 +111,22 @@ def episodes(prepared: Ready, pool: Pool) -> Generator[Recorded]:
             episode = registered_game().episode_from_bytes(result.recording, _PLAYER)
             # Each worker loads the level itself, so check the level of the recording.
             _check_unedited(prepared, episode.level)
-            yield Recorded(account(result.played, episode), result.recording)
+            yield CaseEpisode(explain_episode(result.played, episode), result.recording)
     check_unedited(prepared)
 
 
-def _replay_command(prepared: Ready, task: EpisodeRequest) -> str:
-    """The command that plays a single episode of the case."""
+def _replay_command(prepared: PreparedCase, task: EpisodeRequest) -> str:
+    """Return the command that plays a single episode of the case."""
     place = ["--level", f"{prepared.setup.level}:{prepared.setup.variant}"]
     spec = [] if prepared.case.spec is None else ["--spec", prepared.case.spec]
     episode = ["--seed", str(prepared.setup.seed), "--first", str(task.index), "--episodes", "1"]
     return join(["tltlc", "evaluate", str(prepared.case.policy), *place, *spec, *episode])
 
 
-def check_unedited(prepared: Ready) -> None:
-    """Check that the level was not edited since the setup.  Workers that had loaded it do not notice.
+def check_unedited(prepared: PreparedCase) -> None:
+    """Check that the level was not edited since the setup.
+
+    Workers that had loaded the level before the edit do not notice it.
 
     Raises:
         TltlError: TLT0905, the level was edited; or the errors of the edited level.
@@ -132,20 +134,25 @@ def check_unedited(prepared: Ready) -> None:
     _check_unedited(prepared, registered_game().load_level(prepared.setup.level, prepared.setup.variant))
 
 
-def judged(
-    prepared: Ready, reference: Reference, error: float, pool: Pool, on_episode: Callable[[int, Account], None]
+def judge_case(
+    prepared: PreparedCase,
+    reference: Reference,
+    error: float,
+    pool: Pool,
+    on_episode: Callable[[int, ExplainedEpisode], None],
 ) -> JudgedCase:
     """Play a case until its verdict is settled.
 
-    After each episode, ``on_episode`` gets the number of episodes so far and the last account.
+    After each episode, ``on_episode`` gets the number of episodes so far and the last episode.
+    ``error`` is the case's share of the suite's error.
     """
-    played: list[Recorded] = []
+    played: list[CaseEpisode] = []
     before = summaries_of(reference.accounts)
-    with closing(episodes(prepared, pool)) as playing:
+    with closing(play_episodes(prepared, pool)) as playing:
         for episode in playing:
             played.append(episode)
-            on_episode(len(played), episode.account)
-            now = [recorded.account.summary for recorded in played]
+            on_episode(len(played), episode.explained)
+            now = [case_episode.explained.summary for case_episode in played]
             judgement = judge(now, before, prepared.case.episodes, prepared.case.thresholds, error)
             if judgement:
                 check_unedited(prepared)
@@ -153,7 +160,7 @@ def judged(
     raise AssertionError("the last episode settles every verdict")
 
 
-def _check_unedited(prepared: Ready, level: Level) -> None:
+def _check_unedited(prepared: PreparedCase, level: Level) -> None:
     before, now = prepared.level.files, level.files
     if before != now:
         # Names can repeat: overlays of the same name may come from several folders.
@@ -162,8 +169,10 @@ def _check_unedited(prepared: Ready, level: Level) -> None:
         raise TltlError([Diagnostic("TLT0905", title, help="give the same command again")])
 
 
-def _outdated(case: Case, setup: Setup, level: Level) -> str | None:
+def _outdated_message(case: Case, setup: Setup, level: Level) -> str | None:
     """Return a message if the policy's own spec judges and the level's spec of that name has changed.
+
+    None otherwise.
 
     Raises:
         TltlError: the level's spec cannot be read.

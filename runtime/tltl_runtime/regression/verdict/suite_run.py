@@ -1,4 +1,4 @@
-"""Run a suite: judge its cases one after the other, and cache each result so that a stopped run can continue."""
+"""Run a suite: judge its cases one after the other.  Results are cached, so that a stopped run can continue."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from tltl_runtime.evaluation.evaluate import Pool
 from tltl_runtime.game.recording_path import SUFFIX
 from tltl_runtime.game.registry import registered_game
 from tltl_runtime.regression.report.case_report import CaseReport, report_on, report_on_broken, report_on_edited
-from tltl_runtime.regression.suite.result_cache import inputs_hash, kept_text, read_kept
+from tltl_runtime.regression.suite.result_cache import cache_text, inputs_hash, read_cache
 from tltl_runtime.regression.suite.slugs import slugs
 from tltl_runtime.regression.suite.suite import Case, Suite
 from tltl_runtime.regression.verdict.baseline import Reference, baseline_command, check_states, reference_of
-from tltl_runtime.regression.verdict.play import JudgedCase, OnEpisode, Ready, judged, ready
+from tltl_runtime.regression.verdict.play import JudgedCase, OnEpisode, PreparedCase, judge_case, prepare_case
 from tltl_runtime.support.folder_lock import lock_folder
 from tltl_runtime.support.record_json import to_json
 from tltlc.api import Diagnostic, TltlError, fileio, label_text, record, replace
@@ -26,39 +26,39 @@ CASES: Final = "cases"
 _REPORT: Final = "case.json"
 _VERSION: Final = 3
 _RECORDINGS: Final = 3
-"""The number of episodes of each finding whose recordings are written."""
+"""For each finding, this many recordings of its episodes are written."""
 
 _EDITED: Final = "TLT0905"
-NOT_THE_CASE: Final = frozenset({"TLT0730", "TLT0850", "TLT0852"})
-"""Codes of errors of the workers, which are no faults of the case."""
+WORKER_ERRORS: Final = frozenset({"TLT0730", "TLT0850", "TLT0852"})
+"""The codes of errors of worker processes: they are no faults of the case."""
 
 WRITABLE: Final = "see that there is room, and that you may write there, or name another folder with --out"
-"""The help of the error that a file cannot be written to the folder of a run."""
+"""The help if a file cannot be written to the folder of a run."""
 
 
 @record
-class Done:
-    """A finished case.
+class FinishedCase:
+    """A case whose report is finished.
 
-    ``kept`` says that an earlier run played the case and nothing has changed since.  ``ready`` and
-    ``reference`` are what was played and what it was compared with, or None if the case could not be
-    played.
+    ``is_cached`` says that an earlier run played the case and nothing has changed since.  ``prepared``
+    and ``reference`` are what was played and what it was compared with, or None if the case could not
+    be played.
     """
 
     report: CaseReport
-    kept: bool
-    ready: Ready | None = None
+    is_cached: bool
+    prepared: PreparedCase | None = None
     reference: Reference | None = None
 
     @property
-    def to_train(self) -> Ready | None:
+    def case_to_train(self) -> PreparedCase | None:
         """The case if it was played, did not pass, was not yet retrained, and training can help; else None."""
-        return None if self.report.retrained or self.useless_training else self._not_passed
+        return None if self.report.retrained or self.training_obstacle else self._unpassed_case
 
     @property
-    def useless_training(self) -> str | None:
+    def training_obstacle(self) -> str | None:
         """Why training cannot help a case that was played and did not pass; None if it can."""
-        prepared = self._not_passed
+        prepared = self._unpassed_case
         if prepared is None:
             return None
         if prepared.outdated:
@@ -68,22 +68,22 @@ class Done:
         return None
 
     @property
-    def _not_passed(self) -> Ready | None:
-        return None if self.report.verdict == "pass" else self.ready
+    def _unpassed_case(self) -> PreparedCase | None:
+        return None if self.report.verdict == "pass" else self.prepared
 
 
-def check(suite: Suite, cases: Sequence[Case], references: tuple[Reference, ...]) -> None:
-    """Check the baseline of the cases that can be played.
+def check_references(suite: Suite, cases: Sequence[Case], references: tuple[Reference, ...]) -> None:
+    """Check that the baseline has a valid reference for each case that can be played.
 
     Raises:
         TltlError: TLT0903, the baseline lacks a case; TLT0902, the baseline is invalid.
     """
     for case in cases:
-        _prepared(suite, case, references)
+        _prepare(suite, case, references)
 
 
 def lock_run(folder: Path) -> AbstractContextManager[None]:
-    """Lock the folder of a run; create it if it is missing.
+    """Lock the folder of a run inside the block; create it if it is missing.
 
     Raises:
         TltlError: TLT0904, another run uses the folder; TLT0005, it cannot be written.
@@ -102,12 +102,14 @@ def regress(
     on_episode: OnEpisode,
     *,
     fresh: bool = False,
-) -> Generator[Done]:
+) -> Generator[FinishedCase]:
     """Judge some cases of a suite in order, and yield each as soon as it is finished.
 
-    Results are cached below ``folder``, which must be :func:`owned`.  A case is not played again if
-    nothing has changed since, unless ``fresh``.  A case that cannot be played fails.  A case whose
-    level is edited while it is played gets the verdict ``review``.  Neither stops the other cases.
+    ``references`` are the references of the baseline, and ``pool`` says which processes play.
+    ``on_episode`` is called after each episode.  Results are cached below ``folder``; call this within
+    :func:`lock_run`.  A case is not played again if nothing has changed since, unless ``fresh``.  A case
+    that cannot be played fails.  A case whose level is edited while it is played gets the verdict
+    ``review``.  The other cases are judged all the same.
 
     Raises:
         TltlError: TLT0903, the baseline lacks a case, or a policy or its spec was replaced meanwhile;
@@ -115,36 +117,39 @@ def regress(
             TLT0850 and TLT0852, errors of the workers; TLT0005, the folder cannot be written.
     """
     if fresh:
-        _forget(suite, cases, folder)
+        _remove_cached(suite, cases, folder)
     for case in cases:
         # Set the case up again: its files may have changed while other cases were played.
-        prepared = _prepared(suite, case, references)
+        prepared = _prepare(suite, case, references)
         if isinstance(prepared, TltlError):
-            yield Done(report_on_broken(case, prepared), kept=False)
+            yield FinishedCase(report_on_broken(case, prepared), is_cached=False)
         else:
-            yield _done(suite, *prepared, folder, pool, on_episode)
+            yield _judge(suite, *prepared, folder, pool, on_episode)
 
 
-def _forget(suite: Suite, cases: Sequence[Case], folder: Path) -> None:
-    """Remove the cached results of all cases, so that a stopped ``fresh`` run continues with fresh results only."""
+def _remove_cached(suite: Suite, cases: Sequence[Case], folder: Path) -> None:
+    """Remove the cached results of the cases.
+
+    So if a ``fresh`` run is stopped, it continues with fresh results only.
+    """
     for case in cases:
         fileio.remove_file(case_folder(suite, case.name, folder / CASES) / _REPORT, WRITABLE)
 
 
 def case_folder(suite: Suite, name: str, folder: Path) -> Path:
-    """The folder of the case called ``name``, below ``folder``, which contains a folder for each case."""
+    """Return the folder of the case called ``name``, inside ``folder``."""
     names = [case.name for case in suite.cases]
     return folder / slugs(names)[names.index(name)]
 
 
-def _prepared(suite: Suite, case: Case, references: tuple[Reference, ...]) -> tuple[Ready, Reference] | TltlError:
-    """Set up a case: return it with its reference, or the error if it cannot be played."""
+def _prepare(suite: Suite, case: Case, references: tuple[Reference, ...]) -> tuple[PreparedCase, Reference] | TltlError:
+    """Set up a case; return it with its reference, or the error if it cannot be played."""
     try:
-        prepared = ready(case, suite.seed)
+        prepared = prepare_case(case, suite.seed)
     except TltlError as error:
         return error
-    wanted = replace(prepared.played, variant=case.reference)
-    reference = reference_of(references, wanted, suite)
+    identity = replace(prepared.played, variant=case.reference)
+    reference = reference_of(references, identity, suite)
     check_states(reference, prepared.setup.fspa, suite)
     if len(reference.accounts) < case.episodes:
         title = (
@@ -154,7 +159,9 @@ def _prepared(suite: Suite, case: Case, references: tuple[Reference, ...]) -> tu
     return prepared, reference
 
 
-def _done(suite: Suite, prepared: Ready, reference: Reference, folder: Path, pool: Pool, on_episode: OnEpisode) -> Done:
+def _judge(
+    suite: Suite, prepared: PreparedCase, reference: Reference, folder: Path, pool: Pool, on_episode: OnEpisode
+) -> FinishedCase:
     """Return the cached result of a case, or play it now.
 
     Raises:
@@ -162,27 +169,27 @@ def _done(suite: Suite, prepared: Ready, reference: Reference, folder: Path, poo
     """
     case, error = prepared.case, suite.error / len(suite.cases)
     own_folder, inputs = case_folder(suite, case.name, folder / CASES), _inputs(prepared, reference, error)
-    cached = _kept(own_folder, inputs)
+    cached = _cached_report(own_folder, inputs)
     if cached:
-        return Done(cached, kept=True, ready=prepared, reference=reference)
+        return FinishedCase(cached, is_cached=True, prepared=prepared, reference=reference)
     try:
-        result = judged(prepared, reference, error, pool, lambda count, last: on_episode(case, count, last))
+        result = judge_case(prepared, reference, error, pool, lambda count, last: on_episode(case, count, last))
     except TltlError as fault:
         codes = {diagnostic.code for diagnostic in fault.diagnostics}
-        if codes & NOT_THE_CASE:
+        if codes & WORKER_ERRORS:
             raise
         report = report_on_edited if _EDITED in codes else report_on_broken
-        return Done(report(case, fault), kept=False)
+        return FinishedCase(report(case, fault), is_cached=False)
     except RuntimeError as problem:
         level_fault = registered_game().level_fault(problem)
         if level_fault is None:
             raise
-        return Done(report_on_broken(case, level_fault), kept=False)
-    return Done(_write(own_folder, inputs, result), kept=False, ready=prepared, reference=reference)
+        return FinishedCase(report_on_broken(case, level_fault), is_cached=False)
+    return FinishedCase(_write(own_folder, inputs, result), is_cached=False, prepared=prepared, reference=reference)
 
 
-def _inputs(prepared: Ready, reference: Reference, error: float) -> str:
-    """The hash of everything that the report on a case depends on."""
+def _inputs(prepared: PreparedCase, reference: Reference, error: float) -> str:
+    """Return the hash of everything that the report on a case depends on."""
     case, fspa = prepared.case, prepared.setup.fspa
     parts = [
         _VERSION,
@@ -201,22 +208,22 @@ def _inputs(prepared: Ready, reference: Reference, error: float) -> str:
     return inputs_hash(parts)
 
 
-def _kept(folder: Path, inputs: str) -> CaseReport | None:
-    """The cached report, if nothing has changed since and all of its recordings exist; else None."""
-    report = read_kept(CaseReport, folder / _REPORT, inputs)
+def _cached_report(folder: Path, inputs: str) -> CaseReport | None:
+    """Return the cached report, if nothing has changed since and all of its recordings exist; else None."""
+    report = read_cache(CaseReport, folder / _REPORT, inputs)
     return report if report and all((folder / name).is_file() for _, name in report.recordings) else None
 
 
 def _write(folder: Path, inputs: str, result: JudgedCase) -> CaseReport:
-    """Write the report on a case and the recordings of the episodes that its findings name."""
+    """Write the report on a case, and the recordings of the episodes that its findings name; return the report."""
     report = report_on(result)
-    by_index = {episode.account.summary.index: episode.recording for episode in result.episodes}
-    successes = [account.summary.index for account in report.accounts if account.summary.success]
+    by_index = {episode.explained.summary.index: episode.recording for episode in result.episodes}
+    successes = [episode.summary.index for episode in report.accounts if episode.summary.success]
     mentioned = [index for finding in report.explanation for index in finding.episodes[:_RECORDINGS]]
-    named = {index: f"{index}{SUFFIX}" for index in sorted({*mentioned, *successes[:1]})}
-    report = replace(report, recordings=tuple(named.items()))
-    recordings = {name: by_index[index] for index, name in named.items()}
-    fileio.write_files(folder, {**recordings, _REPORT: kept_text(inputs, report)}, WRITABLE, over_inputs=True)
+    file_names = {index: f"{index}{SUFFIX}" for index in sorted({*mentioned, *successes[:1]})}
+    report = replace(report, recordings=tuple(file_names.items()))
+    recordings = {name: by_index[index] for index, name in file_names.items()}
+    fileio.write_files(folder, {**recordings, _REPORT: cache_text(inputs, report)}, WRITABLE, over_inputs=True)
     for path in folder.glob(f"*{SUFFIX}"):
         # Remove recordings of earlier runs, which may be of another level.
         if path.name not in recordings:

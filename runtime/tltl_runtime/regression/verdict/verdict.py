@@ -43,8 +43,8 @@ The reward of an episode is its progress minus the share of the step limit that 
 also costs the rest of the limit (Algorithm 1).
 """
 
-_ALIKE: Final = 0.5
-"""Means that differ by at most this share of the threshold count as equal."""
+_EQUAL_SHARE: Final = 0.5
+"""If means differ by at most this share of the threshold, they count as equal."""
 
 
 @record
@@ -84,31 +84,35 @@ def judge(
     passed = sum(episode.success for episode in now)
     low, high = interval = rate_interval(passed, len(now) - passed, error)
     differences = _differences(now, before)
-    apart = _beyond(differences, thresholds)
-    changes = tuple(_changes(apart, now, before, thresholds, error))
+    differing = _differing_figures(differences, thresholds)
+    changes = tuple(_changes(differing, now, before, thresholds, error))
     if high < thresholds.fail_rate:
         return Judgement("fail", True, interval, changes)
     if low >= thresholds.fail_rate and (high < thresholds.pass_rate or changes):
         return Judgement("review", True, interval, changes)
     is_met = low >= thresholds.pass_rate
-    if is_met and all(difference <= _ALIKE * getattr(thresholds, figure) for figure, difference in differences.items()):
+    if is_met and all(
+        difference <= _EQUAL_SHARE * getattr(thresholds, figure) for figure, difference in differences.items()
+    ):
         return Judgement("pass", True, interval, changes)
     if len(now) < episodes:
         return None
-    return Judgement("pass" if is_met and not apart else "review", False, interval, changes)
+    return Judgement("pass" if is_met and not differing else "review", False, interval, changes)
 
 
-def beyond(now: Sequence[EpisodeSummary], before: Sequence[EpisodeSummary], thresholds: Thresholds) -> tuple[str, ...]:
-    """The figures whose means over equal seeds differ by at least their thresholds, possibly by chance."""
-    return _beyond(_differences(now, before), thresholds)
+def differing_figures(
+    now: Sequence[EpisodeSummary], before: Sequence[EpisodeSummary], thresholds: Thresholds
+) -> tuple[str, ...]:
+    """Return the figures whose means over equal seeds differ by at least their thresholds, possibly by chance."""
+    return _differing_figures(_differences(now, before), thresholds)
 
 
-def _beyond(differences: Mapping[str, float], thresholds: Thresholds) -> tuple[str, ...]:
+def _differing_figures(differences: Mapping[str, float], thresholds: Thresholds) -> tuple[str, ...]:
     return tuple(figure for figure, difference in differences.items() if 0 < difference >= getattr(thresholds, figure))
 
 
 def _differences(now: Sequence[EpisodeSummary], before: Sequence[EpisodeSummary]) -> dict[str, float]:
-    """The absolute difference of the means of each figure, over the seeds that both have."""
+    """Return the absolute differences of the means of each figure, over the seeds that both sides have."""
     count = min(len(now), len(before))
     pairs = {figure: (_values(now[:count], figure), _values(before[:count], figure)) for figure in FIGURES}
     return {figure: abs(fmean(new) - fmean(old)) for figure, (new, old) in pairs.items()}
@@ -121,10 +125,10 @@ def _changes(
     thresholds: Thresholds,
     error: float,
 ) -> Iterator[FigureChange]:
-    """The changes of those figures that have certainly changed."""
+    """Yield the changes of those figures that have certainly changed."""
     for figure in figures:
-        values, old, most = _values(now, figure), fmean(_values(before, figure)), getattr(thresholds, figure)
-        p_value = mean_p_value(values, old - most, old + most, *FIGURES[figure])
+        values, old, threshold = _values(now, figure), fmean(_values(before, figure)), getattr(thresholds, figure)
+        p_value = mean_p_value(values, old - threshold, old + threshold, *FIGURES[figure])
         if p_value <= error / (2 * len(FIGURES)):
             yield FigureChange(figure, old, fmean(values), p_value)
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from functools import cache
 
 from tltl_runtime.evaluation.figures import figures_of
-from tltl_runtime.regression.explain.account import Account, account, summaries_of
+from tltl_runtime.regression.explain.account import ExplainedEpisode, explain_episode, summaries_of
 from tltl_runtime.regression.explain.explain import findings
 from tltl_runtime.regression.report.case_report import CaseReport
 from tltl_runtime.regression.report.page.contents import ReportedCase, SuiteReport
@@ -67,9 +67,9 @@ def branching_that_takes_its_time() -> Episode:
         env.close()
 
 
-def account_of(index: int, episode: Episode) -> Account:
-    """The account of an episode, as if a case had played it."""
-    return account(summary_of(episode, index), episode)
+def explained_of(index: int, episode: Episode) -> ExplainedEpisode:
+    """An episode with what explains it, as if a case had played it."""
+    return explain_episode(summary_of(episode, index), episode)
 
 
 def reported(
@@ -81,25 +81,25 @@ def reported(
 ) -> ReportedCase:
     """The report on episodes of one level; only the indices ``recorded`` have a recording (default: all)."""
     level, fspa = now[0].level, now[0].fspa
-    accounts, baseline_accounts = (
-        [account_of(index, episode) for index, episode in enumerate(episodes)] for episodes in (now, before)
+    explained_episodes, baseline_episodes = (
+        [explained_of(index, episode) for index, episode in enumerate(episodes)] for episodes in (now, before)
     )
-    explanation = findings(level, fspa, accounts, baseline_accounts)
-    passed = sum(account.summary.success for account in accounts)
+    explanation = findings(level, fspa, explained_episodes, baseline_episodes)
+    passed = sum(explained.summary.success for explained in explained_episodes)
     report = CaseReport(
         name=name,
         level=level.name,
         variant=level.variant,
         verdict=verdict,
         causes=(f"met in {passed} of {len(now)} episodes",),
-        figures=figures_of(summaries_of(accounts)),
-        baseline=figures_of(summaries_of(baseline_accounts)),
+        figures=figures_of(summaries_of(explained_episodes)),
+        baseline=figures_of(summaries_of(baseline_episodes)),
         explanation=explanation,
-        accounts=tuple(accounts),
+        accounts=tuple(explained_episodes),
     )
     indices = range(len(now)) if recorded is None else recorded
     return ReportedCase(
-        report, level, fspa, {index: now[index] for index in indices}, tuple(baseline_accounts), before[0].level
+        report, level, fspa, {index: now[index] for index in indices}, tuple(baseline_episodes), before[0].level
     )
 
 

@@ -11,8 +11,8 @@ from xml.etree import ElementTree
 import pytest
 
 from tests.runtime.regression.page import samples
-from tltl_runtime.regression.explain.account import Account
-from tltl_runtime.regression.report.page.automaton import counts_table, drawn, picture
+from tltl_runtime.regression.explain.account import ExplainedEpisode
+from tltl_runtime.regression.report.page.automaton import counts_table, draw_automaton, picture
 from tltl_runtime.regression.report.page.traffic import Traffic, traffic
 from tltl_runtime.stealth.recordings.episode import Episode
 from tltlc import compile_text
@@ -21,8 +21,8 @@ from tltlc.automaton.text import label_text
 from tltlc.backends.drawing.picture_content import shown
 
 
-def accounts(episodes: tuple[Episode, ...]) -> list[Account]:
-    return [samples.account_of(index, episode) for index, episode in enumerate(episodes)]
+def explained_episodes(episodes: tuple[Episode, ...]) -> list[ExplainedEpisode]:
+    return [samples.explained_of(index, episode) for index, episode in enumerate(episodes)]
 
 
 @pytest.fixture(scope="module")
@@ -32,17 +32,17 @@ def fspa() -> Fspa:
 
 @pytest.fixture(scope="module")
 def now() -> Traffic:
-    return traffic(accounts(samples.cover_and_hide_failed()))
+    return traffic(explained_episodes(samples.cover_and_hide_failed()))
 
 
 @pytest.fixture(scope="module")
 def before() -> Traffic:
-    return traffic(accounts(samples.cover_and_hide_met()))
+    return traffic(explained_episodes(samples.cover_and_hide_met()))
 
 
 @pytest.fixture(scope="module")
 def root(fspa: Fspa, now: Traffic, before: Traffic) -> ElementTree.Element:
-    drawing = drawn(fspa)
+    drawing = draw_automaton(fspa)
     assert drawing.svg is not None and drawing.notes == ()
     return ElementTree.fromstring(picture(fspa, drawing.svg, now, before))
 
@@ -66,7 +66,7 @@ def test_each_state_shows_its_counts(root: ElementTree.Element, fspa: Fspa, now:
 
 
 def test_edges_are_thicker_the_more_episodes_took_them(root: ElementTree.Element, now: Traffic) -> None:
-    took = Counter(edge for edges in now.took for edge in edges)
+    took = Counter(edge for edges in now.edges for edge in edges)
     widths = {}
     for element in root.iter("g"):
         title = element.findtext("title") or ""
@@ -100,7 +100,7 @@ def test_the_picture_has_no_ids_and_no_links(root: ElementTree.Element) -> None:
 @pytest.mark.parametrize("episodes", [samples.navigation, samples.cover_and_hide_met, samples.branching])
 def test_state_names_do_not_cover_distances(episodes: Callable[[], tuple[Episode, ...]]) -> None:
     fspa, empty = episodes()[0].fspa, traffic([])
-    svg = drawn(fspa).svg
+    svg = draw_automaton(fspa).svg
     assert svg is not None
     checked = 0
     for group in ElementTree.fromstring(picture(fspa, svg, empty, empty)).iter("g"):
@@ -135,7 +135,7 @@ def test_a_folded_run_of_states_is_one_group() -> None:
         frozenset({(0, 2), *((state, state + 1) for state in range(2, last)), (last, 1)}) for last in range(2, 6)
     )
     counts = Traffic(5, {0: 5, 1: 5, 2: 4, 3: 3, 4: 2, 5: 1}, {}, (*took, frozenset({(0, 1)})))
-    drawing = drawn(fspa)
+    drawing = draw_automaton(fspa)
     assert drawing.svg is not None
     root = ElementTree.fromstring(picture(fspa, drawing.svg, counts, empty))
     groups = [(element.get("data-states") or "").split() for element in root.iter("g") if element.get("data-states")]
@@ -162,7 +162,7 @@ def test_a_folded_run_counts_episodes_that_enter_at_any_of_its_states() -> None:
     assert len({target for _, target in entering}) == len(entering) == 7
     took = tuple(frozenset({edge}) for edge in entering)
     counts = Traffic(len(took), Counter(target for _, target in entering), {}, took)
-    drawing = drawn(fspa)
+    drawing = draw_automaton(fspa)
     assert drawing.svg is not None
     root = ElementTree.fromstring(picture(fspa, drawing.svg, counts, traffic([])))
     (group,) = (element for element in root.iter("g") if (element.get("data-states") or "").startswith("4 "))
@@ -178,7 +178,7 @@ def test_an_edge_between_two_folded_runs_is_counted_at_the_drawn_edge() -> None:
     drawn_ends = {(edge.source, edge.target) for edge in shown(fspa).edges}
     crossing = [edge for edge in last_edges if (ends[edge[0]], edge[1]) not in drawn_ends]
     assert len(crossing) == 2
-    drawing = drawn(fspa)
+    drawing = draw_automaton(fspa)
     assert drawing.svg is not None
     for edge in crossing:
         counts = Traffic(1, {}, {}, (frozenset({edge}),))
@@ -191,7 +191,7 @@ def test_an_edge_between_two_folded_runs_is_counted_at_the_drawn_edge() -> None:
 
 def test_a_layout_that_takes_too_long_gives_a_note(fspa: Fspa, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("tltl_runtime.regression.report.page.automaton._LAYOUT_LIMIT_S", 0.0)
-    drawing = drawn(fspa)
+    drawing = draw_automaton(fspa)
     assert drawing.svg is None
     assert drawing.notes == (f"The automaton of {len(fspa.states)} states is too tangled to be drawn in time.",)
 

@@ -226,14 +226,14 @@ def test_the_map_shows_now_or_the_baseline(tab: Tab) -> None:
     def ends(kind: str) -> int:
         return section.locator(f".map .ends path.{kind}").count()
 
-    failed = sum(not account.summary.success for account in case.report.accounts)
+    failed = sum(not explained.summary.success for explained in case.report.accounts)
     assert (ends("violation") + ends("limit"), ends("success")) == (failed, len(case.report.accounts) - failed)
     assert section.locator(".map .ends a").count() == len(case.episodes)
     assert (
         section.locator(".counts.now").first.is_visible() and not section.locator(".counts.before").first.is_visible()
     )
     section.get_by_label("baseline").check()
-    assert ends("success") == sum(account.summary.success for account in case.before) > 0
+    assert ends("success") == sum(explained.summary.success for explained in case.before) > 0
     assert (
         section.locator(".counts.before").first.is_visible() and not section.locator(".counts.now").first.is_visible()
     )
@@ -257,7 +257,9 @@ def test_the_legend_lists_the_states_whose_colours_are_drawn(tab: Tab) -> None:
     shown = patches.evaluate_all("patches => patches.map((patch) => patch.getAttribute('fill'))")
     assert set(shown) == set(colours) and len(shown) == len(set(shown))
     words = section.locator(".legend.shown").inner_text()
-    left_out = {account.arrivals[-1].state for account in case.report.accounts if account.summary.end == "violation"}
+    left_out = {
+        explained.arrivals[-1].state for explained in case.report.accounts if explained.summary.end == "violation"
+    }
     assert left_out and not any(f"state {state}:" in words for state in left_out)
 
 

@@ -24,9 +24,9 @@ def test_each_recorded_episode_has_a_curve() -> None:
 
 
 def test_the_bars_show_the_shares_of_episodes() -> None:
-    account = samples.account_of(0, samples.navigation()[0])
-    failed = [changed(account, success=False, progress=value) for value in (0.0, 0.58, 1.0)]
-    root = ElementTree.fromstring(progress_distribution([*failed, account], [account]))
+    explained = samples.explained_of(0, samples.navigation()[0])
+    failed = [changed(explained, success=False, progress=value) for value in (0.0, 0.58, 1.0)]
+    root = ElementTree.fromstring(progress_distribution([*failed, explained], [explained]))
     bars = list(root.iter("rect"))
     assert [element.findtext("title") for element in bars] == [
         "progress 0.0 to 0.1, now: 25% of the episodes",
@@ -41,8 +41,10 @@ def test_the_bars_show_the_shares_of_episodes() -> None:
 
 
 def test_bars_stand_at_the_labels_of_their_values() -> None:
-    account = samples.account_of(0, samples.navigation()[0])
-    root = ElementTree.fromstring(progress_distribution([changed(account, success=False, progress=0.58), account], []))
+    explained = samples.explained_of(0, samples.navigation()[0])
+    root = ElementTree.fromstring(
+        progress_distribution([changed(explained, success=False, progress=0.58), explained], [])
+    )
     ticks = {
         element.text: float(element.get("x", "nan"))
         for element in root.iter("text")
@@ -58,6 +60,6 @@ def test_bars_stand_at_the_labels_of_their_values() -> None:
 
 
 def test_without_a_baseline_only_current_shares_are_drawn() -> None:
-    account = samples.account_of(0, samples.navigation()[0])
-    root = ElementTree.fromstring(progress_distribution([account], []))
+    explained = samples.explained_of(0, samples.navigation()[0])
+    root = ElementTree.fromstring(progress_distribution([explained], []))
     assert [element.get("class") for element in root.iter("rect")] == ["share now"]

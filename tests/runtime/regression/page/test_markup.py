@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from markupsafe import Markup
 
-from tltl_runtime.regression.report.page.markup import as_script, element, prose, short
+from tltl_runtime.regression.report.page.markup import coordinate, element, prose, script_json
 
 JSON = st.recursive(
     st.none() | st.booleans() | st.integers() | st.text(),
@@ -33,15 +33,15 @@ def test_names_between_backquotes_are_code() -> None:
 
 
 def test_numbers_are_short() -> None:
-    assert [short(value) for value in (1.0, 1.256, -0.001, 10.5, 100.0)] == ["1", "1.26", "0", "10.5", "100"]
+    assert [coordinate(value) for value in (1.0, 1.256, -0.001, 10.5, 100.0)] == ["1", "1.26", "0", "10.5", "100"]
 
 
 @given(JSON)
 def test_json_in_a_script_is_unchanged_and_does_not_end_the_script(data: Any) -> None:
-    text = as_script(data)
+    text = script_json(data)
     assert json.loads(text) == data
     assert not set("<>&\u2028\u2029") & set(text)
 
 
 def test_a_closing_script_tag_in_data_is_escaped() -> None:
-    assert as_script("</script><b><!--") == '"\\u003c/script\\u003e\\u003cb\\u003e\\u003c!--"'
+    assert script_json("</script><b><!--") == '"\\u003c/script\\u003e\\u003cb\\u003e\\u003c!--"'

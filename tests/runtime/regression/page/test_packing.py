@@ -7,7 +7,7 @@ from itertools import accumulate, pairwise
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tltl_runtime.regression.report.page.packing import across, down, runs, steps
+from tltl_runtime.regression.report.page.packing import runs, steps, x_steps, y_steps
 from tltl_runtime.stealth.level import Box
 
 
@@ -50,5 +50,5 @@ def test_runs_expand_to_the_values(values: list[str]) -> None:
 
 def test_places_are_in_centimetres_from_the_north_west_corner() -> None:
     bounds = Box((-10.0, 0.0, 0.0), (10.0, 8.0, 3.0))
-    assert unstepped(across(bounds, [-10.0, -9.5, 10.0])) == [0, 50, 2000]
-    assert unstepped(down(bounds, [8.0, 0.0])) == [0, 800]
+    assert unstepped(x_steps(bounds, [-10.0, -9.5, 10.0])) == [0, 50, 2000]
+    assert unstepped(y_steps(bounds, [8.0, 0.0])) == [0, 800]

@@ -20,7 +20,7 @@ from tltl_runtime.regression.explain.explain import Finding
 from tltl_runtime.regression.report.case_report import CaseReport
 from tltl_runtime.regression.report.page.contents import NotRun, ReportedCase, SuiteReport
 from tltl_runtime.regression.report.page.page import html_report
-from tltl_runtime.regression.retrain.retrained import FinishedRetraining, Retrained
+from tltl_runtime.regression.retrain.retrained import FinishedRetraining, RetrainingResult
 from tltl_runtime.stealth.level import Box
 from tltlc.automaton.fspa import Text
 from tltlc.core.record import replace
@@ -177,8 +177,8 @@ def test_names_are_escaped() -> None:
         states=(replace(state, label=label), *case.fspa.states[1:]),
         atoms=tuple(replace(atom, base=EVIL, arguments=()) for atom in case.fspa.atoms),
     )
-    accounts = tuple(replace(account, by=(EVIL,)) for account in case.report.accounts)
-    report = replace(case.report, name=EVIL, level=EVIL, causes=(EVIL,), explanation=(), accounts=accounts)
+    explained_episodes = tuple(replace(explained, by=(EVIL,)) for explained in case.report.accounts)
+    report = replace(case.report, name=EVIL, level=EVIL, causes=(EVIL,), explanation=(), accounts=explained_episodes)
     evil = ReportedCase(report, level, fspa, case.episodes, case.before)
     text = html_report(SuiteReport(EVIL, 0, 0.05, {EVIL: EVIL}, (evil,)))
     plain = html_report(SuiteReport("s", 0, 0.05, {"v": "1"}, (case,)))
@@ -194,7 +194,7 @@ def test_names_are_escaped() -> None:
 
 def test_a_retraining_is_shown_with_its_curve() -> None:
     trained = FinishedRetraining("minutes", 4096, 60.0, 200_000, True, None)
-    retrained = Retrained(
+    retrained = RetrainingResult(
         "no_way", f"no way found: {EVIL}", trained, figures_of(summaries(0, 2)), (0.0, 0.5), None, "a/p", None
     )
     suite = samples.suite()
@@ -210,7 +210,7 @@ def test_a_retraining_is_shown_with_its_curve() -> None:
 
 def test_the_outcome_of_a_retraining_is_in_the_table() -> None:
     trained = FinishedRetraining("minutes", 4096, 60.0, 200_000, True, None)
-    retrained = Retrained("no_way", "no", trained, figures_of(summaries(0, 2)), (0.0, 0.5), None, "a/p", None)
+    retrained = RetrainingResult("no_way", "no", trained, figures_of(summaries(0, 2)), (0.0, 0.5), None, "a/p", None)
     suite = samples.suite()
     case = replace(suite.cases[1], report=replace(suite.cases[1].report, retrained=retrained))
     texts = Page(html_report(replace(suite, cases=(suite.cases[0], case)))).texts
@@ -246,22 +246,22 @@ def test_a_level_that_looks_different_from_the_baseline_has_a_second_map() -> No
         return len([svg for svg in Page(text).all("svg") if (svg["class"] or "").endswith(" map")]), text
 
     case = samples.suite().cases[1]
-    assert case.level is not None and case.designed is not None
+    assert case.level is not None and case.baseline_level is not None
     assert maps(case)[0] == 1 and "as it was" not in maps(case)[1]
     # The map shows neither the sight ranges of enemies nor the name of the variant.
     enemies = tuple(replace(enemy, kind=replace(enemy.kind, walk_speed=9.0)) for enemy in case.level.enemies)
     assert maps(replace(case, level=replace(case.level, enemies=enemies, variant="v7")))[0] == 1
-    wide = replace(case.designed, bounds=Box((-5.0, 0.0, -2.0), case.designed.bounds.high))
-    count, text = maps(replace(case, designed=wide))
+    wide = replace(case.baseline_level, bounds=Box((-5.0, 0.0, -2.0), case.baseline_level.bounds.high))
+    count, text = maps(replace(case, baseline_level=wide))
     assert count == 2 and "The level as it was when the baseline was recorded: cover_and_hide v0." in text
     (data,) = Page(text).data["cases"]
     first = [
         sum(unstepped(data[when]["ways"][0]["x"])[:1]) * data[when]["ways"][0]["unit"] for when in ("now", "before")
     ]
     assert first[1] - first[0] == pytest.approx(500, abs=100), "its ways are on its map"
-    unknown = maps(replace(case, designed=None))
+    unknown = maps(replace(case, baseline_level=None))
     assert unknown[0] == 1 and "what it was then is not known any more" in unknown[1]
-    assert "not known any more" not in maps(replace(case, designed=None, before=()))[1]
+    assert "not known any more" not in maps(replace(case, baseline_level=None, before=()))[1]
 
 
 def test_a_case_that_cannot_be_played_has_only_its_reasons() -> None:
@@ -279,13 +279,15 @@ def test_equal_reports_give_equal_pages() -> None:
 def test_a_page_of_nine_cases_is_smaller_than_seven_megabytes() -> None:
     long = samples.branching_that_takes_its_time()
     assert len(long.actions) == 600
-    account = samples.account_of(0, long)
-    accounts = tuple(changed(account, index=index) for index in range(200))
+    explained = samples.explained_of(0, long)
+    explained_episodes = tuple(changed(explained, index=index) for index in range(200))
     reported = samples.reported("branching:v0", "pass", [long], [long])
-    report = replace(reported.report, accounts=accounts)
+    report = replace(reported.report, accounts=explained_episodes)
     episodes = dict.fromkeys(range(13), long)
     cases = tuple(
-        ReportedCase(replace(report, name=f"case {number}"), reported.level, reported.fspa, episodes, accounts)
+        ReportedCase(
+            replace(report, name=f"case {number}"), reported.level, reported.fspa, episodes, explained_episodes
+        )
         for number in range(9)
     )
     size = len(html_report(SuiteReport("nine", 0, 0.05, {}, cases)).encode())

@@ -11,7 +11,7 @@ import pytest
 
 from tests.runtime.regression.page import samples
 from tests.runtime.regression.page.test_packing import unstepped
-from tltl_runtime.regression.report.page.stealth.recorded import recorded
+from tltl_runtime.regression.report.page.stealth.recorded import recording_data
 from tltl_runtime.stealth.recordings.episode import Episode
 
 
@@ -29,7 +29,7 @@ def episode(request: pytest.FixtureRequest) -> Episode:
 
 
 def test_every_row_of_the_recording_is_in_the_data(episode: Episode) -> None:
-    data = json.loads(json.dumps(recorded(4, episode)))
+    data = json.loads(json.dumps(recording_data(4, episode)))
     shots, bounds = episode.snapshots, episode.level.bounds
     assert data["index"] == 4
     assert unrun(data["state"]) == episode.states.tolist()
@@ -60,4 +60,4 @@ def test_every_row_of_the_recording_is_in_the_data(episode: Episode) -> None:
 
 def test_a_row_takes_few_bytes() -> None:
     episode = samples.branching()[0]
-    assert len(json.dumps(recorded(0, episode), separators=(",", ":"))) < 60 * len(episode.actions)
+    assert len(json.dumps(recording_data(0, episode), separators=(",", ":"))) < 60 * len(episode.actions)

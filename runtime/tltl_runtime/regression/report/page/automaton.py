@@ -1,4 +1,4 @@
-"""The automaton as an inline SVG, annotated with the numbers of episodes in its states and edges."""
+"""The automaton as an inline SVG, with the numbers of episodes in its states and on its edges."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from xml.etree import ElementTree
 
 from markupsafe import Markup
 
-from tltl_runtime.regression.report.page.markup import short
+from tltl_runtime.regression.report.page.markup import coordinate
 from tltl_runtime.regression.report.page.render import render
 from tltl_runtime.regression.report.page.traffic import Traffic
 from tltlc.api import Diagnostic, Fspa, TltlError, compiler, label_text, record, replace
@@ -23,23 +23,26 @@ Ends = tuple[int, int]
 
 _NUMBER: Final = re.compile(r"-?\d+(?:\.\d+)?")
 _THINNEST, _THICKEST = 0.8, 7.0
-_HEIGHT, _MARGIN = 12.0, 4.0
+_LETTER_HEIGHT, _MARGIN = 12.0, 4.0
 """The height of a letter and the margin of the picture, in the units of the picture."""
-_LETTER: Final = 6.4
+_LETTER_WIDTH: Final = 6.4
 """The width of a character of a badge, in the units of the picture."""
-_PILL: Final = 16.0
+_BADGE_HEIGHT: Final = 16.0
 """The height of a badge, in the units of the picture."""
 
 
 @record
-class Drawn:
-    """The picture of an automaton as SVG, or None if the layout failed; ``notes`` describe what is not shown."""
+class AutomatonPicture:
+    """The picture of an automaton, as SVG bytes, or None if the layout failed.
+
+    ``notes`` describe what the picture does not show.
+    """
 
     svg: bytes | None
     notes: tuple[str, ...]
 
 
-def drawn(fspa: Fspa) -> Drawn:
+def draw_automaton(fspa: Fspa) -> AutomatonPicture:
     """Draw the automaton.  A separate process lays it out, with a time limit for each attempt."""
     diagnostics: list[Diagnostic] = []
     try:
@@ -50,20 +53,22 @@ def drawn(fspa: Fspa) -> Drawn:
             compiler.BackendOptions(layout_limit_s=_LAYOUT_LIMIT_S, report=diagnostics.append),
         )
     except TltlError as error:
-        return Drawn(None, tuple(_sentence(diagnostic) for diagnostic in error.diagnostics))
+        return AutomatonPicture(None, tuple(_sentence(diagnostic) for diagnostic in error.diagnostics))
     ((name, content),) = files.items()
     if not name.endswith(".svg"):
-        return Drawn(None, (f"The automaton of {len(fspa.states)} states is too tangled to be drawn in time.",))
+        return AutomatonPicture(
+            None, (f"The automaton of {len(fspa.states)} states is too tangled to be drawn in time.",)
+        )
     data = content.encode() if isinstance(content, str) else content
-    return Drawn(data, tuple(_sentence(diagnostic) for diagnostic in diagnostics))
+    return AutomatonPicture(data, tuple(_sentence(diagnostic) for diagnostic in diagnostics))
 
 
 def picture(fspa: Fspa, svg: bytes, now: Traffic, before: Traffic) -> Markup:
-    """Add badges to each state: its number, how many episodes visited it, and how many failed in it.
+    """Add badges to the ``svg`` of an automaton: for each state, how many episodes visited it or failed in it.
 
-    The more episodes took an edge, the thicker it is.  The picture contains the badges and edge widths
-    for ``now`` and for ``before``; the style sheet shows one of them.  ``data-states`` of a group lists
-    the states that it stands for.
+    The more episodes took an edge, the thicker the edge is.  The picture contains the badges and edge
+    widths for ``now`` and for ``before``; the style sheet shows one of the two.  ``data-states`` of a
+    group lists the states that the group stands for.
     """
     root = ElementTree.fromstring(svg)
     for node in root.iter():
@@ -77,19 +82,21 @@ def picture(fspa: Fspa, svg: bytes, now: Traffic, before: Traffic) -> Markup:
         for group in root.iter("g")
         if (source := group.get("data-source")) and (target := group.get("data-target"))
     }
-    took = [(_taken(seen, states.values(), set(edges.values())), seen.episodes) for seen in (now, before)]
+    counts = [
+        (_edge_counts(traffic, states.values(), set(edges.values())), traffic.episodes) for traffic in (now, before)
+    ]
     for group, run in states.items():
         _mark_state(group, group[0], run, now, before)
     for group, ends in edges.items():
-        _mark_edge(group, group[0], ends, [(taken[ends], episodes) for taken, episodes in took])
+        _mark_edge(group, group[0], ends, [(edge_counts[ends], episodes) for edge_counts, episodes in counts])
     _, _, width, height = map(float, _NUMBER.findall(root.get("viewBox", "")))
-    top = _top(root)
+    top = _remove_title(root)
     for graph in root:
         # Draw states last, so that no edge covers their badges.
         graph[:] = sorted(graph, key=lambda child: child.get("class") == "node")
     root.attrib = {
         "class": "automaton",
-        "viewBox": f"0 {short(top)} {short(width)} {short(height - top)}",
+        "viewBox": f"0 {coordinate(top)} {coordinate(width)} {coordinate(height - top)}",
         "role": "img",
         "aria-label": f"The automaton of the spec {fspa.name}; the table below has its numbers.",
         "style": f"--width: {width:.0f}",
@@ -97,7 +104,7 @@ def picture(fspa: Fspa, svg: bytes, now: Traffic, before: Traffic) -> Markup:
     return Markup(ElementTree.tostring(root, encoding="unicode", short_empty_elements=True))
 
 
-def _taken(seen: Traffic, runs: Collection[tuple[int, ...]], drawn: Set[Ends]) -> Counter[Ends]:
+def _edge_counts(traffic: Traffic, runs: Collection[tuple[int, ...]], drawn_edges: Set[Ends]) -> Counter[Ends]:
     """Count for each drawn edge the episodes that took it or an edge that it stands for.
 
     A run of states is drawn as one state.
@@ -105,17 +112,21 @@ def _taken(seen: Traffic, runs: Collection[tuple[int, ...]], drawn: Set[Ends]) -
     first = {state: run[0] for run in runs for state in run}
     folded = [run[0] for run in runs if len(run) > 1]
 
-    def shown(edge: Ends) -> Ends:
+    def drawn_edge(edge: Ends) -> Ends:
         source, target = (first[end] for end in edge)
-        if source != target and (source, target) not in drawn:
+        if source != target and (source, target) not in drawn_edges:
             # The edge skips a run that is drawn as one state: count it at the edge into that run.
             target = next(
-                (run_start for run_start in folded if (source, run_start) in drawn and (run_start, target) in drawn),
+                (
+                    run_start
+                    for run_start in folded
+                    if (source, run_start) in drawn_edges and (run_start, target) in drawn_edges
+                ),
                 target,
             )
         return source, target
 
-    return Counter(edge for edges in seen.took for edge in {shown(edge) for edge in edges})
+    return Counter(edge for edges in traffic.edges for edge in {drawn_edge(edge) for edge in edges})
 
 
 def _mark_state(
@@ -125,10 +136,10 @@ def _mark_state(
     name = f"State {states[0]}" if len(states) == 1 else f"States {states[0]} to {states[-1]}"
     _name(group, name.lower(), left, top, right)
     parts = []
-    for when, seen in (("now", now), ("before", before)):
-        visited = _visits(seen, states)
-        failed = sum(seen.failed.get(state, 0) for state in states)
-        parts.append(f"{when}: visited by {visited} of {seen.episodes} episodes, {failed} failed in it")
+    for when, traffic in (("now", now), ("before", before)):
+        visited = _visits(traffic, states)
+        failed = sum(traffic.failed.get(state, 0) for state in states)
+        parts.append(f"{when}: visited by {visited} of {traffic.episodes} episodes, {failed} failed in it")
         badges = ElementTree.SubElement(group, "g", {"class": f"counts {when}"})
         _badge(badges, "visited", str(visited), left + 6, bottom, grows=1)
         if failed:
@@ -136,46 +147,55 @@ def _mark_state(
     title.text = f"{name}; {'; '.join(parts)}"
 
 
-def _visits(seen: Traffic, states: tuple[int, ...]) -> int:
-    """How many episodes visited a state, or any state of a run, which can be entered at any of its states."""
+def _visits(traffic: Traffic, states: tuple[int, ...]) -> int:
+    """Return how many episodes visited a state, or any state of a run.
+
+    A run can be entered at any of its states.
+    """
     if len(states) == 1:
-        return seen.visited.get(states[0], 0)
-    return sum(any(target in states for _, target in edges) for edges in seen.took)
+        return traffic.visited.get(states[0], 0)
+    return sum(any(target in states for _, target in edges) for edges in traffic.edges)
 
 
 def _mark_edge(
-    group: ElementTree.Element, title: ElementTree.Element, ends: Ends, taken: Sequence[tuple[int, int]]
+    group: ElementTree.Element, title: ElementTree.Element, ends: Ends, edge_counts: Sequence[tuple[int, int]]
 ) -> None:
-    """Set the thickness and the title of an edge; ``taken`` is (taken by, episodes), now and before."""
+    """Set the thickness and the title of an edge.
+
+    ``edge_counts`` are pairs of how many episodes took the edge and of all episodes, now and before.
+    """
     if ends[0] == ends[1]:
         group.set("class", "edge loop")
         group.remove(title)
         return
     widths, parts = [], []
-    for when, (took, episodes) in zip(("now", "before"), taken, strict=True):
-        share = took / episodes if episodes else 0.0
-        widths.append(f"--took-{when}: {short(_THINNEST + share * (_THICKEST - _THINNEST))}")
-        parts.append(f"{when}: taken by {took} of {episodes} episodes")
-        if not took:
+    for when, (count, episodes) in zip(("now", "before"), edge_counts, strict=True):
+        share = count / episodes if episodes else 0.0
+        widths.append(f"--took-{when}: {coordinate(_THINNEST + share * (_THICKEST - _THINNEST))}")
+        parts.append(f"{when}: taken by {count} of {episodes} episodes")
+        if not count:
             group.set("class", f"{group.get('class')} untaken-{when}")
     group.set("style", "; ".join(widths))
     title.text = f"From state {ends[0]} to state {ends[1]}; {'; '.join(parts)}"
 
 
 def _name(group: ElementTree.Element, text: str, left: float, top: float, right: float) -> None:
-    """Add a badge with a state's name in its upper left corner, above the distance mark if it would cover that."""
+    """Add a badge with a state's name in its upper left corner.
+
+    If the badge would cover the distance mark, it is placed above the mark.
+    """
     x, y = min(left + 6, right - _width(text)), top
     # The mark of the distance is a filled path without an outline.
     for mark in (path for path in group.iter("path") if path.get("stroke") == "none"):
         mark_left, mark_top, _, _ = _extent(mark)
         if x + _width(text) > mark_left - 1:
-            y = min(y, mark_top - _PILL / 2 - 1)
+            y = min(y, mark_top - _BADGE_HEIGHT / 2 - 1)
     _badge(group, "name", text, x, y, grows=1)
 
 
 def _width(text: str) -> float:
-    """The width of a badge with this text."""
-    return len(text) * _LETTER + 9
+    """Return the width of a badge with this text."""
+    return len(text) * _LETTER_WIDTH + 9
 
 
 def _badge(parent: ElementTree.Element, kind: str, text: str, x: float, y: float, grows: int) -> None:
@@ -183,26 +203,32 @@ def _badge(parent: ElementTree.Element, kind: str, text: str, x: float, y: float
     width = _width(text)
     left = x if grows > 0 else x - width
     group = ElementTree.SubElement(parent, "g", {"class": f"badge {kind}"})
-    sides = {"x": short(left), "y": short(y - _PILL / 2), "width": short(width), "height": short(_PILL), "rx": "8"}
+    sides = {
+        "x": coordinate(left),
+        "y": coordinate(y - _BADGE_HEIGHT / 2),
+        "width": coordinate(width),
+        "height": coordinate(_BADGE_HEIGHT),
+        "rx": "8",
+    }
     ElementTree.SubElement(group, "rect", sides)
-    ElementTree.SubElement(group, "text", {"x": short(left + width / 2), "y": short(y + 4)}).text = text
+    ElementTree.SubElement(group, "text", {"x": coordinate(left + width / 2), "y": coordinate(y + 4)}).text = text
 
 
 def _extent(group: ElementTree.Element) -> tuple[float, float, float, float]:
-    """The bounds of what a group draws: left, top, right, bottom."""
+    """Return the bounds of what a group draws: left, top, right, bottom."""
     points = list(_points(group))
     xs, ys = [x for x, _ in points], [y for _, y in points]
     return min(xs), min(ys), max(xs), max(ys)
 
 
-def _top(root: ElementTree.Element) -> float:
-    """Remove the name of the spec, and return the top of the graph itself, in the units of the view box."""
+def _remove_title(root: ElementTree.Element) -> float:
+    """Remove the name of the spec; return the top of the graph itself, in the units of the view box."""
     (graph,) = (child for child in root if child.get("class") == "graph")
     groups = [child for child in graph if child.get("class") is not None]
     for child in set(graph) - set(groups):
         graph.remove(child)
     ys = [y for group in groups for _, y in _points(group)]
-    ys += [float(text.get("y", 0)) - _HEIGHT for group in groups for text in group.iter("text")]
+    ys += [float(text.get("y", 0)) - _LETTER_HEIGHT for group in groups for text in group.iter("text")]
     moved = float(_NUMBER.findall(graph.get("transform", "").rpartition("translate")[2])[1])
     return max(0.0, min(ys) + moved - _MARGIN)
 
@@ -222,7 +248,7 @@ def _sentence(diagnostic: Diagnostic) -> str:
 
 
 def counts_table(fspa: Fspa, now: Traffic, before: Traffic) -> Markup:
-    """A table of the states: what remains to be done in each, and the numbers of episodes."""
+    """Return a table of the states: what remains to be done in each, and the numbers of episodes."""
     rows = [
         (state.id, label_text(fspa, state.id), [*_counts(state.id, now), *_counts(state.id, before)])
         for state in fspa.states
@@ -230,7 +256,7 @@ def counts_table(fspa: Fspa, now: Traffic, before: Traffic) -> Markup:
     return render("counts_table.html", rows=rows)
 
 
-def _counts(state: int, seen: Traffic) -> tuple[str, str]:
-    """The numbers of episodes that visited a state and that failed in it."""
-    visited, failed = (f"{counts.get(state, 0)} of {seen.episodes}" for counts in (seen.visited, seen.failed))
+def _counts(state: int, traffic: Traffic) -> tuple[str, str]:
+    """Return how many episodes visited a state, and how many failed in it."""
+    visited, failed = (f"{counts.get(state, 0)} of {traffic.episodes}" for counts in (traffic.visited, traffic.failed))
     return visited, failed

@@ -18,11 +18,11 @@ from tltlc.api import record, replace
 class _DrawnMap:
     """A map and its key.
 
-    ``shown`` says which episodes it is shown with: ``now``, ``before`` (the baseline) or ``both``.
-    ``is_of_unknown_baseline`` says that the level of the baseline's episodes is unknown.
+    ``when`` says with which episodes the page shows the map: ``now``, ``before`` (the baseline) or
+    ``both``.  ``is_of_unknown_baseline`` says that the level of the baseline's episodes is unknown.
     """
 
-    shown: str
+    when: str
     picture: Markup
     key: Markup
     caption: str = ""
@@ -30,23 +30,24 @@ class _DrawnMap:
 
 
 def case_maps(case: ReportedCase, level: Level) -> Markup:
-    """The map of the ``level``, its key, and an empty legend that the page's script fills in.
+    """Return the map of ``level``, its key, and an empty legend that the page's script fills in.
 
-    If the level of the baseline looks different, its map is included, too.  The page shows one of them.
+    If the level of the baseline looks different, its map is included, too; the page shows one of the
+    two.
     """
     return render("case_maps.html", maps=tuple(_maps(case, level)))
 
 
 def _maps(case: ReportedCase, level: Level) -> Iterator[_DrawnMap]:
-    old, mentioned = case.designed, mentions(level, case.report.reasons)
-    now, key = level_map(level, mentioned), map_key(level, mentioned)
-    if old is None or not case.before:
-        yield _DrawnMap("both", now, key, is_of_unknown_baseline=bool(case.before))
+    old_level, mentioned = case.baseline_level, mentions(level, case.report.reasons)
+    map_now, key_now = level_map(level, mentioned), map_key(level, mentioned)
+    if old_level is None or not case.before:
+        yield _DrawnMap("both", map_now, key_now, is_of_unknown_baseline=bool(case.before))
         return
-    mentioned_before = mentions(old, case.report.reasons)
-    if level_map(replace(old, name=level.name, variant=level.variant), mentioned_before) == now:
-        yield _DrawnMap("both", now, key)
+    mentioned_before = mentions(old_level, case.report.reasons)
+    if level_map(replace(old_level, name=level.name, variant=level.variant), mentioned_before) == map_now:
+        yield _DrawnMap("both", map_now, key_now)
         return
-    yield _DrawnMap("now", now, key, f"The level as it is now: {level.name} {level.variant}.")
-    caption = f"The level as it was when the baseline was recorded: {old.name} {old.variant}."
-    yield _DrawnMap("before", level_map(old, mentioned_before), map_key(old, mentioned_before), caption)
+    yield _DrawnMap("now", map_now, key_now, f"The level as it is now: {level.name} {level.variant}.")
+    caption = f"The level as it was when the baseline was recorded: {old_level.name} {old_level.variant}."
+    yield _DrawnMap("before", level_map(old_level, mentioned_before), map_key(old_level, mentioned_before), caption)

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from markupsafe import Markup
 
 from tltl_runtime.regression.report.case_report import CaseReport
-from tltl_runtime.regression.report.page.automaton import Drawn, counts_table, picture
+from tltl_runtime.regression.report.page.automaton import AutomatonPicture, counts_table, picture
 from tltl_runtime.regression.report.page.case_maps import case_maps
 from tltl_runtime.regression.report.page.contents import NotRun, ReportedCase
 from tltl_runtime.regression.report.page.curves import progress_curves, progress_distribution
@@ -21,7 +21,7 @@ from tltlc.api import formula_text, record
 
 @record
 class _Reason:
-    """A reason of the verdict, and links to the recorded episodes that show it, or None."""
+    """A reason of the verdict, and links to the recorded episodes that show it; None if there are none."""
 
     text: str
     links: Markup | None = None
@@ -29,11 +29,11 @@ class _Reason:
 
 @record
 class _Drawings:
-    """What the section of a case with level and automaton shows.
+    """The pictures and tables in the section of a case with level and automaton.
 
-    ``automaton`` is None if its layout failed; ``notes`` are on what it does not show.  ``curves`` are the
-    progress of the recorded episodes, or None without recordings.  ``distribution`` is the distribution of
-    progress over all episodes.  ``table`` has the numbers of episodes of each state.
+    ``automaton`` is None if its layout failed; ``notes`` say what it does not show.  ``curves`` are the
+    progress of the recorded episodes, or None without recordings.  ``distribution`` is the distribution
+    of progress over all episodes.  ``table`` has the numbers of episodes of each state.
     """
 
     automaton: Markup | None
@@ -45,10 +45,10 @@ class _Drawings:
     table: Markup
 
 
-def case_section(case: ReportedCase, slug: str, drawn: Drawn | None) -> Markup:
-    """The section of a case, with the address ``slug``.  Without level and automaton, it has only texts.
+def case_section(case: ReportedCase, slug: str, automaton: AutomatonPicture | None) -> Markup:
+    """Return the section of a case, with the address ``slug``.
 
-    ``drawn`` is the picture of the case's automaton.
+    Without level and automaton, it has only texts.  ``automaton`` is the picture of the case's automaton.
     """
     return render(
         "case_section.html",
@@ -59,12 +59,12 @@ def case_section(case: ReportedCase, slug: str, drawn: Drawn | None) -> Markup:
         reasons=tuple(_reasons(case, slug)),
         curve=base64.b64encode(case.curve).decode(),
         has_baseline=bool(case.before),
-        drawings=_drawings(case, drawn),
+        drawings=_drawings(case, automaton),
     )
 
 
 def not_run_section(case: NotRun, slug: str) -> Markup:
-    """The section of a case that was not judged in this run, with the reason."""
+    """Return the section of a case that was not judged in this run, with the reason."""
     return render("not_run_section.html", case=case, slug=slug)
 
 
@@ -80,7 +80,7 @@ def _facts(report: CaseReport) -> list[str]:
 
 
 def _reasons(case: ReportedCase, slug: str) -> Iterator[_Reason]:
-    """The reasons of the verdict.  Findings have links to their recorded episodes."""
+    """Yield the reasons of the verdict.  Findings have links to their recorded episodes."""
     report = case.report
     yield from map(_Reason, report.causes)
     for finding in report.explanation:
@@ -88,14 +88,14 @@ def _reasons(case: ReportedCase, slug: str) -> Iterator[_Reason]:
     yield from map(_Reason, report.edits)
 
 
-def _drawings(case: ReportedCase, drawn: Drawn | None) -> _Drawings | None:
+def _drawings(case: ReportedCase, automaton: AutomatonPicture | None) -> _Drawings | None:
     level, fspa = case.level, case.fspa
-    if level is None or fspa is None or drawn is None:
+    if level is None or fspa is None or automaton is None:
         return None
     now, before = traffic(case.report.accounts), traffic(case.before)
     return _Drawings(
-        automaton=None if drawn.svg is None else picture(fspa, drawn.svg, now, before),
-        notes=drawn.notes,
+        automaton=None if automaton.svg is None else picture(fspa, automaton.svg, now, before),
+        notes=automaton.notes,
         maps=case_maps(case, level),
         player=player_panel(fspa, case.episodes),
         curves=progress_curves(case.episodes) if case.episodes else None,

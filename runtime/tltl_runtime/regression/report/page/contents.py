@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from tltl_runtime.game.episode import RecordedEpisode
 from tltl_runtime.game.level import Level
-from tltl_runtime.regression.explain.account import Account
+from tltl_runtime.regression.explain.account import ExplainedEpisode
 from tltl_runtime.regression.report.case_report import CaseReport
 from tltl_runtime.regression.verdict.verdict import Verdict
 from tltlc.api import EMPTY, Fspa, record
@@ -17,27 +17,30 @@ class ReportedCase:
     """A case with the data that the page draws.
 
     ``level`` and ``fspa`` are None for a case that cannot be played.  ``episodes`` are the recorded
-    episodes by index.  ``before`` are the accounts of the baseline.  ``designed`` is the level that the
-    baseline was recorded on, or None if it is unknown.  ``curve`` is the plot of the retraining, as a
-    PNG, or empty.
+    episodes by index.  ``before`` are the episodes of the baseline.  ``baseline_level`` is the level
+    that the baseline was recorded on, or None if it is unknown.  ``curve`` is the plot of the
+    retraining, as a PNG, or empty.
     """
 
     report: CaseReport
     level: Level | None = None
     fspa: Fspa | None = None
     episodes: Mapping[int, RecordedEpisode] = EMPTY
-    before: tuple[Account, ...] = ()
-    designed: Level | None = None
+    before: tuple[ExplainedEpisode, ...] = ()
+    baseline_level: Level | None = None
     curve: bytes = b""
 
 
 @record
 class NotRun:
-    """A case that was not judged in this run: ``why``, as a sentence, and the verdict of an ``earlier`` run."""
+    """A case that was not judged in this run: the ``reason``, as a sentence, and an ``earlier_verdict``.
+
+    The earlier verdict is that of an earlier run; None if there is none.
+    """
 
     name: str
-    why: str
-    earlier: Verdict | None = None
+    reason: str
+    earlier_verdict: Verdict | None = None
 
 
 @record

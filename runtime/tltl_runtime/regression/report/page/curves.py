@@ -13,8 +13,8 @@ from typing import Final
 from markupsafe import Markup
 
 from tltl_runtime.game.episode import RecordedEpisode
-from tltl_runtime.regression.explain.account import Account
-from tltl_runtime.regression.report.page.markup import element, short
+from tltl_runtime.regression.explain.account import ExplainedEpisode
+from tltl_runtime.regression.report.page.markup import coordinate, element
 from tltl_runtime.support.number_text import percent
 
 _WIDTH, _HEIGHT = 420, 190
@@ -27,7 +27,7 @@ _GAP: Final = 0.5
 
 
 def progress_curves(episodes: Mapping[int, RecordedEpisode]) -> Markup:
-    """Plot progress, in [0, 1], over time, in seconds, of each recorded episode."""
+    """Plot progress, in [0, 1], over time, in seconds, for each recorded episode."""
     longest = max((float(recording.times[-1]) for recording in episodes.values()), default=0.0)
     frame = _Frame(max(1.0, longest))
     lines = [
@@ -36,68 +36,68 @@ def progress_curves(episodes: Mapping[int, RecordedEpisode]) -> Markup:
             element("title", f"episode {index}: {episode.end}"),
             class_=f"curve {'success' if episode.success else 'failure'}",
             data_episode=index,
-            points=" ".join(f"{short(x)},{short(y)}" for x, y in _corners(frame, episode)),
+            points=" ".join(f"{coordinate(x)},{coordinate(y)}" for x, y in _corners(frame, episode)),
         )
         for index, episode in episodes.items()
     ]
     # The page's script moves the cursor to the current moment.
-    scale = {"data_left": _LEFT, "data_right": _WIDTH - _RIGHT, "data_seconds": short(frame.x_most)}
+    scale = {"data_left": _LEFT, "data_right": _WIDTH - _RIGHT, "data_seconds": coordinate(frame.x_most)}
     cursor = element("line", class_="cursor", y1=_TOP, y2=_HEIGHT - _BOTTOM, hidden="hidden", **scale)
-    words = "Progress over time of the recorded episodes"
-    return _diagram(words, frame, "time, s", [*lines, cursor], frame.x_ticks())
+    description = "Progress over time of the recorded episodes"
+    return _diagram(description, frame, "time, s", [*lines, cursor], frame.x_ticks())
 
 
-def progress_distribution(now: Sequence[Account], before: Sequence[Account]) -> Markup:
+def progress_distribution(now: Sequence[ExplainedEpisode], before: Sequence[ExplainedEpisode]) -> Markup:
     """Plot the shares of episodes by their best progress.
 
-    Failed episodes are in tenths of [0, 1]; the last bar shows the successful ones.  The bars of now are
-    filled, the bars of the baseline are outlines around them.
+    Failed episodes are in tenths of [0, 1]; the last bar shows the successful ones.  The bars of ``now``
+    are filled, the bars of the baseline are outlines around them.
     """
     frame = _Frame(_BINS + _GAP + 1.0)
     bars = []
-    for kind, accounts in (("now", now), ("before", before)):
-        for place, share in enumerate(_shares(accounts)):
+    for kind, episodes in (("now", now), ("before", before)):
+        for bin_, share in enumerate(_shares(episodes)):
             if share:
-                title = element("title", f"{_bin(place)}, {kind}: {percent(share)} of the episodes")
-                left, top = frame.x(_left(place)), frame.y(share)
+                title = element("title", f"{_bin_text(bin_)}, {kind}: {percent(share)} of the episodes")
+                left, top = frame.x(_left_end(bin_)), frame.y(share)
                 inset = 0.1 * (frame.x(1.0) - frame.x(0.0))
-                sides = {"x": short(left + inset), "y": short(top), "width": short(8 * inset)}
-                height = short(_HEIGHT - _BOTTOM - top)
+                sides = {"x": coordinate(left + inset), "y": coordinate(top), "width": coordinate(8 * inset)}
+                height = coordinate(_HEIGHT - _BOTTOM - top)
                 bars.append(element("rect", title, class_=f"share {kind}", **sides, height=height))
-    words = "How progress is distributed over the episodes, now and in the baseline"
-    ticks = [(float(place), short(place / _BINS)) for place in range(_BINS)]
-    ticks.append((_left(_BINS) + 0.5, "1 (met)"))
-    return _diagram(words, frame, "best progress", bars, ticks, percent_ticks=True)
+    description = "How progress is distributed over the episodes, now and in the baseline"
+    ticks = [(float(bin_), coordinate(bin_ / _BINS)) for bin_ in range(_BINS)]
+    ticks.append((_left_end(_BINS) + 0.5, "1 (met)"))
+    return _diagram(description, frame, "best progress", bars, ticks, percent_ticks=True)
 
 
-def _left(place: int) -> float:
-    """The left end of a bin; the bin of the successful episodes is set apart."""
-    return place + _GAP * (place == _BINS)
+def _left_end(bin_: int) -> float:
+    """Return the left end of a bin; the bin of the successful episodes is set apart."""
+    return bin_ + _GAP * (bin_ == _BINS)
 
 
-def _bin(place: int) -> str:
-    if place == _BINS:
+def _bin_text(bin_: int) -> str:
+    if bin_ == _BINS:
         return "progress 1, the spec is met"
-    return f"progress {place / _BINS:.1f} to {(place + 1) / _BINS:.1f}"
+    return f"progress {bin_ / _BINS:.1f} to {(bin_ + 1) / _BINS:.1f}"
 
 
-def _shares(accounts: Sequence[Account]) -> list[float]:
-    """The share of episodes in each bin.
+def _shares(episodes: Sequence[ExplainedEpisode]) -> list[float]:
+    """Return the share of episodes in each bin.
 
     An episode that reached progress 1 and then broke the spec is in the last bin of the failed ones.
     """
     counts = [0] * (_BINS + 1)
-    for account in accounts:
-        counts[_BINS if account.summary.success else min(_BINS - 1, int(account.summary.progress * _BINS + 1e-9))] += 1
-    return [count / max(1, len(accounts)) for count in counts]
+    for episode in episodes:
+        counts[_BINS if episode.summary.success else min(_BINS - 1, int(episode.summary.progress * _BINS + 1e-9))] += 1
+    return [count / max(1, len(episodes)) for count in counts]
 
 
 def _corners(frame: _Frame, episode: RecordedEpisode) -> list[tuple[float, float]]:
-    """The points at which a curve starts, ends or changes its value; it is straight in between."""
+    """Return the points at which a curve starts, ends or changes its value; it is straight in between."""
     values, times = episode.progress.tolist(), episode.times.tolist()
     rows = {0, len(values) - 1}
-    for row, (one, other) in enumerate(pairwise(values)):
-        if one != other:
+    for row, (value, next_value) in enumerate(pairwise(values)):
+        if value != next_value:
             rows |= {row, row + 1}
     return [(frame.x(times[row]), frame.y(values[row])) for row in sorted(rows)]
 
@@ -115,28 +115,28 @@ class _Frame:
         return _HEIGHT - _BOTTOM - value * (_HEIGHT - _TOP - _BOTTOM)
 
     def x_ticks(self) -> list[tuple[float, str]]:
-        """At most seven whole numbers on the x axis, with their labels."""
+        """Return at most seven whole numbers on the x axis, with their labels."""
         step = max(1, ceil(self.x_most / 6))
         return [(float(tick), str(tick)) for tick in range(0, int(self.x_most + 1e-9) + 1, step)]
 
 
 def _diagram(
-    words: str,
+    description: str,
     frame: _Frame,
     x_label: str,
-    inside: Sequence[Markup],
+    contents: Sequence[Markup],
     ticks: Sequence[tuple[float, str]],
     *,
     percent_ticks: bool = False,
 ) -> Markup:
-    drawn = [element("title", words)]
+    elements = [element("title", description)]
     for value in (0.0, 0.25, 0.5, 0.75, 1.0):
-        y = short(frame.y(value))
-        drawn.append(element("line", class_="grid", x1=_LEFT, x2=_WIDTH - _RIGHT, y1=y, y2=y))
-        text = f"{value:.0%}" if percent_ticks else short(value)
-        drawn.append(element("text", text, class_="tick y", x=_LEFT - 5, y=short(frame.y(value) + 4)))
-    below = _HEIGHT - _BOTTOM + 15
-    drawn += [element("text", text, class_="tick x", x=short(frame.x(tick)), y=below) for tick, text in ticks]
-    middle = short((_LEFT + _WIDTH - _RIGHT) / 2)
-    drawn.append(element("text", x_label, class_="tick x", x=middle, y=_HEIGHT - 3))
-    return element("svg", *drawn, *inside, class_="diagram", viewBox=f"0 0 {_WIDTH} {_HEIGHT}", role="img")
+        y = coordinate(frame.y(value))
+        elements.append(element("line", class_="grid", x1=_LEFT, x2=_WIDTH - _RIGHT, y1=y, y2=y))
+        text = f"{value:.0%}" if percent_ticks else coordinate(value)
+        elements.append(element("text", text, class_="tick y", x=_LEFT - 5, y=coordinate(frame.y(value) + 4)))
+    label_y = _HEIGHT - _BOTTOM + 15
+    elements += [element("text", text, class_="tick x", x=coordinate(frame.x(tick)), y=label_y) for tick, text in ticks]
+    middle = coordinate((_LEFT + _WIDTH - _RIGHT) / 2)
+    elements.append(element("text", x_label, class_="tick x", x=middle, y=_HEIGHT - 3))
+    return element("svg", *elements, *contents, class_="diagram", viewBox=f"0 0 {_WIDTH} {_HEIGHT}", role="img")

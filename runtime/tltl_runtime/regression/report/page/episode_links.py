@@ -15,28 +15,28 @@ from tltl_runtime.regression.suite.slugs import episode_link
 from tltlc.api import record
 
 _BEFORE_END_S: Final = 4.0
-"""A failed episode is opened this many seconds before its end, to show what led to the failure."""
+"""A link opens a failed episode this many seconds before its end, to show what led to the failure."""
 
 
 @record
 class _Link:
-    """A link that plays an episode, and what it does, in words."""
+    """A link that plays an episode; ``description`` says so in words."""
 
     index: int
     address: str
-    words: str
+    description: str
 
 
 def episode_links(finding: Finding, episodes: Mapping[int, RecordedEpisode], slug: str) -> Markup | None:
-    """Links that play the recorded ``episodes`` of a finding; None if there are none.
+    """Return links that play the recorded ``episodes`` of a finding; None if it has none.
 
-    Failed episodes start shortly before their end.
+    ``slug`` is the address of the case.  Failed episodes start shortly before their end.
     """
     indices = [index for index in finding.episodes if index in episodes]
     if not indices:
         return None
-    is_end = not all(episodes[index].success for index in indices)
-    label = f"play {'the end of ' * is_end}episode{'s' * (len(indices) > 1)}"
+    shows_end = not all(episodes[index].success for index in indices)
+    label = f"play {'the end of ' * shows_end}episode{'s' * (len(indices) > 1)}"
     if finding.others:
         label = f"those that do not, {label}" if len(indices) > 1 else f"one that does not, {label}"
     links = [_link(index, episodes[index], slug) for index in indices]

@@ -1,4 +1,4 @@
-"""Heat maps: time spent and failures by cells of a level."""
+"""Heat maps: where episodes spend time and where they fail, by cells of a level."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from collections.abc import Iterable, Sequence
 from typing import Final
 
 from tltl_runtime.game.geometry import Box
-from tltl_runtime.regression.explain.account import Account
-from tltl_runtime.regression.explain.path_points import EVERY, places_along
+from tltl_runtime.regression.explain.account import ExplainedEpisode
+from tltl_runtime.regression.explain.path_points import POSITION_INTERVAL_S, positions_along
 from tltlc.api import record
 
 TIME_CELL: Final = 0.5
@@ -22,7 +22,8 @@ ENDS_CELL: Final = 1.0
 class Heat:
     """A grid of cells of ``cell`` metres, with ``columns`` cells in a row.
 
-    ``values`` are pairs of index and value, sorted.  Indices count row by row from the north-west.
+    ``values`` are pairs of the index of a cell and its value, sorted; cells with value 0 are left out.
+    Indices count row by row from the north-west.
     """
 
     cell: float
@@ -30,22 +31,23 @@ class Heat:
     values: tuple[tuple[int, float], ...]
 
 
-def time_spent(bounds: Box, accounts: Sequence[Account]) -> Heat:
-    """The mean number of seconds that an episode spends in each cell."""
-    places = [place for account in accounts for place in places_along(account.way)]
-    return _heat(bounds, TIME_CELL, places, EVERY / max(1, len(accounts)))
+def time_spent(bounds: Box, episodes: Sequence[ExplainedEpisode]) -> Heat:
+    """Return the mean number of seconds that an episode spends in each cell."""
+    positions = [position for episode in episodes for position in positions_along(episode.way)]
+    return _grid(bounds, TIME_CELL, positions, POSITION_INTERVAL_S / max(1, len(episodes)))
 
 
-def failed_ends(bounds: Box, accounts: Sequence[Account]) -> Heat:
-    """The number of failed episodes that ended in each cell."""
-    return _heat(bounds, ENDS_CELL, [account.place[:2] for account in accounts if not account.summary.success], 1.0)
+def failed_ends(bounds: Box, episodes: Sequence[ExplainedEpisode]) -> Heat:
+    """Return the number of failed episodes that ended in each cell."""
+    return _grid(bounds, ENDS_CELL, [episode.place[:2] for episode in episodes if not episode.summary.success], 1.0)
 
 
-def _heat(bounds: Box, cell: float, places: Iterable[tuple[float, float]], weight: float) -> Heat:
+def _grid(bounds: Box, cell: float, positions: Iterable[tuple[float, float]], weight: float) -> Heat:
+    """Count the positions (x, y) in each cell, times ``weight``."""
     (west, south, _), (east, north, _) = bounds.low, bounds.high
     columns, rows = (max(1, -int(-side // cell)) for side in (east - west, north - south))
     counts: Counter[int] = Counter()
-    for x, y in places:
+    for x, y in positions:
         column = min(max(0, int((x - west) / cell)), columns - 1)
         row = min(max(0, int((north - y) / cell)), rows - 1)
         counts[row * columns + column] += 1

@@ -1,4 +1,4 @@
-// Draws onto the map of a level: the ways of all episodes, heat maps, and a moment of one episode.
+// Draws onto the map of a level: the trajectories of all episodes, heat maps, or one moment of an episode.
 
 const MARKS = {
   success: { name: "succeeded", path: "M0,-6L6,0L0,6L-6,0Z" },
@@ -7,16 +7,16 @@ const MARKS = {
 };
 const RAYS = 48;
 
-/** A new element of SVG inside `parent`. */
+/** Appends a new SVG element to `parent`, and returns it. */
 function draw(parent, name, attributes = {}, title = "") {
-  const made = document.createElementNS("http://www.w3.org/2000/svg", name);
-  for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
-  if (title) draw(made, "title").textContent = title;
-  parent.append(made);
-  return made;
+  const element = document.createElementNS("http://www.w3.org/2000/svg", name);
+  for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
+  if (title) draw(element, "title").textContent = title;
+  parent.append(element);
+  return element;
 }
 
-/** A sentence in which names stand between backquotes, as nodes. */
+/** The nodes of a sentence; text between backquotes becomes `code`. */
 function prose(text) {
   return text.split(/`([^`]+)`/).map((part, place) => {
     if (place % 2 === 0) return document.createTextNode(part);
@@ -27,7 +27,7 @@ function prose(text) {
 }
 
 class LevelMap {
-  /** `svg` is the map, `facts` what is known of its level, `colours` those of the automaton's states. */
+  /** `svg` is the map, `facts` the data of its level, `colours` the colours of the automaton's states. */
   constructor(svg, facts, colours) {
     this.svg = svg;
     this.facts = facts;
@@ -37,25 +37,25 @@ class LevelMap {
     );
     this.barriers = [...svg.querySelectorAll(".barrier")];
     this.switches = [...svg.querySelectorAll(".switch")];
-    // Letters and lines keep their size on the screen: --unit is how many centimetres a pixel is.
+    // Letters and lines keep their size on the screen: --unit is the number of centimetres per pixel.
     new ResizeObserver(() => svg.style.setProperty("--unit", 1 / (svg.getScreenCTM()?.a || 1))).observe(svg);
   }
 
   clear() {
     for (const layer of Object.values(this.layers)) layer.replaceChildren();
-    for (const each of [...this.barriers, ...this.switches]) each.classList.remove("open", "active");
+    for (const element of [...this.barriers, ...this.switches]) element.classList.remove("open", "active");
   }
 
   /**
-   * The ways of episodes, coloured by state, with marks where they ended; `link` gives the address of one, or "".
-   * Returns the set of the states that colour any: of one that an episode ends in there is no way.
+   * Draws the trajectories of episodes, coloured by state, with marks where they ended.
+   * `link` maps the index of an episode to its address, or to "".  Returns the set of the states whose colours are drawn.
    */
-  showWays(ways, link) {
+  showTrajectories(ways, link) {
     this.clear();
     const drawn = new Set();
     const opacity = Math.max(0.15, Math.min(0.9, 6 / Math.max(1, ways.length)));
     for (const way of ways) {
-      const [xs, ys] = [way.x, way.y].map((packed) => unstepped(packed).map((each) => each * way.unit));
+      const [xs, ys] = [way.x, way.y].map((packed) => unstepped(packed).map((value) => value * way.unit));
       let from = 0;
       for (const [state, count] of way.state) {
         const to = Math.min(from + count, xs.length - 1);
@@ -74,7 +74,7 @@ class LevelMap {
     return drawn;
   }
 
-  /** A heat map; `most` is the value of the strongest colour. */
+  /** Draws a heat map; `most` is the value of the strongest colour. */
   showHeat(heat, most, kind) {
     this.clear();
     for (let place = 0; place < heat.cells.length; place += 2) {
@@ -97,14 +97,14 @@ class LevelMap {
     }
   }
 
-  /** Row `row` of an unpacked episode, and by a `share` of [0, 1) towards the next one. */
+  /** Draws the moment of `row` of an unpacked episode; `share`, in [0, 1), is how far it is to the next row. */
   showMoment(episode, row, share) {
     this.clear();
     const next = Math.min(row + 1, episode.time.length - 1);
     const between = (values) => values[row] + share * (values[next] - values[row]);
     const live = this.layers.live;
-    this.barriers.forEach((each, place) => each.classList.toggle("open", episode.open[place][row] === 1));
-    this.switches.forEach((each, place) => each.classList.toggle("active", episode.active[place][row] === 1));
+    this.barriers.forEach((barrier, place) => barrier.classList.toggle("open", episode.open[place][row] === 1));
+    this.switches.forEach((element, place) => element.classList.toggle("active", episode.active[place][row] === 1));
     this.#trail(episode, row);
     episode.movers.forEach((mover, place) => {
       const [width, height] = this.facts.movers[place].sides;
@@ -169,18 +169,18 @@ class LevelMap {
     draw(body, "circle", { cx: x, cy: y, r: radius, ...(colour && { fill: colour }) });
   }
 
-  /** What a moving obstacle stops at a place, as `blocks` of the map. */
+  /** The block of a moving obstacle at a place, as in `blocks` of the map. */
   #moverBlock(place, x, y) {
     const { sides, heights } = this.facts.movers[place];
     const [width, height] = sides;
     return [x - width / 2, y - height / 2, x + width / 2, y + height / 2, ...heights];
   }
 
-  /** What an enemy sees at the height of its eyes, as points of a polygon. */
+  /** The area that an enemy sees at the height of its eyes, as points of a polygon. */
   #cone({ facts, x, y, yaw }, shut, moving) {
     const high = ([, , , , low, top]) => low < facts.eyes && facts.eyes < top;
-    const shutBlocks = this.facts.barriers.filter((each, place) => shut[place] && each.kind === "solid");
-    const blocks = [...this.facts.blocks, ...shutBlocks.map((each) => each.block), ...moving].filter(high);
+    const shutBlocks = this.facts.barriers.filter((barrier, place) => shut[place] && barrier.kind === "solid");
+    const blocks = [...this.facts.blocks, ...shutBlocks.map((barrier) => barrier.block), ...moving].filter(high);
     const points = facts.angle < 360 ? [`${x.toFixed(0)},${y.toFixed(0)}`] : [];
     for (let ray = 0; ray <= RAYS; ray += 1) {
       const angle = ((yaw + facts.angle * (ray / RAYS - 0.5)) * Math.PI) / 180;
@@ -192,7 +192,7 @@ class LevelMap {
   }
 }
 
-/** How far from `place` along the unit vector `direction` a ray meets a block; Infinity where it does not. */
+/** The distance at which a ray from `place` along the unit vector `direction` meets a block; Infinity if it does not. */
 function distanceTo(block, place, direction) {
   let enter = 0;
   let leave = Infinity;
@@ -202,9 +202,9 @@ function distanceTo(block, place, direction) {
       if (low > 0 || high < 0) return Infinity;
       continue;
     }
-    const [one, other] = [low / direction[axis], high / direction[axis]];
-    enter = Math.max(enter, Math.min(one, other));
-    leave = Math.min(leave, Math.max(one, other));
+    const [first, second] = [low / direction[axis], high / direction[axis]];
+    enter = Math.max(enter, Math.min(first, second));
+    leave = Math.min(leave, Math.max(first, second));
   }
   return enter <= leave ? enter : Infinity;
 }

@@ -11,30 +11,33 @@ Rect = tuple[int, int, int, int]
 
 
 class MapScale:
-    """Converts the metres of a level to the centimetres of its map.  ``size`` is the map's width and height."""
+    """Converts the metres of a level to the centimetres of its map.
+
+    ``size`` is the width and the height of the map.
+    """
 
     def __init__(self, bounds: Box) -> None:
         (self.west, south, _), (east, self.north, _) = bounds.low, bounds.high
         self.size = (round(100 * (east - self.west)), round(100 * (self.north - south)))
 
     def at(self, point: Sequence[float]) -> tuple[int, int]:
-        """The map coordinates of a point."""
+        """Return the map coordinates of a point."""
         return round(100 * (point[0] - self.west)), round(100 * (self.north - point[1]))
 
     def middle(self, box: Box) -> tuple[int, int]:
-        """The map coordinates of the centre of a box."""
+        """Return the map coordinates of the centre of a box."""
         return self.at([(low + high) / 2 for low, high in zip(box.low, box.high, strict=True)])
 
     def rect(self, box: Box) -> Rect:
-        """The rectangle of a box on the map."""
+        """Return the rectangle of a box on the map."""
         (left, bottom), (right, top) = self.at(box.low), self.at(box.high)
         return left, top, right, bottom
 
     def sides(self, box: Box) -> dict[str, int]:
-        """The rectangle of a box, as attributes of an SVG ``rect``."""
+        """Return the rectangle of a box as attributes of an SVG ``rect``."""
         left, top, right, bottom = self.rect(box)
         return {"x": left, "y": top, "width": right - left, "height": bottom - top}
 
     def line(self, points: Iterable[Sequence[float]]) -> str:
-        """The ``points`` attribute of an SVG ``polyline``."""
+        """Return the ``points`` attribute of an SVG ``polyline`` through these points."""
         return " ".join(f"{x},{y}" for x, y in map(self.at, points))

@@ -1,10 +1,10 @@
 "use strict";
 
-// Unpacks what packing.py has packed.
+// Decodes the values that packing.py encodes.
 
 const DIGITS = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 
-/** The values of which `steps` has the first one, and what each is more than the last, in base 64 VLQ. */
+/** Decodes values from `steps`: the first value, then the differences, in base64 VLQ. */
 function unstepped(steps) {
   const values = [];
   let value = 0;
@@ -24,14 +24,14 @@ function unstepped(steps) {
   return values;
 }
 
-/** The values of which `runs` has pairs: a value, and how often it stands there. */
+/** Decodes values from `runs`: pairs of a value and its number of repetitions. */
 function unrun(runs) {
   return runs.flatMap(([value, count]) => Array(count).fill(value));
 }
 
-/** A recorded episode with a value for each of its rows. */
+/** Decodes a recorded episode, so that it has a value for each row. */
 function unpackedEpisode(packed) {
-  const way = ({ x, y }) => ({ x: unstepped(x), y: unstepped(y) });
+  const positions = ({ x, y }) => ({ x: unstepped(x), y: unstepped(y) });
   return {
     ...packed,
     time: unstepped(packed.time),
@@ -39,17 +39,17 @@ function unpackedEpisode(packed) {
     progress: unrun(packed.progress),
     health: unrun(packed.health),
     player: {
-      ...way(packed.player),
+      ...positions(packed.player),
       yaw: unstepped(packed.player.yaw),
       crouching: unrun(packed.player.crouching),
     },
     enemies: packed.enemies.map((enemy) => ({
-      ...way(enemy),
+      ...positions(enemy),
       yaw: unstepped(enemy.yaw),
       mode: unrun(enemy.mode),
       sees: unrun(enemy.sees),
     })),
-    movers: packed.movers.map(way),
+    movers: packed.movers.map(positions),
     active: packed.active.map(unrun),
     open: packed.open.map(unrun),
     atoms: packed.atoms.map(unstepped),

@@ -11,7 +11,7 @@ from tltl_runtime.game.geometry import Box
 T = TypeVar("T")
 
 _DIGITS: Final = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/"
-_MORE: Final = 32
+_CONTINUATION: Final = 32
 
 
 def steps(values: Iterable[float], scale: float) -> str:
@@ -20,16 +20,17 @@ def steps(values: Iterable[float], scale: float) -> str:
     Numbers are encoded as in source maps (base64 VLQ): the lowest bit is the sign, the digits have five
     bits each, lowest first, and all but the last digit have the sixth bit set.
     """
-    whole = [round(value * scale) for value in values]
-    return "".join(_written(after - before) for before, after in zip([0, *whole], whole, strict=False))
+    integers = [round(value * scale) for value in values]
+    return "".join(_vlq(after - before) for before, after in zip([0, *integers], integers, strict=False))
 
 
-def _written(number: int) -> str:
-    left, digits = abs(number) << 1 | (number < 0), ""
-    while left >= _MORE:
-        digits += _DIGITS[left % _MORE + _MORE]
-        left //= _MORE
-    return digits + _DIGITS[left]
+def _vlq(number: int) -> str:
+    """Encode an integer as in source maps."""
+    remaining, digits = abs(number) << 1 | (number < 0), ""
+    while remaining >= _CONTINUATION:
+        digits += _DIGITS[remaining % _CONTINUATION + _CONTINUATION]
+        remaining //= _CONTINUATION
+    return digits + _DIGITS[remaining]
 
 
 def runs(values: Iterable[T]) -> list[list[T | int]]:
@@ -37,11 +38,11 @@ def runs(values: Iterable[T]) -> list[list[T | int]]:
     return [[value, sum(1 for _ in same)] for value, same in groupby(values)]
 
 
-def across(bounds: Box, xs: Sequence[float], centimetres: int = 1) -> str:
-    """:func:`steps` of x from the western bound, in units of ``centimetres``."""
+def x_steps(bounds: Box, xs: Sequence[float], centimetres: int = 1) -> str:
+    """Encode x, in metres, by :func:`steps`: from the western bound, in units of ``centimetres``."""
     return steps((x - bounds.low[0] for x in xs), 100 / centimetres)
 
 
-def down(bounds: Box, ys: Sequence[float], centimetres: int = 1) -> str:
-    """:func:`steps` of y from the northern bound, southwards as on a screen, in units of ``centimetres``."""
+def y_steps(bounds: Box, ys: Sequence[float], centimetres: int = 1) -> str:
+    """Encode y, in metres, by :func:`steps`: southwards from the northern bound, in units of ``centimetres``."""
     return steps((bounds.high[1] - y for y in ys), 100 / centimetres)

@@ -9,11 +9,11 @@ from typing import Any, Final
 
 from markupsafe import Markup
 
-from tltl_runtime.regression.report.page.automaton import Drawn, drawn
+from tltl_runtime.regression.report.page.automaton import AutomatonPicture, draw_automaton
 from tltl_runtime.regression.report.page.case_data import case_data
 from tltl_runtime.regression.report.page.case_section import case_section, not_run_section
 from tltl_runtime.regression.report.page.contents import SuiteReport
-from tltl_runtime.regression.report.page.markup import as_script
+from tltl_runtime.regression.report.page.markup import script_json
 from tltl_runtime.regression.report.page.render import render
 from tltl_runtime.regression.report.page.stealth.colours import colours, state_colours
 from tltl_runtime.regression.report.page.summary import summary
@@ -34,19 +34,21 @@ def html_report(suite: SuiteReport) -> str:
     not_run = zip(suite.not_run, names[len(pairs) :], strict=True)
     # Variants of a level share their spec, so lay out each automaton once.
     automata = {case.fspa: None for case in suite.cases}
-    pictures: dict[Fspa | None, Drawn] = {fspa: drawn(fspa) for fspa in automata if fspa is not None}
-    script = "\n".join(_asset(name) for name in _SCRIPTS)
+    pictures: dict[Fspa | None, AutomatonPicture] = {
+        fspa: draw_automaton(fspa) for fspa in automata if fspa is not None
+    }
+    script = "\n".join(_file_text(name) for name in _SCRIPTS)
     return render(
         "report.html",
         suite=suite.suite,
         digest=_digest(script),
-        style=Markup(f"{colours()}\n{_asset('report.css')}"),
+        style=Markup(f"{colours()}\n{_file_text('report.css')}"),
         summary=summary(suite, names),
         sections=[
             *(case_section(case, slug, pictures.get(case.fspa)) for case, slug in pairs),
             *(not_run_section(case, slug) for case, slug in not_run),
         ],
-        data=as_script(_data([case_data(case, slug) for case, slug in pairs])),
+        data=script_json(_data([case_data(case, slug) for case, slug in pairs])),
         script=Markup(script),
     )
 
@@ -57,12 +59,12 @@ def _data(cases: list[dict[str, Any] | None]) -> dict[str, Any]:
     return {"colours": state_colours(states), "cases": drawn_cases}
 
 
-def _asset(name: str) -> str:
+def _file_text(name: str) -> str:
     return (_FOLDER / name).read_text(encoding="utf-8").strip()
 
 
 def _digest(script: str) -> str:
-    """The hash of the page's script for the content security policy, which blocks other scripts.
+    """Return the hash of the page's script for the content security policy, which blocks other scripts.
 
     The hash includes the line feeds around the script.
     """

@@ -1,7 +1,7 @@
-// Plays a recorded episode: the map, the automaton, the curves and the values beside them show one moment of it.
+// Plays a recorded episode: the map, the automaton, the curves and the values show the same moment of it.
 
 class Player {
-  /** `section` is that of a case, `facts` its data; `moved` is told whenever another moment is shown. */
+  /** `section` is the section of a case and `facts` its data.  `moved` is called with the player at each new moment. */
   constructor(section, facts, map, moved) {
     this.section = section;
     this.facts = facts;
@@ -38,9 +38,9 @@ class Player {
     return this.episode.time.length - 1;
   }
 
-  /** Show episode `index` at row `row`; false where there is no recording of it. */
+  /** Shows episode `index` at `row`; returns false if the episode was not recorded. */
   open(index, row) {
-    const packed = this.facts.episodes.find((each) => each.index === index);
+    const packed = this.facts.episodes.find((episode) => episode.index === index);
     if (!packed) return false;
     if (this.episode?.index !== index) {
       this.pause();
@@ -56,7 +56,7 @@ class Player {
     return true;
   }
 
-  /** Back to all episodes. */
+  /** Closes the episode, so that the page shows all episodes again. */
   close() {
     this.pause();
     this.episode = null;
@@ -69,7 +69,7 @@ class Player {
     this.#highlight(null);
   }
 
-  /** The moment of a row, and by a `share` of [0, 1) towards the next one. */
+  /** Shows the moment of `row`, or a later one: `share`, in [0, 1), is how far it is to the next row. */
   show(row, share = 0) {
     const { episode } = this;
     this.row = Math.max(0, Math.min(this.last, row));
@@ -87,9 +87,9 @@ class Player {
       number.textContent = values[name].toFixed(2);
     }
     this.atoms.forEach(([line, bar, number], place) => {
-      // The moment of the reset is not judged.
+      // Atoms have no value at the moment of the reset.
       const value = this.row ? episode.atoms[place][this.row - 1] / 100 : null;
-      // From the middle, to the right where the atom holds; a length of 1 fills its half.
+      // A bar starts in the middle and goes to the right if the atom holds; a robustness of 1 fills its half.
       const half = 50 * Math.min(1, Math.abs(value ?? 0));
       bar.style.left = `${value < 0 ? 50 - half : 50}%`;
       bar.style.width = `${half}%`;
@@ -137,7 +137,7 @@ class Player {
     if (this.playButton) this.#label(false);
   }
 
-  /** Jump to a row and stay there. */
+  /** Pauses at a row. */
   seek(row) {
     this.pause();
     this.show(row);
@@ -153,7 +153,7 @@ class Player {
     find(".last").addEventListener("click", () => this.seek(this.last));
   }
 
-  /** The states of the episode one after the other, as a gradient with sharp edges below the bar. */
+  /** The states of the episode in order, as a gradient with sharp edges. */
   #stateStrip() {
     const { state } = this.episode;
     const stops = [];
@@ -177,10 +177,10 @@ class Player {
   #highlight(state) {
     const group = this.groups.get(state);
     if (group?.classList.contains("current")) return;
-    for (const each of this.groups.values()) each.classList.remove("current");
+    for (const other of this.groups.values()) other.classList.remove("current");
     if (!group) return;
     group.classList.add("current");
-    // Wide automata scroll within their box: the state comes into sight, and the page stays where it is.
+    // A wide automaton scrolls within its box.  Scroll the state into view, but not the page.
     const box = group.closest(".scroll");
     const [inner, outer] = [group.getBoundingClientRect(), box.getBoundingClientRect()];
     if (inner.left < outer.left || inner.right > outer.right) {

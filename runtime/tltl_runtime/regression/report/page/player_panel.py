@@ -12,11 +12,14 @@ from tltl_runtime.regression.report.page.render import render
 from tltlc.api import Fspa
 
 _FAILED: Final = {"violation": "broke the spec", "limit": "ran out of time"}
-"""How episodes fail, in the words of the map's legend."""
+"""How episodes fail, as the map's legend says it."""
 
 
 def player_panel(fspa: Fspa, episodes: Mapping[int, RecordedEpisode]) -> Markup:
-    """The player of a case.  The page's script loads the episodes into it.  Without episodes, it says so."""
+    """Return the player of a case; the page's script loads the ``episodes`` into it.
+
+    Without episodes, a note says so.
+    """
     return render(
         "player_panel.html",
         outcomes=[(index, _outcome(episodes[index])) for index in sorted(episodes)],

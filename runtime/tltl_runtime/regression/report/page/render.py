@@ -1,4 +1,7 @@
-"""The HTML templates of the page, in the folder ``templates``: they lay out what the modules compute."""
+"""Render the HTML templates of the page, in the folder ``templates``.
+
+The modules compute the values, and the templates lay them out.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +18,7 @@ _FOLDER: Final = Path(__file__).parent / "templates"
 
 
 def render(template: str, **context: object) -> Markup:
-    """Fill in a template, given the name of its file and the values of its names.
+    """Fill in a template, given the name of its file and the values that it uses.
 
     Values are escaped unless they are :class:`Markup`.  The filter ``prose`` formats sentences.
 

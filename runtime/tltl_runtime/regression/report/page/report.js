@@ -1,4 +1,4 @@
-// The page as a whole: each case's toggles, addresses of episodes, keys, and the filter.
+// The whole page: the toggles of each case, addresses of episodes, keys, and the filter.
 
 const WAIT_MS = 300;
 
@@ -6,9 +6,9 @@ class CaseView {
   constructor(facts, colours, moved) {
     this.facts = facts;
     this.section = document.getElementById(facts.slug);
-    const [map, other] = [...this.section.querySelectorAll(".map")].map((svg) => new LevelMap(svg, facts.map, colours));
-    // Of the level that the baseline was recorded on there is a map of its own where it looks otherwise.
-    this.maps = { now: map, before: other ?? map };
+    const [map, baselineMap] = [...this.section.querySelectorAll(".map")].map((svg) => new LevelMap(svg, facts.map, colours));
+    // The level of the baseline has its own map if it looks different.
+    this.maps = { now: map, before: baselineMap ?? map };
     this.player = new Player(this.section, facts, map, moved);
     this.legend = this.section.querySelector(".legend.shown");
     this.isDrawn = false;
@@ -22,12 +22,12 @@ class CaseView {
     });
   }
 
-  /** Draw what the toggles say of all episodes, unless that is there already. */
+  /** Draws all episodes as the toggles say, unless they are drawn already. */
   drawOnce() {
     if (!this.isDrawn && !this.player.episode) this.showAll();
   }
 
-  /** All episodes, as the toggles say. */
+  /** Draws all episodes as the toggles say. */
   showAll() {
     const form = new FormData(this.section.querySelector(".toggles"));
     const when = form.get("when") ?? "now";
@@ -37,17 +37,17 @@ class CaseView {
     this.isDrawn = true;
     const all = this.facts[when];
     if (shown === "ways") {
-      const recorded = new Set(when === "now" ? this.facts.episodes.map((each) => each.index) : []);
+      const recorded = new Set(when === "now" ? this.facts.episodes.map((episode) => episode.index) : []);
       const link = (index) => (recorded.has(index) ? `#${this.facts.slug}/${index}/0` : "");
-      this.#legendOfWays(all, this.maps[when].showWays(all.ways, link));
+      this.#legendOfTrajectories(all, this.maps[when].showTrajectories(all.ways, link));
     } else {
-      // One scale for now and before, so that their maps can be compared.
+      // Now and before have the same scale, so that their maps can be compared.
       const most = Math.max(this.facts.now[shown].most, this.facts.before[shown].most) || 1;
       this.maps[when].showHeat(all[shown], most, shown);
       const unit = shown === "time" ? `${most.toFixed(1)} s an episode` : `${most} failed episode${most === 1 ? "" : "s"}`;
       const scale = this.facts.before.ways.length ? `${unit}, of now and baseline` : unit;
-      const said = all[shown].cells.length ? `strongest: ${scale}` : "no episode failed";
-      this.#fillLegend([[`cell ${shown}`, "", said]]);
+      const text = all[shown].cells.length ? `strongest: ${scale}` : "no episode failed";
+      this.#fillLegend([[`cell ${shown}`, "", text]]);
     }
   }
 
@@ -55,7 +55,7 @@ class CaseView {
     const isOpen = this.player.open(index, step);
     if (isOpen) {
       this.isDrawn = false;
-      // It was played now, on the level as it is.
+      // Only episodes of now have recordings.
       this.section.dataset.when = "now";
       const now = this.section.querySelector('.toggles [name="when"][value="now"]');
       if (now) now.checked = true;
@@ -64,8 +64,8 @@ class CaseView {
     return isOpen;
   }
 
-  /** `states` are those that colour a way. */
-  #legendOfWays(all, states) {
+  /** Fills in the legend of trajectories; `states` are the states whose colours are drawn. */
+  #legendOfTrajectories(all, states) {
     const ends = Object.keys(MARKS).map((end) => [end, all.ways.filter((way) => way.end === end).length]);
     this.#fillLegend([
       ...this.#states([...states].sort((a, b) => a - b)),
@@ -89,7 +89,7 @@ class CaseView {
     return states.map((state) => ["way", this.maps.now.colours[state], `state ${state}: ${this.facts.states[state]}`]);
   }
 
-  /** Rows of a class, a colour and a text; marks of ends and bodies are drawn, all else is a patch of colour. */
+  /** Each row has a class, a colour and a text.  Ends and bodies are drawn as marks, the rest as patches of colour. */
   #fillLegend(rows) {
     this.legend.replaceChildren(
       ...rows.map(([kind, colour, text]) => {
@@ -117,16 +117,16 @@ class Report {
     this.filter = document.getElementById("page:only-findings");
     this.filter.addEventListener("change", () => this.#applyFilter());
     this.#applyFilter();
-    // Maps are drawn when they come near the screen: a suite may have hundreds of ways in each of its cases.
+    // Draw a map when it comes near the screen: each case of a suite may have hundreds of trajectories.
     const near = new IntersectionObserver(
       (entries) => {
-        for (const each of entries) if (each.isIntersecting) this.views.get(each.target.id).drawOnce();
+        for (const entry of entries) if (entry.isIntersecting) this.views.get(entry.target.id).drawOnce();
       },
       { rootMargin: "800px" },
     );
     for (const view of this.views.values()) near.observe(view.section);
     addEventListener("hashchange", () => this.#follow());
-    // The address does not change where it names this episode already.
+    // A click on a link does not change the address if it names this episode already.
     document.addEventListener("click", ({ target }) => {
       const link = target.closest("a");
       if (link?.hash && link.hash === location.hash) this.#follow();
@@ -138,7 +138,7 @@ class Report {
     this.#follow();
   }
 
-  /** Open what the address names: `#case`, `#case/episode` or `#case/episode/step`. */
+  /** Opens what the address names: `#case`, `#case/episode` or `#case/episode/step`. */
   #follow() {
     clearTimeout(this.waiting);
     const [slug, episode, step] = address();
@@ -149,22 +149,22 @@ class Report {
       this.#applyFilter();
     }
     const view = this.views.get(slug);
-    // A link within the map is gone as soon as its episode is shown.
+    // Remember the link now: a link on the map disappears when its episode is shown.
     const followed = document.activeElement?.closest("a");
     const isHere = section.querySelector(".stage")?.contains(document.activeElement);
     const isOpen = view && episode !== undefined && view.open(Number(episode), Math.round(Number(step)) || 0);
     if (isOpen) this.active = view;
     else if (view?.player.episode) view.showAll();
-    // The keys of the player are for whoever opened it by a link.
+    // After a link, the keys control the player.
     if (isOpen && followed) view.player.scrub.focus({ preventScroll: true });
     const isStill = matchMedia("(prefers-reduced-motion: reduce)").matches;
     if (isOpen && followed?.matches(".links .episode") && !isStill) view.player.play();
-    // Who chose the episode on the map or in the list looks at it already.
+    // A user who chose the episode on the map or in the list looks at it already.
     if (isHere) return;
     (isOpen ? section.querySelector(".automaton-title") : section).scrollIntoView();
   }
 
-  /** The address follows the player, but not at every frame. */
+  /** Writes the current step into the address, but not at every frame. */
   #moved(player) {
     clearTimeout(this.waiting);
     this.waiting = setTimeout(() => {
@@ -192,13 +192,13 @@ class Report {
   }
 
   #applyFilter() {
-    for (const each of document.querySelectorAll("[data-verdict]")) {
-      each.hidden = this.filter.checked && each.dataset.verdict === "pass";
+    for (const element of document.querySelectorAll("[data-verdict]")) {
+      element.hidden = this.filter.checked && element.dataset.verdict === "pass";
     }
   }
 }
 
-/** The parts of the page's address; of one that no text was encoded as, an empty one. */
+/** The parts of the page's address; a single empty one if the address is not valid. */
 function address() {
   try {
     return decodeURIComponent(location.hash.slice(1)).split("/");

@@ -9,7 +9,7 @@ from markupsafe import Markup
 from tltl_runtime.evaluation.figures import Figures
 from tltl_runtime.regression.report.case_report import CaseReport
 from tltl_runtime.regression.report.page.contents import SuiteReport
-from tltl_runtime.regression.report.page.markup import short
+from tltl_runtime.regression.report.page.markup import coordinate
 from tltl_runtime.regression.report.page.render import render
 from tltl_runtime.regression.retrain.retrained import OUTCOMES
 from tltl_runtime.regression.verdict.verdict import Verdict
@@ -29,7 +29,7 @@ class _Mean:
 
 @record
 class _Bar:
-    """A bar of a pass rate: its class, its place and size, and the path of its confidence interval's whiskers.
+    """A bar of a pass rate: its class, place and size, and the SVG path of its confidence interval's whiskers.
 
     The units are percent across; the drawing is 22 units high.
     """
@@ -43,36 +43,37 @@ class _Bar:
 
 @record
 class _PassRate:
-    """A pass rate as text, now and in the baseline, and as bars, which ``words`` describe.
+    """A pass rate as text, now and in the baseline, and as bars, with a ``description`` of the bars.
 
     ``before`` is empty without a baseline.
     """
 
     now: str
     before: str
-    words: str
+    description: str
     bars: tuple[_Bar, ...]
 
 
 @record
 class _Row:
-    """The row of a judged case.  ``met``, ``progress`` and ``reward`` are None for a case without figures.
+    """The row of a judged case.
 
     ``slug`` is the address of its section.  ``retrained`` is the outcome of a retraining, or None.
+    ``pass_rate``, ``progress`` and ``reward`` are None for a case without figures.
     """
 
     name: str
     slug: str
     verdict: Verdict
     retrained: str | None
-    met: _PassRate | None
+    pass_rate: _PassRate | None
     progress: _Mean | None
     reward: _Mean | None
     headline: str
 
 
 def summary(suite: SuiteReport, slugs: Sequence[str]) -> Markup:
-    """The suite, the counts of verdicts, the versions and the table of verdicts.
+    """Return the suite, the counts of verdicts, the versions and the table of verdicts.
 
     ``slugs`` are the addresses of the sections, first of the judged cases, then of the others.
     """
@@ -102,7 +103,7 @@ def _row(report: CaseReport, slug: str) -> _Row:
         slug=slug,
         verdict=report.verdict,
         retrained=OUTCOMES[report.retrained.outcome] if report.retrained else None,
-        met=_pass_rate(now, before) if now else None,
+        pass_rate=_pass_rate(now, before) if now else None,
         progress=_mean(now.progress.mean, before.progress.mean if before else None) if now else None,
         reward=_mean(now.reward.mean, before.reward.mean if before else None) if now else None,
         headline=report.headline,
@@ -114,30 +115,30 @@ def _mean(now: float, before: float | None) -> _Mean:
 
 
 def _pass_rate(now: Figures, before: Figures | None) -> _PassRate:
-    """The pass rate with its 95 % confidence interval, and the baseline's below it."""
+    """Return the pass rate with its 95 % confidence interval, and that of the baseline below it."""
     bar = _bar(now, "now", top=0, height=12)
     if before is None:
-        return _PassRate(_with_share(now), "", _rate_words(now), (bar,))
-    words = f"{_rate_words(now)}; before: {_rate_words(before)}"
-    return _PassRate(_with_share(now), _with_share(before), words, (bar, _bar(before, "before", top=15, height=7)))
+        return _PassRate(_pass_text(now), "", _rate_words(now), (bar,))
+    description = f"{_rate_words(now)}; before: {_rate_words(before)}"
+    return _PassRate(_pass_text(now), _pass_text(before), description, (bar, _bar(before, "before", top=15, height=7)))
 
 
 def _bar(figures: Figures, kind: str, top: int, height: int) -> _Bar:
-    low, high = (short(100 * end) for end in figures.pass_interval)
-    above, middle, below = short(top + height / 6), short(top + height / 2), short(top + 5 * height / 6)
+    low, high = (coordinate(100 * end) for end in figures.pass_interval)
+    above, middle, below = coordinate(top + height / 6), coordinate(top + height / 2), coordinate(top + 5 * height / 6)
     whiskers = f"M{low},{middle}H{high}M{low},{above}V{below}M{high},{above}V{below}"
-    return _Bar(kind, top, short(100 * figures.pass_rate), height, whiskers)
+    return _Bar(kind, top, coordinate(100 * figures.pass_rate), height, whiskers)
 
 
 def _rate_words(figures: Figures) -> str:
     low, high = (100 * end for end in figures.pass_interval)
-    return f"{_of(figures)}, 95 % interval {low:.0f} to {high:.0f} %"
+    return f"{_passed_text(figures)}, 95 % interval {low:.0f} to {high:.0f} %"
 
 
-def _of(figures: Figures) -> str:
-    """The number of episodes that met the spec, and of all episodes."""
+def _passed_text(figures: Figures) -> str:
+    """Return how many episodes met the spec, and how many there are."""
     return f"{round(figures.pass_rate * figures.episodes)} of {figures.episodes}"
 
 
-def _with_share(figures: Figures) -> str:
-    return f"{_of(figures)} · {percent(figures.pass_rate).replace('%', ' %')}"
+def _pass_text(figures: Figures) -> str:
+    return f"{_passed_text(figures)} · {percent(figures.pass_rate).replace('%', ' %')}"

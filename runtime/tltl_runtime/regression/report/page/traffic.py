@@ -6,32 +6,32 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
 
-from tltl_runtime.regression.explain.account import Account
+from tltl_runtime.regression.explain.account import ExplainedEpisode
 from tltlc.api import record
 
 
 @record
 class Traffic:
-    """The traffic of ``episodes`` episodes.
+    """The traffic of ``episodes`` episodes through an automaton.
 
-    ``visited`` and ``failed`` count the episodes that visited a state and that failed in it.  ``took``
-    are the edges (source, target) of each episode, without self-loops.  An episode fails in the state
-    that it could not leave, or in which the spec was broken.
+    ``visited`` and ``failed`` count, for each state, the episodes that visited it and that failed in it.
+    ``edges`` are the edges (source, target) that each episode took, without self-loops.  An episode fails
+    in the state that it could not leave, or in which the spec was broken.
     """
 
     episodes: int
     visited: Mapping[int, int]
     failed: Mapping[int, int]
-    took: tuple[frozenset[tuple[int, int]], ...]
+    edges: tuple[frozenset[tuple[int, int]], ...]
 
 
-def traffic(accounts: Sequence[Account]) -> Traffic:
-    """Return the traffic of some episodes.  Each counts once for each state and edge."""
+def traffic(episodes: Sequence[ExplainedEpisode]) -> Traffic:
+    """Return the traffic of some episodes.  An episode counts once for each state and edge."""
     visited: Counter[int] = Counter()
-    took = []
-    for account in accounts:
-        states = [arrival.state for arrival in account.arrivals]
+    edges = []
+    for episode in episodes:
+        states = [arrival.state for arrival in episode.arrivals]
         visited.update(set(states))
-        took.append(frozenset(pairwise(states)))
-    failed = Counter(account.summary.unmet for account in accounts if not account.summary.success)
-    return Traffic(len(accounts), visited, failed, tuple(took))
+        edges.append(frozenset(pairwise(states)))
+    failed = Counter(episode.summary.unmet for episode in episodes if not episode.summary.success)
+    return Traffic(len(episodes), visited, failed, tuple(edges))

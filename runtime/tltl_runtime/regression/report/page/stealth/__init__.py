@@ -1,1 +1,1 @@
-"""The maps and the recorded episodes of the stealth game: all that the report knows of one game."""
+"""The maps and the recorded episodes of the stealth game: the only part of the report that knows a game."""

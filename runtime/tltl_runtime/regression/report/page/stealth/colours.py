@@ -7,7 +7,7 @@ from tltl_runtime.stealth.rendering.plan import BARRIERS, ENDS, EXIT, INK, MOVER
 
 
 def colours() -> str:
-    """A CSS rule that defines the colours as custom properties."""
+    """Return a CSS rule that defines the colours as custom properties."""
     named = {
         **SOLIDS,
         **{f"barrier-{kind}": colour for kind, colour in BARRIERS.items()},
@@ -23,5 +23,5 @@ def colours() -> str:
 
 
 def state_colours(count: int) -> list[str]:
-    """The colours of the first ``count`` states of an automaton, as ``#rrggbb``."""
+    """Return the colours of the first ``count`` states of an automaton, as ``#rrggbb``."""
     return [state_colour(state) for state in range(count)]

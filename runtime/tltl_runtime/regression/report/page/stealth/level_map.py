@@ -1,7 +1,8 @@
-"""The map of a level as an inline SVG: everything that does not move.  The page's script draws the rest onto it.
+"""The map of a level as an inline SVG: everything that does not move.
 
-The units are centimetres from the north-western corner of the level's bounds, x eastwards, y southwards.
-Functions draw the map, not a template: nearly every attribute is computed.
+The page's script draws the rest onto the map.  The units are centimetres from the north-western
+corner of the level's bounds, x eastwards, y southwards.  Functions draw the map, not a template:
+nearly every attribute is computed.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from tltl_runtime.game.geometry import Box
 from tltl_runtime.game.level import Level as GameLevel
 from tltl_runtime.regression.report.page.map_scale import MapScale
 from tltl_runtime.regression.report.page.markup import element
-from tltl_runtime.regression.report.page.stealth.map_names import MapLabel, names
+from tltl_runtime.regression.report.page.stealth.map_names import MapLabel, map_labels
 from tltl_runtime.regression.report.page.stealth.mentions import NO_MENTIONS, Mentions
 from tltl_runtime.stealth.enemies.enemy import EYES
 from tltl_runtime.stealth.level import Level, Mover
@@ -47,19 +48,19 @@ _SIGNS: Final = {
 def level_map(level: GameLevel, mentions: Mentions = NO_MENTIONS) -> Markup:
     """Draw the map of a level, with empty layers ``heat``, ``ways``, ``ends`` and ``live``.
 
-    What the report ``mentions`` is highlighted.
+    Things and regions that the report mentions are highlighted.
     """
     assert isinstance(level, Level)
-    plan = MapScale(level.bounds)
-    width, height = plan.size
+    scale = MapScale(level.bounds)
+    width, height = scale.size
     view = f"{-_MARGIN} {-_MARGIN} {width + 2 * _MARGIN} {height + 2 * _MARGIN}"
-    below = [*_ground(level, plan, mentions), element("g", class_="heat"), *_entities(level, plan)]
+    below = [*_ground(level, scale, mentions), element("g", class_="heat"), *_entities(level, scale)]
     above = [element("g", class_=layer) for layer in _LAYERS[1:]]
     return element(
         "svg",
         *below,
         *above[:-1],
-        element("g", *map(_name, names(level, plan, mentions)), class_="names"),
+        element("g", *map(_label, map_labels(level, scale, mentions)), class_="names"),
         above[-1],
         class_="plan map",
         viewBox=view,
@@ -69,7 +70,7 @@ def level_map(level: GameLevel, mentions: Mentions = NO_MENTIONS) -> Markup:
 
 
 def map_key(level: GameLevel, mentions: Mentions = NO_MENTIONS) -> Markup:
-    """The legend of a map, with the signs that occur in it."""
+    """Return the legend of a map, with the signs that occur on it."""
     assert isinstance(level, Level)
     solids, barriers = ({entity.kind for entity in entities} for entities in (level.solids, level.barriers))
     present = {
@@ -86,17 +87,17 @@ def map_key(level: GameLevel, mentions: Mentions = NO_MENTIONS) -> Markup:
 
 
 def map_data(level: GameLevel) -> dict[str, Any]:
-    """The data that the page's script needs to draw onto the map of a level, as JSON.
+    """Return the data that the page's script needs to draw onto the map of a level, as JSON.
 
     ``blocks`` and ``movers`` block sight.  Each block is a rectangle on the map and two heights.
     ``reach`` and ``angle`` describe an enemy's cone of sight, and ``eyes`` is the height of its eyes.
     Lengths are in centimetres, angles in degrees.
     """
     assert isinstance(level, Level)
-    plan = MapScale(level.bounds)
+    scale = MapScale(level.bounds)
     return {
-        "blocks": [_block(plan, solid.box) for solid in level.solids if solid.kind != "floor"],
-        "barriers": [{"kind": barrier.kind, "block": _block(plan, barrier.box)} for barrier in level.barriers],
+        "blocks": [_block(scale, solid.box) for solid in level.solids if solid.kind != "floor"],
+        "barriers": [{"kind": barrier.kind, "block": _block(scale, barrier.box)} for barrier in level.barriers],
         "movers": [_mover(mover) for mover in level.movers],
         "enemies": [
             {
@@ -111,7 +112,7 @@ def map_data(level: GameLevel) -> dict[str, Any]:
 
 
 def _mover(mover: Mover) -> dict[str, list[int]]:
-    """The sides of a mover on the map and the heights between which it blocks sight, in centimetres."""
+    """Return the sides of a mover on the map, and the heights between which it blocks sight, in centimetres."""
     low, high = around(mover.path[0], mover.size)
     return {
         "sides": [round(100 * side) for side in mover.size[:2]],
@@ -121,55 +122,58 @@ def _mover(mover: Mover) -> dict[str, list[int]]:
 
 def _sign(kind: str) -> Markup:
     if kind == "exit":
-        inside = element("polygon", class_=kind, points=_star(0, 0, 8.0))
+        shape = element("polygon", class_=kind, points=_star(0, 0, 8.0))
     elif kind in ("switch", "start"):
-        inside = element("circle", class_=kind, r=7 if kind == "switch" else 4)
+        shape = element("circle", class_=kind, r=7 if kind == "switch" else 4)
     elif kind in ("route", "mover-way"):
-        inside = element("polyline", class_=kind, points="-8,0 8,0")
+        shape = element("polyline", class_=kind, points="-8,0 8,0")
     else:
-        inside = element("rect", class_=kind, x=-8, y=-5, width=16, height=10)
-    return element("svg", inside, class_="plan", viewBox="-8 -8 16 16", aria_hidden="true")
+        shape = element("rect", class_=kind, x=-8, y=-5, width=16, height=10)
+    return element("svg", shape, class_="plan", viewBox="-8 -8 16 16", aria_hidden="true")
 
 
-def _ground(level: Level, plan: MapScale, mentions: Mentions) -> Iterable[Markup]:
+def _ground(level: Level, scale: MapScale, mentions: Mentions) -> Iterable[Markup]:
     for solid in sorted(level.solids, key=lambda item: (item.name in mentions.things, item.box.high[2])):
         kind = f"solid {solid.kind}{' spoken' * (solid.name in mentions.things)}"
-        yield element("rect", element("title", solid.name), class_=kind, **plan.sides(solid.box))
+        yield element("rect", element("title", solid.name), class_=kind, **scale.sides(solid.box))
     for region in level.regions:
-        yield element("rect", class_="region", **plan.sides(region.box))
+        yield element("rect", class_="region", **scale.sides(region.box))
 
 
-def _entities(level: Level, plan: MapScale) -> Iterable[Markup]:
+def _entities(level: Level, scale: MapScale) -> Iterable[Markup]:
     for enemy in level.enemies:
         title = element("title", f"route of {enemy.name}")
-        yield element("path", title, class_="route", d=_there_and_back([*map(plan.at, patrol(level, enemy))]))
+        yield element("path", title, class_="route", d=_patrol_path([*map(scale.at, patrol(level, enemy))]))
     for mover in level.movers:
         title = element("title", f"way of {mover.name}")
-        yield element("polyline", title, class_="mover-way", points=plan.line(mover.path))
+        yield element("polyline", title, class_="mover-way", points=scale.line(mover.path))
     for barrier in level.barriers:
         title = element("title", barrier.name)
-        yield element("rect", title, class_=f"barrier {barrier.kind}", **plan.sides(barrier.box))
+        yield element("rect", title, class_=f"barrier {barrier.kind}", **scale.sides(barrier.box))
     for switch in level.switches:
-        x, y = plan.at(switch.position)
+        x, y = scale.at(switch.position)
         radius = round(100 * switch.radius)
         title = element("title", switch.name)
         yield element("circle", title, class_="switch", cx=x, cy=y, r=radius)
     for exit_ in level.exits:
         title = element("title", exit_.name)
-        yield element("polygon", title, class_="exit", points=_star(*plan.at(exit_.position)))
-    x, y = plan.at(level.start.position)
+        yield element("polygon", title, class_="exit", points=_star(*scale.at(exit_.position)))
+    x, y = scale.at(level.start.position)
     yield element("circle", element("title", "start"), class_="start", cx=x, cy=y, r=14)
 
 
-def _name(name: MapLabel) -> Markup:
+def _label(name: MapLabel) -> Markup:
     lines = [element("tspan", line, x=name.x, dy="1.1em" if row else 0) for row, line in enumerate(name.lines)]
-    return element("text", *lines, class_=f"{name.kind}{' spoken' * name.spoken}", x=name.x, y=name.y)
+    return element("text", *lines, class_=f"{name.kind}{' spoken' * name.is_mentioned}", x=name.x, y=name.y)
 
 
-def _there_and_back(way: Sequence[tuple[int, int]]) -> str:
-    """A patrol as an SVG path that draws each segment once: dashes drawn twice would fill their gaps."""
+def _patrol_path(points: Sequence[tuple[int, int]]) -> str:
+    """Return a patrol as an SVG path that draws each segment once.
+
+    Dashes that are drawn twice would fill their gaps.
+    """
     segments: dict[frozenset[tuple[int, int]], str] = {}
-    for (x, y), (to_x, to_y) in pairwise(way):
+    for (x, y), (to_x, to_y) in pairwise(points):
         segments.setdefault(frozenset({(x, y), (to_x, to_y)}), f"M{x},{y}L{to_x},{to_y}")
     return "".join(segments.values())
 
@@ -182,6 +186,6 @@ def _star(x: int, y: int, radius: float = 40.0) -> str:
     return " ".join(corners)
 
 
-def _block(plan: MapScale, box: Box) -> list[int]:
-    """The rectangle of a box on the map, and its lower and upper height, in centimetres."""
-    return [*plan.rect(box), round(100 * box.low[2]), round(100 * box.high[2])]
+def _block(scale: MapScale, box: Box) -> list[int]:
+    """Return the rectangle of a box on the map, and its lower and upper height, in centimetres."""
+    return [*scale.rect(box), round(100 * box.low[2]), round(100 * box.high[2])]

@@ -12,24 +12,24 @@ from tltl_runtime.regression.report.page.stealth.mentions import Mentions
 from tltl_runtime.stealth.level import Level
 from tltlc.api import record, replace
 
-_LETTER: Final = 25
-_LINE: Final = 48
+_LETTER_WIDTH: Final = 25
+_LINE_HEIGHT: Final = 48
 """The width of a letter and the height of a line, in centimetres, on a map of usual size.
 
 On the screen, text keeps its size whatever the size of the map.
 """
 
-_ABOVE: Final = 35
+_LABEL_OFFSET: Final = 35
 """Centimetres from the centre of a switch, an exit or an enemy to the foot of its name."""
 
 _MARGIN: Final = 12
 """Centimetres between the western side of a region and its name."""
 
 _ROWS: Final = (0, -1, 2, 3, -2)
-"""The rows that are tried for the name of a thing, in lines below its default position."""
+"""The rows in which the name of a thing is tried, in lines below its default position."""
 
 _STEP: Final = 50
-"""Centimetres between the positions that are tried for the name of a region."""
+"""Centimetres between the positions in which the name of a region is tried."""
 
 
 @record
@@ -37,104 +37,112 @@ class MapLabel:
     """A name on the map.
 
     The foot of its first line is at ``x`` and ``y``, in centimetres.  ``kind`` is a CSS class: a
-    ``region-name`` starts at ``x``, a ``thing-name`` or ``enemy-name`` is centred there.  ``spoken`` says
-    that the report mentions the name.
+    ``region-name`` starts at ``x``, a ``thing-name`` or ``enemy-name`` is centred there.
+    ``is_mentioned`` says that the report mentions the name.
     """
 
     lines: tuple[str, ...]
     kind: str
     x: int
     y: int
-    spoken: bool = False
+    is_mentioned: bool = False
 
 
-def names(level: Level, plan: MapScale, mentions: Mentions) -> Iterator[MapLabel]:
+def map_labels(level: Level, scale: MapScale, mentions: Mentions) -> Iterator[MapLabel]:
     """Place the names of a level.
 
     Switches, exits, barriers, enemies and regions always have names.  Solids and movers have names only
     if the report ``mentions`` them.
     """
-    taken: list[Rect] = []
-    for thing in _things(level, plan, mentions):
-        name = _apart(thing, taken, plan.size)
-        taken.append(_around(name))
-        yield name
-    taken += [plan.rect(solid.box) for solid in level.solids if solid.kind in ("wall", "low")]
-    taken += [plan.rect(barrier.box) for barrier in level.barriers]
+    occupied: list[Rect] = []
+    for label in _thing_labels(level, scale, mentions):
+        separated = _separated(label, occupied, scale.size)
+        occupied.append(_label_rect(separated))
+        yield separated
+    occupied += [scale.rect(solid.box) for solid in level.solids if solid.kind in ("wall", "low")]
+    occupied += [scale.rect(barrier.box) for barrier in level.barriers]
     for row, region in enumerate(level.regions):
-        # Where regions overlap, the first one gives the place its name.
-        earlier_regions = [plan.rect(other.box) for other in level.regions[:row]]
-        spoken = region.name in mentions.regions
-        name = _of_region(region, plan.rect(region.box), earlier_regions, taken, spoken=spoken)
-        taken.append(_around(name))
-        yield name
+        # Where regions overlap, the first one names the place.
+        earlier_regions = [scale.rect(earlier.box) for earlier in level.regions[:row]]
+        is_mentioned = region.name in mentions.regions
+        label = _region_label(region, scale.rect(region.box), earlier_regions, occupied, is_mentioned=is_mentioned)
+        occupied.append(_label_rect(label))
+        yield label
 
 
-def _things(level: Level, plan: MapScale, mentions: Mentions) -> Iterator[MapLabel]:
-    """The names of things at their default positions."""
-    small = [(switch.name, plan.at(switch.position)) for switch in level.switches]
-    small += [(exit_.name, plan.at(exit_.position)) for exit_ in level.exits]
-    wide = [(barrier.name, plan.middle(barrier.box)) for barrier in level.barriers]
-    wide += [(solid.name, plan.middle(solid.box)) for solid in level.solids if solid.name in mentions.things]
-    wide += [(mover.name, plan.at(mover.path[0])) for mover in level.movers if mover.name in mentions.things]
-    enemies = [(enemy.name, plan.at(enemy.route[0])) for enemy in level.enemies]
+def _thing_labels(level: Level, scale: MapScale, mentions: Mentions) -> Iterator[MapLabel]:
+    """Yield the names of things at their default positions."""
+    small = [(switch.name, scale.at(switch.position)) for switch in level.switches]
+    small += [(exit_.name, scale.at(exit_.position)) for exit_ in level.exits]
+    wide = [(barrier.name, scale.middle(barrier.box)) for barrier in level.barriers]
+    wide += [(solid.name, scale.middle(solid.box)) for solid in level.solids if solid.name in mentions.things]
+    wide += [(mover.name, scale.at(mover.path[0])) for mover in level.movers if mover.name in mentions.things]
+    enemies = [(enemy.name, scale.at(enemy.route[0])) for enemy in level.enemies]
     for things, kind, above in (
-        (small, "thing-name", _ABOVE),
+        (small, "thing-name", _LABEL_OFFSET),
         (wide, "thing-name", 0),
-        (enemies, "enemy-name", _ABOVE),
+        (enemies, "enemy-name", _LABEL_OFFSET),
     ):
         for name, (x, y) in things:
-            half = _LETTER * len(name) // 2
-            middle = min(max(x, half), max(half, plan.size[0] - half))
+            half = _LETTER_WIDTH * len(name) // 2
+            middle = min(max(x, half), max(half, scale.size[0] - half))
             yield MapLabel((name,), kind, middle, y - above, name in mentions.things)
 
 
-def _apart(name: MapLabel, taken: Sequence[Rect], size: tuple[int, int]) -> MapLabel:
-    """Move a name, within a map of that size, to where it overlaps ``taken`` least.
+def _separated(label: MapLabel, occupied: Sequence[Rect], size: tuple[int, int]) -> MapLabel:
+    """Move a label, within a map of that size, to where it overlaps ``occupied`` least.
 
     Positions above and below come first, then positions beside them.
     """
-    half = _LETTER * len(name.lines[0]) // 2
-    right, lowest = max(half, size[0] - half), max(_LINE, size[1])
+    half = _LETTER_WIDTH * len(label.lines[0]) // 2
+    right, lowest = max(half, size[0] - half), max(_LINE_HEIGHT, size[1])
     candidates = [
         replace(
-            name,
-            x=min(max(half, name.x + side * half), right),
-            y=min(max(_LINE, name.y + row * _LINE), lowest),
+            label,
+            x=min(max(half, label.x + side * half), right),
+            y=min(max(_LINE_HEIGHT, label.y + row * _LINE_HEIGHT), lowest),
         )
         for side in (0, 1, -1, 2, -2)
         for row in _ROWS
     ]
-    return min(candidates, key=lambda candidate: sum(_overlap(_around(candidate), other) for other in taken))
+    return min(candidates, key=lambda candidate: sum(_overlap(_label_rect(candidate), rect) for rect in occupied))
 
 
-def _of_region(
-    region: Region, inside: Rect, others: Sequence[Rect], taken: Sequence[Rect], *, spoken: bool
+def _region_label(
+    region: Region, inside: Rect, earlier_regions: Sequence[Rect], occupied: Sequence[Rect], *, is_mentioned: bool
 ) -> MapLabel:
-    """Place the name of a region inside it, near its north-western corner, without overlaps if possible."""
+    """Place the name of a region in the rectangle ``inside``, near its north-western corner.
+
+    The name avoids ``earlier_regions`` and ``occupied`` if possible.
+    """
     name = region.name.replace("_", " ")
-    best, least = MapLabel((name,), "region-name", inside[0] + _MARGIN, inside[1] + _LINE, spoken), float("inf")
+    best, least = (
+        MapLabel((name,), "region-name", inside[0] + _MARGIN, inside[1] + _LINE_HEIGHT, is_mentioned),
+        float("inf"),
+    )
     # A name that is too long for one line gets a line for each word.
-    lines = (name,) if _LETTER * len(name) <= inside[2] - inside[0] else tuple(name.split())
-    width, height = _LETTER * max(map(len, lines)) + _MARGIN, _LINE * len(lines)
+    lines = (name,) if _LETTER_WIDTH * len(name) <= inside[2] - inside[0] else tuple(name.split())
+    width, height = _LETTER_WIDTH * max(map(len, lines)) + _MARGIN, _LINE_HEIGHT * len(lines)
     for left in range(inside[0], max(inside[0], inside[2] - width) + 1, _STEP):
         for top in range(inside[1], max(inside[1], inside[3] - height) + 1, _STEP):
-            room = (left, top, left + width, top + height)
-            far = hypot(left - inside[0], top - inside[1])
-            hidden = sum(_overlap(room, rect) for rect in taken) + 10 * sum(_overlap(room, rect) for rect in others)
-            if (cost := far + hidden) < least:
-                best, least = MapLabel(lines, "region-name", left + _MARGIN, top + _LINE, spoken), cost
+            place = (left, top, left + width, top + height)
+            distance = hypot(left - inside[0], top - inside[1])
+            overlap = sum(_overlap(place, rect) for rect in occupied)
+            overlap += 10 * sum(_overlap(place, rect) for rect in earlier_regions)
+            if (cost := distance + overlap) < least:
+                best, least = MapLabel(lines, "region-name", left + _MARGIN, top + _LINE_HEIGHT, is_mentioned), cost
     return best
 
 
-def _around(name: MapLabel) -> Rect:
-    width = _LETTER * max(map(len, name.lines))
-    left = name.x if name.kind == "region-name" else name.x - width // 2
-    return left, name.y - _LINE, left + width, name.y + _LINE * (len(name.lines) - 1)
+def _label_rect(label: MapLabel) -> Rect:
+    """Return the rectangle that a label occupies."""
+    width = _LETTER_WIDTH * max(map(len, label.lines))
+    left = label.x if label.kind == "region-name" else label.x - width // 2
+    return left, label.y - _LINE_HEIGHT, left + width, label.y + _LINE_HEIGHT * (len(label.lines) - 1)
 
 
-def _overlap(one: Rect, other: Rect) -> int:
-    """The area of the intersection of two rectangles."""
-    width = min(one[2], other[2]) - max(one[0], other[0])
-    height = min(one[3], other[3]) - max(one[1], other[1])
+def _overlap(first: Rect, second: Rect) -> int:
+    """Return the area of the intersection of two rectangles."""
+    width = min(first[2], second[2]) - max(first[0], second[0])
+    height = min(first[3], second[3]) - max(first[1], second[1])
     return max(0, width) * max(0, height)

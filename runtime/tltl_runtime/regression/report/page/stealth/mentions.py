@@ -1,7 +1,8 @@
 """The things and regions of a level that the sentences of a report mention.
 
-The sentences are searched for names, since the authors of levels write some of them: the descriptions of
-overlays.  All sentences put names of things between backquotes, and call regions by their names.
+The sentences are searched for names, because the authors of levels write some of them: the
+descriptions of overlays.  All sentences put names of things between backquotes, and call regions by
+their names.
 """
 
 from __future__ import annotations
@@ -39,8 +40,11 @@ def _mentions_thing(name: str, text: str) -> bool:
 
 
 def _regions(level: Level, text: str) -> frozenset[str]:
-    """The names of the mentioned regions.  The longest name wins: *the left part* is not *the left*."""
-    called = {region.name.replace("_", " "): region.name for region in level.regions}
-    words = "|".join(map(re.escape, sorted(called, key=len, reverse=True)))
-    matches = re.findall(rf"\bthe ({words})(?![-\w])", text) if called else ()
-    return frozenset(called[match] for match in matches)
+    """Return the names of the mentioned regions.
+
+    The longest name wins: *the left part* is not *the left*.
+    """
+    names_by_text = {region.name.replace("_", " "): region.name for region in level.regions}
+    alternatives = "|".join(map(re.escape, sorted(names_by_text, key=len, reverse=True)))
+    matches = re.findall(rf"\bthe ({alternatives})(?![-\w])", text) if names_by_text else ()
+    return frozenset(names_by_text[match] for match in matches)

@@ -10,53 +10,60 @@ import numpy as np
 
 from tltl_runtime.game.episode import RecordedEpisode
 from tltl_runtime.game.geometry import Box, Point
-from tltl_runtime.regression.report.page.packing import across, down, runs, steps
+from tltl_runtime.regression.report.page.packing import runs, steps, x_steps, y_steps
 from tltl_runtime.stealth.recordings.cause import cause
 from tltl_runtime.stealth.recordings.episode import Episode
 
 
-def recorded(index: int, episode: RecordedEpisode) -> dict[str, Any]:
+def recording_data(index: int, episode: RecordedEpisode) -> dict[str, Any]:
     """Return episode ``index`` of a case as JSON data.
 
     An episode of n steps has n + 1 rows of each value, but n rows of atoms.  Lengths are in centimetres
     on the map, angles in degrees, times in milliseconds, shares and robustness in hundredths, progress
-    in thousandths.  Values are encoded by :mod:`~tltl_runtime.regression.report.page.packing`.
+    in thousandths.  The functions of :mod:`~tltl_runtime.regression.report.page.packing` encode the
+    values.
     """
     assert isinstance(episode, Episode)
-    shots, bounds = episode.snapshots, episode.level.bounds
+    snapshots, bounds = episode.snapshots, episode.level.bounds
     return {
         "index": index,
         "why": cause(episode).text,
-        "time": steps((shot.time for shot in shots), 1000),
+        "time": steps((snapshot.time for snapshot in snapshots), 1000),
         "state": runs(episode.states.tolist()),
         "progress": runs(_scaled(episode.progress.tolist(), 1000)),
-        "health": runs(_scaled([shot.health for shot in shots], 100)),
+        "health": runs(_scaled([snapshot.health for snapshot in snapshots], 100)),
         "player": {
-            **_way([shot.player.position for shot in shots], bounds),
-            "yaw": _turns([shot.player.yaw for shot in shots]),
-            "crouching": runs(int(shot.player.crouching) for shot in shots),
+            **_position_steps([snapshot.player.position for snapshot in snapshots], bounds),
+            "yaw": _yaw_steps([snapshot.player.yaw for snapshot in snapshots]),
+            "crouching": runs(int(snapshot.player.crouching) for snapshot in snapshots),
         },
         "enemies": [
             {
-                **_way([shot.enemies[row] for shot in shots], bounds),
-                "yaw": _turns([shot.yaws[row] for shot in shots]),
-                "mode": runs(shot.modes[row] for shot in shots),
-                "sees": runs(int(shot.sees[row]) for shot in shots),
+                **_position_steps([snapshot.enemies[row] for snapshot in snapshots], bounds),
+                "yaw": _yaw_steps([snapshot.yaws[row] for snapshot in snapshots]),
+                "mode": runs(snapshot.modes[row] for snapshot in snapshots),
+                "sees": runs(int(snapshot.sees[row]) for snapshot in snapshots),
             }
             for row in range(len(episode.level.enemies))
         ],
-        "movers": [_way([shot.movers[row] for shot in shots], bounds) for row in range(len(episode.level.movers))],
-        "active": [runs(int(shot.active[row]) for shot in shots) for row in range(len(episode.level.switches))],
-        "open": [runs(int(shot.open[row]) for shot in shots) for row in range(len(episode.level.barriers))],
+        "movers": [
+            _position_steps([snapshot.movers[row] for snapshot in snapshots], bounds)
+            for row in range(len(episode.level.movers))
+        ],
+        "active": [
+            runs(int(snapshot.active[row]) for snapshot in snapshots) for row in range(len(episode.level.switches))
+        ],
+        "open": [runs(int(snapshot.open[row]) for snapshot in snapshots) for row in range(len(episode.level.barriers))],
         "atoms": [steps(column, 100) for column in episode.atoms.T.tolist()],
     }
 
 
-def _way(points: Sequence[Point], bounds: Box) -> dict[str, str]:
-    return {"x": across(bounds, [x for x, _, _ in points]), "y": down(bounds, [y for _, y, _ in points])}
+def _position_steps(points: Sequence[Point], bounds: Box) -> dict[str, str]:
+    """Encode points as steps of x and of y."""
+    return {"x": x_steps(bounds, [x for x, _, _ in points]), "y": y_steps(bounds, [y for _, y, _ in points])}
 
 
-def _turns(yaws: Sequence[float]) -> str:
+def _yaw_steps(yaws: Sequence[float]) -> str:
     """Encode yaw angles in degrees, unwrapped at half a turn so that they can be interpolated."""
     return steps((degrees(yaw) for yaw in np.unwrap(yaws).tolist()), 1)
 
