@@ -72,13 +72,13 @@ def _write_inputs(folder: Path) -> None:
 
 
 @pytest.fixture(scope="module")
-def over(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with two finished trainings: ``run``, ended by its limit of steps, and ``it``, whose spec is met."""
-    folder = tmp_path_factory.mktemp("over")
+def trainings(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with two finished trainings: ``run``, ended by its limit of steps, and ``second``, whose spec is met."""
+    folder = tmp_path_factory.mktemp("trainings")
     _write_inputs(folder)
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(folder)
-        for spec, name, status in ((str(EXAMPLE), "run", 1), ("soon.tltl", "it", 0)):
+        for spec, name, status in ((str(EXAMPLE), "run", 1), ("soon.tltl", "second", 0)):
             with pytest.raises(SystemExit) as ended:
                 main(["train", spec, "--config", "small.toml", "--out", name])
             assert ended.value.code == status
@@ -86,15 +86,15 @@ def over(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture
-def run(over: Path, here: Path) -> Path:
+def run(trainings: Path, here: Path) -> Path:
     """A copy of the training that was ended by its limit, as ``run`` in the current folder."""
-    return shutil.copytree(over / "run", here / "run")
+    return shutil.copytree(trainings / "run", here / "run")
 
 
 @pytest.fixture
-def it(over: Path, here: Path) -> Path:
-    """A copy of the training whose spec is met, as ``it`` in the current folder."""
-    return shutil.copytree(over / "it", here / "it")
+def second(trainings: Path, here: Path) -> Path:
+    """A copy of the training whose spec is met, as ``second`` in the current folder."""
+    return shutil.copytree(trainings / "second", here / "second")
 
 
 def test_a_training_ends_at_its_limit_and_resumes(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
@@ -147,13 +147,13 @@ def test_a_training_killed_at_its_limit_is_finished_when_it_resumes(tltlc: Tltlc
 def test_a_limit_that_has_already_passed_is_rejected(tltlc: TltlcFunction) -> None:  # noqa: F811
     # The same files as if it had been interrupted.
     Path("run/record.json").unlink()
-    kept = Path("run/run.json").read_bytes()
+    before = Path("run/run.json").read_bytes()
     for limit in ("--steps", "127"), ("--minutes", "0.0001"):
         result = tltlc("train", "--resume", "run", *limit)
         assert (result.status, result.out) == (1, "")
         message = re.sub(r"\d+ s,", "S s,", result.err)
         assert message == (GOLDEN / f"TLT0862_{limit[0][2:]}.txt").read_text(encoding="utf-8")
-    assert Path("run/run.json").read_bytes() == kept
+    assert Path("run/run.json").read_bytes() == before
     resumed = tltlc("train", "--resume", "run", "--steps", "129", "--minutes", "60")
     assert "ended by the limit of steps after 192 steps" in resumed.out, resumed.err
     timed_out = tltlc("train", "--resume", "run", "--steps", "999", "--minutes", "0.001")
@@ -175,17 +175,18 @@ def test_without_a_checkpoint_a_training_starts_again(tltlc: TltlcFunction) -> N
 def test_differing_sensors_are_named(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
     options_at_start = ("--no-map", "--entities", "s1,exit", "--variables", "health")
     assert (
-        tltlc("train", EXAMPLE, "--config", "small.toml", "--steps", "64", "--out", "it", *options_at_start).status == 1
+        tltlc("train", EXAMPLE, "--config", "small.toml", "--steps", "64", "--out", "second", *options_at_start).status
+        == 1
     )
     options = ("--map", "cell=1,types=wall,low", "--entities", "s1", "--variables", "distance(exit)")
-    rejected = tltlc("train", "--resume", "it", *options)
-    assert re.findall(r"^error\[TLT0870\]: the training in `it` senses as (.*)$", rejected.err, re.MULTILINE) == [
+    rejected = tltlc("train", "--resume", "second", *options)
+    assert re.findall(r"^error\[TLT0870\]: the training in `second` senses as (.*)$", rejected.err, re.MULTILINE) == [
         "`--entities s1,exit` says, not as `--entities s1`",
         "`--variables health` says, not as `--variables 'distance(exit)'`",
         "`--no-map` says, not as `--map cell=1.0,extent=15,types=wall,low`",
     ]
     # Options that are left out agree with the training.
-    assert tltlc("train", "--resume", "it", "--no-map", "--steps", "128").status == 1
+    assert tltlc("train", "--resume", "second", "--no-map", "--steps", "128").status == 1
 
 
 @pytest.mark.usefixtures("run")
@@ -216,16 +217,16 @@ def test_a_level_whose_file_was_moved_can_be_named(tltlc: TltlcFunction, here: P
     result = tltlc("train", "--resume", "run", "--steps", "128", *level)
     assert result.status == 1, result.err
     assert "ended by the limit of steps after 128 steps" in result.out
-    other = tltlc("train", "--resume", "run", "--steps", "256", "--level", "cover_and_hide")
-    assert "TLT0870" in other.err and "not on `cover_and_hide:v0`" in other.err
+    rejected = tltlc("train", "--resume", "run", "--steps", "256", "--level", "cover_and_hide")
+    assert "TLT0870" in rejected.err and "not on `cover_and_hide:v0`" in rejected.err
 
 
-@pytest.mark.usefixtures("it")
+@pytest.mark.usefixtures("second")
 def test_another_spec_with_the_same_name_is_rejected(tltlc: TltlcFunction) -> None:  # noqa: F811
     Path("soon.tltl").write_text(SOON.replace("8 steps", "9 steps"))
-    result = tltlc("train", "soon.tltl", "--resume", "it")
+    result = tltlc("train", "soon.tltl", "--resume", "second")
     assert result.err.startswith(
-        "error[TLT0870]: the training in `it` is for another spec `soon` than that of `soon.tltl`: "
+        "error[TLT0870]: the training in `second` is for another spec `soon` than that of `soon.tltl`: "
         "its limit is 9 steps, and was 8 steps\n"
     )
 
@@ -249,7 +250,7 @@ def test_a_training_ends_when_the_spec_is_met(tltlc: TltlcFunction, here: Path) 
 
 def test_a_search_is_announced(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
     Path("search.toml").write_text(SMALL.replace("ways = 0", "ways = 2\nsteps = 640"))
-    result = tltlc("train", "soon.tltl", "--config", "search.toml", "--out", "it")
+    result = tltlc("train", "soon.tltl", "--config", "search.toml", "--out", "second")
     assert result.status in (0, 1), result.err
     _, searched, lost, *lines = result.err.splitlines()
     assert searched == (
@@ -257,24 +258,24 @@ def test_a_search_is_announced(tltlc: TltlcFunction, here: Path) -> None:  # noq
         "The search ends when 2 ways are found, at the latest after 640 steps."
     )
     assert lost == "Ctrl-C stops it; a search that is not over then begins anew."
-    assert "Ctrl-C stops it and keeps what was learned; to go on: tltlc train --resume it" in lines
+    assert "Ctrl-C stops it and keeps what was learned; to go on: tltlc train --resume second" in lines
 
 
-@pytest.mark.usefixtures("it")
+@pytest.mark.usefixtures("second")
 def test_a_folder_holds_one_training(tltlc: TltlcFunction) -> None:  # noqa: F811
-    again = tltlc("train", "soon.tltl", "--config", "small.toml", "--out", "it")
+    again = tltlc("train", "soon.tltl", "--config", "small.toml", "--out", "second")
     assert again == Outcome(
         1,
         "",
-        "training soon on cover_and_hide v0, seed 0, in it\n"
-        "error[TLT0867]: `it` holds a training already\n"
-        "  help: go on with it by `tltlc train --resume it`, or name another place with --out\n",
+        "training soon on cover_and_hide v0, seed 0, in second\n"
+        "error[TLT0867]: `second` holds a training already\n"
+        "  help: go on with it by `tltlc train --resume second`, or name another place with --out\n",
     )
     Path("big.toml").write_text(SMALL.replace("[8]", "[9]").replace("steps = 128", "steps = 999"))
     options = ["--level", "navigation:v1", "--seed", "9", "--no-entities", "--config", "big.toml"]
-    other = tltlc("train", EXAMPLE, *options, "--resume", "it")
-    assert other.status == 1
-    titles = re.findall(r"^error\[TLT0870\]: the training in `it` (.*)$", other.err, re.MULTILINE)
+    rejected = tltlc("train", EXAMPLE, *options, "--resume", "second")
+    assert rejected.status == 1
+    titles = re.findall(r"^error\[TLT0870\]: the training in `second` (.*)$", rejected.err, re.MULTILINE)
     assert titles == [
         "is on the level `cover_and_hide:v0`, not on `navigation:v1`",
         f"is for the spec `soon`, not for `cover_and_hide` of `{EXAMPLE}`",
@@ -282,9 +283,9 @@ def test_a_folder_holds_one_training(tltlc: TltlcFunction) -> None:  # noqa: F81
         "senses as `--entities s1,s2,exit,guard` says, not as `--no-entities`",
         "has another `network.hidden` than `big.toml`",
     ]
-    assert other.err.count("help: leave it out to go on with `it`, or begin another training with --out") == 5
+    assert rejected.err.count("help: leave it out to go on with `second`, or begin another training with --out") == 5
     same = ["--level", "cover_and_hide:v0", "--seed", "0", "--config", "small.toml", "--steps", "999"]
-    assert tltlc("train", "soon.tltl", *same, "--resume", "it").status == 0
+    assert tltlc("train", "soon.tltl", *same, "--resume", "second").status == 0
 
 
 def test_a_folder_with_other_files_is_rejected(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
@@ -354,14 +355,14 @@ def test_invalid_options_are_rejected(
 
 
 def test_a_settings_file_changes_only_the_settings_it_contains(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
-    options = ("--config", "small.toml", "--out", "it", "--steps", "64", "--workers", "2", "--minutes", "60")
+    options = ("--config", "small.toml", "--out", "second", "--steps", "64", "--workers", "2", "--minutes", "60")
     assert tltlc("train", EXAMPLE, *options).status == 1
-    settings = json.loads(Path("it/run.json").read_text())["settings"]
+    settings = json.loads(Path("second/run.json").read_text())["settings"]
     Path("more.toml").write_text("checkpoint_s = 5\n[stop]\nsteps = 128\n")
-    resumed = tltlc("train", "--resume", "it", "--config", "more.toml")
+    resumed = tltlc("train", "--resume", "second", "--config", "more.toml")
     assert resumed.status == 1, resumed.err
     settings["checkpoint_s"], settings["stop"]["steps"] = 5.0, 128
-    assert json.loads(Path("it/run.json").read_text())["settings"] == settings
+    assert json.loads(Path("second/run.json").read_text())["settings"] == settings
 
 
 def test_an_unreachable_goal_is_reported_first(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
@@ -452,13 +453,13 @@ def test_a_terminal_shows_the_live_display(here: Path) -> None:
     assert "128 of at most 128 steps" in last
 
 
-@pytest.mark.usefixtures("it")
+@pytest.mark.usefixtures("second")
 def test_the_page_lists_the_keys_of_the_record() -> None:
     page = (DOCS / "training.md").read_text(encoding="utf-8")
     section = page.partition("## The record")[2].partition("\n## ")[0]
     rows = re.findall(r"^\| (`.*?) \|", section, re.MULTILINE)
     documented = [name for row in rows for name in re.findall(r"`(\w+)`", row)]
-    assert documented == list(json.loads(Path("it/record.json").read_text()))
+    assert documented == list(json.loads(Path("second/record.json").read_text()))
     (search,) = re.findall(r"^\| `search` \| (.*) \|$", section, re.MULTILINE)
     # The explanations of some keys follow after the list, and start with their names.
     assert tuple(dict.fromkeys(re.findall(r"`(\w+)`", search))) == SearchProgress.__match_args__

@@ -252,15 +252,15 @@ def test_a_resumed_training_starts_from_its_known_demonstrations(folder: Path) -
     assert first[-1].searched is not None
     assert first[-1].searched.lengths[:2] == (8, 8)
     assert first[-1].replayed > 0
-    kept = checkpoint_of(run).processes[0]
-    assert kept["way_lengths"].tolist() == [8] * len(kept["way_seeds"])
+    process = checkpoint_of(run).processes[0]
+    assert process["way_lengths"].tolist() == [8] * len(process["way_seeds"])
     shutil.copytree(run.folder, folder / "ways-2")
     resumed = [list(train(run_of(name, 256), resume=True)) for name in ("ways", "ways-2")]
     assert _numbers(resumed[0]) == _numbers(resumed[1])
     assert [report.iteration.number for report in resumed[0]] == [3, 4]
     assert resumed[0][-1].searched == first[-1].searched
     assert resumed[0][-1].replayed == resumed[1][-1].replayed > first[-1].replayed
-    assert {*kept["way_seeds"].tolist()} <= {*checkpoint_of(run).processes[0]["way_seeds"].tolist()}
+    assert {*process["way_seeds"].tolist()} <= {*checkpoint_of(run).processes[0]["way_seeds"].tolist()}
 
 
 def test_the_best_policy_played_the_end_of_its_window(folder: Path) -> None:
@@ -346,11 +346,11 @@ def test_an_interrupted_search_starts_again(folder: Path) -> None:
 def test_an_interrupted_search_with_a_demonstration_does_not_start_again(folder: Path) -> None:
     run = run_in(folder / "enough", **SEARCH, stop__minutes=1e-9)
     list(train(run))
-    kept = checkpoint_of(run)
-    assert kept.searched is not None
-    searched = replace(kept.searched, lengths=(9,), complete=False)
+    checkpoint = checkpoint_of(run)
+    assert checkpoint.searched is not None
+    searched = replace(checkpoint.searched, lengths=(9,), complete=False)
     longer = replace(run, settings=run_in(folder, **SEARCH).settings)
-    write_checkpoint(run.folder / CHECKPOINT, replace(kept, searched=searched, run=identity(longer)))
+    write_checkpoint(run.folder / CHECKPOINT, replace(checkpoint, searched=searched, run=identity(longer)))
     assert next(train(longer, resume=True)).searched == searched
 
 
@@ -403,11 +403,11 @@ def test_a_search_at_a_standstill_is_in_the_checkpoint_with_its_time(
     # Simulate that the process is killed here.
     monkeypatch.setattr("tltl_runtime.training.run.training_files.TrainingFiles.save", lambda *_: None)
     reports.close()
-    kept = checkpoint_of(run)
-    assert before.searched is not None and kept.searched is not None
-    assert len(search_reports) > first and kept.searched.steps == before.searched.steps + search_reports[-1].steps
-    assert kept.seconds >= before.seconds + search_reports[-1].seconds
-    assert (kept.iteration, kept.standstill[1]) == (4, 256)
+    checkpoint = checkpoint_of(run)
+    assert before.searched is not None and checkpoint.searched is not None
+    assert len(search_reports) > first and checkpoint.searched.steps == before.searched.steps + search_reports[-1].steps
+    assert checkpoint.seconds >= before.seconds + search_reports[-1].seconds
+    assert (checkpoint.iteration, checkpoint.standstill[1]) == (4, 256)
 
 
 @pytest.mark.parametrize(("schedule", "last"), [("fading", 0.0084), ("fixed", 0.01)])

@@ -16,9 +16,9 @@ BOUNDS = Box((0.0, 0.0, 0.0), (10.0, 4.0, 3.0))
 def test_time_is_counted_in_the_cells_of_the_path() -> None:
     explained = samples.explained_of(0, samples.navigation()[0])
     # Three seconds in the north-west corner, one second at the eastern bound.
-    one = replace(explained, way=((0.1, 3.9, 0, 0.0), (0.3, 3.7, 0, 2.95), (10.0, 0.1, 1, 3.0), (10.0, 0.1, 1, 4.0)))
-    other = replace(explained, way=((0.1, 3.9, 0, 0.0), (0.1, 3.9, 0, 1.0)))
-    heat = time_spent(BOUNDS, [one, other])
+    first = replace(explained, way=((0.1, 3.9, 0, 0.0), (0.3, 3.7, 0, 2.95), (10.0, 0.1, 1, 3.0), (10.0, 0.1, 1, 4.0)))
+    second = replace(explained, way=((0.1, 3.9, 0, 0.0), (0.1, 3.9, 0, 1.0)))
+    heat = time_spent(BOUNDS, [first, second])
     assert (heat.cell, heat.columns) == (TIME_CELL, 20)
     assert heat.values == ((0, 2.0), (7 * 20 + 19, 0.5))
 
