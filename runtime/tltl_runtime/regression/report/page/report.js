@@ -6,9 +6,9 @@ class CaseView {
   constructor(facts, colours, moved) {
     this.facts = facts;
     this.section = document.getElementById(facts.slug);
-    const [map, baselineMap] = [...this.section.querySelectorAll(".map")].map((svg) => new LevelMap(svg, facts.map, colours));
+    const [map, before] = [...this.section.querySelectorAll(".map")].map((svg) => new LevelMap(svg, facts.map, colours));
     // The level of the baseline has its own map if it looks different.
-    this.maps = { now: map, before: baselineMap ?? map };
+    this.maps = { now: map, before: before ?? map };
     this.player = new Player(this.section, facts, map, moved);
     this.legend = this.section.querySelector(".legend.shown");
     this.isDrawn = false;
