@@ -17,7 +17,7 @@ from tltlc.automaton.infinite.after_automaton import ObligationAutomaton
 from tltlc.automaton.transitions import TransitionDiagrams
 from tltlc.automaton.work import Work
 from tltlc.logic import formula as f
-from tltlc.logic.bounded import counted_down
+from tltlc.logic.bounded import count_down
 from tltlc.logic.formula import Formula
 
 A, B = f.atom("a"), f.atom("b")
@@ -51,8 +51,8 @@ def for_all(steps: int, body: Formula = A) -> Formula:
 def test_bounded_formulas_count_down(bound, body: Formula) -> None:  # type: ignore[no-untyped-def]
     step = f.next_ if bound is within else f.weak_next
     for steps in (1, 2, 5):
-        assert counted_down(step(bound(steps, body))) is step(bound(steps - 1, body))
-    assert counted_down(step(body)) is None
+        assert count_down(step(bound(steps, body))) is step(bound(steps - 1, body))
+    assert count_down(step(body)) is None
 
 
 @pytest.mark.parametrize(
@@ -69,7 +69,7 @@ def test_bounded_formulas_count_down(bound, body: Formula) -> None:  # type: ign
     ids=str,
 )
 def test_other_formulas_do_not_count_down(formula: Formula) -> None:
-    assert counted_down(formula) is None
+    assert count_down(formula) is None
 
 
 @pytest.mark.parametrize("semantics", ["finite", "infinite"])

@@ -111,7 +111,7 @@ ENDLESS = {
 
 
 @pytest.mark.parametrize(("formula", "sentence"), EXAMPLES.items())
-def test_known_sentences(formula: str, sentence: str) -> None:
+def test_formulas_print_as_known_sentences(formula: str, sentence: str) -> None:
     assert english_text(read_formula(formula)) == sentence
 
 
@@ -123,7 +123,7 @@ def test_negated_comparisons_are_reversed_and_need_no_brackets() -> None:
 
 
 @pytest.mark.parametrize(("formula", "sentence"), ENDLESS.items())
-def test_known_sentences_over_infinite_traces(formula: str, sentence: str) -> None:
+def test_formulas_over_infinite_traces_print_as_known_sentences(formula: str, sentence: str) -> None:
     assert english_text(read_formula(formula), endless=True) == sentence
 
 

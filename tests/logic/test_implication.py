@@ -1,4 +1,4 @@
-"""The cheap tests of implication, and of values at the last sample, are correct whenever they give an answer."""
+"""The cheap proofs of implication, and of values at the last sample, are correct whenever they give an answer."""
 
 from __future__ import annotations
 
@@ -79,5 +79,5 @@ def test_the_value_at_the_last_sample_agrees_with_the_oracle(formula: Formula) -
 
 
 @pytest.mark.parametrize(("formula", "value"), [("F X a", False), ("a | N b", True), ("a & X b", False), ("a", None)])
-def test_known_values_at_the_last_sample(formula: str, value: bool | None) -> None:
+def test_the_value_at_the_last_sample_is_found_unless_atoms_decide(formula: str, value: bool | None) -> None:
     assert value_at_last(read_formula(formula)) is value

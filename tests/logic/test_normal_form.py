@@ -52,7 +52,7 @@ def test_the_corpus_is_normalised() -> None:
         ("!true", "false"),
     ],
 )
-def test_examples(formula: str, normal: str) -> None:
+def test_negations_move_to_the_atoms(formula: str, normal: str) -> None:
     assert str(negation_normal_form(read_formula(formula))) == normal
 
 

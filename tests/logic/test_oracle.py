@@ -49,7 +49,7 @@ TABLE = TruthTable("ab", 3)
         ("F G a", "a b", False),
     ],
 )
-def test_worked_examples(formula: str, trace: str, expected: bool) -> None:
+def test_operators_hold_on_the_traces_of_worked_examples(formula: str, trace: str, expected: bool) -> None:
     samples = [set(sample) - {"-"} for sample in trace.split()]
     assert holds(read_formula(formula), samples) is expected
 
@@ -65,7 +65,7 @@ def test_a_position_outside_the_trace_is_an_error(trace: list[str], position: in
 
 
 @given(formulas(("a", "b"), 8))
-def test_the_truth_table_agrees(formula: Formula) -> None:
+def test_the_truth_table_agrees_with_the_oracle(formula: Formula) -> None:
     groups = [[trace for trace in all_traces("ab", 3) if len(trace) == n] for n in (1, 2, 3)]
     assert TABLE.all_positions(formula) == tuple(
         tuple(sum(1 << k for k, trace in enumerate(group) if holds(formula, trace, i)) for i in range(len(group[0])))
@@ -89,7 +89,7 @@ def test_all_traces_are_enumerated_by_length() -> None:
     ("formula", "expected"),
     [("a", 0.5), ("!a", -0.5), ("a & b", -0.25), ("a | b", 0.5), ("true", 1), ("false", -1), ("a -> b", -0.25)],
 )
-def test_robustness_examples(formula: str, expected: float) -> None:
+def test_robustness_has_the_values_of_worked_examples(formula: str, expected: float) -> None:
     assert robustness_of_state(read_formula(formula), {"a": 0.5, "b": -0.25}) == expected
 
 

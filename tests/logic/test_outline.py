@@ -21,7 +21,7 @@ def goals(*texts: str) -> tuple[Goal, ...]:
 
 
 @pytest.mark.parametrize(
-    ("formula", "found"),
+    ("formula", "expected"),
     [
         ("F(a & X F(b & X F c)) & G !d", Outline((goals("a", "b", "c"),), ("avoid d",))),
         ("F a & F b", Outline((goals("a"), goals("b")))),
@@ -35,11 +35,11 @@ def goals(*texts: str) -> tuple[Goal, ...]:
         ("false", Outline(others=("what nothing can satisfy",))),
     ],
 )
-def test_outlines_over_finite_traces(formula: str, found: Outline) -> None:
-    assert outline(read_formula(formula)) == found
+def test_an_outline_sorts_the_conjuncts_of_a_formula(formula: str, expected: Outline) -> None:
+    assert outline(read_formula(formula)) == expected
 
 
-def test_outlines_over_infinite_traces() -> None:
+def test_an_outline_over_infinite_traces_lists_recurring_goals() -> None:
     result = outline(read_formula("G F a & F b & G c & G(a -> F b)"), endless=True)
     assert result.recurring == ("reach a",)
     assert result.goals == (goals("b"),)

@@ -18,7 +18,7 @@ from tltlc.logic.text.printer import ascii_text, operand_text
 NAMES = ("a", "near(s1)", "near(s1, close=2)", "health > 0.5", "health", "(x + y) / 2 < 3", "a.b", "F_1", "X(a)")
 
 
-def parsed(formula: Formula, text: str | None = None) -> Formula | None:
+def parse(formula: Formula, text: str | None = None) -> Formula | None:
     return FormulaParser(formula.atoms()).formula(ascii_text(formula) if text is None else text)
 
 
@@ -30,12 +30,12 @@ def test_every_formula_is_read_back(formula: Formula) -> None:
 
 def test_every_small_formula_is_read_back() -> None:
     for formula in formulas_up_to(3):
-        assert parsed(formula) is formula
+        assert parse(formula) is formula
 
 
 def test_every_formula_of_the_corpus_is_read_back() -> None:
     for entry in corpus():
-        assert parsed(entry.formula) is entry.formula
+        assert parse(entry.formula) is entry.formula
 
 
 @given(body=formulas(NAMES, max_leaves=4), steps=st.integers(0, 8), op=st.sampled_from("FG"))
@@ -51,7 +51,7 @@ def test_bounds_are_expanded(body: Formula, steps: int, op: str) -> None:
 @given(formulas(max_leaves=12))
 def test_blanks_and_brackets_do_not_matter(formula: Formula) -> None:
     text = ascii_text(formula).replace("(", " ( ").replace("&", " \n& ")
-    assert parsed(formula, f" (({text})) ") is formula
+    assert parse(formula, f" (({text})) ") is formula
     assert read_formula(text) is formula
 
 
@@ -76,7 +76,7 @@ def test_deep_formulas_need_no_recursion() -> None:
     formula = f.atom("a")
     for _ in range(50_000):
         formula = f.not_(f.until(formula, f.atom("b")))
-    assert parsed(formula) is formula
+    assert parse(formula) is formula
 
 
 def test_bounds_that_count_down_share_their_expansion(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -46,7 +46,7 @@ NOTATIONS = pytest.mark.parametrize("write", [ascii_text, unicode_text, words_te
         ("F(a U b) U !c", "◇(a 𝒰 b) 𝒰 ¬c", "eventually (a until b) until not c"),
     ],
 )
-def test_known_texts(text: str, unicode: str, words: str) -> None:
+def test_formulas_print_as_known_texts(text: str, unicode: str, words: str) -> None:
     formula = read_formula(text)
     assert (ascii_text(formula), unicode_text(formula), words_text(formula)) == (text, unicode, words)
     assert str(formula) == text
@@ -76,13 +76,13 @@ def test_a_comparison_that_is_an_operand_has_brackets(formula: Formula, text: st
 @NOTATIONS
 @given(formula=formulas(NAMES, max_leaves=12))
 def test_the_grammar_reads_every_notation_back(write: Callable[[Formula], str], formula: Formula) -> None:
-    assert parsed(write(formula)) is formula
+    assert parse(write(formula)) is formula
 
 
 @NOTATIONS
 def test_the_grammar_reads_every_small_formula_back(write: Callable[[Formula], str]) -> None:
     for formula in formulas_up_to(3):
-        assert parsed(write(formula)) is formula
+        assert parse(write(formula)) is formula
 
 
 @given(formulas(max_leaves=20))
@@ -122,7 +122,7 @@ def test_deep_formulas_are_printed(write: Callable[[Formula], str], nest: Callab
     assert len(write(formula)) > 10_000
 
 
-def parsed(text: str) -> Formula:
+def parse(text: str) -> Formula:
     """Parse a text with the grammar of the language, and convert the tree to a formula with code of this test."""
     source = SourceFile("formula", text)
     expr, diagnostics = parse_formula(source)
@@ -144,7 +144,7 @@ def test_bounds_are_written_as_bounds_and_read_back(op: str, last: int, body: Fo
     formula = bounded_formula(op, last, body)
     for whole in (formula, f.not_(formula), f.and_(other, formula), f.or_(formula, other), f.until(other, formula)):
         for write in (ascii_text, unicode_text, words_text):
-            assert parsed(write(whole)) is whole
+            assert parse(write(whole)) is whole
 
 
 @pytest.mark.parametrize(
@@ -158,7 +158,7 @@ def test_bounds_are_written_as_bounds_and_read_back(op: str, last: int, body: Fo
         (f.or_(f.atom("b"), bounded_formula("F", 2, f.or_(f.atom("a"), f.atom("c")))), "b | F[0,2](a | c)"),
     ],
 )
-def test_bounds(formula: Formula, text: str) -> None:
+def test_bounds_of_two_or_more_steps_print_as_bounds(formula: Formula, text: str) -> None:
     assert ascii_text(formula) == text
 
 

@@ -89,7 +89,7 @@ def test_simplify_keeps_the_meaning_and_never_lengthens(formula: Formula) -> Non
         ("F b & X true & G a", "F b & X true & G a"),
     ],
 )
-def test_simplify_on_known_formulas(formula: str, simple: str) -> None:
+def test_simplify_gives_the_known_short_form(formula: str, simple: str) -> None:
     assert str(simplify(read_formula(formula))) == simple
 
 

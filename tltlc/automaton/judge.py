@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from tltlc.logic.bounded import bounded, with_bounds
+from tltlc.logic.bounded import bounded_operator, operands_with_bounds
 from tltlc.logic.formula import Formula, and_
 from tltlc.logic.normal_form import negation_normal_form
 from tltlc.resolve.spec import Conjunct, Judge
@@ -40,7 +40,7 @@ def _at_once(node: Formula) -> list[Formula]:
     ``F[0,n] p`` is the formula ``p | X(p | …)``.
     """
     if node.op == "or":
-        return [] if bounded(node) else with_bounds(node)
+        return [] if bounded_operator(node) else operands_with_bounds(node)
     return list(node.args) if node.op == "and" else []
 
 

@@ -23,7 +23,7 @@ def join(op: str, operands: Iterable[Formula]) -> Formula:
     return build.and_(*operands) if op == "and" else build.or_(*operands)
 
 
-def constants(node: Formula) -> Formula:
+def drop_constants(node: Formula) -> Formula:
     """Remove ``true`` and ``false`` from ``and`` and ``or``."""
     neutral, zero = (TRUE, FALSE) if node.op == "and" else (FALSE, TRUE)
     if zero in node.args:
@@ -31,21 +31,21 @@ def constants(node: Formula) -> Formula:
     return join(node.op, (part for part in node.args if part is not neutral)) if neutral in node.args else node
 
 
-def repeated(node: Formula) -> Formula:
+def drop_repeated(node: Formula) -> Formula:
     """Keep only the first of equal operands."""
     distinct = dict.fromkeys(node.args)
     return node if len(distinct) == len(node.args) else join(node.op, distinct)
 
 
-def complementary(node: Formula) -> Formula:
-    """Decide an ``and`` or ``or`` that contains an operand and its negation."""
+def decide_complementary(node: Formula) -> Formula:
+    """Replace an ``and`` that contains an operand and its negation by ``false``, and such an ``or`` by ``true``."""
     operands = set(node.args)
     if any(complement(part) in operands for part in node.args):
         return FALSE if node.op == "and" else TRUE
     return node
 
 
-def absorbed(node: Formula) -> Formula:
+def absorb(node: Formula) -> Formula:
     """Drop redundant operands.
 
     From ``and``, drop those that another operand implies; from ``or``, those that imply another
@@ -61,11 +61,12 @@ def absorbed(node: Formula) -> Formula:
     return node if len(remaining) == len(node.args) else join(node.op, remaining)
 
 
-def _makes_redundant(op: str, other: Formula, part: Formula) -> bool:
-    return syntactically_implies(other, part) if op == "and" else syntactically_implies(part, other)
+def _makes_redundant(op: str, operand: Formula, part: Formula) -> bool:
+    """Whether ``part`` is redundant beside ``operand`` in an ``and`` or ``or``."""
+    return syntactically_implies(operand, part) if op == "and" else syntactically_implies(part, operand)
 
 
-def resolved(node: Formula) -> Formula:
+def resolve(node: Formula) -> Formula:
     """Inside an operand, drop the parts that the other operands rule out."""
     if len(node.args) > _MOST_OPERANDS:
         return node
@@ -74,7 +75,7 @@ def resolved(node: Formula) -> Formula:
         rest = node.args[:index] + node.args[index + 1 :]
         if part.op == inner_op:
             remaining = [
-                inner for inner in part.args if not any(_ruled_out(node.op, operand, inner) for operand in rest)
+                inner for inner in part.args if not any(_rules_out(node.op, operand, inner) for operand in rest)
             ]
             if len(remaining) < len(part.args):
                 return join(node.op, (*node.args[:index], join(inner_op, remaining), *node.args[index + 1 :]))
@@ -83,13 +84,14 @@ def resolved(node: Formula) -> Formula:
     return node
 
 
-def _ruled_out(op: str, other: Formula, inner: Formula) -> bool:
+def _rules_out(op: str, operand: Formula, inner: Formula) -> bool:
+    """Whether ``operand`` makes ``inner``, a part of another operand, redundant there."""
     if op == "and":
-        return syntactically_implies(other, complement(inner))
-    return syntactically_implies(complement(other), inner)
+        return syntactically_implies(operand, complement(inner))
+    return syntactically_implies(complement(operand), inner)
 
 
-def factored(node: Formula) -> Formula:
+def factor(node: Formula) -> Formula:
     """Factor out the parts that all operands share."""
     inner_op = "or" if node.op == "and" else "and"
     if any(part.op != inner_op for part in node.args):
@@ -103,7 +105,7 @@ def factored(node: Formula) -> Formula:
     return join(inner_op, first if rests in first else (*first, rests))
 
 
-def negated(node: Formula) -> Formula:
+def push_not(node: Formula) -> Formula:
     """Push ``not`` inwards if the result is no longer."""
     (inner,) = node.args
     match inner.op:
@@ -120,7 +122,7 @@ def negated(node: Formula) -> Formula:
             return node
 
 
-def implications(node: Formula) -> Formula:
+def shorten_implication(node: Formula) -> Formula:
     """Shorten ``a -> b``."""
     left, right = node.args
     if left is TRUE:
@@ -132,18 +134,18 @@ def implications(node: Formula) -> Formula:
     return build.or_(left.args[0], right) if left.op == "not" else node
 
 
-def equivalences(node: Formula) -> Formula:
+def shorten_equivalence(node: Formula) -> Formula:
     """Shorten ``a <-> b``."""
     left, right = node.args
     if left is right:
         return TRUE
     if complement(left) is right or complement(right) is left:
         return FALSE
-    for constant, other in ((left, right), (right, left)):
+    for constant, operand in ((left, right), (right, left)):
         if constant is TRUE:
-            return other
+            return operand
         if constant is FALSE:
-            return _opposite(other)
+            return _opposite(operand)
     if left.op == "not" and right.op == "not":
         return build.iff(left.args[0], right.args[0])
     return node

@@ -24,76 +24,83 @@ class Bounded(NamedTuple):
     body: Formula
 
 
-_known: WeakKeyDictionary[Formula, Bounded | None] = WeakKeyDictionary()
-_shorter: WeakKeyDictionary[Formula, Formula | None] = WeakKeyDictionary()
+_operators: WeakKeyDictionary[Formula, Bounded | None] = WeakKeyDictionary()
+_counted_down: WeakKeyDictionary[Formula, Formula | None] = WeakKeyDictionary()
 
 
-def bounded(node: Formula) -> Bounded | None:
-    """Return the bounded operator that an ``or`` or ``and`` expands as a whole, or None.
+def bounded_operator(node: Formula) -> Bounded | None:
+    """Return the bounded operator that all operands of an ``or`` or ``and`` together expand, or None.
 
-    Answers are cached: the labels of n states that count down a bound take n steps, not n².
+    Results are cached: the labels of n states that count down a bound take n steps, not n².
     """
     chain: list[Formula] = []
     inner = node
-    while inner not in _known and inner.op in ("or", "and") and inner.args[-1].op == _step(inner):
+    while inner not in _operators and inner.op in ("or", "and") and inner.args[-1].op == _next_op(inner):
         chain.append(inner)
         inner = inner.args[-1].args[0]
     for outer in reversed(chain):
         *before, last = outer.args
-        operator = _ended_by(last, outer, before)
-        _known[outer] = operator if operator and len(before) == len(_operands(operator.body, outer)) else None
-    return _known.get(node)
+        operator = _bounded_ending_in(last, outer, before)
+        _operators[outer] = operator if operator and len(before) == len(_operands(operator.body, outer)) else None
+    return _operators.get(node)
 
 
-def counted_down(node: Formula) -> Formula | None:
-    """Return the bound of an ``X`` or ``N`` with one step less, or None if there is none.
+def count_down(node: Formula) -> Formula | None:
+    """Return the formula of a bound with one step less, or None.
 
-    For ``X(p | X(p | X p))`` this is ``X(p | X p)``. Over ``or``, the shorter formula implies the
+    For ``X(p | X(p | X p))`` the result is ``X(p | X p)``. It is None unless ``node`` is an ``X``
+    or ``N`` of such a form with at least two steps. Over ``or``, the shorter formula implies the
     longer one; over ``and``, the longer one implies the shorter.
     """
     chain: list[Formula] = []
     inner: Formula | None = node
-    while inner is not None and inner not in _shorter:
+    while inner is not None and inner not in _counted_down:
         chain.append(inner)
         inner = _last_step(inner)
     for outer in reversed(chain):
         last = _last_step(outer)
-        _shorter[outer] = last if last is not None and _is_same(outer.args[0], last) else None
-    return _shorter[node]
+        _counted_down[outer] = last if last is not None and _repeats_operands(outer.args[0], last) else None
+    return _counted_down[node]
 
 
-def counted_down_from(node: Formula, known: Container[Formula]) -> Iterator[Formula]:
+def count_down_from(node: Formula, known: Container[Formula]) -> Iterator[Formula]:
     """Yield the formulas that ``node`` counts down to, up to but excluding one that is ``known``."""
-    shorter = counted_down(node)
+    shorter = count_down(node)
     while shorter is not None and shorter not in known:
         yield shorter
-        shorter = counted_down(shorter)
+        shorter = count_down(shorter)
 
 
 def _last_step(node: Formula) -> Formula | None:
-    """Return the ``X`` that ends the ``or`` or ``and`` under an ``X``, likewise for ``N``, or None."""
+    """Return the last operand of the ``or`` or ``and`` below an ``X``, if that is an ``X`` too, else None.
+
+    Likewise for ``N``.
+    """
     if node.op not in ("X", "N") or node.args[0].op not in ("or", "and"):
         return None
     last = node.args[0].args[-1]
     return last if last.op == node.op else None
 
 
-def _is_same(body: Formula, last: Formula) -> bool:
+def _repeats_operands(body: Formula, last: Formula) -> bool:
     """Whether ``last``, the end of ``body``, repeats the other operands of ``body``.
 
-    It repeats them alone, or followed by a further repetition.
+    Behind the repeated operands, ``last`` may contain a further repetition.
     """
     operands, inner = body.args[:-1], last.args[0]
     if inner == (operands[0] if len(operands) == 1 else rebuild(body, operands)):
         return True
-    return inner.op == body.op and inner.args[:-1] == operands and _shorter[last] is not None
+    return inner.op == body.op and inner.args[:-1] == operands and _counted_down[last] is not None
 
 
-def with_bounds(node: Formula) -> list[Formula]:
-    """Return the operands of an ``or`` or ``and``, with expansions of a bound >= :data:`LEAST` joined."""
+def operands_with_bounds(node: Formula) -> list[Formula]:
+    """Return the operands of an ``or`` or ``and``.
+
+    Operands that together expand a bound of at least :data:`LEAST` steps are joined to one.
+    """
     operands: list[Formula] = []
     for operand in node.args:
-        operator = _ended_by(operand, node, operands) if operand.op == _step(node) else None
+        operator = _bounded_ending_in(operand, node, operands) if operand.op == _next_op(node) else None
         if operator is not None and operator.steps >= LEAST:
             body = _operands(operator.body, node)
             del operands[-len(body) :]
@@ -102,13 +109,13 @@ def with_bounds(node: Formula) -> list[Formula]:
     return operands
 
 
-def _ended_by(last: Formula, node: Formula, before: Sequence[Formula]) -> Bounded | None:
+def _bounded_ending_in(last: Formula, node: Formula, before: Sequence[Formula]) -> Bounded | None:
     """Return the bounded operator whose expansion ends with ``last``, or None.
 
     The expansion begins among the operands before ``last``.
     """
     inner = last.args[0]
-    rest = bounded(inner)
+    rest = bounded_operator(inner)
     if rest is not None and inner.op == node.op and _ends_with(before, _operands(rest.body, node)):
         return Bounded(rest.op, rest.steps + 1, rest.body)
     if _ends_with(before, _operands(inner, node)):
@@ -116,7 +123,7 @@ def _ended_by(last: Formula, node: Formula, before: Sequence[Formula]) -> Bounde
     return None
 
 
-def _step(node: Formula) -> str:
+def _next_op(node: Formula) -> str:
     return "X" if node.op == "or" else "N"
 
 

@@ -1,8 +1,8 @@
 """Immutable, hash-consed formulas of truncated linear temporal logic.
 
 Equal formulas are one object, so you can compare them with ``is`` and use them as keys. The
-constructors below keep what was written: they do not simplify (see :mod:`tltlc.logic.rewrite`), and
-``&`` and ``|`` keep the order of their operands.
+constructors below keep formulas as written: they do not simplify (see :mod:`tltlc.logic.rewrite`),
+and ``&`` and ``|`` keep the order of their operands.
 """
 
 from __future__ import annotations
@@ -59,11 +59,11 @@ class Formula:
         return english_text(self)
 
     def __reduce__(self) -> tuple[object, ...]:
-        # Flat, since pickling nested operands recurses, and bounds nest deep.
+        # Pickle a flat list: pickling nested operands recurses, and bounds nest deep.
         return _last_of, (flattened([self])[0],)
 
     def walk(self) -> Iterator[Formula]:
-        """Yield every distinct subformula, this one first, left before right, without recursion."""
+        """Yield every distinct subformula: the formula itself first, left before right, without recursion."""
         seen: set[Formula] = set()
         stack = [self]
         while stack:
@@ -74,9 +74,9 @@ class Formula:
                 stack.extend(reversed(node.args))
 
     def bottom_up(self, known: Container[Formula] = ()) -> Iterator[Formula]:
-        """Yield every distinct subformula after its operands, this one last, without recursion.
+        """Yield every distinct subformula after its operands, the formula itself last, without recursion.
 
-        Skips subformulas in ``known``, and everything that occurs only inside them.
+        Skips subformulas in ``known``, and subformulas that occur only inside these.
         """
         seen: set[Formula] = set()
         stack = [(self, False)]
@@ -117,7 +117,7 @@ FALSE: Final = _intern("false")
 
 
 def atom(name: str) -> Formula:
-    """Return the atom of that name."""
+    """Return the atom called ``name``."""
     return _intern("atom", (), name)
 
 
@@ -204,15 +204,14 @@ def strong_release(left: Formula, right: Formula) -> Formula:
 def then(left: Formula, right: Formula) -> Formula:
     """Return ``left then right`` = ``F(left & X F right)`` (semantics, section 2).
 
-    A right operand that is a ``then`` nests. If ``right`` already begins with ``F``, no second
-    ``F`` is added.
+    If ``right`` already begins with ``F``, as another ``then`` does, no second ``F`` is added.
     """
     rest = right if right.op == "F" else eventually(right)
     return eventually(and_(left, next_(rest)))
 
 
 FlatNodes = list[tuple[Op, tuple[int, ...], str]]
-"""Nodes as operator, indices of the operands, which come before them, and name."""
+"""Nodes as tuples: operator, indices of the operands, and name. Operands come before the nodes that use them."""
 
 
 def flattened(formulas: Iterable[Formula]) -> tuple[FlatNodes, list[int]]:

@@ -1,6 +1,6 @@
 """Cheap, sound answers about formulas on finite traces.
 
-Each function may answer "not known" where a proof would be long.
+Each function may give no answer where a proof would be long.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ _DEEPEST: Final = 40
 _COMPLEMENT_DEPTH: Final = 3
 _LAST_DEPTH: Final = 6
 
-_Shows = Callable[[Formula, Formula], bool]
+_Prover = Callable[[Formula, Formula], bool]
 
 
 def syntactically_implies(premise: Formula, conclusion: Formula) -> bool:
@@ -50,9 +50,9 @@ def complement(formula: Formula, depth: int = _COMPLEMENT_DEPTH) -> Formula:
 
 
 def value_at_last(formula: Formula, depth: int = _LAST_DEPTH) -> bool | None:
-    """Return the truth of the formula at the last sample of any trace.
+    """Return the truth of the formula at the last sample of every trace.
 
-    Returns None if it depends on atoms or is not known.
+    Returns None if this truth depends on atoms, or was not found within ``depth`` operators.
     """
     op = formula.op
     if op in ("true", "N"):
@@ -101,11 +101,11 @@ def _implies(p: Formula, q: Formula, known: dict[tuple[Formula, Formula], bool],
         if depth > _DEEPEST or len(known) > _MOST_PAIRS:
             return False
         known[p, q] = False  # a proof may not use its own conclusion
-        result = known[p, q] = _shown(p, q, known, depth + 1)
+        result = known[p, q] = _prove(p, q, known, depth + 1)
     return result
 
 
-def _shown(p: Formula, q: Formula, known: dict[tuple[Formula, Formula], bool], depth: int) -> bool:
+def _prove(p: Formula, q: Formula, known: dict[tuple[Formula, Formula], bool], depth: int) -> bool:
     """Whether one proof step shows the implication; each line is a law of finite traces."""
 
     def shows(premise: Formula, conclusion: Formula) -> bool:
@@ -123,16 +123,16 @@ def _shown(p: Formula, q: Formula, known: dict[tuple[Formula, Formula], bool], d
         or (q.op == "or" and any(shows(p, part) for part in b))
         or (q.op == "implies" and (shows(p, b[1]) or shows(p, complement(b[0]))))
         or (p.op == "not" and q.op == "not" and shows(b[0], a[0]))
-        or (p.is_temporal and _premise_weakened(p, q, shows))
-        or (q.is_temporal and _conclusion_strengthened(p, q, shows))
-        or (p.is_temporal and q.is_temporal and _both_temporal(p, q, shows))
+        or (p.is_temporal and _weaken_premise(p, q, shows))
+        or (q.is_temporal and _strengthen_conclusion(p, q, shows))
+        or (p.is_temporal and q.is_temporal and _compare_operands(p, q, shows))
     )
 
 
-def _premise_weakened(p: Formula, q: Formula, shows: _Shows) -> bool:
-    """Prove the conclusion from something weaker than the temporal premise.
+def _weaken_premise(p: Formula, q: Formula, shows: _Prover) -> bool:
+    """Whether the conclusion follows from a formula that the temporal premise implies.
 
-    ``G a`` gives ``a``, ``a U b`` gives ``a | b``, …
+    ``G a`` implies ``a``, ``a U b`` implies ``a | b``, …
     """
     a = p.args
     match p.op:
@@ -148,10 +148,10 @@ def _premise_weakened(p: Formula, q: Formula, shows: _Shows) -> bool:
             return False
 
 
-def _conclusion_strengthened(p: Formula, q: Formula, shows: _Shows) -> bool:
-    """Prove something stronger than the temporal conclusion.
+def _strengthen_conclusion(p: Formula, q: Formula, shows: _Prover) -> bool:
+    """Whether the premise implies a formula that implies the temporal conclusion.
 
-    ``a`` gives ``F a``, ``b`` gives ``a U b``, …
+    ``a`` implies ``F a``, ``b`` implies ``a U b``, …
     """
     b = q.args
     match q.op:
@@ -167,8 +167,11 @@ def _conclusion_strengthened(p: Formula, q: Formula, shows: _Shows) -> bool:
             return False
 
 
-def _both_temporal(p: Formula, q: Formula, shows: _Shows) -> bool:
-    """Use monotonicity, and ``F G a`` = ``G F a``: both mean ``a`` at the last sample."""
+def _compare_operands(p: Formula, q: Formula, shows: _Prover) -> bool:
+    """Whether the operator of ``p`` implies that of ``q``, and the operands of ``p`` imply those of ``q`` in order.
+
+    ``F G`` and ``G F`` count as one operator: ``F G a`` and ``G F a`` both mean ``a`` at the last sample.
+    """
     a, b = p.args, q.args
     if (p.op, q.op) in _NOT_WEAKER and all(shows(x, y) for x, y in zip(a, b, strict=True)):
         return True

@@ -9,7 +9,7 @@ from tltlc.logic.formula import FALSE, TRUE, Formula, Op
 from tltlc.logic.implication import DUAL
 
 _Signed = tuple[Formula, bool]
-"""A formula, taken as it is (True) or negated (False)."""
+"""A formula and its sign: True for the formula itself, False for its negation."""
 
 
 def negation_normal_form(formula: Formula) -> Formula:
@@ -66,9 +66,9 @@ def _expand(signed: _Signed) -> tuple[Op, tuple[_Signed, ...]]:
         return "or" if positive else "and", (_strip((left, not positive)), _strip((right, positive)))
     if op == "iff":
         left, right = node.args
-        agree = build.and_(left, right if positive else build.not_(right))
-        other = build.and_(build.not_(left), build.not_(right) if positive else right)
-        return "or", (_strip((agree, True)), _strip((other, True)))
+        if_left = build.and_(left, right if positive else build.not_(right))
+        if_not_left = build.and_(build.not_(left), build.not_(right) if positive else right)
+        return "or", (_strip((if_left, True)), _strip((if_not_left, True)))
     if not positive:
         op = {"and": "or", "or": "and"}.get(op, DUAL.get(op, op))  # type: ignore[assignment]
     return op, tuple(_strip((argument, positive)) for argument in node.args)
@@ -93,9 +93,10 @@ def _gather(op: Op, operands: tuple[_Signed, ...]) -> tuple[_Signed, ...]:
 
 
 def _combine(signed: _Signed, op: Op, operands: tuple[Formula, ...]) -> Formula:
+    """Return the normal form of a signed formula, given its top operator and the normal forms of its operands."""
     node, positive = signed
     if op in ("and", "or"):
-        # An operand may have been reduced to the same operator, as (a & b) | (a & b) is.
+        # The normal form of an operand may have the same operator: (a & b) | (a & b) becomes a & b.
         parts = (operand.args if operand.op == op else (operand,) for operand in operands)
         flat = dict.fromkeys(chain.from_iterable(parts))
         return build.and_(*flat) if op == "and" else build.or_(*flat)

@@ -1,6 +1,6 @@
 """The meaning of formulas, computed slowly from the definitions (semantics, sections 1 and 2).
 
-Everything faster in this package is tested against this module.
+Tests compare everything faster in this package with this module.
 """
 
 from __future__ import annotations

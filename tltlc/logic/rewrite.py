@@ -22,9 +22,9 @@ _MOST_STEPS: Final = 50
 class Rewrite:
     """A rewrite of formulas whose outermost operator is in ``ops``.
 
-    ``apply`` returns an equal formula with no more atoms, constants and operators than before, or
-    the same object if the law does not match. ``law`` holds equations ``left = right``, separated
-    by ``;``, that are instances of the rewrite.
+    ``apply`` returns an equal formula with no more atoms, constants and operators than before. It
+    returns the same object if the rewrite does not match. ``law`` holds equations ``left = right``,
+    separated by ``;``, that are instances of the rewrite.
     """
 
     name: str
@@ -40,85 +40,91 @@ REWRITES: Final = (
         "negation",
         ("not",),
         "!true = false; !!a = a; !(a -> b) = a & !b; !(!a & b) = a | !b; !(!a <-> b) = a <-> b",
-        boolean_rules.negated,
+        boolean_rules.push_not,
     ),
     Rewrite(
         "temporal negation",
         ("not",),
         "!X a = N !a; !N a = X !a; !F a = G !a; !G !a = F a; !(!a U b) = a R !b; !(!a W b) = a M !b",
-        temporal_rules.negated,
+        temporal_rules.push_not,
     ),
     Rewrite(
-        "constants", _AND_OR, "a & true = a; a & false = false; a | true = true; a | false = a", boolean_rules.constants
+        "constants",
+        _AND_OR,
+        "a & true = a; a & false = false; a | true = true; a | false = a",
+        boolean_rules.drop_constants,
     ),
-    Rewrite("idempotence", _AND_OR, "a & a = a; a | b | a = a | b", boolean_rules.repeated),
+    Rewrite("idempotence", _AND_OR, "a & a = a; a | b | a = a | b", boolean_rules.drop_repeated),
     Rewrite(
-        "complement", _AND_OR, "a & !a = false; F a | G !a = true; a & b & !a = false", boolean_rules.complementary
+        "complement",
+        _AND_OR,
+        "a & !a = false; F a | G !a = true; a & b & !a = false",
+        boolean_rules.decide_complementary,
     ),
-    Rewrite("absorption", _AND_OR, "a & (a | b) = a; F a & F(a & b) = F(a & b); G a | a = a", boolean_rules.absorbed),
+    Rewrite("absorption", _AND_OR, "a & (a | b) = a; F a & F(a & b) = F(a & b); G a | a = a", boolean_rules.absorb),
     Rewrite(
-        "resolution", _AND_OR, "a & (!a | b) = a & b; a & (a -> b) = a & b; a | !a & b = a | b", boolean_rules.resolved
+        "resolution", _AND_OR, "a & (!a | b) = a & b; a & (a -> b) = a & b; a | !a & b = a | b", boolean_rules.resolve
     ),
     Rewrite(
         "factor",
         _AND_OR,
         "F a & G c | F b & G c = (F a | F b) & G c; (a | b) & (a | c) = a | b & c",
-        boolean_rules.factored,
+        boolean_rules.factor,
     ),
     Rewrite(
         "last sample",
         _AND_OR,
         "F G a & F G b = F G (a & b); G F a | F G b = G F (a | b)",
-        temporal_rules.merged_at_last,
+        temporal_rules.merge_at_last,
     ),
     Rewrite(
         "distribution",
         _AND_OR,
         "G a & G b = G(a & b); F a | F b = F(a | b); X a & N b = X(a & b); X a | N b = N(a | b); X a & X b = X(a & b)",
-        temporal_rules.merged,
+        temporal_rules.distribute,
     ),
     Rewrite(
         "expansion",
         _AND_OR,
         "a | X F a = F a; a & N G a = G a; b | a & X(a U b) = a U b; b & (a | N(a R b)) = a R b",
-        temporal_rules.folded,
+        temporal_rules.fold_expansion,
     ),
     Rewrite(
         "weak and strong",
         _AND_OR,
         "a U b | G a = a W b; a M b | G b = a R b; a W b & F b = a U b; a R b & F a = a M b",
-        temporal_rules.strengthened,
+        temporal_rules.merge_weak_and_strong,
     ),
     Rewrite(
         "implication",
         ("implies",),
         "true -> a = a; a -> false = !a; a -> a | b = true; !a -> b = a | b",
-        boolean_rules.implications,
+        boolean_rules.shorten_implication,
     ),
     Rewrite(
         "equivalence",
         ("iff",),
         "a <-> a = true; a <-> !a = false; true <-> a = a; a <-> false = !a; !a <-> !b = a <-> b",
-        boolean_rules.equivalences,
+        boolean_rules.shorten_equivalence,
     ),
     Rewrite(
         "constant operand",
         ("X", "N", "F", "G"),
         "F true = true; F false = false; G true = true; G false = false; X false = false; N true = true",
-        temporal_rules.constant_operand,
+        temporal_rules.evaluate_constant,
     ),
     Rewrite(
         "trace end",
         ("F", "G"),
         "F N a = true; G X a = false; F(a | N b) = true; G(b & F X a) = false",
-        temporal_rules.decided_at_last,
+        temporal_rules.evaluate_at_last,
     ),
     Rewrite(
         "nesting",
         ("F", "G"),
         "F F a = F a; F(a U b) = F b; F(a M b) = F(a & b); F G F a = G F a; F X a = X F a; F(a | F b) = F(a | b); "
         "G G a = G a; G(a R b) = G b; G(a W b) = G(a | b); G F G a = F G a; G N a = N G a; G(a & (c R b)) = G(a & b)",
-        temporal_rules.nested,
+        temporal_rules.simplify_nested,
     ),
     Rewrite(
         "until",
@@ -126,7 +132,7 @@ REWRITES: Final = (
         "a U true = true; a U false = false; false U a = a; true U a = F a; !a U a = F a; a U (a U b) = a U b; "
         "a U F b = F b; a W true = true; "
         "a W false = G a; false W a = a; true W a = true; !a W a = true; (a W b) W b = a W b",
-        temporal_rules.untils,
+        temporal_rules.simplify_until,
     ),
     Rewrite(
         "release",
@@ -134,7 +140,7 @@ REWRITES: Final = (
         "a R true = true; a R false = false; true R a = a; false R a = G a; !a R a = G a; a R (a R b) = a R b; "
         "a R G b = G b; a M true = F a; "
         "a M false = false; true M a = a; false M a = false; !a M a = false; (a M b) M b = a M b",
-        temporal_rules.releases,
+        temporal_rules.simplify_release,
     ),
 )
 """The rewrites, in the order in which they are tried."""
@@ -154,7 +160,7 @@ def simplify(formula: Formula, known: dict[Formula, Formula] | None = None) -> F
     """
     known = {} if known is None else known
     for _ in range(_MOST_PASSES):
-        simpler = _one_pass(formula, known)
+        simpler = _run_pass(formula, known)
         if simpler is formula:
             break
         formula = simpler
@@ -173,14 +179,14 @@ def size(formula: Formula) -> int:
     return sizes[formula]
 
 
-def _one_pass(formula: Formula, done: dict[Formula, Formula]) -> Formula:
+def _run_pass(formula: Formula, done: dict[Formula, Formula]) -> Formula:
     for node in formula.bottom_up(known=done):
-        done[node] = _at_root(rebuild(node, tuple(done[argument] for argument in node.args)))
+        done[node] = _rewrite_root(rebuild(node, tuple(done[argument] for argument in node.args)))
     return done[formula]
 
 
 @lru_cache(maxsize=16384)
-def _at_root(node: Formula) -> Formula:
+def _rewrite_root(node: Formula) -> Formula:
     """Apply rewrites to the outermost operator until none matches."""
     for _ in range(_MOST_STEPS):
         for rewrite in _BY_OP.get(node.op, ()):

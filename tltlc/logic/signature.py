@@ -1,6 +1,6 @@
 """The truth of a formula on a few fixed traces, to prove quickly that one does not imply another.
 
-The traces are 64 pseudo-random ones of three samples, and their suffixes of two and one samples.
+The traces are 64 pseudo-random traces of three samples, and their suffixes of two samples and of one.
 """
 
 from __future__ import annotations
@@ -18,28 +18,28 @@ _WORD: Final = (1 << _WIDTH) - 1
 _LAST: Final = _WORD << 2 * _WIDTH
 _ALL: Final = (1 << 3 * _WIDTH) - 1
 
-_known: WeakKeyDictionary[Formula, int] = WeakKeyDictionary()
+_cache: WeakKeyDictionary[Formula, int] = WeakKeyDictionary()
 
 
 def signature(formula: Formula) -> int:
-    """Return the truth at the three positions of the 64 traces.
+    """Return the truth of the formula at the three positions of the 64 traces, as 192 bits.
 
-    The first position is in the lowest 64 bits. If ``a`` implies ``b`` on every finite trace, then
-    ``signature(a) & ~signature(b)`` is 0.
+    The lowest 64 bits are the truth at the first position, one bit for each trace. If ``a`` implies
+    ``b`` on every finite trace, then ``signature(a) & ~signature(b)`` is 0.
     """
-    bits = _known.get(formula)
+    bits = _cache.get(formula)
     if bits is not None:
         return bits
     stack = [formula]
     while stack:
         node = stack[-1]
-        missing = [argument for argument in node.args if argument not in _known]
+        missing = [argument for argument in node.args if argument not in _cache]
         if missing:
             stack.extend(missing)
         else:
             stack.pop()
-            _known[node] = _bits(node, [_known[argument] for argument in node.args])
-    return _known[formula]
+            _cache[node] = _bits(node, [_cache[argument] for argument in node.args])
+    return _cache[formula]
 
 
 def _bits(node: Formula, operands: list[int]) -> int:

@@ -14,7 +14,7 @@ from tltlc.logic.formula import FALSE, TRUE, Formula, Op
 from tltlc.logic.implication import DUAL, complement, syntactically_implies, value_at_last
 
 
-def negated(node: Formula) -> Formula:
+def push_not(node: Formula) -> Formula:
     """Push ``not`` through a temporal operator if the result is no longer."""
     (inner,) = node.args
     if not inner.is_temporal or (len(inner.args) == 2 and all(part.op != "not" for part in inner.args)):
@@ -23,7 +23,7 @@ def negated(node: Formula) -> Formula:
     return build.temporal(DUAL[inner.op], args)
 
 
-def constant_operand(node: Formula) -> Formula:
+def evaluate_constant(node: Formula) -> Formula:
     """Evaluate ``X F G N`` of a constant.
 
     ``X true`` and ``N false`` stay, because they are about the end of the trace.
@@ -33,16 +33,16 @@ def constant_operand(node: Formula) -> Formula:
     return inner if inner is reducible and inner in (TRUE, FALSE) else node
 
 
-def decided_at_last(node: Formula) -> Formula:
-    """Evaluate ``F`` of an operand that is true, or ``G`` of one that is false, at every last sample."""
+def evaluate_at_last(node: Formula) -> Formula:
+    """Replace ``F p`` by ``true`` if p is true at every last sample, and ``G p`` by ``false`` if p is false there."""
     value = value_at_last(node.args[0])
     if value is None or value != (node.op == "F"):
         return node
     return TRUE if value else FALSE
 
 
-def nested(node: Formula) -> Formula:
-    """Simplify ``F`` and ``G`` over temporal operators that are partly redundant below them."""
+def simplify_nested(node: Formula) -> Formula:
+    """Simplify ``F`` and ``G`` over temporal operators: ``F F a`` becomes ``F a``, and ``F(a U b)`` becomes ``F b``."""
     (inner,) = node.args
     until, strong = ("U", "M") if node.op == "F" else ("R", "W")
     if inner.op == node.op:
@@ -61,7 +61,7 @@ def nested(node: Formula) -> Formula:
     return node
 
 
-def untils(node: Formula) -> Formula:
+def simplify_until(node: Formula) -> Formula:
     """Simplify ``U W`` with constants, or where one operand implies the other or its negation."""
     left, right = node.args
     strong = node.op == "U"
@@ -78,7 +78,7 @@ def untils(node: Formula) -> Formula:
     return right if strong and right.op == "F" else node
 
 
-def releases(node: Formula) -> Formula:
+def simplify_release(node: Formula) -> Formula:
     """Simplify ``R M`` with constants, or where one operand implies the other or its negation."""
     left, right = node.args
     weak = node.op == "R"
@@ -95,7 +95,7 @@ def releases(node: Formula) -> Formula:
     return right if weak and right.op == "G" else node
 
 
-def merged(node: Formula) -> Formula:
+def distribute(node: Formula) -> Formula:
     """Merge operands that begin with the same temporal operator.
 
     ``X a & N b`` becomes an ``X``, and ``X a | N b`` an ``N``.
@@ -110,22 +110,22 @@ def merged(node: Formula) -> Formula:
         parts = [node.args[index] for index in positions]
         op = decides if any(part.op == decides for part in parts) else parts[0].op
         combined = build.temporal(op, (join(node.op, (part.args[0] for part in parts)),))
-        return _replaced(node, positions, combined)
+        return _replace(node, positions, combined)
     return node
 
 
-def merged_at_last(node: Formula) -> Formula:
-    """Merge operands that are only about the last sample."""
+def merge_at_last(node: Formula) -> Formula:
+    """Merge operands ``F G p`` and ``G F p``, which are only about the last sample."""
     positions = [i for i, part in enumerate(node.args) if part.op in ("F", "G") and part.args[0].op == DUAL[part.op]]
     if len(positions) < 2:
         return node
     first = node.args[positions[0]]
     body = join(node.op, (node.args[index].args[0].args[0] for index in positions))
-    return _replaced(node, positions, build.temporal(first.op, (build.temporal(first.args[0].op, (body,)),)))
+    return _replace(node, positions, build.temporal(first.op, (build.temporal(first.args[0].op, (body,)),)))
 
 
-def folded(node: Formula) -> Formula:
-    """Recombine ``F G U W R M`` from their expansions: one part for this sample, one for the rest."""
+def fold_expansion(node: Formula) -> Formula:
+    """Replace the expansion of ``F G U W R M``, a part for this sample and a part for the rest, by the operator."""
     inner_op = "or" if node.op == "and" else "and"
     for index, part in enumerate(node.args):
         if part.op in ("X", "N"):
@@ -139,7 +139,7 @@ def folded(node: Formula) -> Formula:
             continue
         positions = _positions(node, now)
         if positions is not None:
-            return _replaced(node, sorted({*positions, index}), whole)
+            return _replace(node, sorted({*positions, index}), whole)
     return node
 
 
@@ -149,7 +149,7 @@ _EXPANDED = {("or", "X"): "U", ("or", "N"): "W", ("and", "X"): "M", ("and", "N")
 def _expansion(op: str, part: Formula) -> tuple[Formula, Formula | None]:
     """Return ``a U b`` and ``b`` for ``a & X(a U b)`` in an ``or``, and likewise for W, M and R.
 
-    The second is None if the part is not such an expansion.
+    The second formula is None if the part is not such an expansion.
     """
     for index, step in enumerate(part.args):
         if step.op in ("X", "N") and step.args[0].op == _EXPANDED[op, step.op]:
@@ -159,7 +159,7 @@ def _expansion(op: str, part: Formula) -> tuple[Formula, Formula | None]:
     return part, None
 
 
-def strengthened(node: Formula) -> Formula:
+def merge_weak_and_strong(node: Formula) -> Formula:
     """Merge ``a U b | G a`` and related pairs into one operator."""
     weak = node.op == "or"
     pairs: dict[str, tuple[str, int, Callable[[Formula, Formula], Formula]]] = (
@@ -172,7 +172,7 @@ def strengthened(node: Formula) -> Formula:
             companion, operand, make = pairs[part.op]
             partner = build.temporal("G" if companion == "G" else "F", (part.args[operand],))
             if partner in node.args:
-                return _replaced(node, sorted((index, node.args.index(partner))), make(*part.args))
+                return _replace(node, sorted((index, node.args.index(partner))), make(*part.args))
     return node
 
 
@@ -188,7 +188,7 @@ def _positions(node: Formula, part: Formula) -> list[int] | None:
     return None
 
 
-def _replaced(node: Formula, positions: Collection[int], new: Formula) -> Formula:
+def _replace(node: Formula, positions: Collection[int], new: Formula) -> Formula:
     """Return the node with ``new`` at the first of the positions and the others removed."""
     first = min(positions)
     parts = (new if i == first else part for i, part in enumerate(node.args) if i == first or i not in positions)

@@ -7,7 +7,7 @@ from collections.abc import Callable, Collection
 from tltlc.automaton.finite.successors import Successors
 from tltlc.automaton.transitions import FALSE, TRUE
 from tltlc.logic import formula as build
-from tltlc.logic.bounded import bounded, counted_down
+from tltlc.logic.bounded import bounded_operator, count_down
 from tltlc.logic.formula import Formula
 
 _TERM_LIMIT = 64
@@ -102,13 +102,13 @@ class ObligationWriter:
             formula = successors.formulas[variable]
             if formula is None or variable in removed:
                 continue
-            shorter = counted_down(formula)
+            shorter = count_down(formula)
             if shorter is None:
                 continue
             shorter_variables = set()
             while shorter is not None:
                 shorter_variables.add(successors.variable(shorter))
-                shorter = counted_down(shorter)
+                shorter = count_down(shorter)
             smaller = self.restricted(obligation, shorter_variables, formula.args[0].op == "and")
             if smaller == obligation:
                 continue
@@ -223,7 +223,7 @@ class ObligationWriter:
 
 
 def _is_long_bound(formula: Formula) -> bool:
-    operator = bounded(formula)
+    operator = bounded_operator(formula)
     return operator is not None and operator.steps > _MOST_FACTORED
 
 

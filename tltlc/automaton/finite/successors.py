@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from tltlc.automaton.transitions import ACCEPT, FALSE, REJECT, TRUE, TransitionDiagrams
-from tltlc.logic.bounded import counted_down, counted_down_from
+from tltlc.logic.bounded import count_down, count_down_from
 from tltlc.logic.formula import Formula
 
 
@@ -62,7 +62,7 @@ class Successors:
         if known is not None:
             return known
         # Shortest bound first, so that long bounds need no deep recursion; variables still get numbers in source order.
-        chain = [formula, *counted_down_from(formula, self._obligation_of)]
+        chain = [formula, *count_down_from(formula, self._obligation_of)]
         for bound in chain[:-1]:
             self.variable(bound)
         for bound in reversed(chain):
@@ -206,7 +206,7 @@ class Successors:
 def _implied_by(formula: Formula) -> list[Formula]:
     """Return temporal subformulas that the formula implies."""
     op, args = formula.op, formula.args
-    if op in ("X", "N") and args[0].op == "and" and (shorter := counted_down(formula)):
+    if op in ("X", "N") and args[0].op == "and" and (shorter := count_down(formula)):
         return [shorter]
     if op in ("G", "R", "M") and args[-1].is_temporal:
         return [args[-1]]
@@ -219,7 +219,7 @@ def _implied_by(formula: Formula) -> list[Formula]:
 def _that_imply(formula: Formula) -> list[Formula]:
     """Return temporal subformulas that imply the formula."""
     op, args = formula.op, formula.args
-    if op in ("X", "N") and args[0].op == "or" and (shorter := counted_down(formula)):
+    if op in ("X", "N") and args[0].op == "or" and (shorter := count_down(formula)):
         return [shorter]
     if op in ("F", "U", "W") and args[-1].is_temporal:
         return [args[-1]]

@@ -15,7 +15,7 @@ from tltlc.automaton.infinite.normal_form import conjunction, disjunction
 from tltlc.automaton.transitions import FALSE, TRUE, ObligationDiagrams
 from tltlc.automaton.work import OutOfWork
 from tltlc.logic import formula as build
-from tltlc.logic.bounded import counted_down, counted_down_from
+from tltlc.logic.bounded import count_down, count_down_from
 from tltlc.logic.formula import Formula
 
 STEPS_PER_OBLIGATION: Final = 100
@@ -58,7 +58,7 @@ class ObligationAutomaton:
         if obligation is not None:
             return obligation
         # Shortest bound first, as over finite traces (`automaton/finite/successors.py`).
-        chain = [formula, *counted_down_from(formula, self._obligations)]
+        chain = [formula, *count_down_from(formula, self._obligations)]
         for bound in chain[:-1]:
             self._variable(bound)
         for bound in reversed(chain):
@@ -226,7 +226,7 @@ class ObligationAutomaton:
 
 def _implied_by(formula: Formula) -> Iterator[Formula]:
     """Yield temporal subformulas that the formula implies: ``F b`` for ``F(a & X F b)``."""
-    if formula.op == "X" and formula.args[0].op == "and" and (shorter := counted_down(formula)):
+    if formula.op == "X" and formula.args[0].op == "and" and (shorter := count_down(formula)):
         yield shorter
     left, right = formula.args if formula.op in ("U", "W") else (None, None)
     if formula.op == "W" and right is build.FALSE and left is not None and left.op in _TEMPORAL:
@@ -238,7 +238,7 @@ def _implied_by(formula: Formula) -> Iterator[Formula]:
 
 def _that_imply(formula: Formula) -> Iterator[Formula]:
     """Yield temporal subformulas that imply the formula: ``G b`` for ``a U G b``."""
-    if formula.op == "X" and formula.args[0].op == "or" and (shorter := counted_down(formula)):
+    if formula.op == "X" and formula.args[0].op == "or" and (shorter := count_down(formula)):
         yield shorter
     left, right = formula.args if formula.op in ("U", "W") else (None, None)
     if right is not None and right.op in _TEMPORAL:

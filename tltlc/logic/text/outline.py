@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tltlc.core.record import record
-from tltlc.logic.bounded import bounded, with_bounds
+from tltlc.logic.bounded import bounded_operator, operands_with_bounds
 from tltlc.logic.formula import FALSE, TRUE, Formula, always
 from tltlc.logic.text.english import clause_text, goal_texts, invariant_text, recurring_text, without_constants
 from tltlc.logic.text.phrases import is_state
@@ -11,9 +11,9 @@ from tltlc.logic.text.phrases import is_state
 
 @record
 class Goal:
-    """One goal in a sequence.
+    """One goal in a sequence, as English text.
 
-    ``together`` says that it may be reached at the same step as the previous goal.
+    ``together`` says whether the goal may be reached at the same step as the previous one.
     """
 
     text: str
@@ -24,9 +24,11 @@ class Goal:
 class Outline:
     """The conjuncts of a formula as English clauses, in order.
 
-    ``goals`` are sequences: the goals of one sequence must be reached in order, and the sequences
-    are independent. ``recurring`` are the things that infinite traces do again and again.
-    ``others`` are the remaining conjuncts.
+    - ``goals`` are sequences. The goals of one sequence must be reached in order; the sequences are
+      independent.
+    - ``throughout`` are the conditions that must hold at every step.
+    - ``recurring`` are the goals that an infinite trace must reach again and again.
+    - ``others`` are the remaining conjuncts.
     """
 
     goals: tuple[tuple[Goal, ...], ...] = ()
@@ -38,7 +40,8 @@ class Outline:
 def outline(formula: Formula, *, endless: bool = False) -> Outline:
     """Return the outline of a formula.
 
-    ``endless``: the formula is about traces that never end, and is a constant or has no constants.
+    ``endless`` says that the formula is about traces that never end. It must then be a constant, or
+    contain none.
     """
     formula = formula if endless else without_constants(formula)
     goals: list[tuple[Goal, ...]] = []
@@ -61,18 +64,18 @@ def outline(formula: Formula, *, endless: bool = False) -> Outline:
 
 
 def _conjuncts(formula: Formula) -> list[Formula]:
-    """Return the operands of the outermost ``and``, also of an ``and`` under ``G``.
+    """Return the operands of the outermost ``and``. The operands of an ``and`` below ``G`` get a ``G`` each.
 
-    Bounded operators stay whole.
+    Bounded operators are not split.
     """
     conjuncts: list[Formula] = []
     stack = [formula]
     while stack:
         node = stack.pop()
-        if node.op == "and" and bounded(node) is None and not is_state(node):
-            stack += reversed(with_bounds(node))
-        elif node.op == "G" and node.args[0].op == "and" and bounded(node.args[0]) is None:
-            stack += [always(part) for part in reversed(with_bounds(node.args[0]))]
+        if node.op == "and" and bounded_operator(node) is None and not is_state(node):
+            stack += reversed(operands_with_bounds(node))
+        elif node.op == "G" and node.args[0].op == "and" and bounded_operator(node.args[0]) is None:
+            stack += [always(part) for part in reversed(operands_with_bounds(node.args[0]))]
         else:
             conjuncts.append(node)
     return list(dict.fromkeys(conjuncts))

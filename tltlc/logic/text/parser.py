@@ -1,4 +1,4 @@
-"""Parse formulas in the ASCII notation, for artefacts: :func:`tltlc.logic.text.printer.ascii_text` reads back.
+"""Parse the formulas in artefacts: texts that :func:`tltlc.logic.text.printer.ascii_text` printed.
 
 The grammar of the language reads many more notations, and needs declarations.  This parser needs
 only the names of the atoms.
@@ -13,6 +13,7 @@ from typing import Final
 from tltlc.io.limits import WORK
 from tltlc.logic import formula as build
 from tltlc.logic.formula import Formula
+from tltlc.logic.text.notation import ASCII, OPERAND, STRENGTH
 
 _TOKEN: Final = re.compile(
     r"(?P<op><->|->|[!&|()]|[XNFGUWRM](?![\w.\[]))|(?P<bound>[FG])\[0,(?P<steps>[0-9]{1,7})\]"
@@ -37,9 +38,8 @@ _BINARY: Final[Mapping[str, Callable[[Formula, Formula], Formula]]] = {
     "->": build.implies,
     "<->": build.iff,
 }
-_STRENGTH: Final = {"(": 0, "<->": 1, "->": 2, "|": 3, "&": 4, "U": 5, "W": 5, "R": 5, "M": 5}
-_PREFIX: Final = 6
-"""The strength of the operators before an operand."""
+_STRENGTH: Final = {"(": 0, **{symbol.strip(): STRENGTH[op] for op, symbol in ASCII.infix.items()}}
+"""How tightly operators between two operands bind, by their symbols; an open bracket binds least."""
 
 _Operator = str | tuple[str, int]
 """An operator or an open bracket; ``F`` or ``G`` with a bound in steps."""
@@ -50,13 +50,13 @@ class _NoFormulaError(Exception):
 
 
 class FormulaParser:
-    """Parses formulas over atoms of the given names; texts that share a bound share its expansion."""
+    """Parses formulas over atoms with the given names; formulas that share a bound share its expansion."""
 
     def __init__(self, names: Iterable[str]) -> None:
         known = [name for name in dict.fromkeys(names) if name]
         self._atoms = {name: build.atom(name) for name in known}
         plain = {name for name in known if _PLAIN_NAME.fullmatch(name)}
-        # A name that begins another one, as `a` begins `a > 0`, must not match before the longer name is tried.
+        # If a name is the beginning of another name, as `a` is of `a > 0`, the longer name must be tried first.
         beginnings = {match.group() for name in set(known) - plain if (match := _PLAIN_NAME.match(name))}
         self._plain = plain - beginnings
         others = sorted(set(known) - self._plain, key=len, reverse=True)
@@ -68,7 +68,8 @@ class FormulaParser:
     def formula(self, text: str) -> Formula | None:
         """Return the formula, or None if the text is no formula over the names.
 
-        Takes linear time and no recursion.
+        Also returns None if the expansions of all bounds together are larger than the row "expanded
+        bounds" of :data:`~tltlc.io.limits.WORK` allows. Takes linear time and no recursion.
         """
         if text not in self._parsed:
             try:
@@ -161,7 +162,8 @@ class FormulaParser:
 
 
 def _strength(operator: _Operator) -> int:
-    return _STRENGTH.get(operator, _PREFIX) if isinstance(operator, str) else _PREFIX
+    """Return how tightly an operator binds; every operator before an operand binds alike."""
+    return _STRENGTH.get(operator, OPERAND) if isinstance(operator, str) else OPERAND
 
 
 def _after_blanks(text: str, position: int) -> int:

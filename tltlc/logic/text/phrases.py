@@ -6,9 +6,9 @@ import re
 from typing import Final
 
 from tltlc.logic.formula import Formula, atom, rebuild
-from tltlc.logic.text.notation import Notation, write
+from tltlc.logic.text.notation import Spelling, write
 
-_PHRASE: Final = Notation(
+_PHRASE: Final = Spelling(
     {"not": "not "},
     {"and": " and ", "or": " or ", "implies": " implies ", "iff": " exactly when "},
     {},
@@ -37,18 +37,18 @@ def _opposite(node: Formula) -> Formula | None:
     return comparison and atom(f"{comparison[1]} {_OPPOSITE[comparison[2]]} {comparison[3]}")
 
 
-def bracketed(state: Formula) -> str:
+def bracketed_phrase(state: Formula) -> str:
     """Return the formula as a phrase that reads as one unit."""
     return phrase(state) if is_literal(state) else f"({phrase(state)})"
 
 
 def object_phrase(state: Formula) -> str:
-    """Return the formula as the object of a verb.
+    """Return the formula as the object of a verb, in brackets unless it is a literal or a row of literals.
 
-    Literals joined by one `and` or `or` need no brackets there.
+    A row of literals is joined by `and` alone, or by `or` alone.
     """
     is_row = state.op in ("and", "or") and all(map(is_literal, state.args))
-    return phrase(state) if is_row else bracketed(state)
+    return phrase(state) if is_row else bracketed_phrase(state)
 
 
 def imperative(state: Formula, keep: str, avoid: str) -> str:
@@ -57,7 +57,7 @@ def imperative(state: Formula, keep: str, avoid: str) -> str:
         return f"{keep} {object_phrase(state)}"
     (avoided,) = state.args
     # "Avoid a and b" would mean to avoid each of them.
-    return f"{avoid} {bracketed(avoided) if avoided.op == 'and' else object_phrase(avoided)}"
+    return f"{avoid} {bracketed_phrase(avoided) if avoided.op == 'and' else object_phrase(avoided)}"
 
 
 def is_state(formula: Formula) -> bool:

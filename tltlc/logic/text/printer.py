@@ -18,7 +18,7 @@ def ascii_text(formula: Formula) -> str:
 
 
 def operand_text(formula: Formula) -> str:
-    """Return the formula like :func:`ascii_text`, but as an operand of ``!``, ``&`` or ``|``."""
+    """Return the formula like :func:`ascii_text`, in brackets if an operand of ``!`` or ``&`` needs them."""
     return write(formula, ASCII, OPERAND)
 
 

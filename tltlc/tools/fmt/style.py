@@ -8,7 +8,7 @@ from typing import Final
 from tltlc.core.record import EMPTY, record
 from tltlc.grammar import tree
 from tltlc.logic.formula import Op
-from tltlc.logic.text.notation import ASCII, UNICODE, WORDS, Notation
+from tltlc.logic.text.notation import ASCII, UNICODE, WORDS, Spelling
 
 _ARITHMETIC: Final = {**{op: f" {op} " for op in ("then", "<", "<=", ">", ">=", "+", "-", "*", "/")}, "^": "^"}
 
@@ -47,7 +47,7 @@ class Style:
 
 
 def _style(
-    notation: Notation, extra_infix: Mapping[str, str] = EMPTY, letters: Mapping[str, str] | None = None
+    notation: Spelling, extra_infix: Mapping[str, str] = EMPTY, letters: Mapping[str, str] | None = None
 ) -> Style:
     """Return the style of a notation; ``extra_infix`` has further spellings of infix operators."""
     prefix, infix, constants = (_by_text(table) for table in (notation.prefix, notation.infix, notation.constants))
