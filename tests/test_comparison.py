@@ -13,7 +13,7 @@ from tests.automaton.infinite.runs import compiled
 from tests.logic.strategies import formulas
 from tests.reference_formulas import read_formula
 from tltlc import compile_text
-from tltlc.automaton.compare import Trace, are_equivalent, is_included, less_is_left, separating
+from tltlc.automaton.compare import Trace, are_equivalent, is_included, separating, state_inclusion
 from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
 from tltlc.automaton.infinite.lasso import holds_on_lasso
@@ -73,13 +73,13 @@ def test_a_counterexample_has_no_impossible_samples(one: Formula, other: Formula
 
 def test_after_a_goal_less_remains() -> None:
     fspa = finite("F a & F b")
-    is_left = less_is_left(fspa)
+    is_left = state_inclusion(fspa)
     after = {edge.target for edge in fspa.edges if edge.source == 0} - {0}
     assert len(after) == 3
     assert all(is_left(0, state) and not is_left(state, 0) for state in after)
     assert is_left(0, 0)
     with pytest.raises(OutOfWork):
-        less_is_left(fspa, work=1)(0, 1)
+        state_inclusion(fspa, work=1)(0, 1)
 
 
 @settings(max_examples=150, deadline=None)

@@ -74,7 +74,7 @@ def record_measured_parts(monkeypatch: pytest.MonkeyPatch) -> list[Span]:
     return measured
 
 
-def test_the_budget_is_exact() -> None:
+def test_an_automaton_may_have_as_many_states_as_its_budget() -> None:
     spec = with_parts(*(eventually(atom(f"a{i}")) for i in range(5)))
     assert len(build(spec, state_budget=32).states) == 32
     error(spec, 31)
@@ -104,7 +104,7 @@ def test_deep_nesting_is_not_reported_as_a_lack_of_memory(monkeypatch: pytest.Mo
     assert [label.span for label in diagnostic.labels] == [Span(1, 2)]
 
 
-def test_a_long_chain_of_untils() -> None:
+def test_a_long_chain_of_untils_takes_a_state_for_each_atom() -> None:
     names = [atom(f"a{i}") for i in range(40)]
     formula = names[-1]
     for name in reversed(names[:-1]):

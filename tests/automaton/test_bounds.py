@@ -92,7 +92,7 @@ def test_overlapping_bounds_have_these_sizes(formula: str, states: int, semantic
 
 
 @pytest.mark.parametrize("semantics", ["finite", "infinite"])
-def test_labels_count_down(semantics: str) -> None:
+def test_labels_of_states_count_a_bound_down(semantics: str) -> None:
     labels = {str(state.label) for state in compiled("G(a -> F[0,50] b)", semantics).states}
     assert labels >= {f"G(a -> F[0,50] b) & F[0,{steps}] b" for steps in range(2, 50)}
 

@@ -121,7 +121,7 @@ def powerset(names: Sequence[str]) -> Iterator[tuple[str, ...]]:
 
 
 @pytest.mark.parametrize("semantics", ["finite", "infinite"])
-def test_the_help_on_many_exclusive_atoms_is_right(semantics: Literal["finite", "infinite"]) -> None:
+def test_the_help_on_too_many_exclusive_atoms_counts_their_pairs(semantics: Literal["finite", "infinite"]) -> None:
     """A group of 142 atoms has 10,011 pairs, each of which counts as a prime implicant; two groups have about half."""
     goal = eventually(or_(*map(atom, names(142))))
     diagnostic = refusal(replace(spec_from_formula(goal, exclusive=[names(142)]), semantics=semantics))

@@ -49,7 +49,7 @@ def test_accepts_the_traces_on_which_the_formula_holds(formula: Formula) -> None
 
 @given(WIDE, GROUPS)
 @settings(max_examples=150)
-def test_accepts_the_right_traces_with_exclusive_atoms(formula: Formula, groups: tuple[tuple[str, ...], ...]) -> None:
+def test_accepts_the_right_traces_if_atoms_are_exclusive(formula: Formula, groups: tuple[tuple[str, ...], ...]) -> None:
     fspa = compiled(formula, *groups)
     for trace in islice(traces(fspa, 3), 600):
         assert fspa.states[run(fspa, trace)].accepting == oracle.holds(formula, named(fspa, trace)), trace
@@ -249,7 +249,7 @@ def test_labels_of_cover_and_hide_are_those_of_the_paper() -> None:
         ("F(s1 & X F(s2 & X F(s3 & X F((r -> er) & (l -> el))))) & G p", 6),
     ],
 )
-def test_sizes_of_the_papers_specifications(text: str, states: int) -> None:
+def test_automata_of_the_papers_specifications_have_its_sizes(text: str, states: int) -> None:
     assert len(compiled(text).states) == states
 
 
@@ -275,7 +275,7 @@ def test_labels_of_a_long_sequence_show_only_the_remaining_goals(steps: int) -> 
     assert set(labels(fspa)) == {*(f"{rest} & G p" for rest in sequence), "G p", "false"}
 
 
-def test_labels_of_a_hundred_equal_goals() -> None:
+def test_labels_of_a_hundred_equal_goals_show_the_remaining_goals() -> None:
     sequence = ["F a"]
     for _ in range(99):
         sequence.append(f"F(a & X {sequence[-1]})")
@@ -283,16 +283,18 @@ def test_labels_of_a_hundred_equal_goals() -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "label", "accepting", "said"),
+    ("text", "label", "accepting", "sentence"),
     [
         ("X true", "true", False, "The trace must go on for one more step."),
         ("N false", "false", True, "The trace must end here."),
     ],
 )
-def test_the_english_label_says_whether_the_trace_must_go_on(text: str, label: str, accepting: bool, said: str) -> None:
+def test_the_english_label_says_whether_the_trace_must_go_on(
+    text: str, label: str, accepting: bool, sentence: str
+) -> None:
     fspa = compiled(text)
     state = next(state for state in fspa.states[1:] if state.accepting == accepting)
-    assert (str(state.label), label_text(fspa, state.id)) == (label, said)
+    assert (str(state.label), label_text(fspa, state.id)) == (label, sentence)
 
 
 def test_a_repeated_atom_in_a_group_changes_nothing() -> None:

@@ -23,15 +23,15 @@ def is_unsatisfiable(parts: list[Formula]) -> bool:
     return build(spec_from_formula(and_(*parts))).states[0].verdict == "violated"
 
 
-def blamed(*texts: str, exclusive: tuple[tuple[str, ...], ...] = ()) -> list[str]:
+def contradicting_parts(*texts: str, exclusive: tuple[tuple[str, ...], ...] = ()) -> list[str]:
     spec = spec_of([read_formula(text) for text in texts], exclusive)
     return [str(part.formula) for part in contradiction(spec)]
 
 
 def test_only_contradicting_parts_are_blamed() -> None:
-    assert blamed("G a", "F b", "F !a", "G c") == ["G a", "F !a"]
-    assert blamed("F b", "G F(a & X F b)") == ["G F(a & X F b)"]
-    assert blamed("F(a & b)", "F a", exclusive=(("a", "b"),)) == ["F(a & b)"]
+    assert contradicting_parts("G a", "F b", "F !a", "G c") == ["G a", "F !a"]
+    assert contradicting_parts("F b", "G F(a & X F b)") == ["G F(a & X F b)"]
+    assert contradicting_parts("F(a & b)", "F a", exclusive=(("a", "b"),)) == ["F(a & b)"]
 
 
 @given(st.lists(formulas(max_leaves=4), min_size=1, max_size=4))

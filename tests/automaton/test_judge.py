@@ -32,7 +32,7 @@ SIGNALS = "signal a: bool signal b: bool signal c: bool\n"
         ("a & N(a & N a)", "limit"),
     ],
 )
-def test_default_judge(text: str, judge: str) -> None:
+def test_formulas_true_of_nothing_yet_are_judged_at_the_limit(text: str, judge: str) -> None:
     assert default_judge(read_formula(text)) == judge
 
 
@@ -66,7 +66,7 @@ def test_default_judge(text: str, judge: str) -> None:
     ],
 )
 def test_bounds_keep_the_default_judge(clauses: str, judge: str) -> None:
-    assert judged(clauses) == judge
+    assert judge_of(clauses) == judge
 
 
 BOUNDS = {"F": ("F[0,0]", "F[0,1]", "F[0,2]", "F[1,2]"), "G": ("G[0,0]", "G[0,1]", "G[0,2]", "G[1,2]")}
@@ -79,14 +79,14 @@ OPERANDS = ("F a", "G a", "F G b", "G F b", "F (a & G c)", "G (a -> F c)", "a", 
 def test_a_formula_has_the_same_judge_without_bounds(operands: list[str], sign: str, data: st.DataObject) -> None:
     plain = f" {sign} ".join(f"({operand})" for operand in operands)
     bounded = "".join(data.draw(st.sampled_from((character, *BOUNDS.get(character, ())))) for character in plain)
-    assert judged(f"require {bounded}") == judged(f"require {plain}")
+    assert judge_of(f"require {bounded}") == judge_of(f"require {plain}")
 
 
 def test_the_bounds_of_a_let_count_in_every_clause_that_uses_it() -> None:
-    assert judged("require soon or F b require soon or F c") == "goal"
+    assert judge_of("require soon or F b require soon or F c") == "goal"
 
 
-def judged(clauses: str) -> str:
+def judge_of(clauses: str) -> str:
     """Return the judge of a spec with these clauses."""
     text = f"""
         clock 10 Hz

@@ -11,7 +11,7 @@ from tests.logic.strategies import formulas
 from tests.reference_formulas import read_formula
 from tltlc.automaton.finite import build as build_module
 from tltlc.automaton.finite.build import build, spec_from_formula
-from tltlc.automaton.finite.order import better_order, reordered, restored
+from tltlc.automaton.finite.order import better_order, reorder, restore_order
 from tltlc.automaton.transitions import TransitionDiagrams
 from tltlc.io.limits import WORK
 from tltlc.logic.formula import Formula, and_, atom, eventually, iff, or_
@@ -45,12 +45,12 @@ def test_a_good_order_is_kept(text: str) -> None:
 
 @given(formulas(atoms=ATOMS, max_leaves=8), st.permutations(range(4)), st.sampled_from([(), (ATOMS[:2],)]))
 @settings(max_examples=100, deadline=None)
-def test_another_order_gives_the_same_automaton(
+def test_any_order_of_atoms_gives_the_same_automaton(
     formula: Formula, order: list[int], groups: tuple[tuple[str, ...], ...]
 ) -> None:
     spec = spec_from_formula(or_(formula, and_(*map(atom, ATOMS))), exclusive=groups)
     order = [index for index in order if index < len(spec.atoms)]
-    reordered_back, expected = restored(build(reordered(spec, order)), spec, order), build(spec)
+    reordered_back, expected = restore_order(build(reorder(spec, order)), spec, order), build(spec)
     assert (reordered_back.atoms, reordered_back.exclusive) == (expected.atoms, expected.exclusive)
     assert _isomorphic(reordered_back, expected)
 
@@ -68,14 +68,14 @@ def test_pairs_compile_in_few_steps(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_a_spec_that_takes_few_steps_keeps_its_order(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(build_module, "restored", None)
+    monkeypatch.setattr(build_module, "restore_order", None)
     assert build(pairs(6))
     monkeypatch.setitem(WORK, "steps in the given order of atoms", 10)
     with pytest.raises(TypeError):
         build(pairs(6))
 
 
-def test_another_order_gives_the_same_automaton_of_pairs(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_spec_compiled_in_a_better_order_has_the_same_automaton(monkeypatch: pytest.MonkeyPatch) -> None:
     expected = build(pairs(6))
     monkeypatch.setitem(WORK, "steps in the given order of atoms", 10)
     assert _isomorphic(build(pairs(6)), expected)

@@ -14,7 +14,7 @@ from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.fspa import Fspa, Implicant
 from tltlc.automaton.infinite.cycles import Edge, Edges, marks_of
 from tltlc.automaton.infinite.mark_conditions import MarkClause, Marks, pair_marks
-from tltlc.automaton.infinite.products import Both, Leaf, conditions, separating_component
+from tltlc.automaton.infinite.products import Leaf, StatePair, conditions, separating_component
 from tltlc.automaton.work import DEFAULT_WORK, Work
 from tltlc.core.record import record
 
@@ -30,9 +30,7 @@ Node = TypeVar("Node", bound=Hashable)
 
 @record
 class Trace:
-    """A finite trace, ``prefix`` with an empty ``cycle``, or an infinite one that repeats ``cycle``
-    after ``prefix``.
-    """
+    """A trace: ``prefix``, followed by ``cycle`` forever.  The cycle of a finite trace is empty."""
 
     prefix: tuple[Letter, ...]
     cycle: tuple[Letter, ...] = ()
@@ -41,11 +39,11 @@ class Trace:
 def separating(one: Fspa, other: Fspa, work: int = DEFAULT_WORK, impossible: Iterable[Literals] = ()) -> Trace | None:
     """Return a trace that ``one`` accepts and ``other`` does not; None if there is none.
 
-    Over finite traces it is a shortest one.  ``impossible`` lists conjunctions of literals; no
+    Over finite traces, no such trace is shorter.  ``impossible`` lists conjunctions of literals; no
     letter of the trace satisfies any of them.
 
     Raises:
-        ValueError: one is over finite traces, and the other over infinite ones.
+        ValueError: one automaton is over finite traces, and the other over infinite traces.
         OutOfWork: the comparison takes more than ``work`` steps.
     """
     if one.semantics != other.semantics:
@@ -72,19 +70,20 @@ def are_equivalent(one: Fspa, other: Fspa, work: int = DEFAULT_WORK) -> bool:
     return is_included(one, other, work) and is_included(other, one, work)
 
 
-def less_is_left(fspa: Fspa, work: int = DEFAULT_WORK) -> Callable[[int, int], bool]:
-    """Return a predicate on two states of an automaton over finite traces.
+def state_inclusion(fspa: Fspa, work: int = DEFAULT_WORK) -> Callable[[int, int], bool]:
+    """Return a function that compares the languages of two states of an automaton over finite traces.
 
-    The predicate is true if the second state accepts every continuation that the first accepts.  It
-    raises the errors of :func:`separating`; all its calls together take at most ``work`` steps.
+    The function returns whether its second state accepts every continuation that its first state
+    accepts.  It raises the errors of :func:`separating`.  All calls together take at most ``work``
+    steps.
     """
     product = _Product(fspa, fspa, Work(work))
 
-    def is_left(one: int, other: int) -> bool:
+    def is_included_in(one: int, other: int) -> bool:
         with recursion_room():
             return product.trace((one, other)) is None
 
-    return is_left
+    return is_included_in
 
 
 class _Product:
@@ -93,53 +92,57 @@ class _Product:
     def __init__(self, one: Fspa, other: Fspa, work: Work, impossible: Iterable[Literals] = ()) -> None:
         self._pair, self._work = (one, other), work
         impossible = tuple(impossible)
-        self._names = _in_order((atom.name for fspa in self._pair for atom in fspa.atoms), impossible)
-        self._place = {name: index for index, name in enumerate(self._names)}
+        self._names = _group_related((atom.name for fspa in self._pair for atom in fspa.atoms), impossible)
+        self._index_of = {name: index for index, name in enumerate(self._names)}
         self._letters: Diagrams[Any] = Diagrams(work)
         groups = [[fspa.atoms[atom].name for atom in group] for fspa in self._pair for group in fspa.exclusive]
-        places = [[self._place[name] for name in group] for group in groups]
-        # Strings, since the table could not tell True and False from the indices 1 and 0 of edges.
+        places = [[self._index_of[name] for name in group] for group in groups]
+        # The values are strings: the table could not tell True and False from the indices 1 and 0 of edges.
         self._allowed = at_most_one(self._letters, places, _ALLOWED, _RULED_OUT)
         for literals in impossible:
-            cube = self._cube([(self._place[name], holds) for name, holds in literals], _RULED_OUT, _ALLOWED)
-            self._allowed = self._letters.combined(_if_allowed_by, self._allowed, cube, {})
+            cube = self._cube([(self._index_of[name], holds) for name, holds in literals], _RULED_OUT, _ALLOWED)
+            self._allowed = self._letters.apply(_allowed_by_both, self._allowed, cube, {})
         self._steps: dict[tuple[int, int], int] = {}
         self._leaving = [_edges_by_source(fspa) for fspa in self._pair]
-        self._known: dict[Both, list[tuple[Both, Marks, Letter]]] = {}
+        self._known: dict[StatePair, list[tuple[StatePair, Marks, Letter]]] = {}
         # The marks of the second automaton are numbered after the marks of the first.
         firsts = (0, 2 * len(one.acceptance))
         self._marks = [
             [pair_marks(marks, first) for marks in fspa.marks()] for fspa, first in zip(self._pair, firsts, strict=True)
         ]
 
-    def trace(self, start: Both = (0, 0)) -> Trace | None:
-        """Return a shortest finite trace that the first accepts from its state and the second rejects from its own."""
+    def trace(self, start: StatePair = (0, 0)) -> Trace | None:
+        """Return a shortest finite trace that the first automaton accepts and the second one rejects; None if none.
+
+        Each automaton starts at its own state of ``start``.
+        """
         one, other = self._pair
 
-        def is_wanted(both: Both) -> bool:
+        def separates(both: StatePair) -> bool:
             return one.states[both[0]].accepting and not other.states[both[1]].accepting
 
-        path = _shortest_path([start], self._moves, is_wanted, at_least=1)
+        path = _shortest_path([start], self._moves, separates, at_least=1)
         return None if path is None else Trace(path)
 
     def lasso(self) -> Trace | None:
         """Return an infinite trace that the first automaton accepts and the second does not."""
-        these, those = conditions(*(len(fspa.acceptance) for fspa in self._pair))
+        accepting, rejecting = conditions(*(len(fspa.acceptance) for fspa in self._pair))
 
-        def leaves(both: Both) -> list[Leaf]:
+        def leaves(both: StatePair) -> list[Leaf]:
             return [(target, marks) for target, marks, _ in self._step(both)]
 
-        part = separating_component([(0, 0)], leaves, [(these, those)], self._work)
-        return None if part is None else self._through(part, these, those)
+        part = separating_component([(0, 0)], leaves, [(accepting, rejecting)], self._work)
+        return None if part is None else self._lasso_through(part, accepting, rejecting)
 
-    def _through(self, part: Edges, these: Sequence[MarkClause], those: Sequence[MarkClause]) -> Trace:
-        """Return a lasso whose cycle stays in a part of the product that the first accepts and the second rejects.
+    def _lasso_through(self, part: Edges, accepting: Sequence[MarkClause], rejecting: Sequence[MarkClause]) -> Trace:
+        """Return a lasso whose cycle stays in ``part``, a part of the product.
 
-        The cycle takes every mark that decides this: the ``inf`` marks of a clause of
-        the first automaton, and the ``fin`` marks in the part of all clauses of the second.
+        A clause of ``accepting`` accepts the part, and no clause of ``rejecting`` does.  So that the
+        same holds for the cycle, it takes every ``inf`` mark of the accepting clause, and every
+        ``fin`` mark in the part of the rejecting clauses.
         """
         marks_in_part = marks_of(part)
-        clause = next(clause for clause in these if clause.accepts(marks_in_part))
+        clause = next(clause for clause in accepting if clause.accepts(marks_in_part))
         inside = sorted(part, key=lambda edge: (edge[0], edge[1], sorted(edge[2])))
         letter_of = {edge: self._letter(edge) for edge in inside}
         begin = inside[0][0]
@@ -147,9 +150,9 @@ class _Product:
         assert into is not None
         cycle: list[Letter] = []
         place = begin
-        missing = set(clause.infs).union(*(rejected.fins & marks_in_part for rejected in those))
+        missing = set(clause.infs).union(*(clause.fins & marks_in_part for clause in rejecting))
 
-        leaving: dict[Both, list[tuple[Both, Letter]]] = {}
+        leaving: dict[StatePair, list[tuple[StatePair, Letter]]] = {}
         for (source, target, _), edge_letter in letter_of.items():
             leaving.setdefault(source, []).append((target, edge_letter))
 
@@ -168,25 +171,27 @@ class _Product:
 
     # --- steps ------------------------------------------------------------------------------------
 
-    def _moves(self, both: Both) -> Iterator[tuple[Both, Letter]]:
+    def _moves(self, both: StatePair) -> Iterator[tuple[StatePair, Letter]]:
         yield from ((target, letter) for target, _, letter in self._step(both))
 
     def _letter(self, edge: Edge) -> Letter:
         return next(letter for target, marks, letter in self._step(edge[0]) if (target, marks) == edge[1:])
 
-    def _step(self, both: Both) -> list[tuple[Both, Marks, Letter]]:
-        """Return the successors of a pair of states, each with the marks on the way and a letter that leads there."""
+    def _step(self, both: StatePair) -> list[tuple[StatePair, Marks, Letter]]:
+        """Return the successors of a pair of states, each with the marks of the step and a letter that leads there."""
         successors = self._known.get(both)
         if successors is None:
             left, right = (self._edges_by_letter(which, state) for which, state in enumerate(both))
-            step = self._letters.combined(self._together, left, right, {})
-            step = self._letters.combined(_if_allowed, step, self._allowed, {})
+            step = self._letters.apply(self._joint_successor, left, right, {})
+            step = self._letters.apply(_keep_if_allowed, step, self._allowed, {})
             successors = self._known[both] = [
-                (*leaf, frozenset(letter)) for leaf, letter in self._with_letters(step).items() if leaf is not None
+                (*leaf, frozenset(letter))
+                for leaf, letter in self._values_with_letters(step).items()
+                if leaf is not None
             ]
         return successors
 
-    def _together(self, left: int, right: int) -> tuple[Both, Marks]:
+    def _joint_successor(self, left: int, right: int) -> tuple[StatePair, Marks]:
         one, other = self._pair
         marks = self._marks[0][left] | self._marks[1][right]
         return (one.edges[left].target, other.edges[right].target), marks
@@ -196,31 +201,34 @@ class _Product:
         edge_taken = self._steps.get((which, state))
         if edge_taken is None:
             fspa = self._pair[which]
-            place = [self._place[atom.name] for atom in fspa.atoms]
-            taken = [self._taken(index, fspa.edges[index].guard.primes, place) for index in self._leaving[which][state]]
-            edge_taken = self._steps[which, state] = self._greatest(taken)
+            place = [self._index_of[atom.name] for atom in fspa.atoms]
+            taken = [
+                self._edge_function(index, fspa.edges[index].guard.primes, place)
+                for index in self._leaving[which][state]
+            ]
+            edge_taken = self._steps[which, state] = self._maximum(taken)
         return edge_taken
 
-    def _taken(self, index: int, primes: Iterable[Implicant], place: Sequence[int]) -> int:
+    def _edge_function(self, index: int, primes: Iterable[Implicant], place: Sequence[int]) -> int:
         """Return the function that is the edge's index on letters that satisfy one of its primes, else ``_NO_EDGE``.
 
         ``place`` maps the atoms of the primes to atoms of the product.
         """
-        return self._greatest(
+        return self._maximum(
             [self._cube([(place[atom], holds) for atom, holds in prime], index, _NO_EDGE) for prime in primes]
         )
 
-    def _greatest(self, steps: list[int]) -> int:
+    def _maximum(self, steps: list[int]) -> int:
         """Return the greatest value on each letter.
 
-        Combines neighbours first, as in a balanced tree: a large function is not traversed once for
-        each small one.
+        Combines neighbours first, as in a balanced tree, so that a large function is not traversed
+        once for each small function.
         """
         level = steps or [self._letters.leaf(_NO_EDGE)]
         while len(level) > 1:
             pairs = zip(level[::2], level[1::2], strict=False)
             odd = level[-1:] if len(level) % 2 else []
-            level = [*(self._letters.combined(max, one, other, {}) for one, other in pairs), *odd]
+            level = [*(self._letters.apply(max, one, other, {}) for one, other in pairs), *odd]
         return level[0]
 
     def _cube(self, literals: Iterable[tuple[int, bool]], inside: Any, outside: Any) -> int:
@@ -231,7 +239,7 @@ class _Product:
             cube = letters.node(atom, no, cube) if holds else letters.node(atom, cube, no)
         return cube
 
-    def _with_letters(self, step: int) -> dict[Any, list[str]]:
+    def _values_with_letters(self, step: int) -> dict[Any, list[str]]:
         """Return the values of a function of the letter, each with the atoms of a letter that has this value.
 
         Atoms are absent from the letter unless they are needed for the value.
@@ -253,10 +261,10 @@ class _Product:
         return letter_of
 
 
-def _in_order(names: Iterable[str], impossible: Iterable[Literals]) -> tuple[str, ...]:
-    """Return the names, each followed by the names of atoms that occur with it in an ``impossible`` conjunction.
+def _group_related(names: Iterable[str], impossible: Iterable[Literals]) -> tuple[str, ...]:
+    """Return the names; each is followed by the atoms that occur with it in an ``impossible`` conjunction.
 
-    Diagrams explode if such atoms are far apart.
+    If such atoms were far apart, diagrams would become very large.
     """
     partners: dict[str, dict[str, None]] = {}
     for literals in impossible:
@@ -276,11 +284,11 @@ def _edges_by_source(fspa: Fspa) -> list[list[int]]:
     return leaving
 
 
-def _if_allowed(leaf: Any, allowed: str) -> Any:
+def _keep_if_allowed(leaf: Any, allowed: str) -> Any:
     return leaf if allowed == _ALLOWED else None
 
 
-def _if_allowed_by(one: str, other: str) -> str:
+def _allowed_by_both(one: str, other: str) -> str:
     return one if one == _RULED_OUT else other
 
 

@@ -49,7 +49,7 @@ class StepLimit:
         self._memos: list[dict[tuple[int, int], int]] = []
 
     def memo(self) -> dict[tuple[int, int], int]:
-        """Return the empty cache of a further operation; its length is the number of steps taken."""
+        """Return the empty cache of a new operation; the operation has taken as many steps as the cache has entries."""
         self._memos.append({})
         return self._memos[-1]
 
@@ -67,11 +67,11 @@ class StepLimit:
 class Diagrams(Generic[Leaf]):
     """A table of nodes and the operations on them.
 
-    ``variable[n]``, ``low[n]`` and ``high[n]`` describe inner node ``n``: the function ``high[n]``
-    where the variable holds, ``low[n]`` elsewhere.  Variables are ints and are tested in ascending
-    order.  ``value[n]`` is the value of leaf ``n``, whose ``variable`` is :data:`LEAF`.
+    Inner node ``n`` tests ``variable[n]``: it is the function ``high[n]`` where the variable holds,
+    and ``low[n]`` elsewhere.  Variables are ints and are tested in ascending order.  ``value[n]``
+    is the value of leaf ``n``, whose ``variable`` is :data:`LEAF`.
 
-    New inner nodes, and the steps of :meth:`combined`, count as ``work`` if it is given.  These
+    New inner nodes, and the steps of :meth:`apply`, count as ``work`` if it is given.  These
     operations raise :class:`~tltlc.automaton.work.OutOfWork` if no work is left.
     """
 
@@ -103,7 +103,7 @@ class Diagrams(Generic[Leaf]):
             number = self._leaves[value] = self._add(LEAF, _NO_NODE, _NO_NODE, value)
         return number
 
-    def _inner(self, key: tuple[int, int, int]) -> int:
+    def _add_inner(self, key: tuple[int, int, int]) -> int:
         """Add an inner node that is not in the table yet."""
         if self._work is not None:
             self._work.spend()
@@ -121,7 +121,7 @@ class Diagrams(Generic[Leaf]):
     # Most are closures over the tables: attribute look-ups would cost a third of the run time.
 
     def _node_maker(self) -> Callable[[int, int, int], int]:
-        nodes, inner = self._nodes, self._inner
+        nodes, inner = self._nodes, self._add_inner
 
         def node(variable: int, low: int, high: int) -> int:
             """Return the function ``high`` where the variable holds, ``low`` elsewhere."""
@@ -149,7 +149,7 @@ class Diagrams(Generic[Leaf]):
         except ``absorbing``.  The operation raises :class:`OutOfSteps` after ``limit.steps`` steps.
         """
         variable, low, high, value = self.variable, self.low, self.high, self.value
-        nodes, inner, leaf = self._nodes, self._inner, self.leaf
+        nodes, inner, leaf = self._nodes, self._add_inner, self.leaf
         memo = limit.memo()
 
         def operate(x: int, y: int) -> int:
@@ -190,10 +190,11 @@ class Diagrams(Generic[Leaf]):
 
         return operate
 
-    def combined(self, combine: Callable[[Any, Any], Leaf], x: int, y: int, memo: dict[tuple[int, int], int]) -> int:
-        """Return the function that applies ``combine`` to the values of x and y; any ``combine`` will do.
+    def apply(self, combine: Callable[[Any, Any], Leaf], x: int, y: int, memo: dict[tuple[int, int], int]) -> int:
+        """Return the function that applies ``combine``, any function of two values, to the values of x and y.
 
-        Calls with the same ``combine`` may share ``memo``.
+        Calls with the same ``combine`` may share ``memo``.  Raises
+        :class:`~tltlc.automaton.work.OutOfWork`.
         """
         result = memo.get((x, y))
         if result is not None:
@@ -207,12 +208,12 @@ class Diagrams(Generic[Leaf]):
             first = min(vx, vy)
             low_x, high_x = (self.low[x], self.high[x]) if vx == first else (x, x)
             low_y, high_y = (self.low[y], self.high[y]) if vy == first else (y, y)
-            low, high = self.combined(combine, low_x, low_y, memo), self.combined(combine, high_x, high_y, memo)
+            low, high = self.apply(combine, low_x, low_y, memo), self.apply(combine, high_x, high_y, memo)
             result = self.node(first, low, high)
         memo[x, y] = result
         return result
 
-    def mapped(self, change: Callable[[Any], Leaf], x: int, memo: dict[int, int]) -> int:
+    def map_leaves(self, change: Callable[[Any], Leaf], x: int, memo: dict[int, int]) -> int:
         """Return the function with ``change`` applied to every value.
 
         Calls with the same ``change`` may share ``memo``, from nodes to results.  A leaf that is in
@@ -288,18 +289,18 @@ def at_most_one(
 ) -> int:
     """Return the function that is ``yes`` where at most one variable of each group holds, ``no`` elsewhere.
 
-    ``conjoin``, if given, is the conjunction of functions to these two values.
+    ``conjoin``, if given, is the table's own conjunction of functions to these two values.
     """
 
-    def combined(x: int, y: int) -> int:
-        return diagrams.combined(lambda one, other: other if one == yes else no, x, y, {})
+    def conjunction(x: int, y: int) -> int:
+        return diagrams.apply(lambda left, right: right if left == yes else no, x, y, {})
 
     always, never = diagrams.leaf(yes), diagrams.leaf(no)
-    join, allowed = conjoin or combined, always
+    join, allowed = conjoin or conjunction, always
     for group in groups:
-        none, one = always, always
+        if_none, if_one = always, always
         for variable in sorted(set(group), reverse=True):
-            one = diagrams.node(variable, one, none)
-            none = diagrams.node(variable, none, never)
-        allowed = join(allowed, one)
+            if_none = diagrams.node(variable, if_none, if_one)
+            if_one = diagrams.node(variable, if_one, never)
+        allowed = join(allowed, if_none)
     return allowed

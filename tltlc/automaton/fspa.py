@@ -26,7 +26,7 @@ NOTATIONS: Final[tuple[Notation, ...]] = ("ascii", "unicode", "english")
 
 @record
 class Text:
-    """What another tool writes for a formula, a label or a guard, in three notations: no formula of the language."""
+    """A formula, label or guard that another tool wrote, in three notations.  It is no formula of the language."""
 
     ascii: str
     unicode: str
@@ -41,8 +41,8 @@ class State:
     """A state of the automaton.
 
     ``label`` is the formula that remains to be satisfied; ``str(label)`` is its ASCII notation.  In
-    an automaton of another tool, it may be a name.  ``accepting`` is true if a trace that ends here
-    is accepted (over infinite traces: if the state lies on an accepted cycle).
+    an automaton of another tool, the label may be a name.  ``accepting`` is true if a trace that
+    ends here is accepted (over infinite traces: if the state lies on an accepted cycle).
     ``verdict`` is the verdict of a trace that ends here.  ``distance`` is the least number of
     transitions to an accepting state, None for traps.
     """
@@ -58,10 +58,10 @@ class State:
 class Guard:
     """The condition under which an edge is taken.
 
-    ``formula`` is a short formula of it.  In an automaton of another tool, it may be text that is
-    no formula.  ``primes`` are all prime implicants of the
-    guard (``((),)`` is true).  With ``exclusive`` declarations D, ``primes`` are the prime implicants of
-    ``guard or not D`` that are not contained in ``not D`` (semantics, section 3).
+    ``formula`` states the condition as a short formula.  In an automaton of another tool,
+    ``formula`` may be text that is no formula.  ``primes`` are all prime implicants of the guard
+    (``((),)`` is true).  With ``exclusive`` declarations D, ``primes`` are the prime implicants of ``guard or not D`` that are not contained in ``not D`` (semantics,
+    section 3).
     """
 
     formula: Formula | Text
@@ -77,7 +77,7 @@ class Guard:
 class Edge:
     """An edge.  On each letter, exactly one of the edges that leave a state has a true guard.
 
-    At most one edge has the same source, target and sets of pairs.
+    No two edges have the same source, target and sets of pairs.
     """
 
     source: int
@@ -160,10 +160,10 @@ class Fspa:
 def _unpickled(
     nodes: FlatNodes, table: list[int | Text], primes: list[tuple[Implicant, ...]], fields: dict[str, Any]
 ) -> Fspa:
-    """Return a pickled automaton.
+    """Return the automaton.
 
-    ``table`` has the formula of the spec, the labels of the states and the formulas of the guards:
-    texts, or indices into ``nodes``.  ``primes`` are those of the guards.
+    ``table`` has the formula of the spec, then the labels of the states and the formulas of the
+    guards, each as a text or as an index into ``nodes``.  ``primes`` are those of the guards.
     """
     subformulas = unflattened(nodes)
     formulas = iter([entry if isinstance(entry, Text) else subformulas[entry] for entry in table])

@@ -36,8 +36,8 @@ class TooManyPrimes(Exception):
 
     ``whose`` and ``what`` name the count that is over its ``limit``: the prime implicants of a
     guard or the products of its short form (:data:`PRIME_LIMIT`), the prime implicants of all
-    guards (:data:`TOTAL_PRIME_LIMIT`), or the edges or partial products (these rows of
-    :data:`~tltlc.io.limits.WORK`).
+    guards (:data:`TOTAL_PRIME_LIMIT`), or the rows "edges" and "partial products" of
+    :data:`~tltlc.io.limits.WORK`.
     """
 
     def __init__(self, whose: str = "a guard", limit: int = PRIME_LIMIT, what: str = "prime implicants") -> None:
@@ -112,7 +112,7 @@ class Guards:
         if self._allowed == ACCEPT:
             cubes = self._all_primes(guard)
         else:
-            cubes = tuple(cube for cube in self._all_primes(self._upper(guard)) if self._possible(cube))
+            cubes = tuple(cube for cube in self._all_primes(self._upper(guard)) if self._is_possible(cube))
         self._total += len(cubes)
         if self._total > TOTAL_PRIME_LIMIT:
             raise TooManyPrimes("all guards", TOTAL_PRIME_LIMIT)
@@ -146,7 +146,7 @@ class Guards:
         return build.or_(*[build.and_(*[literals[literal] for literal in cube]) for cube in sorted(products)])
 
     def _negated_sums(self, guard: int) -> tuple[Cube, ...]:
-        """Return a product of sums, each sum as the cube that it forbids; empty if there are too many."""
+        """Return a product of sums, each sum as the cube that it forbids; no sums if there are too many."""
         try:
             return self._cover(self._negation(self._upper(guard)), self._negation(guard))
         except TooManyPrimes:
@@ -172,10 +172,10 @@ class Guards:
     def _negation(self, guard: int) -> int:
         negations = self._negations
         negation = negations.get(guard)
-        return self._diagrams.mapped(_negated, guard, negations) if negation is None else negation
+        return self._diagrams.map_leaves(_negate_leaf, guard, negations) if negation is None else negation
 
-    def _possible(self, cube: Cube) -> bool:
-        """Whether some allowed letter satisfies the cube; cached, since guards share many cubes."""
+    def _is_possible(self, cube: Cube) -> bool:
+        """Whether some allowed letter satisfies the cube; results are cached, since guards share many cubes."""
         known = self._possible_cubes.get(cube)
         if known is None:
             known = self._possible_cubes[cube] = self._is_met(cube)
@@ -184,7 +184,7 @@ class Guards:
     def _is_met(self, cube: Cube) -> bool:
         diagrams = self._diagrams
         rest = self._allowed
-        wanted = {literal >> 1: literal & 1 for literal in cube}
+        polarity_of = {literal >> 1: literal & 1 for literal in cube}
         stack, seen = [rest], {rest}
         while stack:
             node = stack.pop()
@@ -192,7 +192,7 @@ class Guards:
                 return True
             if node == REJECT:
                 continue
-            polarity = wanted.get(diagrams.variable[node])
+            polarity = polarity_of.get(diagrams.variable[node])
             for value, child in ((0, diagrams.low[node]), (1, diagrams.high[node])):
                 if polarity in (None, value) and child not in seen:
                     seen.add(child)
@@ -202,8 +202,8 @@ class Guards:
     def _all_primes(self, function: int) -> tuple[Cube, ...]:
         """Return every prime implicant of a function.
 
-        They are the prime implicants of the conjunction of both cofactors and, with a literal
-        added, the other prime implicants of each cofactor.
+        These are the prime implicants of the conjunction of both cofactors, and the other prime
+        implicants of each cofactor with a literal of the tested atom added.
         """
         known = self._primes.get(function)
         if known is None:
@@ -249,7 +249,7 @@ class Guards:
         return cover
 
     def _count(self, products: int) -> None:
-        """Count the products of a function; the functions computed on the way to a guard count too."""
+        """Count the products of a guard, or of a function computed for one; raises :class:`TooManyPrimes`."""
         self._products += products
         if products > PRIME_LIMIT:
             raise TooManyPrimes
@@ -257,7 +257,7 @@ class Guards:
             raise TooManyPrimes("all guards", WORK["partial products"], "partial products")
 
 
-def _negated(leaf: tuple[int, int]) -> tuple[int, int]:
+def _negate_leaf(leaf: tuple[int, int]) -> tuple[int, int]:
     """Return the other value of a guard: ``(TRUE, 1)`` for ``(FALSE, 0)``."""
     return 1 - leaf[0], 1 - leaf[1]
 

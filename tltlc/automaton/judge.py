@@ -16,9 +16,9 @@ def judge_of(parts: Iterable[Conjunct]) -> Judge:
 
 
 def default_judge(formula: Formula) -> Judge:
-    """Return ``limit`` if the formula is true of "nothing yet", else ``goal``.
+    """Return ``limit`` if the formula is true of "nothing yet", that is, before the first sample; else ``goal``.
 
-    In negation normal form, literals and ``G R W N`` are true of nothing yet, ``F U M X`` are
+    In negation normal form, literals and ``G R W N`` are true of nothing yet, and ``F U M X`` are
     false.
     """
     normal = negation_normal_form(formula)
@@ -26,16 +26,16 @@ def default_judge(formula: Formula) -> Judge:
     stack = [normal]
     while stack:
         node = stack[-1]
-        waiting = [part for part in _at_once(node) if part not in value]
+        waiting = [part for part in _boolean_operands(node) if part not in value]
         if waiting:
             stack.extend(waiting)
         else:
-            value[stack.pop()] = _of_nothing_yet(node, value)
+            value[stack.pop()] = _is_true_of_nothing_yet(node, value)
     return "limit" if value[normal] else "goal"
 
 
-def _at_once(node: Formula) -> list[Formula]:
-    """Return the operands of an ``and`` or ``or``; empty for any other operator and for ``F[0,n] p``.
+def _boolean_operands(node: Formula) -> list[Formula]:
+    """Return the operands of an ``and`` or ``or``; none for any other operator and for ``F[0,n] p``.
 
     ``F[0,n] p`` is the formula ``p | X(p | …)``.
     """
@@ -44,9 +44,9 @@ def _at_once(node: Formula) -> list[Formula]:
     return list(node.args) if node.op == "and" else []
 
 
-def _of_nothing_yet(node: Formula, value: dict[Formula, bool]) -> bool:
+def _is_true_of_nothing_yet(node: Formula, value: dict[Formula, bool]) -> bool:
     if node.op == "and":
-        return all(value[operand] for operand in _at_once(node))
+        return all(value[operand] for operand in _boolean_operands(node))
     if node.op == "or":
-        return any(value[operand] for operand in _at_once(node))
+        return any(value[operand] for operand in _boolean_operands(node))
     return node.op not in ("false", "F", "U", "M", "X")

@@ -20,10 +20,10 @@ def formula_text(fspa: Fspa, notation: Notation = "english") -> str:
 
 
 def label_text(fspa: Fspa, state: int, notation: Notation = "english") -> str:
-    """Return what remains to be satisfied in a state, given by its number, in a notation.
+    """Return the label of a state, given by its number, in a notation: what remains to be satisfied.
 
-    The English sentence says so if acceptance depends on whether the trace ends here: ``X`` leaves a
-    state with label ``true`` that rejects, and ``N`` leaves one with label ``false`` that accepts.
+    If acceptance depends on whether the trace ends here, the English sentence says so: ``X`` leads
+    to a rejecting state with label ``true``, and ``N`` to an accepting state with label ``false``.
     """
     label, accepting, endless = fspa.states[state].label, fspa.states[state].accepting, fspa.semantics == "infinite"
     if notation == "english" and not endless:

@@ -1,4 +1,4 @@
-"""Warn about a spec that every trace satisfies, or none."""
+"""Warn about a spec that every trace satisfies, or that no trace satisfies."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ _MOST_LABELS: Final = 4
 
 
 def verdict_warnings(spec: Spec, fspa: Fspa) -> tuple[Diagnostic, ...]:
-    """Return a warning if the initial state already decides the spec."""
+    """Return a warning if the initial state already decides the spec, as a tuple of one element or none."""
     verdict = fspa.states[0].verdict
     if verdict == "violated":
-        return (_unsatisfiable(spec),)
+        return (_unsatisfiable_warning(spec),)
     if verdict == "satisfied":
         title, label = f"every trace satisfies `{spec.name}`", Label(spec.source, spec.name_span)
         suggestion = "it asks nothing of the game: was an `and` meant where `or` or `implies` stands?"
@@ -35,7 +35,7 @@ def _recurs(formula: Formula) -> bool:
     return formula.op == "G" and formula.args[0].op == "F"
 
 
-def _unsatisfiable(spec: Spec) -> Diagnostic:
+def _unsatisfiable_warning(spec: Spec) -> Diagnostic:
     """Return the warning that no trace satisfies a spec; its labels mark the parts that contradict."""
     from tltlc.automaton.finite.contradiction import contradiction, unsatisfiable
 

@@ -33,7 +33,7 @@ class Work:
 
     @contextmanager
     def at_most(self, steps: int) -> Iterator[None]:
-        """Allow at most ``steps`` steps inside the ``with`` block; they count outside of it too."""
+        """Allow at most ``steps`` steps inside the ``with`` block; they are subtracted from this budget too."""
         aside = max(0, self.left - steps)
         self.left -= aside
         try:

@@ -25,17 +25,17 @@ def some_formulas(count: int, largest: int, seed: int, atoms: Sequence[str] = AB
     unary = (f.not_, f.next_, f.weak_next, f.eventually, f.always)
     binary = (f.until, f.weak_until, f.release, f.strong_release, f.and_, f.or_, f.implies, f.iff)
 
-    def grown(size: int) -> Formula:
+    def random_formula(size: int) -> Formula:
         if size <= 1:
             literal = f.atom(random.choice(atoms))
             return literal if random.random() < 0.7 else f.not_(literal)
         place = random.randrange(len(unary) + len(binary))
         if size == 2 or place < len(unary):
-            return unary[place % len(unary)](grown(size - 1))
+            return unary[place % len(unary)](random_formula(size - 1))
         left = random.randint(1, size - 2)
-        return binary[place - len(unary)](grown(left), grown(size - 1 - left))
+        return binary[place - len(unary)](random_formula(left), random_formula(size - 1 - left))
 
-    return [grown(random.randint(2, largest)) for _ in range(count)]
+    return [random_formula(random.randint(2, largest)) for _ in range(count)]
 
 
 def lasso(text: str) -> Lasso:
@@ -63,16 +63,16 @@ def some_lassos(atoms: Sequence[str], count: int, seed: int) -> list[Lasso]:
     return [(samples(0), samples(1)) for _ in range(count)]
 
 
-def allowed(word: Lasso, exclusive: Sequence[Sequence[str]]) -> Lasso:
+def make_exclusive(word: Lasso, exclusive: Sequence[Sequence[str]]) -> Lasso:
     """Return the lasso that keeps, in every sample, only the first true atom of each group."""
 
-    def kept(sample: Sample) -> Sample:
+    def first_of_each_group(sample: Sample) -> Sample:
         for group in exclusive:
             sample -= frozenset([atom for atom in group if atom in sample][1:])
         return sample
 
     prefix, cycle = word
-    return tuple(map(kept, prefix)), tuple(map(kept, cycle))
+    return tuple(map(first_of_each_group, prefix)), tuple(map(first_of_each_group, cycle))
 
 
 def accepts(automaton: Rabin, atoms: Sequence[str], word: Lasso, state: int = 0) -> bool:

@@ -44,7 +44,7 @@ def entries() -> list[Entry]:
         ]
 
 
-def made(formula: Formula) -> Rabin:
+def automaton_of(formula: Formula) -> Rabin:
     """Return the automaton of a formula of the table."""
     with recursion_room():
         return rabin(formula)
@@ -63,7 +63,7 @@ def _measure() -> None:
         table = csv.writer(file, delimiter="\t", lineterminator="\n")
         table.writerow(_COLUMNS)
         for entry in old:
-            automaton = made(entry.formula)
+            automaton = automaton_of(entry.formula)
             steps = DEFAULT_WORK - automaton.letters.work.left
             table.writerow([entry.source, entry.formula, states(automaton), automaton.pairs, steps])
 

@@ -36,10 +36,10 @@ def recurring_sets(edges: list[Edge]) -> list[tuple[Edge, ...]]:
 
 def _is_strongly_connected(edges: tuple[Edge, ...]) -> bool:
     states = {state for source, target, _ in edges for state in (source, target)}
-    return all(states <= reached(state, edges) for state in states)
+    return all(states <= reachable(state, edges) for state in states)
 
 
-def reached(start: int, edges: tuple[Edge, ...] | list[Edge]) -> set[int]:
+def reachable(start: int, edges: tuple[Edge, ...] | list[Edge]) -> set[int]:
     states, queue = {start}, [start]
     for state in queue:
         for source, target, _ in edges:
@@ -49,12 +49,12 @@ def reached(start: int, edges: tuple[Edge, ...] | list[Edge]) -> set[int]:
     return states
 
 
-def accepted(edges: tuple[Edge, ...]) -> bool:
+def is_accepted(edges: tuple[Edge, ...]) -> bool:
     met = {mark for edge in edges for mark in edge[2]}
     return any(2 * pair not in met and 2 * pair + 1 in met for pair in range(PAIRS))
 
 
-def touched(sets: list[tuple[Edge, ...]]) -> set[int]:
+def endpoints(sets: list[tuple[Edge, ...]]) -> set[int]:
     return {state for edges in sets for source, target, _ in edges for state in (source, target)}
 
 
@@ -64,12 +64,12 @@ def test_goals_verdicts_and_judge_match_their_definitions(graph: tuple[int, list
     states, edges = graph
     analysis = Analysis(states, edges, PAIRS, Work(1_000_000))
     cycles = recurring_sets(edges)
-    goals = touched([cycle for cycle in cycles if accepted(cycle)])
-    rejected = touched([cycle for cycle in cycles if not accepted(cycle)])
+    goals = endpoints([cycle for cycle in cycles if is_accepted(cycle)])
+    rejected = endpoints([cycle for cycle in cycles if not is_accepted(cycle)])
     assert analysis.goals == goals
     verdicts = []
     for state in range(states):
-        after = reached(state, edges)
+        after = reachable(state, edges)
         if not after & goals:
             verdicts.append("violated")
         elif not after & rejected:
@@ -78,8 +78,8 @@ def test_goals_verdicts_and_judge_match_their_definitions(graph: tuple[int, list
             verdicts.append("holding" if state in goals else "pending")
     assert [analysis.verdict(state) for state in range(states)] == verdicts
     alive = [edge for edge in edges if verdicts[edge[1]] != "violated"]
-    vain = touched([cycle for cycle in recurring_sets(alive) if not accepted(cycle)])
-    staying_suffices = not any(reached(goal, alive) & vain for goal in goals)
+    vain = endpoints([cycle for cycle in recurring_sets(alive) if not is_accepted(cycle)])
+    staying_suffices = not any(reachable(goal, alive) & vain for goal in goals)
     assert analysis.default_judge() == ("goal" if 0 not in goals and staying_suffices else "limit")
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.automaton.infinite.lassos import ABC, accepts, allowed, some_formulas, some_lassos
+from tests.automaton.infinite.lassos import ABC, accepts, make_exclusive, some_formulas, some_lassos
 from tests.automaton.infinite.products import equal, letters, opposite
 from tests.reference_formulas import read_formula
 from tltlc.automaton.finite.blowup import recursion_room
@@ -27,7 +27,7 @@ WORK = 300_000
 """Formulas that need more steps are skipped, to save time."""
 
 
-def made(formula: Formula, exclusive: Groups = ()) -> Rabin:
+def automaton_of(formula: Formula, exclusive: Groups = ()) -> Rabin:
     """Return the automaton of a formula over the atoms a, b and c."""
     with recursion_room():
         return rabin(formula, ABC, places(exclusive), WORK)
@@ -38,12 +38,12 @@ def places(exclusive: Groups) -> list[list[int]]:
     return [[ABC.index(atom) for atom in group] for group in exclusive]
 
 
-def some_made(count: int, largest: int, seed: int, exclusive: Groups = ()) -> Iterator[tuple[Formula, Rabin]]:
+def random_automata(count: int, largest: int, seed: int, exclusive: Groups = ()) -> Iterator[tuple[Formula, Rabin]]:
     """Yield ``count`` random formulas with their automata, except up to two that need too much work."""
     left_out = 0
     for formula in some_formulas(count, largest, seed):
         try:
-            yield formula, made(formula, exclusive)
+            yield formula, automaton_of(formula, exclusive)
         except OutOfWork:
             left_out += 1
     assert left_out <= 2
@@ -55,7 +55,7 @@ def some_made(count: int, largest: int, seed: int, exclusive: Groups = ()) -> It
 @SEEDS
 def test_accepts_the_lassos_on_which_the_formula_holds(seed: int) -> None:
     words = some_lassos(ABC, 20, seed)
-    for formula, automaton in some_made(60, 10, seed):
+    for formula, automaton in random_automata(60, 10, seed):
         for word in words:
             assert accepts(automaton, ABC, word) == holds_on_lasso(formula, *word), (formula, word)
 
@@ -63,23 +63,23 @@ def test_accepts_the_lassos_on_which_the_formula_holds(seed: int) -> None:
 @SEEDS
 def test_accepts_the_right_lassos_with_exclusive_atoms(seed: int) -> None:
     groups = GROUPS[seed % len(GROUPS)]
-    words = [allowed(word, groups) for word in some_lassos(ABC, 20, seed)]
-    for formula, automaton in some_made(30, 10, seed, groups):
+    words = [make_exclusive(word, groups) for word in some_lassos(ABC, 20, seed)]
+    for formula, automaton in random_automata(30, 10, seed, groups):
         for word in words:
             assert accepts(automaton, ABC, word) == holds_on_lasso(formula, *word), (formula, word)
 
 
 @SEEDS
 def test_a_formula_or_its_negation_accepts_each_word(seed: int) -> None:
-    for formula, automaton in some_made(20, 9, seed):
-        assert opposite(automaton, made(not_(formula)), letters(3)), formula
+    for formula, automaton in random_automata(20, 9, seed):
+        assert opposite(automaton, automaton_of(not_(formula)), letters(3)), formula
 
 
 @SEEDS
 def test_exclusive_atoms_change_nothing_on_possible_words(seed: int) -> None:
     groups = GROUPS[seed % len(GROUPS)]
-    for formula, automaton in some_made(20, 8, seed):
-        assert equal(made(formula, groups), automaton, letters(3, places(groups))), formula
+    for formula, automaton in random_automata(20, 8, seed):
+        assert equal(automaton_of(formula, groups), automaton, letters(3, places(groups))), formula
 
 
 @pytest.mark.parametrize(
@@ -93,7 +93,7 @@ def test_exclusive_atoms_change_nothing_on_possible_words(seed: int) -> None:
         ("G(a | X G b) & F G c", "(G a | a U X G b) & F G c"),
     ],
 )
-def test_equal_formulas(one: str, other: str) -> None:
+def test_automata_of_equal_formulas_accept_the_same_words(one: str, other: str) -> None:
     left, right = (rabin(read_formula(text), ABC) for text in (one, other))
     assert equal(left, right, letters(3))
     assert not opposite(left, right, letters(3))
@@ -102,12 +102,12 @@ def test_equal_formulas(one: str, other: str) -> None:
 def test_a_pair_of_obligations_differs_from_a_pair_of_truth_values() -> None:
     """The obligations (1, 0) and the pair (True, False) once shared a leaf, and the construction failed."""
     formula = read_formula("G X F F(!c & X !c R (c | X !b))")
-    automaton = made(formula)
+    automaton = automaton_of(formula)
     for word in some_lassos(ABC, 50, 0):
         assert accepts(automaton, ABC, word) == holds_on_lasso(formula, *word)
 
 
-def test_comparison_distinguishes_languages() -> None:
+def test_the_comparison_of_this_test_distinguishes_languages() -> None:
     left, right = (rabin(read_formula(text), ABC) for text in ("G F a", "F G a"))
     assert not equal(left, right, letters(3))
     assert not opposite(left, right, letters(3))
@@ -119,7 +119,7 @@ def test_comparison_distinguishes_languages() -> None:
 @pytest.mark.parametrize("exclusive", [(), *GROUPS])
 def test_automata_are_deterministic_complete_and_reachable(exclusive: Groups) -> None:
     possible = set(letters(3, places(exclusive)))
-    for _, automaton in some_made(40, 9, 1, exclusive):
+    for _, automaton in random_automata(40, 9, 1, exclusive):
         states = range(len(automaton.steps))
         for state in states:
             for letter in letters(3):
@@ -137,7 +137,7 @@ def test_automata_are_deterministic_complete_and_reachable(exclusive: Groups) ->
 
 def test_a_state_accepts_the_lassos_on_which_its_label_holds() -> None:
     words = some_lassos(ABC, 12, 0)
-    for _, automaton in some_made(100, 9, 2):
+    for _, automaton in random_automata(100, 9, 2):
         for state, label in enumerate(automaton.labels):
             for word in words:
                 assert accepts(automaton, ABC, word, state) == holds_on_lasso(label, *word), (
@@ -163,7 +163,7 @@ def test_a_state_accepts_the_lassos_on_which_its_label_holds() -> None:
         ("F G(a | X X b) | F G(c | X X d)", 8, 1),
     ],
 )
-def test_small_automata(text: str, states: int, pairs: int) -> None:
+def test_automata_of_simple_formulas_have_these_sizes(text: str, states: int, pairs: int) -> None:
     automaton = rabin(read_formula(text))
     assert (len(automaton.steps), automaton.pairs) == (states, pairs)
 
@@ -178,12 +178,12 @@ def test_conditions_that_are_rabin_pairs_need_one_state() -> None:
 
 
 @pytest.mark.parametrize("text", ["G(a -> X X X X X X X X X X X X b)", "G F a & G F b", "a U (b U (c U a))"])
-def test_work_is_bounded(text: str) -> None:
+def test_a_construction_stops_when_its_work_is_used_up(text: str) -> None:
     with pytest.raises(OutOfWork):
         rabin(read_formula(text), work=5)
 
 
-def test_a_formula_that_is_too_large_ends() -> None:
+def test_a_formula_that_is_too_large_uses_up_its_work() -> None:
     large = " & ".join(f"(G F a{i} -> G F b{i})" for i in range(8))
     with pytest.raises(OutOfWork):
         rabin(read_formula(large), work=200_000)

@@ -11,7 +11,7 @@ from tests.reference_formulas import read_formula
 from tltlc.automaton.diagrams import OutOfSteps
 from tltlc.automaton.guards import TooManyPrimes
 from tltlc.automaton.infinite import blowup
-from tltlc.automaton.infinite.blowup import blow_up
+from tltlc.automaton.infinite.blowup import budget_error
 from tltlc.automaton.infinite.contradiction import unsatisfiable
 from tltlc.automaton.work import OutOfWork
 from tltlc.core.record import replace
@@ -28,7 +28,7 @@ def fair(count: int) -> Spec:
 
 
 def diagnostic_of(spec: Spec, reason: Exception | None = None) -> Diagnostic:
-    (diagnostic,) = blow_up(spec, reason or OutOfWork()).diagnostics
+    (diagnostic,) = budget_error(spec, reason or OutOfWork()).diagnostics
     return diagnostic
 
 

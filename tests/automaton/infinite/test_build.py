@@ -31,7 +31,7 @@ def labels(fspa: Fspa) -> list[str]:
     return [str(state.label) for state in fspa.states]
 
 
-def judged(fspa: Fspa) -> list[tuple[str, str, int | None, bool]]:
+def state_rows(fspa: Fspa) -> list[tuple[str, str, int | None, bool]]:
     def row(state: State) -> tuple[str, str, int | None, bool]:
         return str(state.label), state.verdict, state.distance, state.accepting
 
@@ -121,7 +121,7 @@ def test_verdicts_and_goals_agree_with_each_other(formula: Formula) -> None:
 def test_the_papers_formulas_have_the_same_automaton_as_over_finite_traces(text: str, states: int) -> None:
     infinite, finite = compiled(text), build(spec_from_formula(read_formula(text)))
     assert len(infinite.states) == states
-    assert judged(infinite) == judged(finite)
+    assert state_rows(infinite) == state_rows(finite)
     assert infinite.edges == finite.edges
     assert (infinite.judge, infinite.spec_size) == (finite.judge, finite.spec_size)
 
@@ -154,7 +154,7 @@ def test_labels_keep_the_operators_and_the_order_of_the_source() -> None:
         ("F a & G F b", "limit"),
     ],
 )
-def test_default_judge(text: str, judge: str) -> None:
+def test_a_spec_is_judged_at_the_goal_if_staying_there_suffices(text: str, judge: str) -> None:
     assert compiled(text).judge == judge
 
 
@@ -170,7 +170,7 @@ def test_acceptance_is_on_transitions() -> None:
     fspa = compiled("G F a")
     assert [(edge.source, edge.target, edge.guard.text) for edge in fspa.edges] == [(0, 0, "!a"), (0, 0, "a")]
     assert [(pair.fin, pair.inf) for pair in fspa.acceptance] == [((), (1,))]
-    assert judged(fspa) == [("G F a", "holding", 0, True)]
+    assert state_rows(fspa) == [("G F a", "holding", 0, True)]
 
 
 def test_exclusive_atoms_make_skipping_impossible() -> None:
@@ -184,10 +184,10 @@ def test_exclusive_atoms_make_skipping_impossible() -> None:
 @pytest.mark.parametrize(
     ("weak", "strong"), [("N a", "X a"), ("G(a -> N b)", "G(a -> X b)"), ("a & N !a", "a & X !a"), ("N N a", "X X a")]
 )
-def test_weak_next_is_next(weak: str, strong: str) -> None:
+def test_weak_next_means_the_same_as_next(weak: str, strong: str) -> None:
     one, other = compiled(weak), compiled(strong)
     assert (one.edges, one.acceptance) == (other.edges, other.acceptance)
-    assert [state[1:] for state in judged(one)] == [state[1:] for state in judged(other)]
+    assert [state[1:] for state in state_rows(one)] == [state[1:] for state in state_rows(other)]
 
 
 @pytest.mark.parametrize("text", ["X true", "true", "F a | G !a", "G(a | !a)"])

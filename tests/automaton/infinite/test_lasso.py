@@ -57,13 +57,13 @@ a M b           b a | ab   no
 
 
 @pytest.mark.parametrize("case", CASES.strip().splitlines())
-def test_every_operator(case: str) -> None:
+def test_each_operator_has_the_value_computed_by_hand(case: str) -> None:
     formula, word, answer = case[:16], case[16:-3], case[-3:].strip()
     prefix, cycle = lasso(word)
     assert holds_on_lasso(read_formula(formula), prefix, cycle) == (answer == "yes")
 
 
-def test_a_cycle_is_not_empty() -> None:
+def test_an_empty_cycle_is_an_error() -> None:
     with pytest.raises(ValueError, match="empty"):
         holds_on_lasso(TRUE, [frozenset("a")], [])
 

@@ -8,9 +8,9 @@ import pytest
 
 from tests.automaton.infinite.lassos import ABC, some_formulas, some_lassos
 from tests.reference_formulas import read_formula
-from tltlc.automaton.infinite.delta2 import delta_2, delta_2_dually, has, is_pi_2, is_sigma_2
+from tltlc.automaton.infinite.delta2 import contains, delta_2, delta_2_dually, is_pi_2, is_sigma_2
 from tltlc.automaton.infinite.lasso import holds_on_lasso
-from tltlc.automaton.infinite.normal_form import infinite_form, is_rigid, negated, readable
+from tltlc.automaton.infinite.normal_form import infinite_form, is_rigid, negation, with_derived_operators
 from tltlc.automaton.work import OutOfWork
 from tltlc.logic.formula import FALSE, TRUE, Formula
 
@@ -22,19 +22,19 @@ def test_the_normal_form_keeps_the_meaning_and_its_negation_inverts_it(seed: int
     words = some_lassos(ABC, 12, seed)
     for formula in some_formulas(60, 10, seed):
         normal = infinite_form(formula)
-        opposite = negated(normal)
+        opposite = negation(normal)
         assert _is_normal(normal)
         assert _is_normal(opposite)
         for word in words:
             expected = holds_on_lasso(formula, *word)
             assert holds_on_lasso(normal, *word) == expected, formula
             assert holds_on_lasso(opposite, *word) != expected, formula
-            assert holds_on_lasso(readable(normal), *word) == expected, formula
+            assert holds_on_lasso(with_derived_operators(normal), *word) == expected, formula
 
 
 def test_readable_formulas_have_no_constant_operands() -> None:
     for formula in some_formulas(300, 10, 0):
-        for node in readable(infinite_form(formula)).walk():
+        for node in with_derived_operators(infinite_form(formula)).walk():
             assert not any(argument in (TRUE, FALSE) for argument in node.args)
 
 
@@ -78,13 +78,16 @@ def test_normalisation_keeps_the_meaning_and_reaches_delta_2(
         ("a | (a & b)", "a"),
     ],
 )
-def test_rewrites(formula: str, normal: str) -> None:
+def test_the_normal_form_is_simplified_by_known_rewrites(formula: str, normal: str) -> None:
     form = infinite_form(read_formula(formula))
-    assert str(readable(form)) in (normal, str(readable(infinite_form(read_formula(normal)))))
-    assert form is infinite_form(readable(form))
+    assert str(with_derived_operators(form)) in (
+        normal,
+        str(with_derived_operators(infinite_form(read_formula(normal)))),
+    )
+    assert form is infinite_form(with_derived_operators(form))
 
 
-def test_an_exploding_normalisation_ends() -> None:
+def test_a_normalisation_that_grows_too_large_stops() -> None:
     text = "a0"
     for i in range(1, 9):
         text = f"((({text}) U b{i}) W c{i})"
@@ -122,7 +125,7 @@ def _is_delta_2(formula: Formula) -> bool:
             stack += [operand for operand in node.args if operand not in seen]
             seen.update(node.args)
         elif node.op in ("G", "F"):
-            if has(node.args[0].args[0], "W" if node.op == "G" else "U"):
+            if contains(node.args[0].args[0], "W" if node.op == "G" else "U"):
                 return False
         elif not (is_sigma_2(node) or is_pi_2(node)):
             return False

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tltlc.automaton.infinite.products import Both, Leaf, conditions, separating_component
+from tltlc.automaton.infinite.products import Leaf, StatePair, conditions, separating_component
 from tltlc.automaton.work import OutOfWork, Work
 
 START, OVER = (0, 0), (1, 1)
@@ -12,7 +12,7 @@ ONE_FIN, ONE_INF, OTHER_FIN, OTHER_INF = range(4)
 """The marks of two automata with one pair each."""
 
 
-def loops(*marks: set[int]) -> dict[Both, list[Leaf]]:
+def loops(*marks: set[int]) -> dict[StatePair, list[Leaf]]:
     """Return two states on one cycle, with a loop at the second state for each set of marks."""
     leaves = [(OVER, frozenset(loop_marks)) for loop_marks in marks]
     return {START: [(OVER, frozenset())], OVER: [(START, frozenset()), *leaves]}
@@ -30,11 +30,13 @@ def loops(*marks: set[int]) -> dict[Both, list[Leaf]]:
         ({START: [(OVER, frozenset({ONE_INF}))], OVER: []}, (False, False)),
     ],
 )
-def test_cycles_that_one_accepts_and_the_other_does_not(graph: dict[Both, list[Leaf]], ways: tuple[bool, bool]) -> None:
+def test_cycles_that_only_one_automaton_accepts_are_found(
+    graph: dict[StatePair, list[Leaf]], ways: tuple[bool, bool]
+) -> None:
     one, other = conditions(1, 1)
-    visited: list[Both] = []
+    visited: list[StatePair] = []
 
-    def leaves(both: Both) -> list[Leaf]:
+    def leaves(both: StatePair) -> list[Leaf]:
         visited.append(both)
         return graph[both]
 
@@ -45,9 +47,9 @@ def test_cycles_that_one_accepts_and_the_other_does_not(graph: dict[Both, list[L
             assert (target, marks) in graph[source]
     either = separating_component([START], leaves, [(one, other), (other, one)], Work(1000))
     assert (either is not None) == any(ways)
-    assert sorted(visited) == [START, OVER], "each is asked once"
+    assert sorted(visited) == [START, OVER], "the successors of each pair are computed once"
 
 
-def test_work_is_bounded() -> None:
+def test_the_search_stops_when_its_work_is_used_up() -> None:
     with pytest.raises(OutOfWork):
         separating_component([START], loops({ONE_INF}).__getitem__, [conditions(1, 1)], Work(1))

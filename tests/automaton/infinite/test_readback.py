@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 
 from tests.automaton.infinite.lassos import ABC, some_formulas, some_lassos
-from tests.automaton.infinite.reference import entries, made
+from tests.automaton.infinite.reference import automaton_of, entries
 from tests.automaton.infinite.runs import compiled
 from tests.logic.small_formulas import formulas_of_size, formulas_up_to
 from tests.logic.strategies import formulas
@@ -16,14 +16,14 @@ from tests.logic.test_english import assert_sentence
 from tests.reference_formulas import read_formula
 from tltlc.automaton.infinite.factoring import Factoring
 from tltlc.automaton.infinite.lasso import holds_on_lasso
-from tltlc.automaton.infinite.normal_form import infinite_form, readable
+from tltlc.automaton.infinite.normal_form import infinite_form, with_derived_operators
 from tltlc.automaton.infinite.readback import NormalFormWriter, without_constants
 from tltlc.automaton.text import formula_text
 from tltlc.logic.formula import Formula
 from tltlc.logic.text.printer import ascii_text, english_text
 
 
-def written(label: str, source: str) -> str:
+def label_text(label: str, source: str) -> str:
     return ascii_text(NormalFormWriter(read_formula(source)).formula(infinite_form(read_formula(label))))
 
 
@@ -54,7 +54,7 @@ def written(label: str, source: str) -> str:
     ],
 )
 def test_a_label_is_as_short_as_the_operators_of_the_source_allow(source: str, label: str, expected: str) -> None:
-    assert written(label, source) == expected
+    assert label_text(label, source) == expected
 
 
 def test_a_label_shows_what_remains_of_each_clause() -> None:
@@ -79,11 +79,11 @@ def test_labels_keep_their_meaning_and_get_no_longer() -> None:
         if entry.steps > 20_000:
             continue
         writer, words = NormalFormWriter(entry.formula), some_lassos(entry.formula.atoms(), 6, 0)
-        for label in made(entry.formula).labels:
+        for label in automaton_of(entry.formula).labels:
             short = writer.formula(label)
             for word in words:
                 assert holds_on_lasso(short, *word) == holds_on_lasso(label, *word), (entry.formula, label, short)
-            saved = len(ascii_text(readable(label))) - len(ascii_text(short))
+            saved = len(ascii_text(with_derived_operators(label))) - len(ascii_text(short))
             assert saved >= 0, (entry.formula, short)
             shorter += saved > 0
     assert shorter > 100
@@ -115,7 +115,7 @@ def test_a_form_that_would_be_too_long_is_not_built() -> None:
         ("G F a U F G (a & X true)", "From some step on keep a throughout."),
     ],
 )
-def test_known_sentences(formula: str, sentence: str) -> None:
+def test_formulas_print_as_known_sentences(formula: str, sentence: str) -> None:
     fspa = compiled(formula)
     assert (fspa.formula, formula_text(fspa)) == (read_formula(formula), sentence)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.automaton.infinite.lassos import accepts, some_lassos
-from tests.automaton.infinite.reference import Entry, entries, made, states
+from tests.automaton.infinite.reference import Entry, automaton_of, entries, states
 from tltlc.automaton.infinite.lasso import holds_on_lasso
 
 ENTRIES = entries()
@@ -21,19 +21,19 @@ def test_the_table_is_complete() -> None:
 
 
 @pytest.mark.parametrize("chunk", range(CHUNKS))
-def test_small_formulas(chunk: int) -> None:
+def test_small_formulas_have_correct_automata_of_the_recorded_size(chunk: int) -> None:
     _check_language_and_size(QUICK[chunk::CHUNKS])
 
 
 @pytest.mark.slow
-def test_large_formulas() -> None:
+def test_large_formulas_have_correct_automata_of_the_recorded_size() -> None:
     _check_language_and_size(SLOW)
 
 
 def _check_language_and_size(entries_: list[Entry]) -> None:
     total = 0
     for entry in entries_:
-        automaton = made(entry.formula)
+        automaton = automaton_of(entry.formula)
         atoms = entry.formula.atoms()
         for word in some_lassos(atoms, 12, len(atoms)):
             assert accepts(automaton, atoms, word) == holds_on_lasso(entry.formula, *word), (entry.formula, word)

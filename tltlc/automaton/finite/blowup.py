@@ -33,7 +33,10 @@ class Size(NamedTuple):
 
 @contextmanager
 def recursion_room() -> Iterator[None]:
-    """Raise Python's recursion limit for a while: diagrams are as deep as a spec has atoms and temporal subformulas."""
+    """Raise Python's recursion limit inside the ``with`` block.
+
+    Diagrams are as deep as a spec has atoms and temporal subformulas.
+    """
     before = sys.getrecursionlimit()
     sys.setrecursionlimit(max(before, _RECURSION_ROOM))
     try:
@@ -42,7 +45,7 @@ def recursion_room() -> Iterator[None]:
         sys.setrecursionlimit(before)
 
 
-def blow_up(spec: Spec, reason: Exception, state_budget: int) -> TltlError:
+def budget_error(spec: Spec, reason: Exception, state_budget: int) -> TltlError:
     """Return the error for a spec whose automaton outgrew a budget: TLT0501 (states) or TLT0502 (prime implicants)."""
     too_large = f"needs more than {state_budget} states" if isinstance(reason, OutOfStates) else failure_text(reason)
     left = WORK["states of blamed parts"]
@@ -50,7 +53,7 @@ def blow_up(spec: Spec, reason: Exception, state_budget: int) -> TltlError:
     def size(part: Conjunct, spec: Spec) -> Size | None:
         nonlocal left
         if left < 0:
-            # The parts measured so far are more than a message names.
+            # A message names fewer parts than were measured so far.
             return Size(0, "")
         measured = _size(part, spec)
         left -= measured.number if measured else 0
@@ -60,7 +63,7 @@ def blow_up(spec: Spec, reason: Exception, state_budget: int) -> TltlError:
 
 
 def failure_text(reason: Exception) -> str:
-    """Say why the automaton failed when it was not the budget of states or work that ran out."""
+    """Return why the automaton failed, for reasons other than its budget of states or work."""
     if isinstance(reason, LabelsTooLong):
         return f"needs labels of more than {WORK['label nodes']} operators and atoms"
     return "needs formulas that nest too deeply" if isinstance(reason, RecursionError) else "needs too much memory"
@@ -71,7 +74,7 @@ def error_with_clauses(
 ) -> TltlError:
     """Return the error, labelled with the parts of the spec whose own automata are largest.
 
-    ``too_large`` says why the automaton failed if its guards are not the reason.  ``size`` returns
+    ``too_large`` says why the automaton failed, unless its guards are the reason.  ``size`` returns
     None for a part that is too large alone.
     """
     sizes: dict[Conjunct, Size | None] = {}
@@ -88,22 +91,22 @@ def error_with_clauses(
     if not sizes:
         labels: tuple[Label, ...] = (Label(spec.source, spec.name_span),)
     elif alone or len(spec.parts) == 1:
-        labels = (_cause(next(iter(alone or sizes))),)
+        labels = (_cause_label(next(iter(alone or sizes))),)
     else:
         labels = tuple(
             Label(part.source, part.span, f"{measured.words} alone; the parts multiply") for part, measured in worst[:3]
         )
     if isinstance(reason, TooManyPrimes):
-        return TltlError([Diagnostic("TLT0502", reason.title(spec.name), labels, _fewer_guards(spec, reason))])
+        return TltlError([Diagnostic("TLT0502", reason.title(spec.name), labels, _guard_advice(spec, reason))])
     title = f"the automaton of `{spec.name}` {too_large}"
     return TltlError([Diagnostic("TLT0501", title, labels, advice)])
 
 
-def _fewer_guards(spec: Spec, reason: TooManyPrimes) -> str:
-    """Suggest how to make the guards smaller or fewer."""
+def _guard_advice(spec: Spec, reason: TooManyPrimes) -> str:
+    """Return advice on how to make the guards smaller or fewer."""
     pairs = sum(len(group) * (len(group) - 1) // 2 for group in spec.exclusive)
     if reason.whose == "a guard" and 2 * pairs > reason.limit:
-        # Prime implicants are computed of `guard or not D`, and `not D` has one for each pair.
+        # The prime implicants are those of `guard or not D`, and `not D` has one for each pair.
         return f"declare fewer atoms `exclusive`, or several smaller groups: now {pairs} pairs exclude each other"
     if reason.whose == "a guard":
         return "split the spec, or name the condition as a predicate"
@@ -111,10 +114,10 @@ def _fewer_guards(spec: Spec, reason: TooManyPrimes) -> str:
     return order if spec.exclusive else f"declare atoms that never hold together `exclusive`, {order}"
 
 
-def _cause(part: Conjunct) -> Label:
-    """Label the part's longest bound, or the part if it has none.
+def _cause_label(part: Conjunct) -> Label:
+    """Return a label on the part's longest bound, or on the part if it has no bound.
 
-    An automaton may have to remember a bound of n samples n times over.
+    An automaton may have to count a bound of n samples from n different starts at once.
     """
     bound = max(part.bounds, key=lambda bound: bound.samples, default=None)
     if bound is None:
@@ -123,7 +126,7 @@ def _cause(part: Conjunct) -> Label:
 
 
 def _size(part: Conjunct, spec: Spec) -> Size | None:
-    """Return how many states one part's automaton has; None for :data:`_PART_BUDGET` or more."""
+    """Return the number of states of a part's own automaton; None for :data:`_PART_BUDGET` states or more."""
     normal = negation_normal_form(part.formula)
     successors = Successors([atom.name for atom in spec.atoms], TransitionDiagrams(steps=100_000))
     successors.number_variables(normal)

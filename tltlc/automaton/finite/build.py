@@ -1,4 +1,4 @@
-"""Build the automaton of a resolved spec: run the stages of this package in order.
+"""Build the automaton of a resolved spec over finite traces: run the stages of this package in order.
 
 formula -> normal form -> minimal machine -> states with acceptance -> distances, verdicts, guards,
 labels -> :class:`~tltlc.automaton.fspa.Fspa`.
@@ -10,11 +10,11 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 
 from tltlc.automaton.diagrams import OutOfSteps
-from tltlc.automaton.finite.blowup import blow_up, recursion_room
+from tltlc.automaton.finite.blowup import budget_error, recursion_room
 from tltlc.automaton.finite.composition import minimal_machine as compose
 from tltlc.automaton.finite.labels import LONGEST_SIMPLIFIED, Labels, LabelsTooLong
 from tltlc.automaton.finite.machine import Machine, OutOfStates
-from tltlc.automaton.finite.order import better_order, reordered, restored
+from tltlc.automaton.finite.order import better_order, reorder, restore_order
 from tltlc.automaton.finite.successors import Successors
 from tltlc.automaton.fspa import Edge, Fspa, Guard, State, Verdict
 from tltlc.automaton.guards import Guards, TooManyPrimes
@@ -42,7 +42,7 @@ def build(spec: Spec, *, state_budget: int = DEFAULT_STATE_BUDGET) -> Fspa:
         try:
             return _build(spec, state_budget)
         except (OutOfStates, OutOfSteps, TooManyPrimes, LabelsTooLong, RecursionError) as reason:
-            raise blow_up(spec, reason, state_budget) from None
+            raise budget_error(spec, reason, state_budget) from None
 
 
 def minimal_machine(
@@ -62,17 +62,17 @@ def minimal_machine(
 
 
 def _build(spec: Spec, state_budget: int) -> Fspa:
-    """Build the automaton; use another order of the atoms if the given order makes large diagrams."""
+    """Build the automaton; if the given order of the atoms makes large diagrams, use another one."""
     order = better_order(spec.formula, [atom.name for atom in spec.atoms])
     if order is None:
-        return _built(spec, state_budget)
+        return _build_in_order(spec, state_budget)
     try:
-        return _built(spec, state_budget, WORK["steps in the given order of atoms"])
+        return _build_in_order(spec, state_budget, WORK["steps in the given order of atoms"])
     except OutOfSteps:
-        return restored(_built(reordered(spec, order), state_budget), spec, order)
+        return restore_order(_build_in_order(reorder(spec, order), state_budget), spec, order)
 
 
-def _built(spec: Spec, state_budget: int, steps: int | None = None) -> Fspa:
+def _build_in_order(spec: Spec, state_budget: int, steps: int | None = None) -> Fspa:
     """Build the automaton in the given order of atoms.
 
     Raises :class:`OutOfSteps` if the machine or the guards take more than ``steps`` steps (None:
@@ -132,8 +132,9 @@ def _built(spec: Spec, state_budget: int, steps: int | None = None) -> Fspa:
 def state_leaves(minimal: Machine, diagrams: TransitionDiagrams) -> list[int]:
     """Return the states of the automaton, the initial one first.
 
-    No trace is empty, so the initial state may accept or reject.  It is merged with the leaf of its
-    obligation that is reached; if both leaves are reached, or none, it is the rejecting one.
+    No trace is empty, so the initial state may accept or reject.  If exactly one leaf of its
+    obligation is reached, that leaf is the initial state, too.  Otherwise the initial state is the
+    rejecting leaf.
     """
     reached = diagrams.leaves(*minimal.transitions.values())
     rejecting, accepting = diagrams.leaf((minimal.initial, 0)), diagrams.leaf((minimal.initial, 1))
@@ -241,12 +242,12 @@ def _labels(
     """
     diagrams = successors.diagrams
     labels = Labels(successors, minimal, negation_normal_form(source), allowed)
-    restored = _written_with_arrows(source, labels)
+    restored = _arrow_forms(source, labels)
     formulas: dict[int, Formula] = {}
     left = WORK["label nodes"]
-    own = labels.simplified(source)
+    own = labels.simplify_label(source)
     for state in minimal.transitions:
-        formula = _restored(labels.label(state), restored)
+        formula = _restore_arrows(labels.label(state), restored)
         formulas[state] = own if state == minimal.initial and labels.size(own) <= labels.size(formula) else formula
         left -= labels.size(formulas[state])
         if left < 0:
@@ -255,11 +256,11 @@ def _labels(
     return {leaf: formulas[value[leaf][0]] for leaf in order}
 
 
-def _written_with_arrows(source: Formula, labels: Labels) -> dict[Formula, Formula]:
+def _arrow_forms(source: Formula, labels: Labels) -> dict[Formula, Formula]:
     """Map the normal form of each ``->`` and ``<->`` in the source to the formula as written.
 
-    Leaves out parts that are too long to read.  If the others together have more nodes than the row
-    "arrow nodes" of ``WORK`` allows, the largest are left out too.
+    Leaves out parts that are too long to read.  If the remaining parts together have more nodes
+    than the row "arrow nodes" of ``WORK`` allows, leaves out the largest ones too.
     """
     parts = [part for part in source.walk() if part.op in ("implies", "iff")]
     left = WORK["arrow nodes"]
@@ -272,11 +273,11 @@ def _written_with_arrows(source: Formula, labels: Labels) -> dict[Formula, Formu
     return written
 
 
-def _restored(formula: Formula, restored: dict[Formula, Formula]) -> Formula:
-    """Return the formula with every part that the source writes with ``->`` or ``<->`` written that way.
+def _restore_arrows(formula: Formula, restored: dict[Formula, Formula]) -> Formula:
+    """Return the formula with ``->`` and ``<->`` in every part that the source writes with them.
 
-    ``restored`` maps formulas to their results; it starts with the parts of the source, and results
-    are added to it.
+    ``restored`` maps formulas to their results.  It starts with the parts of the source; this
+    function adds its results.
     """
     for node in formula.bottom_up(known=restored):
         restored[node] = rebuild(node, tuple(restored[argument] for argument in node.args))
@@ -287,7 +288,11 @@ def _restored(formula: Formula, restored: dict[Formula, Formula]) -> Formula:
 
 
 def spec_from_formula(formula: Formula, name: str = "spec", exclusive: Iterable[Iterable[str]] = ()) -> Spec:
-    """Return a spec whose atoms are signals: each has the atom's name, range [-1, 1], and is its own robustness."""
+    """Return a spec over finite traces with this formula.
+
+    Each atom is a signal of the same name with range [-1, 1]; the value of the signal is the value
+    of the atom.
+    """
     groups = [tuple(group) for group in exclusive]
     names = tuple(dict.fromkeys((*formula.atoms(), *(atom for group in groups for atom in group))))
     return Spec(

@@ -1,11 +1,11 @@
-"""Build large conjunctions and disjunctions part by part.
+"""Build the machines of large conjunctions and disjunctions part by part.
 
-Each part gets its own minimal machine.  Then the two smallest machines are multiplied and minimised
-until one is left.
+Each part gets its own minimal machine.  Then the product of the two smallest machines is built and
+minimised, until one machine is left.
 
-Exploring a formula as a whole visits every combination of the parts' obligations, even those that
-minimisation would merge at once.  Rules of games are small enough for that; random conjunctions of
-dozens of clauses are not.
+Exploring a formula as a whole visits every combination of the parts' obligations, even combinations
+that minimisation would merge at once.  This is cheap for rules of games, which are small, but not
+for random conjunctions of dozens of clauses.
 """
 
 from __future__ import annotations
@@ -73,30 +73,33 @@ class _Composition:
         number = len(heap)
         while len(heap) > 1:
             (_, _, left), (_, _, right) = heappop(heap), heappop(heap)
-            minimal = self._machine(join(_embedded(self._successors, left), _embedded(self._successors, right)))
+            minimal = self._machine(join(_embed(self._successors, left), _embed(self._successors, right)))
             heappush(heap, (len(minimal.transitions), number, minimal))
             number += 1
         return heap[0][2]
 
 
-def _embedded(successors: Successors, minimal: Machine) -> int:
-    """Return an obligation for the machine's initial state: each state becomes a variable with a known transition."""
+def _embed(successors: Successors, minimal: Machine) -> int:
+    """Return an obligation for the machine's initial state.
+
+    Each state of the machine becomes a variable with a known transition.
+    """
     diagrams = successors.diagrams
     obligations: dict[int, int] = {}
     for state, transition in minimal.transitions.items():
-        settled = _settled(diagrams, state, transition)
+        settled = _constant_obligation(diagrams, state, transition)
         obligations[state] = successors.new_state(state) if settled is None else settled
     memo = {IMPOSSIBLE: IMPOSSIBLE}
     for state, transition in minimal.transitions.items():
         if obligations[state] not in (FALSE, TRUE):
             successors.define_state(
                 obligations[state],
-                diagrams.mapped(lambda leaf: (obligations[leaf[0]], leaf[1]), transition, memo),
+                diagrams.map_leaves(lambda leaf: (obligations[leaf[0]], leaf[1]), transition, memo),
             )
     return obligations[minimal.initial]
 
 
-def _settled(diagrams: TransitionDiagrams, state: int, transition: int) -> int | None:
+def _constant_obligation(diagrams: TransitionDiagrams, state: int, transition: int) -> int | None:
     """Return TRUE or FALSE for a state that every possible letter leads back to, None for the others."""
     # The empty letter is always possible: if it leads elsewhere, the other letters do not matter.
     leaf = transition

@@ -25,8 +25,8 @@ Decision = Callable[[Sequence[Conjunct], Spec], bool]
 def contradiction(spec: Spec, decision: Decision | None = None) -> tuple[Conjunct, ...]:
     """Return parts of an unsatisfiable spec that contradict each other and are all needed for that.
 
-    ``decision`` decides whether parts contradict each other, by default over finite traces.  If
-    that takes too much work, some of the parts returned may not be needed.
+    ``decision`` decides whether parts contradict each other, by default over finite traces.  If a
+    decision takes too much work, some of the parts returned may not be needed.
     """
     decision = decision or unsatisfiable
     needed = list(spec.parts)

@@ -1,8 +1,8 @@
 """Prove early that a large conjunction or disjunction needs more states than its budget.
 
 Two states differ if some word is accepted from one of them and not from the other.  Take a list of
-words, and for each reached state the set of these words that it accepts, its answer.  The minimal
-machine has at least as many states as there are different answers.  Each part computes its own
+words.  The *answer* of a state is the set of these words that it accepts.  The minimal machine has
+at least as many states as the reachable states have different answers.  Each part computes its own
 answer: a conjunction accepts the words that all parts accept, a disjunction the words that at least
 one part accepts.
 
@@ -42,12 +42,13 @@ class Estimate:
     def __init__(self, diagrams: TransitionDiagrams, steps: int) -> None:
         self._diagrams = diagrams
         self._left = steps
-        self._known: dict[int, int] = {}
+        self._leaf_without_atoms: dict[int, int] = {}
 
     def exceeds(self, machines: Sequence[Machine], conjunction: bool, budget: int) -> bool:
         """Whether the conjunction, or disjunction, of the machines certainly has more than ``budget`` states.
 
-        False also if that is unknown: the steps ran out, or the words tell too few states apart.
+        Also returns False if this is unknown: the steps ran out, or the words distinguish too few
+        states.
         """
         if prod(len(machine.transitions) for machine in machines) <= budget:
             return False
@@ -61,12 +62,12 @@ class Estimate:
         if any(_NONE not in table for table in tables):
             return False
         words = _words(
-            [_settling(machine, table, conjunction) for machine, table in zip(machines, tables, strict=True)]
+            [_settling_word(machine, table, conjunction) for machine, table in zip(machines, tables, strict=True)]
         )
-        self._take(sum(map(len, words)) * sum(len(machine.transitions) for machine in machines))
+        self._spend(sum(map(len, words)) * sum(len(machine.transitions) for machine in machines))
         answers = [_answers(table, words) for table in tables]
         distinct = set()
-        reached = self._reached([machine.initial for machine in machines], tables)
+        reached = self._reachable_states([machine.initial for machine in machines], tables)
         for count, states in enumerate(reached, 1):
             part_answers = [of_state[state] for of_state, state in zip(answers, states, strict=True)]
             distinct.add(reduce(and_ if conjunction else or_, part_answers))
@@ -76,7 +77,7 @@ class Estimate:
                 return False
         return False
 
-    def _take(self, steps: int) -> None:
+    def _spend(self, steps: int) -> None:
         self._left -= steps
         if self._left < 0:
             raise _OutOfSteps
@@ -86,7 +87,7 @@ class Estimate:
         value = self._diagrams.value
         leaves = {state: self._leaves(transition) for state, transition in machine.transitions.items()}
         letters = sorted(set().union(*leaves.values()))
-        self._take(len(letters) * len(leaves))
+        self._spend(len(letters) * len(leaves))
         table: _Table = {}
         for letter in letters:
             reached = {state: of_state.get(letter, of_state[_NONE]) for state, of_state in leaves.items()}
@@ -100,24 +101,24 @@ class Estimate:
         atom, low, high = self._diagrams.variable, self._diagrams.low, self._diagrams.high
         leaves = {}
         while atom[node] != LEAF:
-            self._take(1)
+            self._spend(1)
             leaves[atom[node]] = self._without_atoms(high[node])
             node = low[node]
         return {_NONE: node, **leaves}
 
     def _without_atoms(self, node: int) -> int:
         """Return the leaf below a node for the letter without further atoms; cached for all nodes on the path."""
-        atom, low, known = self._diagrams.variable, self._diagrams.low, self._known
+        atom, low, known = self._diagrams.variable, self._diagrams.low, self._leaf_without_atoms
         path = []
         while node not in known and atom[node] != LEAF:
             path.append(node)
             node = low[node]
-        self._take(len(path))
+        self._spend(len(path))
         leaf = known.get(node, node)
         known.update(dict.fromkeys(path, leaf))
         return leaf
 
-    def _reached(self, initial: Sequence[int], tables: Sequence[_Table]) -> Iterator[tuple[int, ...]]:
+    def _reachable_states(self, initial: Sequence[int], tables: Sequence[_Table]) -> Iterator[tuple[int, ...]]:
         """Yield the reachable states of the product, breadth-first: tuples with one state of each machine."""
         letters = sorted({letter for table in tables for letter in table} - {_NONE})
         # The machines that distinguish a letter from the empty letter, each with its moves.
@@ -141,15 +142,15 @@ class Estimate:
                 if (following := tuple(changed)) not in seen:
                     seen.add(following)
                     queue.append(following)
-                    self._take(len(base))
+                    self._spend(len(base))
                     yield following
-            self._take(len(base) + sum(map(len, seeing.values())) + len(letters))
+            self._spend(len(base) + sum(map(len, seeing.values())) + len(letters))
 
 
-def _settling(machine: Machine, table: _Table, accepting: bool) -> Word | None:
+def _settling_word(machine: Machine, table: _Table, accepting: bool) -> Word | None:
     """Return a shortest word that a machine accepts or, if not ``accepting``, rejects.
 
-    None if no word over the letters of the table does.
+    Returns None if there is no such word over the letters of the table.
     """
     queue: list[tuple[int, Word]] = [(machine.initial, [])]
     seen = {machine.initial}
@@ -165,7 +166,7 @@ def _settling(machine: Machine, table: _Table, accepting: bool) -> Word | None:
 
 
 def _words(settling: Sequence[Word | None]) -> list[Word]:
-    """Return words that leave the answer to one machine at a time.
+    """Return words whose acceptance depends on one machine at a time.
 
     ``settling`` has one word for each machine: for a conjunction one that it accepts, for a
     disjunction one that it rejects.  For each machine, the words of all the others come first,

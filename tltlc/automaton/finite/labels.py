@@ -1,9 +1,9 @@
 """Label each state with a short formula that says what remains to be done there.
 
-First the temporal subformulas are removed from the state's obligation that, by a proof on the
-automaton, make no difference there.  The rest is written back as a formula, and the named rewrites
-shorten it.  Then each operand of an ``and`` or ``or`` is tried: it is removed if the automaton
-proves that the language stays the same without it.
+First, temporal subformulas are removed from the state's obligation if a proof on the automaton
+shows that they make no difference there.  The rest is written back as a formula, and the named
+rewrites shorten it.  Then each operand of an ``and`` or ``or`` is removed if the automaton proves
+that the language stays the same without it.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from tltlc.automaton.diagrams import OutOfSteps
-from tltlc.automaton.finite.machine import Machine, stands_for
+from tltlc.automaton.finite.machine import Machine, matches_state
 from tltlc.automaton.finite.readback import ObligationWriter
 from tltlc.automaton.finite.successors import Successors
 from tltlc.automaton.transitions import ACCEPT, FALSE, TRUE
@@ -20,9 +20,9 @@ from tltlc.logic.formula import Formula
 from tltlc.logic.rewrite import simplify
 
 _MEMBERS = 6
-"""A state stands for several obligations; at most this many, the smallest, are written as formulas."""
+"""A state stands for several obligations; the smallest ones, at most this many, are written as formulas."""
 _CANDIDATES = 3
-"""Of these formulas at most this many, the smallest, are shortened."""
+"""The smallest of these formulas, at most this many, are shortened."""
 
 LONGEST_SIMPLIFIED = 200
 """Labels with more nodes are not rewritten: they are too long to read."""
@@ -34,7 +34,7 @@ _PROOF_STEPS = 2_000
 _PROOF_PAIRS = 100
 """A proof fails after this many pairs of an obligation and a state."""
 _COST_OF_GIVING_UP = 30
-"""How much a proof that ran into one of these limits costs, in proofs."""
+"""A proof that reaches one of these limits counts as this many proofs."""
 
 
 class LabelsTooLong(Exception):
@@ -44,8 +44,8 @@ class LabelsTooLong(Exception):
 class Labels:
     """The labels of one machine's states.
 
-    ``work`` bounds the proofs tried for all labels together; when it is used up, the other labels
-    are not shortened.  It is a count and not a time, so that equal input gives equal output.
+    ``work`` bounds the number of proofs for all labels together; when it is used up, the remaining
+    labels are not shortened.  It is a count and not a time, so that equal input gives equal output.
     """
 
     __slots__ = (
@@ -78,23 +78,23 @@ class Labels:
             self._members.setdefault(state, []).append(obligation)
 
     def label(self, state: int) -> Formula:
-        """Return the shortest label found for a state of the machine, in negation normal form."""
+        """Return a short label for a state of the machine, in negation normal form."""
         members = self._members[state]
         if len(members) == 1 and (bound := self._writer.long_bound(members[0])) is not None:
-            return self.simplified(bound)
+            return self.simplify_label(bound)
         if len(members) > 1:
             members = sorted(members, key=lambda obligation: len(self._writer.support(obligation)))
-        obligations = dict.fromkeys((self._needed(members[0], state), *members[:_MEMBERS]))
+        obligations = dict.fromkeys((self._drop_needless_variables(members[0], state), *members[:_MEMBERS]))
         written = sorted(map(self._writer.formula, obligations), key=self.size)
-        return min((self._shortened(formula, state) for formula in written[:_CANDIDATES]), key=self.size)
+        return min((self._shorten(formula, state) for formula in written[:_CANDIDATES]), key=self.size)
 
     def size(self, formula: Formula) -> int:
-        """Return the number of nodes of the formula's text; cached, since labels share parts."""
+        """Return the number of nodes of the formula's text; sizes are cached, since labels share parts."""
         for node in formula.bottom_up(known=self._sizes):
             self._sizes[node] = 1 + sum(self._sizes[argument] for argument in node.args)
         return self._sizes[formula]
 
-    def _needed(self, obligation: int, state: int) -> int:
+    def _drop_needless_variables(self, obligation: int, state: int) -> int:
         """Return the obligation without the variables that make no difference to its language.
 
         The variable with the largest formula is tried first.
@@ -107,8 +107,8 @@ class Labels:
             if self._work <= 0:
                 break
             for value in (False, True):
-                smaller = self._writer.restricted(obligation, (variable,), value)
-                if smaller != obligation and self._proved(smaller, state):
+                smaller = self._writer.restrict(obligation, (variable,), value)
+                if smaller != obligation and self._prove(smaller, state):
                     obligation = smaller
                     break
         return obligation
@@ -117,12 +117,12 @@ class Labels:
         formula = self._successors.formulas[variable]
         return 0 if formula is None else self.size(formula)
 
-    def simplified(self, formula: Formula) -> Formula:
+    def simplify_label(self, formula: Formula) -> Formula:
         """Return the formula after the named rewrites; a formula too long to read is returned as it is."""
         return formula if self.size(formula) > LONGEST_SIMPLIFIED else simplify(formula, self._simplified)
 
-    def _shortened(self, formula: Formula, state: int) -> Formula:
-        formula = self.simplified(formula)
+    def _shorten(self, formula: Formula, state: int) -> Formula:
+        formula = self.simplify_label(formula)
         tried: set[Formula] = set()
         progress = self.size(formula) <= _LONGEST_PROVED
         while progress and self._work > 0:
@@ -131,15 +131,13 @@ class Labels:
                 if shorter in tried:
                     continue
                 tried.add(shorter)
-                if self._proved(shorter, state):
+                if self._prove(shorter, state):
                     formula, progress = simplify(shorter, self._simplified), True
                     break
         return formula
 
-    def _proved(self, label: Formula | int, state: int) -> bool:
-        """Whether a formula or obligation can be proved to have the language of a state, within the
-        work that is left.
-        """
+    def _prove(self, label: Formula | int, state: int) -> bool:
+        """Whether a proof within the remaining work shows that a formula or obligation has the language of a state."""
         if self._work <= 0:
             return False
         successors = self._successors
@@ -149,7 +147,7 @@ class Labels:
                 if (obligation, state) in self._refuted:
                     return False
                 self._work -= 1
-                proved = stands_for(
+                proved = matches_state(
                     successors, self._machine, self._known, obligation, state, _PROOF_PAIRS, self._allowed
                 )
         except OutOfSteps:

@@ -187,7 +187,7 @@ def _quotient(successors: Successors, transitions: dict[int, int], blocks: list[
     return Machine(
         initial=initial,
         transitions={
-            state: diagrams.mapped(to_representative, transition, memo)
+            state: diagrams.map_leaves(to_representative, transition, memo)
             for state, transition in transitions.items()
             if representative[state] == state
         },
@@ -195,7 +195,7 @@ def _quotient(successors: Successors, transitions: dict[int, int], blocks: list[
     )
 
 
-def stands_for(
+def matches_state(
     successors: Successors,
     machine: Machine,
     known: dict[int, int],
@@ -206,10 +206,10 @@ def stands_for(
 ) -> bool:
     """Whether an obligation has the language of a state of a minimal machine.
 
-    Reads both in step: no two states of a minimal machine have the same language, so each
-    obligation reached must match exactly one state.  ``known`` maps obligations to the states that
-    they are known to match; a successful comparison adds its matches.  Raises :class:`OutOfSteps`
-    after ``pair_limit`` obligations.
+    Follows the letters from both at once.  No two states of a minimal machine have the same
+    language, so each obligation reached must match exactly one state.  ``known`` maps obligations to
+    the states that they are known to match; a successful comparison adds its matches.  Raises
+    :class:`OutOfSteps` after ``pair_limit`` obligations.
     """
     diagrams = successors.diagrams
     atom, low, high, value = diagrams.variable, diagrams.low, diagrams.high, diagrams.value

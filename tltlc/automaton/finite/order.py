@@ -2,7 +2,7 @@
 
 The heuristic is FORCE (Aloul, Markov and Sakallah, "FORCE: a fast and easy-to-implement
 variable-ordering heuristic", GLSVLSI 2003): each atom moves to the middle of the groups that it
-belongs to, until that no longer helps.
+belongs to, until the groups get no narrower.
 """
 
 from __future__ import annotations
@@ -16,32 +16,35 @@ from tltlc.logic.formula import Formula
 from tltlc.resolve.spec import Spec
 
 _LARGEST_GROUP: Final = 8
-"""Atoms in a group; larger groups say little about which of their atoms belong together."""
+"""The most atoms in a group; larger groups say little about which of their atoms belong together."""
 _MOST_ROUNDS: Final = 50
 _Group = frozenset[int]
 
 
 def better_order(formula: Formula, names: Sequence[str]) -> list[int] | None:
-    """Return an order of the atoms, by index, whose groups are at most half as wide; None if none is found."""
+    """Return an order of the atoms, by index, in which the groups together are at most half as wide as now.
+
+    Returns None if the heuristic finds no such order.
+    """
     groups = _groups(formula, {name: index for index, name in enumerate(names)})
     best = order = list(range(len(names)))
     width = before = _width(order, groups)
     for _ in range(_MOST_ROUNDS):
-        order = _moved(order, groups)
+        order = _move_to_middles(order, groups)
         if (moved_width := _width(order, groups)) >= width:
             break
         best, width = order, moved_width
     return best if 2 * width <= before and width < before else None
 
 
-def reordered(spec: Spec, order: Sequence[int]) -> Spec:
+def reorder(spec: Spec, order: Sequence[int]) -> Spec:
     """Return the spec with its atoms in another order."""
     place = {index: number for number, index in enumerate(order)}
     atoms = tuple(spec.atoms[index] for index in order)
     return replace(spec, atoms=atoms, exclusive=tuple(tuple(place[atom] for atom in group) for group in spec.exclusive))
 
 
-def restored(fspa: Fspa, spec: Spec, order: Sequence[int]) -> Fspa:
+def restore_order(fspa: Fspa, spec: Spec, order: Sequence[int]) -> Fspa:
     """Return the automaton of a reordered spec with its atoms back in the order of ``spec``."""
     restored_guards: dict[Guard, Guard] = {}
     edges = []
@@ -78,7 +81,7 @@ def _width(order: Sequence[int], groups: Iterable[_Group]) -> int:
     return sum(max(places) - min(places) for group in groups for places in [[place[atom] for atom in group]])
 
 
-def _moved(order: Sequence[int], groups: Iterable[_Group]) -> list[int]:
+def _move_to_middles(order: Sequence[int], groups: Iterable[_Group]) -> list[int]:
     """Return the atoms sorted by the mean of the middles of their groups."""
     place = {index: number for number, index in enumerate(order)}
     middles: dict[int, list[float]] = {index: [] for index in order}
@@ -86,5 +89,5 @@ def _moved(order: Sequence[int], groups: Iterable[_Group]) -> list[int]:
         middle = sum(place[atom] for atom in group) / len(group)
         for atom in group:
             middles[atom].append(middle)
-    wanted = {index: sum(values) / len(values) if values else place[index] for index, values in middles.items()}
-    return sorted(order, key=lambda index: (wanted[index], index))
+    mean = {index: sum(values) / len(values) if values else place[index] for index, values in middles.items()}
+    return sorted(order, key=lambda index: (mean[index], index))

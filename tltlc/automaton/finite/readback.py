@@ -14,35 +14,35 @@ _TERM_LIMIT = 64
 """Obligations whose sum of products has more terms are written as nested case distinctions."""
 
 _MOST_FACTORED = 40
-"""Obligations with more variables are written without a search for common factors in all of them."""
+"""In obligations with more variables, only the first variable is tried as a common factor."""
 
 _Term = frozenset[tuple[int, bool]]
-_Placed = tuple[int, Formula]
+_Positioned = tuple[int, Formula]
 """The position of a formula's first part in the source, and the formula."""
 
 
 class ObligationWriter:
     """Writes the obligations of one table as formulas, with operands in the order of ``source``."""
 
-    __slots__ = ("_long_bounds", "_position", "_successors", "_sums", "_without_shorter", "_written")
+    __slots__ = ("_formulas", "_long_bounds", "_position", "_successors", "_sums", "_without_shorter")
 
     def __init__(self, successors: Successors, source: Formula) -> None:
         self._successors = successors
         self._position = {part: index for index, part in enumerate(source.walk())}
         self._long_bounds = {successors.obligation(part): part for part in self._position if _is_long_bound(part)}
         self._without_shorter: dict[int, int] = {}
-        self._written: dict[int, _Placed] = {}
+        self._formulas: dict[int, _Positioned] = {}
         self._sums: dict[int, list[_Term] | None] = {FALSE: [], TRUE: [frozenset()]}
 
     def formula(self, obligation: int) -> Formula:
         """Return an obligation as a formula."""
-        return self._placed(obligation)[1]
+        return self._with_position(obligation)[1]
 
     def long_bound(self, obligation: int) -> Formula | None:
-        """Return the source's long bounded operator with this obligation; None if there is none.
+        """Return the bounded operator of the source that has this obligation, if the operator is long; else None.
 
-        Long means more than :data:`_MOST_FACTORED` steps.  No shorter formula exists, and the
-        search for one would take n² steps for the n states that count the bound down.
+        Long means more than :data:`_MOST_FACTORED` steps.  No shorter formula exists, and a search
+        would take n² steps for the n states that count the bound down.
         """
         return self._long_bounds.get(obligation)
 
@@ -62,7 +62,7 @@ class ObligationWriter:
                     stack.append(child)
         return sorted(variables)
 
-    def restricted(self, obligation: int, variables: Collection[int], value: bool) -> int:
+    def restrict(self, obligation: int, variables: Collection[int], value: bool) -> int:
         """Return the obligation with all the variables set to ``value``."""
         obligations = self._successors.diagrams.obligations
         last = max(variables)
@@ -109,24 +109,24 @@ class ObligationWriter:
             while shorter is not None:
                 shorter_variables.add(successors.variable(shorter))
                 shorter = count_down(shorter)
-            smaller = self.restricted(obligation, shorter_variables, formula.args[0].op == "and")
+            smaller = self.restrict(obligation, shorter_variables, formula.args[0].op == "and")
             if smaller == obligation:
                 continue
             # Obligations are monotone in their temporal variables.
-            without, with_ = (self.restricted(smaller, (variable,), value) for value in (False, True))
+            without, with_ = (self.restrict(smaller, (variable,), value) for value in (False, True))
             if obligations.either(without, obligations.both(successors.obligation(formula), with_)) == obligation:
                 obligation = smaller
                 removed |= shorter_variables
         return obligation
 
-    def _placed(self, obligation: int) -> _Placed:
+    def _with_position(self, obligation: int) -> _Positioned:
         """Return the obligation as a formula, with the position of its first part in the source."""
-        known = self._written.get(obligation)
+        known = self._formulas.get(obligation)
         if known is None:
-            known = self._written[obligation] = self._write(obligation)
+            known = self._formulas[obligation] = self._write(obligation)
         return known
 
-    def _write(self, obligation: int) -> _Placed:
+    def _write(self, obligation: int) -> _Positioned:
         if obligation == FALSE:
             return 0, build.FALSE
         if obligation == TRUE:
@@ -137,41 +137,41 @@ class ObligationWriter:
             return self._literal(first, True)
         smaller = self.without_shorter_bounds(obligation)
         if smaller != obligation:
-            return self._placed(smaller)
+            return self._with_position(smaller)
         for absorbing, join in ((FALSE, build.and_), (TRUE, build.or_)):
             factors, rest = self._factors(obligation, absorbing)
             if factors:
-                operands = [self._literal(*factor) for factor in self._independent(factors, absorbing)]
+                operands = [self._literal(*factor) for factor in self._drop_redundant(factors, absorbing)]
                 if rest not in (FALSE, TRUE):
-                    operands.append(self._placed(rest))
-                return _joined(join, operands)
+                    operands.append(self._with_position(rest))
+                return _join(join, operands)
         terms = self._terms(obligation)
         if terms is not None:
-            products = [[self._literal(*literal) for literal in self._independent(term, FALSE)] for term in terms]
-            return _joined(build.or_, [_joined(build.and_, product) for product in products])
+            products = [[self._literal(*literal) for literal in self._drop_redundant(term, FALSE)] for term in terms]
+            return _join(build.or_, [_join(build.and_, product) for product in products])
         obligations = self._successors.diagrams.obligations
         test = self._literal(obligations.variable[obligation], True)
-        present = _joined(build.and_, [test, self._placed(obligations.high[obligation])])
-        return _joined(build.or_, [present, self._placed(obligations.low[obligation])])
+        present = _join(build.and_, [test, self._with_position(obligations.high[obligation])])
+        return _join(build.or_, [present, self._with_position(obligations.low[obligation])])
 
     def _factors(self, obligation: int, absorbing: int) -> tuple[list[tuple[int, bool]], int]:
         """Return the common factors of the obligation, and the obligation without them.
 
-        If ``absorbing`` is FALSE, these are the literals without which the obligation is false; if
-        it is TRUE, the literals with which the obligation is true.
+        If ``absorbing`` is FALSE, the factors are the literals without which the obligation is
+        false.  If it is TRUE, they are the literals with which the obligation is true.
         """
         factors: list[tuple[int, bool]] = []
         wanted = absorbing == FALSE
         support = self.support(obligation)
         for variable in support if len(support) <= _MOST_FACTORED else support[:1]:
             for polarity in (True, False):
-                if self.restricted(obligation, (variable,), polarity != wanted) == absorbing:
+                if self.restrict(obligation, (variable,), polarity != wanted) == absorbing:
                     factors.append((variable, polarity))
-                    obligation = self.restricted(obligation, (variable,), polarity == wanted)
+                    obligation = self.restrict(obligation, (variable,), polarity == wanted)
                     break
         return factors, obligation
 
-    def _independent(self, literals: Collection[tuple[int, bool]], absorbing: int) -> list[tuple[int, bool]]:
+    def _drop_redundant(self, literals: Collection[tuple[int, bool]], absorbing: int) -> list[tuple[int, bool]]:
         """Return the literals of an ``and`` (``absorbing`` is FALSE) or ``or`` that no other literal makes redundant.
 
         The obligation of ``F(a & X F b)`` already contains the variable of ``F b``, so ``F b``
@@ -187,7 +187,7 @@ class ObligationWriter:
                 redundant.update(
                     other
                     for other in variables.intersection(self.support(whole))
-                    if other != variable and self.restricted(whole, (other,), absorbing == TRUE) == absorbing
+                    if other != variable and self.restrict(whole, (other,), absorbing == TRUE) == absorbing
                 )
         return [(variable, polarity) for variable, polarity in literals if not (polarity and variable in redundant)]
 
@@ -214,10 +214,10 @@ class ObligationWriter:
         self._sums[obligation] = terms
         return terms
 
-    def _literal(self, variable: int, polarity: bool) -> _Placed:
+    def _literal(self, variable: int, polarity: bool) -> _Positioned:
         formula = self._successors.formulas[variable]
         if formula is None:
-            return self._placed(self._successors.stands_for[variable])
+            return self._with_position(self._successors.stands_for[variable])
         place = self._position.get(formula, len(self._position) + variable)
         return place, formula if polarity else build.not_(formula)
 
@@ -227,6 +227,6 @@ def _is_long_bound(formula: Formula) -> bool:
     return operator is not None and operator.steps > _MOST_FACTORED
 
 
-def _joined(join: Callable[..., Formula], operands: list[_Placed]) -> _Placed:
+def _join(join: Callable[..., Formula], operands: list[_Positioned]) -> _Positioned:
     operands.sort(key=lambda operand: operand[0])
     return operands[0][0] if operands else 0, join(*(formula for _, formula in operands))

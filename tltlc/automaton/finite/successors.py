@@ -61,7 +61,8 @@ class Successors:
         known = self._obligation_of.get(formula)
         if known is not None:
             return known
-        # Shortest bound first, so that long bounds need no deep recursion; variables still get numbers in source order.
+        # Convert the shortest bound first, so that long bounds need no deep recursion. Variables get numbers before, in
+        # source order.
         chain = [formula, *count_down_from(formula, self._obligation_of)]
         for bound in chain[:-1]:
             self.variable(bound)
@@ -83,9 +84,9 @@ class Successors:
         if op == "not":
             return diagrams.obligations.node(self.variable(formula.args[0]), TRUE, FALSE)
         result = diagrams.obligations.node(self.variable(formula), FALSE, TRUE)
-        for weaker in _implied_by(formula):
+        for weaker in _weaker_subformulas(formula):
             result = diagrams.obligations.both(result, self.obligation(weaker))
-        for stronger in _that_imply(formula):
+        for stronger in _stronger_subformulas(formula):
             result = diagrams.obligations.either(result, self.obligation(stronger))
         return result
 
@@ -114,7 +115,7 @@ class Successors:
         if obligation in known:
             return known[obligation]
         absent, present = self.diagrams.obligations.low, self.diagrams.obligations.high
-        # No recursion: obligations are as deep as bounds are long.
+        # An explicit stack replaces recursion: obligations are as deep as bounds are long.
         stack = [obligation]
         while stack:
             node = stack[-1]
@@ -146,7 +147,10 @@ class Successors:
         return diagrams.disjoin(absent, diagrams.conjoin(self.of_formula(formula), present))
 
     def of_formula(self, formula: Formula) -> int:
-        """Return the transition of a formula in negation normal form; operands first, without deep recursion."""
+        """Return the transition of a formula in negation normal form.
+
+        Computes the transitions of operands first, without recursion over them.
+        """
         known = self._of_formula
         result = known.get(formula)
         if result is not None:
@@ -203,7 +207,7 @@ class Successors:
 # reach n obligations instead of 2^n.  Of the bounds that `G(a -> F[0,n] b)` counts down at once, the shortest stays.
 
 
-def _implied_by(formula: Formula) -> list[Formula]:
+def _weaker_subformulas(formula: Formula) -> list[Formula]:
     """Return temporal subformulas that the formula implies."""
     op, args = formula.op, formula.args
     if op in ("X", "N") and args[0].op == "and" and (shorter := count_down(formula)):
@@ -216,7 +220,7 @@ def _implied_by(formula: Formula) -> list[Formula]:
     return []
 
 
-def _that_imply(formula: Formula) -> list[Formula]:
+def _stronger_subformulas(formula: Formula) -> list[Formula]:
     """Return temporal subformulas that imply the formula."""
     op, args = formula.op, formula.args
     if op in ("X", "N") and args[0].op == "or" and (shorter := count_down(formula)):

@@ -1,4 +1,4 @@
-"""The after-automaton: its states are obligations, what remains of the formula after the letters so far.
+"""The after-automaton: its states are obligations, that is, what remains of the formula after the letters so far.
 
 An *obligation* is a Boolean function over literals, ``X``, ``U``, ``W`` and rigid formulas, stored
 as a binary decision diagram (:class:`~tltlc.automaton.transitions.ObligationDiagrams`).  Formulas that are equal
@@ -21,8 +21,8 @@ from tltlc.logic.formula import Formula
 STEPS_PER_OBLIGATION: Final = 100
 """The least steps of work that each successor of an obligation takes.
 
-If an obligation has more successors than the budget allows at this rate, the construction fails
-before it lists them.
+If the budget cannot pay for this many steps for each successor of an obligation, the construction
+fails before it lists them.
 """
 
 _TEMPORAL: Final = ("U", "W", "X")
@@ -57,7 +57,7 @@ class ObligationAutomaton:
         obligation = self._obligations.get(formula)
         if obligation is not None:
             return obligation
-        # Shortest bound first, as over finite traces (`automaton/finite/successors.py`).
+        # Convert the shortest bound first, as over finite traces (`automaton/finite/successors.py`).
         chain = [formula, *count_down_from(formula, self._obligations)]
         for bound in chain[:-1]:
             self._variable(bound)
@@ -85,9 +85,9 @@ class ObligationAutomaton:
                 return self.obligations.node(self._variable(formula.args[0]), TRUE, FALSE)
         result = self.obligations.node(self._variable(formula), FALSE, TRUE)
         # This makes `p U q | q` and `p U q` one obligation, as over finite traces (`automaton/finite/successors.py`).
-        for weaker in _implied_by(formula):
+        for weaker in _weaker_subformulas(formula):
             result = self.obligations.both(result, self.obligation(weaker))
-        for stronger in _that_imply(formula):
+        for stronger in _stronger_subformulas(formula):
             result = self.obligations.either(result, self.obligation(stronger))
         return result
 
@@ -104,7 +104,7 @@ class ObligationAutomaton:
         if obligation in known:
             return known[obligation]
         absent, present = self.obligations.low, self.obligations.high
-        # No recursion: obligations are as deep as bounds are long.
+        # An explicit stack replaces recursion: obligations are as deep as bounds are long.
         stack = [obligation]
         while stack:
             node = stack[-1]
@@ -118,7 +118,7 @@ class ObligationAutomaton:
         return known[obligation]
 
     def _by_variable(self, obligation: int, absent: int, present: int) -> int:
-        """Return what remains of an obligation after each letter, given the same for its two cofactors.
+        """Return what remains of an obligation after each letter, given what remains of its two cofactors.
 
         ``absent`` and ``present`` are the functions of the obligation with its first variable false
         and true.
@@ -134,14 +134,14 @@ class ObligationAutomaton:
 
     def both(self, x: int, y: int) -> int:
         """Return the ``and`` of two functions on every letter."""
-        return self.letters.combined(self._counted(self.obligations.both), x, y, self._both)
+        return self.letters.apply(self._with_counter(self.obligations.both), x, y, self._both)
 
     def either(self, x: int, y: int) -> int:
         """Return the ``or`` of two functions on every letter."""
-        return self.letters.combined(self._counted(self.obligations.either), x, y, self._either)
+        return self.letters.apply(self._with_counter(self.obligations.either), x, y, self._either)
 
-    def _counted(self, combine: Callable[[int, int], int]) -> Callable[[int, int], int]:
-        """Return ``combine`` with a counter: it raises OutOfWork if a function gets too many different values."""
+    def _with_counter(self, combine: Callable[[int, int], int]) -> Callable[[int, int], int]:
+        """Return ``combine`` with a counter: raise OutOfWork if a function gets too many different values."""
         reached: set[int] = set()
         most = self._most_reached
 
@@ -158,10 +158,10 @@ class ObligationAutomaton:
         """Return what remains of a formula after each letter."""
         step = self._of_formula.get(formula)
         if step is None:
-            step = self._of_formula[formula] = self._expanded(formula)
+            step = self._of_formula[formula] = self._expand(formula)
         return step
 
-    def _expanded(self, formula: Formula) -> int:
+    def _expand(self, formula: Formula) -> int:
         letters = self.letters
         match formula.op:
             case "true" | "false":
@@ -187,7 +187,7 @@ class ObligationAutomaton:
     # --- obligations as formulas ------------------------------------------------------------------
 
     def formula(self, obligation: int) -> Formula:
-        """Return a formula of an obligation: the smallest one seen so far, or one read from its diagram."""
+        """Return a formula of an obligation: the smallest one met so far, or else one read from its diagram."""
         known = self._sources.get(obligation)
         if known is None:
             obligations = self.obligations
@@ -201,7 +201,7 @@ class ObligationAutomaton:
             self._sources[obligation] = known
         return known
 
-    def replaced(self, obligation: int, change: Callable[[Formula], int], memo: dict[int, int]) -> int:
+    def replace_temporal(self, obligation: int, change: Callable[[Formula], int], memo: dict[int, int]) -> int:
         """Return the obligation with every temporal formula replaced by the obligation that ``change`` returns for it.
 
         Calls with the same ``change`` may share ``memo``.
@@ -212,8 +212,8 @@ class ObligationAutomaton:
         if result is None:
             obligations = self.obligations
             formula = self.formulas[obligations.variable[obligation]]
-            absent = self.replaced(obligations.low[obligation], change, memo)
-            present = self.replaced(obligations.high[obligation], change, memo)
+            absent = self.replace_temporal(obligations.low[obligation], change, memo)
+            present = self.replace_temporal(obligations.high[obligation], change, memo)
             if formula.op == "atom":
                 holds = self.obligation(formula)
                 fails = self.obligation(build.not_(formula))
@@ -224,7 +224,7 @@ class ObligationAutomaton:
         return result
 
 
-def _implied_by(formula: Formula) -> Iterator[Formula]:
+def _weaker_subformulas(formula: Formula) -> Iterator[Formula]:
     """Yield temporal subformulas that the formula implies: ``F b`` for ``F(a & X F b)``."""
     if formula.op == "X" and formula.args[0].op == "and" and (shorter := count_down(formula)):
         yield shorter
@@ -236,7 +236,7 @@ def _implied_by(formula: Formula) -> Iterator[Formula]:
         yield from (part for part in later if part.op == "U" and part.args[0] is build.TRUE)
 
 
-def _that_imply(formula: Formula) -> Iterator[Formula]:
+def _stronger_subformulas(formula: Formula) -> Iterator[Formula]:
     """Yield temporal subformulas that imply the formula: ``G b`` for ``a U G b``."""
     if formula.op == "X" and formula.args[0].op == "or" and (shorter := count_down(formula)):
         yield shorter

@@ -48,9 +48,9 @@ class Analysis:
         for source, target in dict.fromkeys((source, target) for source, target, _ in edges):
             self.targets[source].append(target)
         distinct = frozenset(edges)
-        self.goals = _states(accepting_parts(distinct, self._clauses, work))
-        self._alive = self._reaching(self.goals)
-        self._doubtful = self._reaching(self._rejected(distinct))
+        self.goals = _endpoints(accepting_parts(distinct, self._clauses, work))
+        self._alive = self._states_reaching(self.goals)
+        self._doubtful = self._states_reaching(self._states_on_rejected_cycles(distinct))
         # The edges that do not lead to a trap.
         self._edges = frozenset(edge for edge in distinct if edge[1] in self._alive)
 
@@ -67,12 +67,13 @@ class Analysis:
         return "holding" if state in self.goals else "pending"
 
     def default_judge(self) -> Judge:
-        """Return ``goal`` if the initial state is no goal, and runs from goals that avoid traps are
-        accepted; else ``limit``.
+        """Return ``goal`` if the initial state is no goal, and every run from a goal that avoids traps is accepted.
+
+        Otherwise return ``limit``.
         """
         if 0 in self.goals:
             return "limit"
-        rejected = self._rejected(self._edges)
+        rejected = self._states_on_rejected_cycles(self._edges)
         reached = set(self.goals)
         stack = list(reached)
         while stack:
@@ -82,14 +83,14 @@ class Analysis:
                     stack.append(target)
         return "limit" if reached & rejected else "goal"
 
-    def _rejected(self, edges: Edges) -> set[int]:
+    def _states_on_rejected_cycles(self, edges: Edges) -> set[int]:
         """Return the states on a cycle that is not accepted."""
         rejected = (
             cycle for part in parts(edges, self._work) for cycle in rejecting_parts(part, self._clauses, self._work)
         )
-        return _states(rejected)
+        return _endpoints(rejected)
 
-    def _reaching(self, states: Collection[int]) -> set[int]:
+    def _states_reaching(self, states: Collection[int]) -> set[int]:
         """Return the states from which one of the given states can be reached."""
         sources: dict[int, list[int]] = {state: [] for state in self.targets}
         for state, targets in self.targets.items():
@@ -105,5 +106,5 @@ class Analysis:
         return reaching
 
 
-def _states(parts_: Iterable[Edges]) -> set[int]:
+def _endpoints(parts_: Iterable[Edges]) -> set[int]:
     return {state for part in parts_ for source, target, _ in part for state in (source, target)}

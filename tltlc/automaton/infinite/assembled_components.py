@@ -9,41 +9,44 @@ from typing import Any
 from tltlc.automaton.diagrams import Diagrams
 from tltlc.automaton.infinite.automaton import NO_MARKS, PairMarks, Rabin
 from tltlc.automaton.infinite.component import IMPOSSIBLE, State
-from tltlc.automaton.infinite.pairs import Piece
+from tltlc.automaton.infinite.pairs import RabinComponent
 
 Place = tuple[int, State]
 """The number of a component, and one of its states."""
 
 
-def joined(
+def join_components(
     letters: Diagrams[Any],
-    pieces: Sequence[Piece],
+    components: Sequence[RabinComponent],
     entry: Mapping[int, Place],
     initial: Place,
     apart: Collection[int] = (),
 ) -> tuple[Rabin, dict[Place, int]]:
     """Return the automaton of all reachable states, and the number of each component state in it.
 
-    ``initial`` is state 0.  An exit to a label leads to its ``entry``.  States keep the labels of
-    the components; states whose labels are in ``apart`` are not merged with states whose labels are
-    not.
+    ``initial`` becomes state 0.  ``entry`` maps each label to the state that an exit to this label
+    leads to.  States keep the labels of the components.  States whose labels are in ``apart`` are
+    not merged with other states.
     """
-    steps = _steps(letters, pieces, entry)
-    reached = _reached(letters, steps, initial)
-    number = _numbered(letters, steps, reached, [pieces[piece].labels[state] in apart for piece, state in reached])
+    steps = _steps(letters, components, entry)
+    reached = _reachable(letters, steps, initial)
+    is_apart = [components[index].labels[state] in apart for index, state in reached]
+    number = _number_states(letters, steps, reached, is_apart)
     first: dict[int, Place] = {}
     for place in reached:
         first.setdefault(number[place], place)
     memo: dict[int, int] = {}
-    final = tuple(_read(letters, steps[place], number, memo) for place in first.values())
-    labels = tuple(pieces[piece].labels[state] for piece, state in first.values())
-    return Rabin(letters, final, labels, max(piece.pairs for piece in pieces)), number
+    final = tuple(_number_targets(letters, steps[place], number, memo) for place in first.values())
+    labels = tuple(components[index].labels[state] for index, state in first.values())
+    return Rabin(letters, final, labels, max(component.pairs for component in components)), number
 
 
-def _steps(letters: Diagrams[Any], pieces: Sequence[Piece], entry: Mapping[int, Place]) -> dict[Place, int]:
+def _steps(
+    letters: Diagrams[Any], components: Sequence[RabinComponent], entry: Mapping[int, Place]
+) -> dict[Place, int]:
     """Return the steps of all components, with each exit replaced by the entry of the next component."""
     steps: dict[Place, int] = {}
-    for number, piece in enumerate(pieces):
+    for number, component in enumerate(components):
 
         def leaf(inner: tuple[State, PairMarks], number: int = number) -> tuple[Place, PairMarks] | None:
             target, marks = inner
@@ -52,12 +55,12 @@ def _steps(letters: Diagrams[Any], pieces: Sequence[Piece], entry: Mapping[int, 
             return None if target[1] == IMPOSSIBLE else (entry[target[1]], NO_MARKS)
 
         memo: dict[int, int] = {}
-        for state, step in piece.steps.items():
-            steps[number, state] = letters.mapped(leaf, step, memo)
+        for state, step in component.steps.items():
+            steps[number, state] = letters.map_leaves(leaf, step, memo)
     return steps
 
 
-def _reached(letters: Diagrams[Any], steps: Mapping[Place, int], initial: Place) -> list[Place]:
+def _reachable(letters: Diagrams[Any], steps: Mapping[Place, int], initial: Place) -> list[Place]:
     reached, seen = [initial], {initial}
     for place in reached:
         for leaf in letters.values(steps[place]):
@@ -67,7 +70,7 @@ def _reached(letters: Diagrams[Any], steps: Mapping[Place, int], initial: Place)
     return reached
 
 
-def _numbered(
+def _number_states(
     letters: Diagrams[Any], steps: Mapping[Place, int], reached: Sequence[Place], apart: Sequence[bool]
 ) -> dict[Place, int]:
     """Number the states from 0 in order; states that cannot be distinguished get the same number.
@@ -91,7 +94,7 @@ def _numbered(
         groups: dict[tuple[int, int], list[Place]] = {}
         for place in dirty:
             letters.work.spend()
-            groups.setdefault((block[place], _read(letters, steps[place], block, memo)), []).append(place)
+            groups.setdefault((block[place], _number_targets(letters, steps[place], block, memo)), []).append(place)
         moved: list[Place] = []
         for (number, step), members in groups.items():
             if signature[number] == step:
@@ -109,6 +112,6 @@ def _numbered(
     return {place: numbers.setdefault(block[place], len(numbers)) for place in reached}
 
 
-def _read(letters: Diagrams[Any], step: int, number: Mapping[Place, int], memo: dict[int, int]) -> int:
+def _number_targets(letters: Diagrams[Any], step: int, number: Mapping[Place, int], memo: dict[int, int]) -> int:
     """Return a step with each target replaced by its number."""
-    return letters.mapped(lambda leaf: leaf and (number[leaf[0]], leaf[1]), step, memo)
+    return letters.map_leaves(lambda leaf: leaf and (number[leaf[0]], leaf[1]), step, memo)

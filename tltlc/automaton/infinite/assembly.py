@@ -36,7 +36,7 @@ class AssembledParts:
     spec_size: int
 
 
-def assembled(
+def assemble(
     automaton: Rabin,
     analysis: TargetsAndGoals,
     atoms: Sequence[str],
@@ -49,7 +49,7 @@ def assembled(
     ``label`` returns the label of a state, given its number in the automaton.  ``first``, if given,
     lists all states in the order that breaks ties.
 
-    Raises :class:`~tltlc.automaton.guards.TooManyPrimes`,
+    Raises :class:`~tltlc.automaton.guards.TooManyPrimes` and
     :class:`~tltlc.automaton.diagrams.OutOfSteps`.
     """
     distance = distances(analysis.targets, accepting=analysis.goals.__contains__)

@@ -18,7 +18,7 @@ _FOR_ALL_PARTS: Final = 2_000_000
 """Steps of work for the automata of all parts."""
 
 
-def blow_up(spec: Spec, reason: Exception) -> TltlError:
+def budget_error(spec: Spec, reason: Exception) -> TltlError:
     """Return the error for a spec whose automaton is too expensive: TLT0501, or TLT0502 for prime implicants."""
     too_large, advice = failure_text(reason), ADVICE
     if isinstance(reason, OutOfWork):
@@ -28,7 +28,7 @@ def blow_up(spec: Spec, reason: Exception) -> TltlError:
     def size(part: Conjunct, spec: Spec) -> Size | None:
         nonlocal left
         if left < _FOR_A_PART:
-            # The parts measured so far are more than a message names.
+            # A message names fewer parts than were measured so far.
             return Size(0, "")
         try:
             automaton = rabin(part.formula, [atom.name for atom in spec.atoms], spec.exclusive, _FOR_A_PART)

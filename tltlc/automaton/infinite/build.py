@@ -8,8 +8,8 @@ from tltlc.automaton.finite.build import DEFAULT_STATE_BUDGET
 from tltlc.automaton.fspa import Fspa
 from tltlc.automaton.guards import TooManyPrimes
 from tltlc.automaton.infinite.analysis import analysis_of_rabin
-from tltlc.automaton.infinite.assembly import assembled
-from tltlc.automaton.infinite.blowup import blow_up
+from tltlc.automaton.infinite.assembly import assemble
+from tltlc.automaton.infinite.blowup import budget_error
 from tltlc.automaton.infinite.construct import rabin
 from tltlc.automaton.infinite.readback import NormalFormWriter
 from tltlc.automaton.work import STEPS_PER_STATE, OutOfWork, Work
@@ -22,14 +22,15 @@ def build_infinite(spec: Spec, *, state_budget: int = DEFAULT_STATE_BUDGET) -> F
 
     A state is ``accepting`` if it lies on an accepted cycle; it is a trap if no such state can be
     reached from it.  Raises :class:`~tltlc.diagnostics.diagnostic.TltlError`: TLT0501 if the
-    construction takes more than :data:`~tltlc.automaton.work.STEPS_PER_STATE` steps for
-    each state of ``state_budget``, TLT0502 if there are too many edges or prime implicants.
+    construction takes more than :data:`~tltlc.automaton.work.STEPS_PER_STATE` steps for each state
+    of ``state_budget``, or if formulas become too large; TLT0502 if there are too many edges or
+    prime implicants.
     """
     with recursion_room():
         try:
             return _build(spec, STEPS_PER_STATE * state_budget)
         except (OutOfWork, OutOfSteps, TooManyPrimes, RecursionError) as reason:
-            raise blow_up(spec, reason) from None
+            raise budget_error(spec, reason) from None
 
 
 def _build(spec: Spec, work: int) -> Fspa:
@@ -41,7 +42,7 @@ def _build(spec: Spec, work: int) -> Fspa:
     def label(state: int) -> Formula:
         return writer.formula(automaton.labels[state]) if state else spec.formula
 
-    parts = assembled(automaton, analysis, names, spec.exclusive, label)
+    parts = assemble(automaton, analysis, names, spec.exclusive, label)
     return Fspa(
         name=spec.name,
         doc=spec.doc,

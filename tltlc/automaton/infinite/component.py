@@ -46,7 +46,8 @@ def parts_of(
 ) -> tuple[Skeleton, list[LeafAutomaton]]:
     """Return the Boolean skeleton of a normalised formula, and its parts.
 
-    If ``in_turn``, parts that can be followed one at a time become one part.  For ``keep`` see
+    If ``in_turn``, parts that can be followed one at a time are joined in a
+    :class:`~tltlc.automaton.infinite.leaf_automata.RoundRobin`.  For ``keep`` see
     :class:`~tltlc.automaton.infinite.leaf_automata.Recurrence`.
     """
     index_of: dict[Formula | tuple[Formula, ...], int] = {}
@@ -87,7 +88,7 @@ def _breakpoint(after: ObligationAutomaton, formula: Formula) -> Breakpoint:
     return Breakpoint(after, formula, "inf" if is_pi_2(formula) else "fin")
 
 
-def local(
+def bottom_component(
     letters: Diagrams[Any],
     step_of: Callable[[int], int],
     inside: Collection[int],
@@ -101,9 +102,9 @@ def local(
     label after a given label, as a function of the letter.
     """
     initial: State = (first, *(part.initial for part in parts))
-    steps, best = explored(letters, initial, lambda state: _step(letters, step_of, inside, state, parts))
+    steps, best = explore(letters, initial, lambda state: _step(letters, step_of, inside, state, parts))
     kinds = [part.kind for part in parts]
-    values = [part.settled(memory) for part, memory in zip(parts, best[0][1:], strict=True)]
+    values = [part.final_value(memory) for part, memory in zip(parts, best[0][1:], strict=True)]
     accepts = clauses(skeleton, kinds, values, letters.work)
     if isinstance(accepts, bool):
         accepts = [MarkClause(frozenset(), frozenset())] if accepts else []
@@ -112,7 +113,7 @@ def local(
     return ComponentAutomaton({state: state[0] for state in chosen}, chosen, tuple(accepts))
 
 
-def explored(
+def explore(
     letters: Diagrams[Any], initial: State, step_of: Callable[[State], int]
 ) -> tuple[dict[State, int], list[State]]:
     """Return the steps of all reachable states, in breadth-first order, and the smallest bottom component."""
@@ -130,7 +131,7 @@ def explored(
     return steps, smallest_bottom(targets, initial)
 
 
-def merged(letters: Diagrams[Any], one: ComponentAutomaton) -> ComponentAutomaton:
+def merge_equal_states(letters: Diagrams[Any], one: ComponentAutomaton) -> ComponentAutomaton:
     """Merge states that cannot be distinguished by labels and by the marks that clauses use."""
     labels, steps, accepts = one.labels, one.steps, one.accepts
     used = frozenset().union(*(clause.fins | clause.infs for clause in accepts))
@@ -143,7 +144,7 @@ def merged(letters: Diagrams[Any], one: ComponentAutomaton) -> ComponentAutomato
             target, marks = leaf
             return leaf if target[0] == "exit" else (block[target], marks & used)
 
-        signature = {state: (block[state], letters.mapped(change, steps[state], memo)) for state in steps}
+        signature = {state: (block[state], letters.map_leaves(change, steps[state], memo)) for state in steps}
         numbers: dict[tuple[int, int], int] = {}
         block = {state: numbers.setdefault(signature[state], len(numbers)) for state in steps}
         if len(numbers) == count:
@@ -158,7 +159,7 @@ def merged(letters: Diagrams[Any], one: ComponentAutomaton) -> ComponentAutomato
         target, marks = leaf
         return leaf if target[0] == "exit" else (first[block[target]], marks & used)
 
-    kept = {state: letters.mapped(final, steps[state], memo) for state in first.values()}
+    kept = {state: letters.map_leaves(final, steps[state], memo) for state in first.values()}
     return ComponentAutomaton({state: labels[state] for state in kept}, kept, accepts)
 
 
@@ -174,7 +175,7 @@ def _step(
     def start(label: int) -> Leaf:
         return ((label,), _NONE) if label in inside else (("exit", label), _NONE)
 
-    step = letters.mapped(start, step_of(state[0]), {})
+    step = letters.map_leaves(start, step_of(state[0]), {})
     for index, (part, memory) in enumerate(zip(parts, state[1:], strict=True)):
 
         def add(leaf: Leaf, part_leaf: tuple[Memory, bool], index: int = index) -> Leaf:
@@ -183,5 +184,5 @@ def _step(
                 return leaf
             return (*target, part_leaf[0]), marks | {index} if part_leaf[1] else marks
 
-        step = letters.combined(add, step, part.step(memory), {})
+        step = letters.apply(add, step, part.step(memory), {})
     return step

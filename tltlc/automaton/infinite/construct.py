@@ -2,9 +2,9 @@
 
 The states of the after-automaton are what remains of the formula.  Each of its strongly connected
 components becomes an automaton of its own (:mod:`tltlc.automaton.infinite.component`): the simplest
-formula in it is normalised, the parts of the formula are followed beside the labels, and their
-marks become Rabin pairs.  The components are joined.  If states of equal language are found, the
-whole construction runs again with their labels merged.
+formula in the component is normalised, the automata of its parts run beside the labels, and their
+marks become Rabin pairs.  Then the components are joined.  If some states have the same language,
+the whole construction runs again with their labels merged.
 """
 
 from __future__ import annotations
@@ -16,16 +16,23 @@ from typing import Any, Final
 from tltlc.automaton.diagrams import Diagrams, OutOfSteps, at_most_one
 from tltlc.automaton.guards import TooManyPrimes
 from tltlc.automaton.infinite.after_automaton import ObligationAutomaton
-from tltlc.automaton.infinite.assembled_components import Place, joined
+from tltlc.automaton.infinite.assembled_components import Place, join_components
 from tltlc.automaton.infinite.automaton import NO_MARKS, Rabin
-from tltlc.automaton.infinite.component import IMPOSSIBLE, State, has_turns, local, merged, parts_of
+from tltlc.automaton.infinite.component import (
+    IMPOSSIBLE,
+    State,
+    bottom_component,
+    has_turns,
+    merge_equal_states,
+    parts_of,
+)
 from tltlc.automaton.infinite.delta2 import delta_2, delta_2_dually
 from tltlc.automaton.infinite.factors import factor
 from tltlc.automaton.infinite.graphs import components
 from tltlc.automaton.infinite.languages import equal_states
 from tltlc.automaton.infinite.normal_form import infinite_form
-from tltlc.automaton.infinite.pairs import Piece, with_pairs
-from tltlc.automaton.infinite.state_merging import shrunk
+from tltlc.automaton.infinite.pairs import RabinComponent, with_pairs
+from tltlc.automaton.infinite.state_merging import shrink
 from tltlc.automaton.work import DEFAULT_WORK, OutOfWork, Work
 from tltlc.core.record import replace
 from tltlc.io.limits import WORK
@@ -36,10 +43,10 @@ _FOR_AN_ATTEMPT: Final = 400_000
 _FOR_LANGUAGES: Final = 1_000_000
 """Steps for finding states of equal language and for the second construction; if they take more, both are dropped."""
 _FOR_SHRINKING: Final = 400_000
-"""Steps for removing states of a component; when they are used up, the other states stay."""
+"""Steps for removing states of a component; when they are used up, the remaining states stay."""
 
 Labels = dict[int, int]
-"""A map of labels, which are obligations of :class:`~tltlc.automaton.infinite.after_automaton.ObligationAutomaton`."""
+"""A map from labels: obligations of :class:`~tltlc.automaton.infinite.after_automaton.ObligationAutomaton`."""
 
 
 def rabin(
@@ -63,7 +70,7 @@ def rabin(
 class _Construction:
     def __init__(self, formula: Formula, atoms: Sequence[str], exclusive: Sequence[Sequence[int]], work: int) -> None:
         self.work = Work(work)
-        # A larger budget is set because the default is too little for some component.
+        # Users set a larger budget because the default is too little for some component.
         self._for_an_attempt = _FOR_AN_ATTEMPT * max(1, work // DEFAULT_WORK)
         self.letters: Diagrams[Any] = Diagrams(self.work)
         self.after = ObligationAutomaton(atoms, self.letters)
@@ -73,13 +80,13 @@ class _Construction:
         self._constrained: dict[tuple[int, int], int] = {}
 
     def automaton(self) -> Rabin:
-        """Return the automaton, or the one with labels of equal language merged if that is smaller."""
-        first, state_of, depth = self._constructed({})
+        """Return the automaton, with labels of equal language merged if that makes it smaller."""
+        first, state_of, depth = self._construct({})
         try:
             with self.work.at_most(_FOR_LANGUAGES):
                 representatives = self._equal_labels(first, state_of, depth)
                 if any(label != other for label, other in representatives.items()):
-                    second, _, _ = self._constructed(representatives)
+                    second, _, _ = self._construct(representatives)
                     if (len(second.steps), second.pairs) < (len(first.steps), first.pairs):
                         return second
         except (OutOfWork, OutOfSteps, TooManyPrimes):
@@ -89,7 +96,7 @@ class _Construction:
     def _equal_labels(self, automaton: Rabin, state_of: Labels, depth: Labels) -> Labels:
         """Map each label to the representative of its language.
 
-        The representative is in the component nearest to the end; among these it is the shortest.
+        It is the shortest label of this language in the component nearest to the end.
         """
         same = equal_states(automaton, len(self.after.atoms), self._exclusive, self.work)
         representatives: Labels = {}
@@ -98,7 +105,7 @@ class _Construction:
             representatives[label] = best.setdefault(same[state_of[label]], label)
         return representatives
 
-    def _constructed(self, representatives: Labels) -> tuple[Rabin, Labels, Labels]:
+    def _construct(self, representatives: Labels) -> tuple[Rabin, Labels, Labels]:
         """Build the automaton with labels replaced by their representatives.
 
         Returns the automaton, the state of each label, and the position of each label's component,
@@ -111,7 +118,7 @@ class _Construction:
         def step_of(label: int) -> int:
             step = self._step(label)
             return (
-                self.letters.mapped(lambda label: representatives.get(label, label), step, memo)
+                self.letters.map_leaves(lambda label: representatives.get(label, label), step, memo)
                 if representatives
                 else step
             )
@@ -127,16 +134,16 @@ class _Construction:
             return successors
 
         initial = representatives.get(self.initial, self.initial)
-        pieces: list[Piece] = []
+        rabin_components: list[RabinComponent] = []
         entry: dict[int, Place] = {}
         depth: Labels = {}
         for number, group in enumerate(components([initial], targets)):
-            piece = self._piece(step_of, group)
-            pieces.append(piece)
+            component = self._rabin_component(step_of, group)
+            rabin_components.append(component)
             depth.update(dict.fromkeys(group, number))
-            for state, label in piece.labels.items():
+            for state, label in component.labels.items():
                 entry.setdefault(label, (number, state))
-        whole, states = joined(self.letters, pieces, entry, entry[initial])
+        whole, states = join_components(self.letters, rabin_components, entry, entry[initial])
         labelled = replace(whole, labels=tuple(map(self.after.formula, whole.labels)))
         return labelled, {label: states[place] for label, place in entry.items() if place in states}, depth
 
@@ -147,7 +154,7 @@ class _Construction:
         step = self.after.after(label)
         if not self._exclusive:
             return step
-        return self.letters.combined(
+        return self.letters.apply(
             lambda label, allowed: label if allowed else IMPOSSIBLE, step, self._allowed, self._constrained
         )
 
@@ -156,14 +163,14 @@ class _Construction:
 
     # --- components -------------------------------------------------------------------------------
 
-    def _piece(self, step_of: Callable[[int], int], group: Sequence[int]) -> Piece:
-        """Return the smallest automaton with pairs that was found for a component of the after-automaton."""
+    def _rabin_component(self, step_of: Callable[[int], int], group: Sequence[int]) -> RabinComponent:
+        """Return the smallest of the automata with pairs that were built for a component of the after-automaton."""
         inside = frozenset(group)
         if not any(target in inside for label in group for target in self._targets(step_of(label))):
             (label,) = group
-            step = self.letters.mapped(lambda target: (("exit", target), NO_MARKS), step_of(label), {})
-            return Piece({(label,): label}, {(label,): step}, 0)
-        best: Piece | None = None
+            step = self.letters.map_leaves(lambda target: (("exit", target), NO_MARKS), step_of(label), {})
+            return RabinComponent({(label,): label}, {(label,): step}, 0)
+        best: RabinComponent | None = None
         first = min(group, key=lambda label: (self._size(label), group.index(label)))
         for attempt in self._attempts(step_of, inside, first):
             if best is None or (len(attempt.steps), attempt.pairs) < (len(best.steps), best.pairs):
@@ -172,9 +179,9 @@ class _Construction:
                 break
         if best is None:
             raise OutOfWork
-        return shrunk(self.letters, best, self.work, _FOR_SHRINKING) if len(best.steps) > len(group) else best
+        return shrink(self.letters, best, self.work, _FOR_SHRINKING) if len(best.steps) > len(group) else best
 
-    def _attempts(self, step_of: Callable[[int], int], inside: frozenset[int], first: int) -> Iterator[Piece]:
+    def _attempts(self, step_of: Callable[[int], int], inside: frozenset[int], first: int) -> Iterator[RabinComponent]:
         """Yield automata for a component that starts at the label ``first``, within the work for an attempt."""
         formula = self.after.formula(first)
         forms = []
@@ -189,15 +196,15 @@ class _Construction:
             try:
                 with self.work.at_most(self._for_an_attempt):
                     skeleton, parts = parts_of(self.after, normal, keep=keep, in_turn=in_turn)
-                    whole = local(self.letters, step_of, inside, first, skeleton, parts)
-                    if piece := factor(self.letters, whole, lambda state: state[:1], self.work):
-                        yield piece
+                    whole = bottom_component(self.letters, step_of, inside, first, skeleton, parts)
+                    if component := factor(self.letters, whole, lambda state: state[:1], self.work):
+                        yield component
                         continue
-                    yield with_pairs(self.letters, merged(self.letters, whole), self.work)
+                    yield with_pairs(self.letters, merge_equal_states(self.letters, whole), self.work)
                     for count in (1, 2):
                         for chosen in combinations(range(1, len(parts) + 1), count):
-                            if piece := factor(self.letters, whole, _picked(chosen), self.work):
-                                yield piece
+                            if component := factor(self.letters, whole, _key_function(chosen), self.work):
+                                yield component
             except (OutOfWork, OutOfSteps):
                 continue
 
@@ -205,6 +212,6 @@ class _Construction:
         return sum(1 for _ in self.after.formula(label).walk())
 
 
-def _picked(chosen: Sequence[int]) -> Callable[[State], State]:
-    """Return the key function that keeps the label of a state and the chosen memories."""
+def _key_function(chosen: Sequence[int]) -> Callable[[State], State]:
+    """Return the function that maps a state to its label and the chosen memories."""
     return lambda state: (state[0], *(state[index] for index in chosen))

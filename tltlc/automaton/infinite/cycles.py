@@ -23,7 +23,7 @@ Edge = tuple[Any, Any, Marks]
 Edges = frozenset[Edge]
 
 LOOKS_PER_STEP: Final = 16
-"""Edges per step of work, if they are only read."""
+"""How many edges one step of work pays for, if they are only read."""
 
 
 @record
@@ -34,7 +34,7 @@ class Node:
     edges: Edges
     states: frozenset[Any]
     accepted: bool
-    below: tuple[Node, ...]
+    children: tuple[Node, ...]
 
 
 def decomposition(edges: Iterable[Edge], clauses: Sequence[MarkClause], work: Work) -> Node:
@@ -53,9 +53,9 @@ def decomposition(edges: Iterable[Edge], clauses: Sequence[MarkClause], work: Wo
         inside = (rejecting_parts if accepted else accepting_parts)(members, clauses, work)
         maximal = _maximal(inside, work)
         maximal = sorted(maximal, key=lambda part: sorted(map(order.__getitem__, part)))
-        below = tuple(node(part) for part in maximal)
+        children = tuple(node(part) for part in maximal)
         states = frozenset(state for source, target, _ in members for state in (source, target))
-        return Node(index, members, states, accepted, below)
+        return Node(index, members, states, accepted, children)
 
     return node(frozenset(order))
 
@@ -94,7 +94,7 @@ def accepting_parts(edges: Edges, clauses: Sequence[MarkClause], work: Work) -> 
 
 
 def rejecting_parts(edges: Edges, clauses: Sequence[MarkClause], work: Work) -> list[Edges]:
-    """Return rejected strongly connected subsets, among them all maximal ones."""
+    """Return strongly connected subsets that no clause accepts; all maximal subsets are among them."""
     rejected: dict[Edges, None] = {}
     seen: set[Edges] = set()
     stack = [edges]

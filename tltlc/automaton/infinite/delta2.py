@@ -17,9 +17,9 @@ from tltlc.logic.formula import FALSE, TRUE, Formula
 
 
 @lru_cache(maxsize=65536)
-def has(formula: Formula, op: str) -> bool:
+def contains(formula: Formula, op: str) -> bool:
     """Whether a formula contains an operator."""
-    return formula.op == op or any(has(argument, op) for argument in formula.args)
+    return formula.op == op or any(contains(argument, op) for argument in formula.args)
 
 
 @lru_cache(maxsize=65536)
@@ -27,7 +27,7 @@ def is_sigma_2(formula: Formula) -> bool:
     """Whether no ``W`` has a ``U`` below it, and no part is rigid."""
     if formula.op in ("G", "F"):
         return False
-    if formula.op == "W" and has(formula, "U"):
+    if formula.op == "W" and contains(formula, "U"):
         return False
     return all(map(is_sigma_2, formula.args))
 
@@ -37,7 +37,7 @@ def is_pi_2(formula: Formula) -> bool:
     """Whether no ``U`` has a ``W`` below it, and no part is rigid."""
     if formula.op in ("G", "F"):
         return False
-    if formula.op == "U" and has(formula, "W"):
+    if formula.op == "U" and contains(formula, "W"):
         return False
     return all(map(is_pi_2, formula.args))
 
@@ -52,7 +52,7 @@ def delta_2_dually(formula: Formula) -> Formula:
 
     Raises OutOfWork if it becomes too large.
     """
-    return normal_form.negated(delta_2(normal_form.negated(formula)))
+    return normal_form.negation(delta_2(normal_form.negation(formula)))
 
 
 _MOST_STEPS: Final = 3000
@@ -70,10 +70,10 @@ class _Normaliser:
         result = self._normal.get(formula)
         if result is None:
             self._spend()
-            result = self._normal[formula] = self._normalised(formula)
+            result = self._normal[formula] = self._normalise(formula)
         return result
 
-    def _normalised(self, formula: Formula) -> Formula:
+    def _normalise(self, formula: Formula) -> Formula:
         op, args = formula.op, formula.args
         if op == "and" or op == "or":
             make = normal_form.conjunction if op == "and" else normal_form.disjunction
@@ -85,10 +85,10 @@ class _Normaliser:
         if is_sigma_2(formula) or is_pi_2(formula):
             return formula
         if op == "X":
-            return _under_next(self.normal(args[0]))
+            return _push_next(self.normal(args[0]))
         flat = self.flat(formula)
         if flat is formula:
-            # It has too many rigid parts to pull them out.
+            # The formula has too many rigid parts to move them out.
             raise OutOfWork
         return flat if is_sigma_2(flat) else self.normal(flat)
 
@@ -97,8 +97,8 @@ class _Normaliser:
         if outermost is None:
             return normal_form.always_eventually(inner)
         p, q = outermost.args
-        strong = normal_form.always_eventually(normal_form.substituted(inner, {outermost: normal_form.until(p, q)}))
-        always = normal_form.always_eventually(normal_form.substituted(inner, {outermost: TRUE}))
+        strong = normal_form.always_eventually(normal_form.substitute(inner, {outermost: normal_form.until(p, q)}))
+        always = normal_form.always_eventually(normal_form.substitute(inner, {outermost: TRUE}))
         return self.normal(
             normal_form.disjunction((strong, normal_form.conjunction((normal_form.eventually_always(p), always))))
         )
@@ -108,8 +108,8 @@ class _Normaliser:
         if outermost is None:
             return normal_form.eventually_always(inner)
         p, q = outermost.args
-        weak = normal_form.eventually_always(normal_form.substituted(inner, {outermost: normal_form.weak(p, q)}))
-        never = normal_form.eventually_always(normal_form.substituted(inner, {outermost: FALSE}))
+        weak = normal_form.eventually_always(normal_form.substitute(inner, {outermost: normal_form.weak_until(p, q)}))
+        never = normal_form.eventually_always(normal_form.substitute(inner, {outermost: FALSE}))
         return self.normal(
             normal_form.disjunction((normal_form.conjunction((normal_form.always_eventually(q), weak)), never))
         )
@@ -119,7 +119,7 @@ class _Normaliser:
         result = self._flat.get(formula)
         if result is None:
             self._spend()
-            result = self._flat[formula] = self._flattened(formula)
+            result = self._flat[formula] = self._flatten(formula)
         return result
 
     def _spend(self) -> None:
@@ -127,25 +127,25 @@ class _Normaliser:
         if self._steps > _MOST_STEPS:
             raise OutOfWork
 
-    def _flattened(self, formula: Formula) -> Formula:
+    def _flatten(self, formula: Formula) -> Formula:
         if normal_form.is_rigid(formula) or not formula.args or formula.op == "not":
             return formula
-        if formula.op != "W" or not has(formula, "U"):
+        if formula.op != "W" or not contains(formula, "U"):
             args = {argument: self.flat(argument) for argument in formula.args}
             if all(new is old for old, new in args.items()):
                 return formula
-            rebuilt = normal_form.substituted_below(formula, args)
+            rebuilt = normal_form.substitute_operands(formula, args)
             return rebuilt if rebuilt is formula else self.flat(rebuilt)
         a, b = formula.args
-        if has(b, "U"):
-            return self.flat(normal_form.disjunction((normal_form.until(a, b), normal_form.weak(a, FALSE))))
+        if contains(b, "U"):
+            return self.flat(normal_form.disjunction((normal_form.until(a, b), normal_form.weak_until(a, FALSE))))
         outermost = _outermost(a, "U")
         if outermost is None:
             # Every U is inside a rigid part.
             raise OutOfWork
         p, q = outermost.args
-        weak = normal_form.weak(normal_form.substituted(a, {outermost: normal_form.weak(p, q)}), b)
-        never = normal_form.weak(normal_form.substituted(a, {outermost: FALSE}), FALSE)
+        weak = normal_form.weak_until(normal_form.substitute(a, {outermost: normal_form.weak_until(p, q)}), b)
+        never = normal_form.weak_until(normal_form.substitute(a, {outermost: FALSE}), FALSE)
         return self.flat(
             normal_form.disjunction(
                 (
@@ -157,11 +157,11 @@ class _Normaliser:
 
 
 @lru_cache(maxsize=4096)
-def _under_next(formula: Formula) -> Formula:
+def _push_next(formula: Formula) -> Formula:
     if formula.op == "and":
-        return normal_form.conjunction(map(_under_next, formula.args))
+        return normal_form.conjunction(map(_push_next, formula.args))
     if formula.op == "or":
-        return normal_form.disjunction(map(_under_next, formula.args))
+        return normal_form.disjunction(map(_push_next, formula.args))
     return normal_form.next_(formula)
 
 
@@ -169,6 +169,6 @@ def _outermost(formula: Formula, op: str) -> Formula | None:
     """Return the first outermost subformula with operator ``op`` that is not inside a rigid part, or None."""
     if formula.op == op:
         return formula
-    if formula.op in ("G", "F") or not has(formula, op):
+    if formula.op in ("G", "F") or not contains(formula, op):
         return None
     return next(filter(None, (_outermost(argument, op) for argument in formula.args)), None)

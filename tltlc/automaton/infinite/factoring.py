@@ -1,7 +1,7 @@
 """Write Boolean combinations of temporal formulas in a short form, with common factors in front.
 
-The construction reads labels off decision diagrams, or uses the first formula that it met.  This
-module rewrites them, once from their prime implicants and once from their prime implicates:
+The construction reads labels from decision diagrams, or uses the first formula that it met.  This
+module rewrites labels, once from their prime implicants and once from their prime implicates:
 ``b & !d | d`` becomes ``b | d``, and ``F b & G F c | F b & G F d`` becomes
 ``F b & (G F c | G F d)``.
 """
@@ -32,7 +32,7 @@ _Op = Literal["or", "and"]
 
 
 class _TooManyTerms(Exception):
-    pass
+    """Raised when a formula has more than :data:`_MOST_TERMS` terms."""
 
 
 class Factoring:
@@ -47,7 +47,7 @@ class Factoring:
             ("and", TRUE): (),
             ("and", FALSE): (nothing,),
         }
-        self._beside: dict[tuple[_Op, int], _Term] = {}
+        self._redundant: dict[tuple[_Op, int], _Term] = {}
 
     def forms(self, formula: Formula) -> Iterator[Formula]:
         """Yield the formula from its prime implicants, and from its prime implicates, unless there are too many."""
@@ -55,10 +55,10 @@ class Factoring:
         for op in operators:
             try:
                 with self._after.obligations.limit.at_most(_MOST_STEPS):
-                    terms = self._needed(self._primes(self._after.obligation(formula), op), op)
+                    terms = self._drop_redundant_terms(self._primes(self._after.obligation(formula), op), op)
             except (_TooManyTerms, OutOfSteps):
                 continue
-            yield self._factored(terms, op)
+            yield self._factor(terms, op)
             if len(terms) < 2:
                 # With at most one term, both forms are the same.
                 return
@@ -84,9 +84,9 @@ class Factoring:
             self._terms[op, obligation] = primes
         return primes
 
-    def _needed(self, terms: Sequence[_Term], op: _Op) -> list[_Term]:
-        """Return the terms without the literals and terms that others make redundant."""
-        kept = [self._without_redundant(term, op) for term in terms]
+    def _drop_redundant_terms(self, terms: Sequence[_Term], op: _Op) -> list[_Term]:
+        """Return the terms without the literals and terms that other literals and terms make redundant."""
+        kept = [self._drop_redundant_literals(term, op) for term in terms]
         for term in sorted(kept, key=len, reverse=True) if len(kept) > 1 else ():
             others = [other for other in kept if other is not term]
             implied = term.union(*(self._redundant_beside(literal, op) for literal in term))
@@ -94,24 +94,22 @@ class Factoring:
                 kept = others
         return kept
 
-    def _without_redundant(self, term: _Term, op: _Op) -> _Term:
+    def _drop_redundant_literals(self, term: _Term, op: _Op) -> _Term:
         for literal in sorted(term) if len(term) > 1 else ():
             if any(literal in self._redundant_beside(other, op) for other in term):
                 term -= {literal}
         return term
 
     def _redundant_beside(self, literal: int, op: _Op) -> _Term:
-        """Return literals that are redundant in a term with this one: ``F b`` in a conjunction with
-        ``F(a & X F b)``.
-        """
-        redundant = self._beside.get((op, literal))
+        """Return literals that are redundant beside ``literal``: in an ``and``, ``F b`` beside ``F(a & X F b)``."""
+        redundant = self._redundant.get((op, literal))
         if redundant is None:
             redundant = frozenset()
             formula = self._after.formulas[literal // 2]
             if formula.op != "atom":
                 with_literal = [term for term in self._primes(self._after.obligation(formula), op) if literal in term]
                 redundant = frozenset.intersection(*with_literal) - {literal} if with_literal else redundant
-            self._beside[op, literal] = redundant
+            self._redundant[op, literal] = redundant
         return redundant
 
     def _is_consensus(self, term: _Term, others: Sequence[_Term], op: _Op) -> bool:
@@ -124,26 +122,26 @@ class Factoring:
         return combine(without, self._obligation([term], op)) == without
 
     def _obligation(self, terms: Iterable[_Term], op: _Op) -> int:
-        return self._after.obligation(self._joined(terms, op))
+        return self._after.obligation(self._join(terms, op))
 
     # --- factors ----------------------------------------------------------------------------------
 
-    def _factored(self, terms: Sequence[_Term], op: _Op) -> Formula:
+    def _factor(self, terms: Sequence[_Term], op: _Op) -> Formula:
         """Return the terms as a formula, with the literals that all terms share in front.
 
-        If they share none, factor out the literal that most terms have, together with every other
-        factor that occurs with the same rests.  The remaining terms are factored separately and
-        stand beside that.
+        If the terms share no literal, the literal that most terms have is factored out, together
+        with every other factor that occurs with the same rests.  The remaining terms are factored
+        separately.
         """
         if len(terms) < 2:
-            return self._joined(terms, op)
+            return self._join(terms, op)
         shared = frozenset.intersection(*terms)
         if shared:
-            return _inner(op, (self._term(shared, op), self._factored([term - shared for term in terms], op)))
+            return _join_factors(op, (self._term(shared, op), self._factor([term - shared for term in terms], op)))
         counts = Counter(literal for term in terms for literal in term)
         best = min(counts, key=lambda literal: (-counts[literal], literal))
         if counts[best] == 1:
-            return self._joined(terms, op)
+            return self._join(terms, op)
         rests = [term - {best} for term in terms if best in term]
         shared = frozenset.intersection(*rests)
         rests = [rest - shared for rest in rests]
@@ -152,23 +150,23 @@ class Factoring:
         factors = [factor for factor in before if all(factor | rest in terms for rest in rests)]
         product = {factor | rest for factor in factors for rest in rests}
         others = [term for term in terms if term not in product]
-        whole = _inner(op, (self._factored(factors, op), self._factored(rests, op)))
-        return _outer(op, (whole, self._factored(others, op))) if others else whole
+        whole = _join_factors(op, (self._factor(factors, op), self._factor(rests, op)))
+        return _join_terms(op, (whole, self._factor(others, op))) if others else whole
 
-    def _joined(self, terms: Iterable[_Term], op: _Op) -> Formula:
-        return _outer(op, (self._term(term, op) for term in terms))
+    def _join(self, terms: Iterable[_Term], op: _Op) -> Formula:
+        return _join_terms(op, (self._term(term, op) for term in terms))
 
     def _term(self, term: _Term, op: _Op) -> Formula:
-        return _inner(op, map(self._literal, sorted(term)))
+        return _join_factors(op, map(self._literal, sorted(term)))
 
     def _literal(self, literal: int) -> Formula:
         formula = self._after.formulas[literal // 2]
         return not_(formula) if literal % 2 else formula
 
 
-def _outer(op: _Op, operands: Iterable[Formula]) -> Formula:
+def _join_terms(op: _Op, operands: Iterable[Formula]) -> Formula:
     return disjunction(operands) if op == "or" else conjunction(operands)
 
 
-def _inner(op: _Op, operands: Iterable[Formula]) -> Formula:
+def _join_factors(op: _Op, operands: Iterable[Formula]) -> Formula:
     return conjunction(operands) if op == "or" else disjunction(operands)

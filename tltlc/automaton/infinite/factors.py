@@ -2,10 +2,10 @@
 
 Such a factor merges the states of the component that have the same key.  An edge of the factor
 stands for all edges of the component with its source and letter.  If none of these lies on a
-rejected cycle, a run that takes the edge infinitely often is accepted, and the edge gets the first
-rank.  Then the edges without a rank are examined again, in turn for accepted and rejected cycles.
-If every edge gets a rank, the ranks decide acceptance as priorities do: the least rank that a run
-takes infinitely often accepts if it is even.
+rejected cycle, a run that takes the edge infinitely often is accepted, and the edge gets rank 0.
+Edges without a rank are then examined again, in turn for accepted and rejected cycles, and get
+ranks 1, 2 and so on.  If every edge gets a rank, the ranks decide acceptance as priorities do: a
+run is accepted if the least rank that it takes infinitely often is even.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from tltlc.automaton.infinite.automaton import NO_MARKS, PairMarks
 from tltlc.automaton.infinite.component import ComponentAutomaton, Leaf, State
 from tltlc.automaton.infinite.cycles import accepting_parts, parts, rejecting_parts
 from tltlc.automaton.infinite.mark_conditions import Marks
-from tltlc.automaton.infinite.pairs import Piece
+from tltlc.automaton.infinite.pairs import RabinComponent
 from tltlc.automaton.work import Work
 
 _MOST_TOGETHER: Final = 48
@@ -29,7 +29,9 @@ _Edge = tuple[State, State, Marks, int]
 """An edge of the component, and the number of the factor's edge that stands for it."""
 
 
-def factor(letters: Diagrams[Any], one: ComponentAutomaton, key: Callable[[State], State], work: Work) -> Piece | None:
+def factor(
+    letters: Diagrams[Any], one: ComponentAutomaton, key: Callable[[State], State], work: Work
+) -> RabinComponent | None:
     """Return the factor of a component by a key of its states; None if its edges cannot decide acceptance.
 
     The key after a letter must depend only on the key before it and on the letter.  Raises
@@ -46,7 +48,7 @@ def factor(letters: Diagrams[Any], one: ComponentAutomaton, key: Callable[[State
     for name, states in groups.items():
         step = letters.leaf(())
         for state in states:
-            step = letters.combined(lambda all_, leaf: (*all_, leaf), step, one.steps[state], {})
+            step = letters.apply(lambda all_, leaf: (*all_, leaf), step, one.steps[state], {})
         together[name] = step
         for leaves in letters.values(step):
             number = classes.setdefault((name, leaves), len(classes))
@@ -74,15 +76,12 @@ def factor(letters: Diagrams[Any], one: ComponentAutomaton, key: Callable[[State
                 return target, NO_MARKS
             return key(target), marks_of(ranks.get(classes[name, leaves]))
 
-        steps[name] = letters.mapped(change, step, {})
-    return Piece({name: one.labels[states[0]] for name, states in groups.items()}, steps, len(accepting))
+        steps[name] = letters.map_leaves(change, step, {})
+    return RabinComponent({name: one.labels[states[0]] for name, states in groups.items()}, steps, len(accepting))
 
 
 def _ranks(edges: list[_Edge], one: ComponentAutomaton, work: Work) -> dict[int, int] | None:
-    """Return the rank of each edge of the factor; None if some edge gets none.
-
-    The least rank that a run takes infinitely often decides: even ranks accept.
-    """
+    """Return the rank of each edge of the factor; None if some edge gets no rank."""
     # The functions of `cycles` read three fields of an edge; the number only keeps the edges distinct.
     left: frozenset[Any] = frozenset(edges)
     ranks: dict[int, int] = {}

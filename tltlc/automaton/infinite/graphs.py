@@ -9,7 +9,10 @@ Node = TypeVar("Node", bound=Hashable)
 
 
 def components(roots: Iterable[Node], successors: Callable[[Node], Iterable[Node]]) -> list[list[Node]]:
-    """Return the reachable strongly connected components, each after the components it leads to (R. Tarjan 1972)."""
+    """Return the strongly connected components that the roots reach, each after the components that it leads to.
+
+    R. Tarjan, "Depth-First Search and Linear Graph Algorithms", SIAM J. Comput. 1972.
+    """
     index: dict[Node, int] = {}
     low: dict[Node, int] = {}
     on_stack: set[Node] = set()
@@ -52,7 +55,10 @@ def components(roots: Iterable[Node], successors: Callable[[Node], Iterable[Node
 
 
 def smallest_bottom(targets: Mapping[Node, Sequence[Node]], root: Node) -> list[Node]:
-    """Return the smallest component that leads to no other; of several, the one found first from the root."""
+    """Return the smallest strongly connected component that leads to no other one.
+
+    Of several such components, it is the first in the order of :func:`components` from ``root``.
+    """
     bottoms = []
     for group in components([root], targets.__getitem__):
         members = set(group)

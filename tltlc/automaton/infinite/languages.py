@@ -7,7 +7,7 @@ from random import Random
 from typing import Final
 
 from tltlc.automaton.infinite.automaton import NO_MARKS, PairMarks, Rabin
-from tltlc.automaton.infinite.products import Both, Leaf, conditions, separating_component, side_by_side
+from tltlc.automaton.infinite.products import Leaf, StatePair, conditions, product_leaves, separating_component
 from tltlc.automaton.work import Work
 
 _WORDS: Final = 48
@@ -33,21 +33,21 @@ def equal_states(automaton: Rabin, atoms: int, exclusive: Sequence[Sequence[int]
 
 
 def _equal(automaton: Rabin, one: int, other: int, work: Work) -> bool:
-    """Whether two states have the same language: no cycle of their product is accepted by only one of them.
+    """Whether two states have the same language: in their product, both accept the same cycles.
 
     Raises OutOfWork.
     """
     steps, pairs = automaton.steps, automaton.pairs
-    together = side_by_side(automaton.letters, pairs, lambda leaf: leaf is None)
+    together = product_leaves(automaton.letters, pairs, lambda leaf: leaf is None)
 
-    def leaves(both: Both) -> list[Leaf]:
+    def leaves(both: StatePair) -> list[Leaf]:
         successors = together(steps[both[0]], steps[both[1]])
         work.spend(5 + len(successors))
         # No word distinguishes a state from itself.
         return [leaf for leaf in successors if leaf[0][0] != leaf[0][1]]
 
-    these, those = conditions(pairs, pairs)
-    return separating_component([(one, other)], leaves, [(these, those), (those, these)], work) is None
+    of_one, of_other = conditions(pairs, pairs)
+    return separating_component([(one, other)], leaves, [(of_one, of_other), (of_other, of_one)], work) is None
 
 
 def _signatures(automaton: Rabin, atoms: int, exclusive: Sequence[Sequence[int]], work: Work) -> list[tuple[bool, ...]]:

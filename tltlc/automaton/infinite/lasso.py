@@ -1,6 +1,6 @@
 """Evaluate formulas over infinite traces on traces that end in a cycle, directly from the definitions.
 
-This is slow and serves as the reference: the rest of this package is tested against it.
+This is slow and serves as the reference: tests compare the rest of this package with it.
 """
 
 from __future__ import annotations
@@ -13,8 +13,8 @@ from tltlc.logic.formula import Formula
 def holds_on_lasso(formula: Formula, prefix: Sequence[Collection[str]], cycle: Sequence[Collection[str]]) -> bool:
     """Whether a formula holds on ``prefix`` followed by infinitely many repetitions of ``cycle``.
 
-    A sample is the collection of the names of the atoms that hold at it; ``N`` is ``X``.  Raises
-    ValueError if the cycle is empty.
+    A sample is the collection of the names of the atoms that hold at it.  ``N`` means the same as
+    ``X``, since every sample has a next one.  Raises ValueError if the cycle is empty.
     """
     if not cycle:
         raise ValueError("the cycle is empty")
@@ -53,18 +53,18 @@ def _values(
     yes = [True] * count
     match node.op:
         case "F":
-            return _fixed(yes, a, following, least=True)
+            return _fixed_point(yes, a, following, least=True)
         case "G":
-            return _fixed(a, [False] * count, following, least=False)
+            return _fixed_point(a, [False] * count, following, least=False)
         case "U" | "W":
-            return _fixed(a, b, following, least=node.op == "U")
+            return _fixed_point(a, b, following, least=node.op == "U")
         case "R" | "M":
             both = [x and y for x, y in zip(a, b, strict=True)]
-            return _fixed(b, both, following, least=node.op == "M")
+            return _fixed_point(b, both, following, least=node.op == "M")
     raise ValueError(f"an unknown operator: {node.op}")
 
 
-def _fixed(go_on: list[bool], ends: list[bool], following: Sequence[int], *, least: bool) -> list[bool]:
+def _fixed_point(go_on: list[bool], ends: list[bool], following: Sequence[int], *, least: bool) -> list[bool]:
     """Return the least or greatest solution of ``v = ends | go_on & X v``."""
     values = [not least] * len(ends)
     # Each round fixes the value of at least one more place.

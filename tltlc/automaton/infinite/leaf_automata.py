@@ -1,6 +1,4 @@
-"""Small deterministic automata for the leaves of a normalised formula; each marks the letters that
-decide acceptance.
-"""
+"""Small deterministic automata for the parts of a normalised formula, which mark the letters that decide acceptance."""
 
 from __future__ import annotations
 
@@ -10,13 +8,13 @@ from typing import Any, Protocol
 
 from tltlc.automaton.infinite.after_automaton import ObligationAutomaton
 from tltlc.automaton.infinite.mark_conditions import Kind
-from tltlc.automaton.infinite.normal_form import substituted_below
+from tltlc.automaton.infinite.normal_form import substitute_operands
 from tltlc.automaton.transitions import FALSE, TRUE
 from tltlc.logic import formula as build
 from tltlc.logic.formula import Formula
 
 Memory = tuple[Any, ...]
-"""Obligations and numbers.  No truth values: a table of leaves could not tell them from the numbers 1 and 0."""
+"""Obligations and numbers, but no truth values: a table of leaves could not tell them from the numbers 1 and 0."""
 
 
 class LeafAutomaton(Protocol):
@@ -32,79 +30,80 @@ class LeafAutomaton(Protocol):
     def step(self, memory: Memory) -> int:
         """Return the memory after each letter and whether the letter is marked, as a function of the letter."""
 
-    def settled(self, memory: Memory) -> bool | None:
-        """Return whether the part holds if no further letter can change that; else None."""
+    def final_value(self, memory: Memory) -> bool | None:
+        """Return whether the part holds, if no further letter can change this; else None."""
 
 
 class Breakpoint:
     """A breakpoint automaton for a Pi-2 formula (``inf``) or a Sigma-2 formula (``fin``).
 
-    The memory is what remains of the formula, and an obligation that is owed.  For a Pi-2 formula
-    this obligation starts as what remains with each outermost ``W`` replaced by true.  When it
-    becomes true, the letter is marked, and the obligation starts again from what remains then.  The
-    formula holds if infinitely many letters are marked and what remains never becomes false.
-    Sigma-2 is dual: each outermost ``U`` is replaced by false, a letter is marked when the
-    obligation becomes false, and the formula holds if finitely many letters are marked.
+    The memory is two obligations: what remains of the formula, and a current obligation.  For a
+    Pi-2 formula, the current obligation starts as what remains with each outermost ``W`` replaced
+    by true.  When it becomes true, the letter is marked, and the current obligation starts again
+    from what remains then.  The formula holds if infinitely many letters are marked and what
+    remains never becomes false.  Sigma-2 is dual: each outermost ``U`` is replaced by false, a
+    letter is marked when the current obligation becomes false, and the formula holds if finitely
+    many letters are marked.
     """
 
     def __init__(self, after: ObligationAutomaton, formula: Formula, kind: Kind) -> None:
         self.kind = kind
         self._after = after
         self._weakened: dict[int, int] = {}
-        self.initial: Memory = self._begun(after.obligation(formula))
+        self.initial: Memory = self._initial_memory(after.obligation(formula))
         self._memo: dict[tuple[int, int], int] = {}
         self._steps: dict[Memory, int] = {}
 
-    def _begun(self, rest: int) -> Memory:
-        return (rest,) if rest in (TRUE, FALSE) else (rest, self._restarted(rest))
+    def _initial_memory(self, rest: int) -> Memory:
+        return (rest,) if rest in (TRUE, FALSE) else (rest, self._restart(rest))
 
-    def _restarted(self, rest: int) -> int:
-        return self._after.replaced(rest, self._weak, self._weakened)
+    def _restart(self, rest: int) -> int:
+        return self._after.replace_temporal(rest, self._weaken, self._weakened)
 
-    def _weak(self, formula: Formula) -> int:
-        return self._after.obligation(_without(formula, "W" if self.kind == "inf" else "U"))
+    def _weaken(self, formula: Formula) -> int:
+        return self._after.obligation(_replace_outermost(formula, "W" if self.kind == "inf" else "U"))
 
     def step(self, memory: Memory) -> int:
         """Return the memory after each letter and whether the letter is marked, as a function of the letter."""
         step = self._steps.get(memory)
         if step is None:
             letters = self._after.letters
-            if self.settled(memory) is not None:
+            if self.final_value(memory) is not None:
                 step = letters.leaf((memory, False))
             else:
                 rest, owed = map(self._after.after, memory)
-                step = letters.combined(self._stepped, rest, owed, self._memo)
+                step = letters.apply(self._next_memory, rest, owed, self._memo)
             self._steps[memory] = step
         return step
 
-    def _stepped(self, rest: int, owed: int) -> tuple[Memory, bool]:
+    def _next_memory(self, rest: int, owed: int) -> tuple[Memory, bool]:
         if rest in (TRUE, FALSE):
             return (rest,), False
         if owed == (TRUE if self.kind == "inf" else FALSE):
-            return (rest, self._restarted(rest)), True
+            return (rest, self._restart(rest)), True
         return (rest, owed), False
 
-    def settled(self, memory: Memory) -> bool | None:
+    def final_value(self, memory: Memory) -> bool | None:
         """Return True if nothing remains of the formula, False if it cannot hold any more, else None."""
         return memory[0] == TRUE if len(memory) == 1 else None
 
 
 @lru_cache(maxsize=16384)
-def _without(formula: Formula, op: str) -> Formula:
+def _replace_outermost(formula: Formula, op: str) -> Formula:
     """Return the formula with each outermost ``W`` replaced by true, or each outermost ``U`` by false."""
     if formula.op == op:
         return build.TRUE if op == "W" else build.FALSE
     if formula.op in ("and", "or", "X"):
-        return substituted_below(formula, {argument: _without(argument, op) for argument in formula.args})
+        return substitute_operands(formula, {argument: _replace_outermost(argument, op) for argument in formula.args})
     return formula
 
 
 class Recurrence:
     """An automaton for ``G F p`` with p in Sigma-1 (``inf``), or ``F G p`` with p in Pi-1 (``fin``).
 
-    Each letter starts an attempt to satisfy p.  The memory is the obligations of the attempts that
-    are under way.  A letter is marked if an attempt succeeds (for ``F G p``: fails); unless
-    ``keep``, the other attempts are then dropped.
+    Each letter starts an attempt to satisfy p.  The memory holds the obligations of the attempts
+    that are undecided.  A letter is marked if an attempt succeeds (for ``F G p``: fails).  The
+    other attempts are then dropped, unless ``keep`` is true.
     """
 
     def __init__(self, after: ObligationAutomaton, formula: Formula, kind: Kind, *, keep: bool) -> None:
@@ -122,14 +121,14 @@ class Recurrence:
         step = self._steps.get(memory)
         if step is None:
             letters = self._after.letters
-            step = letters.mapped(lambda first: (first,), self._first, self._last)
+            step = letters.map_leaves(lambda first: (first,), self._first, self._last)
             for attempt in memory:
-                step = letters.combined(lambda all_, one: (*all_, one), step, self._after.after(attempt), {})
-            step = letters.mapped(self._stepped, step, {})
+                step = letters.apply(lambda all_, one: (*all_, one), step, self._after.after(attempt), {})
+            step = letters.map_leaves(self._next_memory, step, {})
             self._steps[memory] = step
         return step
 
-    def _stepped(self, attempts: tuple[int, ...]) -> tuple[Memory, bool]:
+    def _next_memory(self, attempts: tuple[int, ...]) -> tuple[Memory, bool]:
         over, out = (TRUE, FALSE) if self.kind == "inf" else (FALSE, TRUE)
         marked = over in attempts
         if marked and not self._keep:
@@ -137,7 +136,7 @@ class Recurrence:
         left = {attempt for attempt in attempts if attempt not in (over, out)}
         combine: Callable[[int, int], int]
         combine = self._after.obligations.either if self.kind == "inf" else self._after.obligations.both
-        # An attempt that succeeds only if another one does need not be remembered.
+        # If an attempt succeeds only if another one does, remembering the other one is enough.
         needed = [
             attempt
             for attempt in left
@@ -145,16 +144,16 @@ class Recurrence:
         ]
         return tuple(sorted(needed)), marked
 
-    def settled(self, memory: Memory) -> None:
+    def final_value(self, memory: Memory) -> None:
         """Return None: later letters always decide."""
 
 
 class RoundRobin:
     """An automaton for a conjunction of ``G F p``, or a disjunction of ``F G p``, that follows one of them at a time.
 
-    The memory is the index of the current part and its attempts.  A letter that the current part
-    marks moves on to the next part; it is marked here if the round is complete.  So the numbers of
-    memories of the parts add up instead of multiplying.
+    The memory is the index of the current part and this part's attempts.  On a letter that the
+    current part marks, the automaton moves on to the next part; it marks the letter if this
+    completes the round.  So the numbers of memories of the parts add up instead of multiplying.
     """
 
     def __init__(self, after: ObligationAutomaton, parts: Sequence[Recurrence]) -> None:
@@ -170,10 +169,10 @@ class RoundRobin:
         if step is None:
             letters, count = self._letters, len(self._parts)
             at, inner = memory
-            step = letters.mapped(lambda leaf: (leaf,), self._parts[at].step(inner), {})
+            step = letters.map_leaves(lambda leaf: (leaf,), self._parts[at].step(inner), {})
             for offset in range(1, count):
                 other = self._parts[(at + offset) % count].step(())
-                step = letters.combined(lambda all_, one: (*all_, one), step, other, {})
+                step = letters.apply(lambda all_, one: (*all_, one), step, other, {})
 
             def stepped(leaves: Sequence[tuple[Memory, bool]]) -> tuple[Memory, bool]:
                 over = False
@@ -184,9 +183,9 @@ class RoundRobin:
                     over = over or here == count - 1
                 return (at, leaves[0][0]), True
 
-            step = letters.mapped(stepped, step, {})
+            step = letters.map_leaves(stepped, step, {})
             self._steps[memory] = step
         return step
 
-    def settled(self, memory: Memory) -> None:
+    def final_value(self, memory: Memory) -> None:
         """Return None: later letters always decide."""

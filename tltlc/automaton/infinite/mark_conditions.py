@@ -68,15 +68,15 @@ def _clauses(skeleton: Skeleton, kinds: Sequence[Kind], values: Sequence[bool | 
     below = [_clauses(operand, kinds, values, work) for operand in skeleton[1:]]
     work.spend(len(below))
     if skeleton[0] == "or":
-        return _minimal([clause for group in below for clause in group], work)
+        return _drop_covered([clause for group in below for clause in group], work)
     result = [MarkClause(frozenset(), frozenset())]
     for group in below:
         work.spend(len(result) * len(group) // 4)
-        result = _minimal([MarkClause(x.fins | y.fins, x.infs | y.infs) for x, y in product(result, group)], work)
+        result = _drop_covered([MarkClause(x.fins | y.fins, x.infs | y.infs) for x, y in product(result, group)], work)
     return result
 
 
-def _minimal(disjuncts: list[MarkClause], work: Work) -> list[MarkClause]:
+def _drop_covered(disjuncts: list[MarkClause], work: Work) -> list[MarkClause]:
     """Return the clauses that no other clause covers."""
     distinct = list(dict.fromkeys(disjuncts))
     work.spend(len(distinct) ** 2 // 16)

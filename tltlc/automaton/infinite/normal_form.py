@@ -17,7 +17,7 @@ from tltlc.logic.formula import FALSE, TRUE, Formula
 from tltlc.logic.normal_form import negation_normal_form
 
 _MOST_PULLED = 6
-"""The most rigid formulas that are pulled out from under a temporal operator: each doubles the formula."""
+"""The most rigid formulas that are moved out of a temporal operator: each doubles the formula."""
 
 
 def infinite_form(formula: Formula) -> Formula:
@@ -25,11 +25,11 @@ def infinite_form(formula: Formula) -> Formula:
     normal = negation_normal_form(formula)
     done: dict[Formula, Formula] = {}
     for node in normal.bottom_up():
-        done[node] = _rebuilt(node, [done[argument] for argument in node.args])
+        done[node] = _rebuild(node, [done[argument] for argument in node.args])
     return done[normal]
 
 
-def _rebuilt(node: Formula, args: list[Formula]) -> Formula:
+def _rebuild(node: Formula, args: list[Formula]) -> Formula:
     match node.op:
         case "and":
             return conjunction(args)
@@ -40,21 +40,21 @@ def _rebuilt(node: Formula, args: list[Formula]) -> Formula:
         case "F":
             return until(TRUE, args[0])
         case "G":
-            return weak(args[0], FALSE)
+            return weak_until(args[0], FALSE)
         case "U":
             return until(*args)
         case "W":
-            return weak(*args)
+            return weak_until(*args)
         case "R":
-            return weak(args[1], conjunction(args))
+            return weak_until(args[1], conjunction(args))
         case "M":
             return until(args[1], conjunction(args))
         case _:
             return node
 
 
-def negated(formula: Formula) -> Formula:
-    """Return the negation of a formula, both in normal form."""
+def negation(formula: Formula) -> Formula:
+    """Return the negation, in normal form, of a formula in normal form."""
     done: dict[Formula, Formula] = {}
     for node in formula.bottom_up():
         if node.op == "not":
@@ -74,14 +74,14 @@ def negated(formula: Formula) -> Formula:
                 done[node] = next_(args[0])
             case "U":
                 # The negation of `a U b` is `!b W (!a & !b)`.
-                done[node] = weak(args[1], conjunction(args))
+                done[node] = weak_until(args[1], conjunction(args))
             case "W":
                 done[node] = until(args[1], conjunction(args))
             case _ if node.args[0].op in ("F", "G"):
                 inner = done[node.args[0].args[0]]
                 done[node] = always_eventually(inner) if node.op == "F" else eventually_always(inner)
             case _:
-                # The inner operator of a rigid formula: the outer one's case negates both.
+                # This is the inner operator of a rigid formula; the case of the outer operator negates both.
                 done[node] = node
     return done[formula]
 
@@ -126,14 +126,14 @@ def next_(operand: Formula) -> Formula:
     """Return ``X operand``."""
     if is_rigid(operand):
         return operand
-    return _pulled(next_, operand) or build.next_(operand)
+    return _pull_rigid(next_, operand) or build.next_(operand)
 
 
 def until(left: Formula, right: Formula) -> Formula:
     """Return ``left U right``, which is ``F right`` if ``left`` is true."""
     if is_rigid(right) or left is FALSE or left is right:
         return right
-    if pulled := _pulled(until, left, right):
+    if pulled := _pull_rigid(until, left, right):
         return pulled
     if right.op == "U" and (left is TRUE or right.args[0] is left):
         return right if right.args[0] is left else until(TRUE, right.args[1])
@@ -153,7 +153,7 @@ def _until(left: Formula, right: Formula) -> Formula:
     return build.until(left, right)
 
 
-def weak(left: Formula, right: Formula) -> Formula:
+def weak_until(left: Formula, right: Formula) -> Formula:
     """Return ``left W right``, which is ``G left`` if ``right`` is false."""
     if left is TRUE or right is TRUE or left is right:
         return TRUE if TRUE in (left, right) else right
@@ -162,16 +162,16 @@ def weak(left: Formula, right: Formula) -> Formula:
     if is_rigid(left):
         return disjunction((left, right))
     if is_rigid(right) and right is not FALSE:
-        return disjunction((right, weak(left, FALSE)))
-    if pulled := _pulled(weak, left, right):
+        return disjunction((right, weak_until(left, FALSE)))
+    if pulled := _pull_rigid(weak_until, left, right):
         return pulled
     if right is FALSE:
         if left.op == "W":
-            return weak(disjunction(left.args), FALSE)
+            return weak_until(disjunction(left.args), FALSE)
         if left.op == "U":
-            return conjunction((always_eventually(left.args[1]), weak(disjunction(left.args), FALSE)))
+            return conjunction((always_eventually(left.args[1]), weak_until(disjunction(left.args), FALSE)))
         if left.op == "and" and _splits(left, "U"):
-            return conjunction(weak(part, FALSE) for part in left.args)
+            return conjunction(weak_until(part, FALSE) for part in left.args)
     if right.op == "W" and right.args[0] is left:
         return right
     if left.op == "W" and left.args[1] is right:
@@ -202,7 +202,7 @@ def always_eventually(inner: Formula) -> Formula:
         return disjunction((eventually_always(inner.args[0]), always_eventually(inner.args[1])))
     if inner.op == "and" and all(operand.op == "X" for operand in inner.args):
         return always_eventually(conjunction(operand.args[0] for operand in inner.args))
-    if pulled := _pulled(always_eventually, inner):
+    if pulled := _pull_rigid(always_eventually, inner):
         return pulled
     return build.always(build.eventually(inner))
 
@@ -222,12 +222,12 @@ def eventually_always(inner: Formula) -> Formula:
         return conjunction((always_eventually(inner.args[1]), eventually_always(disjunction(inner.args))))
     if inner.op == "or" and all(operand.op == "X" for operand in inner.args):
         return eventually_always(disjunction(operand.args[0] for operand in inner.args))
-    if pulled := _pulled(eventually_always, inner):
+    if pulled := _pull_rigid(eventually_always, inner):
         return pulled
     return build.eventually(build.always(inner))
 
 
-def readable(formula: Formula, known: dict[Formula, Formula] | None = None) -> Formula:
+def with_derived_operators(formula: Formula, known: dict[Formula, Formula] | None = None) -> Formula:
     """Return the formula with ``F p`` for ``true U p`` and ``G p`` for ``p W false``.
 
     ``known`` caches the result for each part; calls with formulas that share parts can share it.
@@ -255,35 +255,35 @@ def rigid_parts(formula: Formula) -> tuple[Formula, ...]:
     return tuple(dict.fromkeys(chain.from_iterable(map(rigid_parts, formula.args))))
 
 
-def substituted(formula: Formula, values: dict[Formula, Formula]) -> Formula:
-    """Return the formula with some parts replaced by the ``values``; parts inside rigid formulas are not replaced."""
-    return _substituted(formula, dict(values))
+def substitute(formula: Formula, values: dict[Formula, Formula]) -> Formula:
+    """Return the formula with the keys of ``values`` replaced by their values, except inside rigid formulas."""
+    return _substitute(formula, dict(values))
 
 
-def _substituted(formula: Formula, done: dict[Formula, Formula]) -> Formula:
+def _substitute(formula: Formula, done: dict[Formula, Formula]) -> Formula:
     result = done.get(formula)
     if result is None:
         result = formula
         if formula.args and formula.op not in ("not", "G", "F"):
-            args = [_substituted(argument, done) for argument in formula.args]
+            args = [_substitute(argument, done) for argument in formula.args]
             if any(new is not old for new, old in zip(args, formula.args, strict=True)):
-                result = _rebuilt(formula, args)
+                result = _rebuild(formula, args)
         done[formula] = result
     return result
 
 
-def substituted_below(formula: Formula, values: dict[Formula, Formula]) -> Formula:
+def substitute_operands(formula: Formula, values: dict[Formula, Formula]) -> Formula:
     """Return the formula with each operand replaced by its value."""
-    return _rebuilt(formula, [values[operand] for operand in formula.args])
+    return _rebuild(formula, [values[operand] for operand in formula.args])
 
 
-def _pulled(make: Callable[..., Formula], *args: Formula) -> Formula | None:
-    """Return ``g & f[g := true] | f[g := false]`` for a rigid g in f; None if there is none, or there are too many.
+def _pull_rigid(make: Callable[..., Formula], *args: Formula) -> Formula | None:
+    """Return ``g & f[g := true] | f[g := false]`` for a rigid formula g in f, which is ``make(*args)``.
 
-    The formula f is ``make(*args)``.
+    Returns None if f has no rigid part, or more than :data:`_MOST_PULLED`.
     """
     rigid = tuple(dict.fromkeys(chain.from_iterable(map(rigid_parts, args))))
     if not rigid or len(rigid) > _MOST_PULLED:
         return None
-    true, false = (make(*(substituted(argument, {rigid[0]: value}) for argument in args)) for value in (TRUE, FALSE))
+    true, false = (make(*(substitute(argument, {rigid[0]: value}) for argument in args)) for value in (TRUE, FALSE))
     return disjunction((conjunction((rigid[0], true)), false))

@@ -1,10 +1,10 @@
 """Convert clauses over marks to Rabin pairs with the alternating cycle decomposition.
 
 At an accepted node, the automaton visits the rejected children in turn.  It stays at a child while
-the run takes only edges of that child; otherwise it moves on to the next child and marks the
+the run takes only edges of that child.  Otherwise it moves on to the next child and marks the
 letter.  A run with infinitely many such marks stays in no child, so it is accepted.  At a rejected
-node, all accepted children are followed at once, each with its own pair.  Nodes that have no state
-in common may share a pair.
+node, the automaton follows all accepted children at once, each with its own pair.  Nodes that have
+no state in common may share a pair.
 """
 
 from __future__ import annotations
@@ -14,20 +14,20 @@ from typing import Any, Final
 from tltlc.automaton.diagrams import Diagrams
 from tltlc.automaton.fspa import Mark
 from tltlc.automaton.infinite.automaton import NO_MARKS, PairMarks
-from tltlc.automaton.infinite.component import ComponentAutomaton, Leaf, State, explored
+from tltlc.automaton.infinite.component import ComponentAutomaton, Leaf, State, explore
 from tltlc.automaton.infinite.cycles import Edge, Node, decomposition
 from tltlc.automaton.work import OutOfWork, Work
 from tltlc.core.record import record
 
 _FOR_FEWER_PAIRS: Final = 100_000
-"""Steps for a decomposition if the clauses already are Rabin pairs, so that it can only save pairs."""
+"""Steps for a decomposition if the clauses are Rabin pairs already: it can then only reduce their number."""
 
 Walk = tuple[Any, ...]
 """The position of a run in a tree: a child's index and its walk, or the walks of all children with the state."""
 
 
 @record
-class Piece:
+class RabinComponent:
     """A component whose letters are marked with Rabin pairs; exits and labels are as in :class:`ComponentAutomaton`."""
 
     labels: dict[State, int]
@@ -35,25 +35,28 @@ class Piece:
     pairs: int
 
 
-def with_pairs(letters: Diagrams[Any], one: ComponentAutomaton, work: Work) -> Piece:
-    """Return the component with Rabin pairs, the smallest that the methods of this module make; raises OutOfWork."""
-    pieces: list[Piece] = []
-    direct = as_it_stands(letters, one)
+def with_pairs(letters: Diagrams[Any], one: ComponentAutomaton, work: Work) -> RabinComponent:
+    """Return the component with Rabin pairs: the smallest result of the methods of this module.
+
+    Raises OutOfWork.
+    """
+    candidates: list[RabinComponent] = []
+    direct = clauses_as_pairs(letters, one)
     try:
         with work.at_most(work.left // 2 if direct is None else _FOR_FEWER_PAIRS):
             tree = decomposition(_edges(letters, one), one.accepts, work)
-            pieces.append(_walked(letters, one, tree, one_at_a_time=False, work=work))
-            pieces.append(_walked(letters, one, tree, one_at_a_time=True, work=work))
+            candidates.append(_follow_tree(letters, one, tree, one_at_a_time=False, work=work))
+            candidates.append(_follow_tree(letters, one, tree, one_at_a_time=True, work=work))
     except OutOfWork:
         pass
     if direct is not None:
-        pieces.append(direct)
-    if not pieces:
-        pieces.append(_in_turn(letters, one, work))
-    return min(pieces, key=lambda piece: (len(piece.steps), piece.pairs))
+        candidates.append(direct)
+    if not candidates:
+        candidates.append(_wait_in_turn(letters, one, work))
+    return min(candidates, key=lambda candidate: (len(candidate.steps), candidate.pairs))
 
 
-def as_it_stands(letters: Diagrams[Any], one: ComponentAutomaton) -> Piece | None:
+def clauses_as_pairs(letters: Diagrams[Any], one: ComponentAutomaton) -> RabinComponent | None:
     """Return the component with its clauses as pairs; None unless each clause has at most one ``inf`` mark."""
     if any(len(clause.infs) > 1 for clause in one.accepts):
         return None
@@ -67,11 +70,11 @@ def as_it_stands(letters: Diagrams[Any], one: ComponentAutomaton) -> Piece | Non
         return target, frozenset(pair_marks)
 
     memo: dict[int, int] = {}
-    steps = {state: letters.mapped(change, step, memo) for state, step in one.steps.items()}
-    return Piece(one.labels, steps, len(one.accepts))
+    steps = {state: letters.map_leaves(change, step, memo) for state, step in one.steps.items()}
+    return RabinComponent(one.labels, steps, len(one.accepts))
 
 
-def _in_turn(letters: Diagrams[Any], one: ComponentAutomaton, work: Work) -> Piece:
+def _wait_in_turn(letters: Diagrams[Any], one: ComponentAutomaton, work: Work) -> RabinComponent:
     """Return the component with a Rabin pair for each clause, which waits for the clause's ``infs`` in turn."""
     orders = [sorted(clause.infs) for clause in one.accepts]
     first = next(iter(one.steps))
@@ -96,10 +99,12 @@ def _in_turn(letters: Diagrams[Any], one: ComponentAutomaton, work: Work) -> Pie
             return (target, tuple(following)), frozenset(pair_marks)
 
         work.spend(10)
-        return letters.mapped(change, one.steps[inner], {})
+        return letters.map_leaves(change, one.steps[inner], {})
 
-    steps, best = explored(letters, (first, (0,) * len(orders)), step_of)
-    return Piece({state: one.labels[state[0]] for state in best}, {state: steps[state] for state in best}, len(orders))
+    steps, best = explore(letters, (first, (0,) * len(orders)), step_of)
+    return RabinComponent(
+        {state: one.labels[state[0]] for state in best}, {state: steps[state] for state in best}, len(orders)
+    )
 
 
 def _edges(letters: Diagrams[Any], one: ComponentAutomaton) -> list[Edge]:
@@ -118,16 +123,16 @@ class _Walks:
         self._one_at_a_time = one_at_a_time
         self.tree = tree
         self.pair: dict[int, int] = {}
-        self._share(tree)
+        self._assign_pairs(tree)
         self.pairs = len(set(self.pair.values()))
 
-    def _share(self, tree: Node) -> None:
+    def _assign_pairs(self, tree: Node) -> None:
         """Assign pairs to the accepted nodes."""
         taken: list[list[Node]] = []
         stack = [tree]
         while stack:
             node = stack.pop(0)
-            stack += node.below
+            stack += node.children
             if node.accepted:
                 free = next(
                     (
@@ -144,12 +149,12 @@ class _Walks:
 
     def begin(self, node: Node, state: State) -> Walk:
         """Return the initial walk below a node in one of its states."""
-        places = [place for place, child in enumerate(node.below) if state in child.states]
+        places = [place for place, child in enumerate(node.children) if state in child.states]
         if not places:
             return ()
         if node.accepted or self._one_at_a_time:
-            return (places[0], self.begin(node.below[places[0]], state))
-        return tuple(self.begin(node.below[place], state) for place in places)
+            return (places[0], self.begin(node.children[places[0]], state))
+        return tuple(self.begin(node.children[place], state) for place in places)
 
     def step(self, node: Node, walk: Walk, edge: Edge, active: set[int], marked: set[int]) -> Walk:
         """Return the walk after an edge of the node.
@@ -163,29 +168,31 @@ class _Walks:
         if node.accepted or self._one_at_a_time:
             if walk:
                 place, inner = walk
-                child = node.below[place]
+                child = node.children[place]
                 if edge in child.edges:
                     return (place, self.step(child, inner, edge, active, marked))
             else:
                 place = -1
             if node.accepted:
                 marked.add(node.index)
-            for step in range(1, len(node.below) + 1):
-                following = (place + step) % len(node.below)
-                if target in node.below[following].states:
-                    return (following, self.begin(node.below[following], target))
+            for step in range(1, len(node.children) + 1):
+                following = (place + step) % len(node.children)
+                if target in node.children[following].states:
+                    return (following, self.begin(node.children[following], target))
             return ()
-        before = dict(zip((child.index for child in node.below if source in child.states), walk, strict=True))
+        before = dict(zip((child.index for child in node.children if source in child.states), walk, strict=True))
         return tuple(
             self.step(child, before[child.index], edge, active, marked)
             if edge in child.edges
             else self.begin(child, target)
-            for child in node.below
+            for child in node.children
             if target in child.states
         )
 
 
-def _walked(letters: Diagrams[Any], one: ComponentAutomaton, tree: Node, *, one_at_a_time: bool, work: Work) -> Piece:
+def _follow_tree(
+    letters: Diagrams[Any], one: ComponentAutomaton, tree: Node, *, one_at_a_time: bool, work: Work
+) -> RabinComponent:
     walks = _Walks(tree, one_at_a_time=one_at_a_time)
     first = next(iter(one.steps))
 
@@ -206,7 +213,9 @@ def _walked(letters: Diagrams[Any], one: ComponentAutomaton, tree: Node, *, one_
             return (target, after), frozenset(pair_marks)
 
         work.spend(10)
-        return letters.mapped(change, one.steps[inner], {})
+        return letters.map_leaves(change, one.steps[inner], {})
 
-    steps, best = explored(letters, (first, walks.begin(tree, first)), step_of)
-    return Piece({state: one.labels[state[0]] for state in best}, {state: steps[state] for state in best}, walks.pairs)
+    steps, best = explore(letters, (first, walks.begin(tree, first)), step_of)
+    return RabinComponent(
+        {state: one.labels[state[0]] for state in best}, {state: steps[state] for state in best}, walks.pairs
+    )

@@ -5,16 +5,16 @@ from __future__ import annotations
 from typing import Final
 
 from tltlc.automaton.infinite.factoring import Factoring
-from tltlc.automaton.infinite.normal_form import infinite_form, readable
+from tltlc.automaton.infinite.normal_form import infinite_form, with_derived_operators
 from tltlc.logic.formula import FALSE, TRUE, Formula, rebuild
 from tltlc.logic.text.printer import ascii_text
 
 _MOST_PARTS: Final = 300
-"""A spec with more subformulas keeps the labels of the construction: they are too long to read."""
+"""If a spec has more subformulas, its labels stay as the construction made them: they are too long to read."""
 
 
 def without_constants(formula: Formula) -> Formula:
-    """Return a formula that is equal on every infinite trace, and is a constant or contains none."""
+    """Return a formula that is equal on every infinite trace, and is a constant or contains no constant."""
     return NormalFormWriter(formula).formula(infinite_form(formula)) if _has_constants(formula) else formula
 
 
@@ -31,10 +31,10 @@ class NormalFormWriter:
         has_constants = _has_constants(source)
         self._source = source if len(parts) <= _MOST_PARTS else None
         for place, part in enumerate(parts if self._source else ()):
-            form = readable(infinite_form(part), self._readable)
+            form = with_derived_operators(infinite_form(part), self._readable)
             if form not in (TRUE, FALSE):
                 self._place.setdefault(form, place)
-                # Parts that the source writes longer than necessary are not used.
+                # Do not use parts that the source writes longer than necessary.
                 if part.op == "not" or (has_constants and _has_constants(part)):
                     continue
                 if self._size(part) <= self._size(self._done.get(form, form)):
@@ -42,16 +42,16 @@ class NormalFormWriter:
         self._last = len(parts)
 
     def formula(self, label: Formula) -> Formula:
-        """Return the shortest formula found that is equal to the label on every infinite trace."""
-        candidates = [self._written(label)]
+        """Return a short formula, in the style of the source, that is equal to the label on every infinite trace."""
+        candidates = [self._in_source_style(label)]
         if self._source and label.op in ("and", "or"):
             self._factoring = self._factoring or Factoring(self._source.atoms())
-            candidates += map(self._written, self._factoring.forms(label))
+            candidates += map(self._in_source_style, self._factoring.forms(label))
         distinct = list(dict.fromkeys(candidates))
         return min(distinct, key=lambda candidate: len(ascii_text(candidate))) if len(distinct) > 1 else distinct[0]
 
-    def _written(self, label: Formula) -> Formula:
-        plain = readable(label, self._readable)
+    def _in_source_style(self, label: Formula) -> Formula:
+        plain = with_derived_operators(label, self._readable)
         for node in plain.bottom_up(known=self._done):
             ordered = node
             if node.op in ("and", "or"):

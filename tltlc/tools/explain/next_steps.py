@@ -39,9 +39,9 @@ def _edges_with_less_left(fspa: Fspa, edges: Sequence[int]) -> Iterable[int]:
     """
     if not edges:
         return ()
-    from tltlc.automaton.compare import less_is_left
+    from tltlc.automaton.compare import state_inclusion
 
-    has_less_left = less_is_left(fspa, _MOST_WORK)
+    has_less_left = state_inclusion(fspa, _MOST_WORK)
     try:
         return [index for index in edges if has_less_left(fspa.edges[index].source, fspa.edges[index].target)]
     except OutOfWork:

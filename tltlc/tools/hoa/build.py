@@ -10,11 +10,11 @@ from tltlc.automaton.finite.build import distances, verdicts
 from tltlc.automaton.finite.machine import OutOfStates
 from tltlc.automaton.fspa import Verdict
 from tltlc.automaton.infinite.analysis import Analysis, analysis_of_rabin
-from tltlc.automaton.infinite.assembled_components import Place, joined
+from tltlc.automaton.infinite.assembled_components import Place, join_components
 from tltlc.automaton.infinite.automaton import NO_MARKS, Rabin
 from tltlc.automaton.infinite.component import IMPOSSIBLE, ComponentAutomaton, State
 from tltlc.automaton.infinite.graphs import components
-from tltlc.automaton.infinite.pairs import Piece, as_it_stands, with_pairs
+from tltlc.automaton.infinite.pairs import RabinComponent, clauses_as_pairs, with_pairs
 from tltlc.automaton.work import Work
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.resolve.spec import Judge
@@ -103,10 +103,10 @@ def _finite_automaton(hoa: Hoa, moves: Moves, letters: Diagrams[Any]) -> tuple[R
         return (("exit", IMPOSSIBLE), NO_MARKS) if move is NOT_ALLOWED else ((move[0],), NO_MARKS)
 
     memo: dict[int, int] = {}
-    steps: dict[State, int] = {(number,): letters.mapped(leaf, step, memo) for number, step in moves.items()}
+    steps: dict[State, int] = {(number,): letters.map_leaves(leaf, step, memo) for number, step in moves.items()}
     accepting = {state.number for state in hoa.states if state.sets.numbers}
-    piece = Piece({(number,): number for number in moves}, steps, 0)
-    automaton, _ = joined(letters, [piece], {}, (0, hoa.starts[0].states), accepting)
+    piece = RabinComponent({(number,): number for number in moves}, steps, 0)
+    automaton, _ = join_components(letters, [piece], {}, (0, hoa.starts[0].states), accepting)
     goals = {state for state, number in enumerate(automaton.labels) if number in accepting}
     return automaton, FiniteAnalysis(automaton, goals)
 
@@ -117,7 +117,7 @@ def _infinite_automaton(hoa: Hoa, moves: Moves, letters: Diagrams[Any]) -> tuple
     def targets(number: int) -> list[int]:
         return [move[0] for move in letters.values(moves[number]) if move is not NOT_ALLOWED]
 
-    pieces: list[Piece] = []
+    pieces: list[RabinComponent] = []
     entry: dict[int, Place] = {}
     (initial,) = hoa.starts[0].states
     for group in components([initial], targets):
@@ -131,19 +131,21 @@ def _infinite_automaton(hoa: Hoa, moves: Moves, letters: Diagrams[Any]) -> tuple
 
         memo: dict[int, int] = {}
         labels: dict[State, int] = {(number,): number for number in group}
-        steps: dict[State, int] = {(number,): letters.mapped(leaf, moves[number], memo) for number in group}
+        steps: dict[State, int] = {(number,): letters.map_leaves(leaf, moves[number], memo) for number in group}
         stays = any(target in inside for number in group for target in targets(number))
         piece = (
-            _piece(letters, ComponentAutomaton(labels, steps, acceptance.clauses)) if stays else Piece(labels, steps, 0)
+            _piece(letters, ComponentAutomaton(labels, steps, acceptance.clauses))
+            if stays
+            else RabinComponent(labels, steps, 0)
         )
         for state, number in piece.labels.items():
             entry.setdefault(number, (len(pieces), state))
         pieces.append(piece)
-    automaton, _ = joined(letters, pieces, entry, entry[initial])
+    automaton, _ = join_components(letters, pieces, entry, entry[initial])
     return automaton, analysis_of_rabin(automaton, letters.work)
 
 
-def _piece(letters: Diagrams[Any], component: ComponentAutomaton) -> Piece:
+def _piece(letters: Diagrams[Any], component: ComponentAutomaton) -> RabinComponent:
     """Return a component with Rabin pairs: those of the file, unless fewer pairs are found."""
-    best, unchanged = with_pairs(letters, component, letters.work), as_it_stands(letters, component)
+    best, unchanged = with_pairs(letters, component, letters.work), clauses_as_pairs(letters, component)
     return unchanged if unchanged is not None and unchanged.pairs <= best.pairs else best

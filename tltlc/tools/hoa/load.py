@@ -25,7 +25,7 @@ from tltlc.tools.hoa.tree import Hoa
 
 if TYPE_CHECKING:
     import os
-from tltlc.automaton.infinite.assembly import assembled
+from tltlc.automaton.infinite.assembly import assemble
 from tltlc.automaton.work import DEFAULT_WORK, OutOfWork, Work
 from tltlc.core.record import EMPTY, record
 from tltlc.core.source import SourceFile
@@ -88,7 +88,7 @@ def load(source: SourceFile, library: SourceFile, options: ImportOptions) -> tup
 
             places = {state.number: place for place, state in enumerate(hoa.states)}
             in_file_order = sorted(range(len(state_names)), key=lambda state: places[automaton.labels[state]])
-            parts = assembled(automaton, analysis, names, vocabulary.exclusive, label, in_file_order)
+            parts = assemble(automaton, analysis, names, vocabulary.exclusive, label, in_file_order)
         except (OutOfStates, OutOfWork, OutOfSteps, TooManyPrimes, RecursionError) as reason:
             raise TltlError([_too_large(source, reason, options)]) from None
     headers = metadata(hoa)

@@ -52,7 +52,7 @@ class HoaTransitions:
         """
         letters = self._letters
         edges = self._unlabelled_edges(state) if self._is_unlabelled(state) else self._labelled_edges(state)
-        step = letters.combined(lambda taken, yes: taken if yes == YES else NOT_ALLOWED, edges, self._allowed, {})
+        step = letters.apply(lambda taken, yes: taken if yes == YES else NOT_ALLOWED, edges, self._allowed, {})
         for taken in letters.values(step):
             if taken is not NOT_ALLOWED and len(taken) != 1:
                 raise TltlError([self._edge_count_error(state, taken, self._letter(step, taken))])
@@ -63,7 +63,7 @@ class HoaTransitions:
             edge = state.edges[taken[0]]
             return edge.targets.states[0], frozenset((*state.sets.numbers, *edge.sets.numbers))
 
-        return letters.mapped(move, step, {})
+        return letters.map_leaves(move, step, {})
 
     def _labelled_edges(self, state: HoaState) -> int:
         """Return a function from letters to the positions of the edges that they take.
@@ -81,7 +81,7 @@ class HoaTransitions:
 
             label = edge.label or state.label
             assert label is not None
-            edges = letters.combined(add, edges, self._label_function(label), {})
+            edges = letters.apply(add, edges, self._label_function(label), {})
         return edges
 
     def _unlabelled_edges(self, state: HoaState) -> int:
@@ -119,16 +119,14 @@ class HoaTransitions:
             case "true" | "false":
                 return yes if term.op == "true" else no
             case "not":
-                return letters.mapped(lambda value: NO if value == YES else YES, self._function(term.args[0]), {})
+                return letters.map_leaves(lambda value: NO if value == YES else YES, self._function(term.args[0]), {})
             case "and" | "or":
                 # If one operand has this value, it is the result.
                 absorbing = NO if term.op == "and" else YES
                 result = no if absorbing == YES else yes
                 for operand in term.args:
                     function = self._function(operand)
-                    result = letters.combined(
-                        lambda x, y: absorbing if absorbing in (x, y) else x, result, function, {}
-                    )
+                    result = letters.apply(lambda x, y: absorbing if absorbing in (x, y) else x, result, function, {})
                 return result
             case "alias":
                 if term.value not in self._aliases:
