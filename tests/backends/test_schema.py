@@ -17,7 +17,7 @@ from tltlc import compile_text
 from tltlc.artefact.encode import encode
 from tltlc.artefact.errors import JsonSchemaValueException
 from tltlc.artefact.generate import FOLDER, validator_source
-from tltlc.artefact.schema_messages import worded
+from tltlc.artefact.schema_messages import schema_error_title
 from tltlc.artefact.validator import validate
 from tltlc.automaton.fspa import Fspa
 
@@ -144,7 +144,7 @@ def test_errors_are_in_plain_words(path: tuple[str | int, ...], value: object, t
     parent[path[-1]] = value
     with pytest.raises(JsonSchemaValueException) as caught:
         validate(document)
-    assert worded(caught.value) == title
+    assert schema_error_title(caught.value) == title
 
 
 @settings(max_examples=200, deadline=None)
@@ -159,4 +159,4 @@ def test_every_error_is_in_plain_words(place: tuple[int, tuple[str | int, ...]],
     try:
         validate(document)
     except JsonSchemaValueException as error:
-        assert not {"properties", "integer", "array", "[]", "'"} & set(worded(error).split())
+        assert not {"properties", "integer", "array", "[]", "'"} & set(schema_error_title(error).split())

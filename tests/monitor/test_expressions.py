@@ -39,7 +39,7 @@ def test_python_source_computes_the_same_bits(
 
 
 @given(expressions())
-def test_json_round_trip(expression: Expression) -> None:
+def test_expressions_are_read_back_from_json(expression: Expression) -> None:
     assert from_json(to_json(expression)) == expression
 
 
@@ -47,13 +47,13 @@ def test_json_round_trip(expression: Expression) -> None:
     ("distance", "expected"),
     [(0.0, 1.0), (0.5, 0.5), (1.0, 0.0), (5.0, -56 / 81), (5.5, -0.75), (10.0, -1.0), (11, -1)],
 )
-def test_closeness(distance: float, expected: float) -> None:
+def test_closeness_has_the_values_of_the_paper(distance: float, expected: float) -> None:
     """Eq. 2 of the paper with b = 1, B = 10."""
     assert evaluate(near("d"), {"d": distance}, {"level_size": 10.0}) == pytest.approx(expected, abs=1e-15)
 
 
 @given(st.floats(0.01, 1e6), st.floats(1.001, 1e6))
-def test_closeness_halfway(close: float, ratio: float) -> None:
+def test_closeness_halfway_is_minus_three_quarters(close: float, ratio: float) -> None:
     far = close * ratio
     value = evaluate(near("d", close=close), {"d": (close + far) / 2}, {"level_size": far})
     assert value == pytest.approx(-0.75, abs=1e-6)
@@ -78,7 +78,7 @@ x = SignalValue("x")
         (When(((Condition("not", (Condition(">", (x, Const(3.0))),)), Const(1.0)),), Const(-1.0)), 1.0),
     ],
 )
-def test_values(expression: Expression, expected: float) -> None:
+def test_expressions_have_the_values_computed_by_hand(expression: Expression, expected: float) -> None:
     assert evaluate(expression, {"x": 2.0}, {}) == expected
     assert compile_expressions([expression], ["x"], {})[0]((2.0,)) == expected
 
@@ -108,7 +108,7 @@ def test_an_expression_without_a_value_is_an_error(expression: Expression, error
 
 
 @pytest.mark.parametrize("op", ["+", "-", "*", "/", "^", "min", "neg", "when", "condition", "power"])
-def test_deep_expressions(op: str) -> None:
+def test_expressions_of_100_operators_are_computed(op: str) -> None:
     """The arithmetic of a spec may be 100 operators deep, on either side."""
     for left in (True, False):
         expression: Expression = ParamValue("p")

@@ -109,14 +109,14 @@ def test_health_of_zero_counts_as_death() -> None:
     assert math.copysign(1.0, step.robustness) == 1.0
 
 
-def test_the_fields_of_a_step() -> None:
+def test_a_step_describes_the_state_the_edge_and_the_limiting_atom() -> None:
     step = Monitor(cover_and_hide()).step({**FAR, "distance(s1)": 10.5, "health": 0.875})
     assert step.label == str(cover_and_hide().states[0].label)
     assert (step.state, step.verdict, step.accepting, step.done) == (0, "pending", False, False)
     assert (step.robustness, step.limiting) == (0.75, "near(s1)")
 
 
-def test_reset() -> None:
+def test_after_a_reset_the_same_samples_give_the_same_steps() -> None:
     monitor = Monitor(cover_and_hide())
     first = [monitor.step({**FAR, "distance(s1)": 0.5}), monitor.step({**FAR, "health": 0})]
     monitor.reset()
@@ -147,13 +147,13 @@ def test_missing_signals_are_all_named() -> None:
         (10**400, "is too large for a number"),
     ],
 )
-def test_unusable_values_are_named(value: object, remark: str) -> None:
+def test_a_signal_without_a_finite_value_is_named(value: object, remark: str) -> None:
     monitor = Monitor(cover_and_hide())
     monitor.step(FAR)
     assert rejection(monitor, {**FAR, "health": value}) == ("TLT0612", f"step 2: the signal `health` {remark}")
 
 
-def test_a_bool_is_true_or_false() -> None:
+def test_a_bool_must_be_true_or_false() -> None:
     fspa = replace(with_atom(SignalValue("x")), signals=(spec.Signal("x", "bool", 0.0, 1.0),))
     monitor = Monitor(fspa)
     assert rejection(monitor, {"x": 0.5}) == ("TLT0612", "step 1: the signal `x` is 0.5, not true or false")
@@ -216,7 +216,7 @@ def test_invalid_values_of_atoms_are_rejected(sample: tuple[float, ...]) -> None
 # --- params ---------------------------------------------------------------------------------------
 
 
-def test_params() -> None:
+def test_params_override_the_values_of_the_spec() -> None:
     step = Monitor(cover_and_hide(), {"level_size": 10.0}).step({**FAR, "distance(s1)": 5.5})
     assert step.progress == pytest.approx(0.25 / 3)
 

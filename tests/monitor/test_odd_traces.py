@@ -211,14 +211,14 @@ class Endless:
     """A stream that repeats a byte or a line forever, and counts the bytes that are read."""
 
     def __init__(self, start: bytes, piece: bytes) -> None:
-        self.start, self.piece, self.taken = start, piece, 0
+        self.start, self.piece, self.bytes_read = start, piece, 0
 
     def readline(self, size: int = -1, /) -> bytes:
         assert size >= 0, "a line is read without a limit"
         line = self.start[:size] or (self.piece[:size] if b"\n" in self.piece else self.piece * size)
         line = line[: line.index(b"\n") + 1] if b"\n" in line else line
         self.start = self.start[len(line) :]
-        self.taken += len(line)
+        self.bytes_read += len(line)
         return line
 
 
@@ -236,7 +236,7 @@ def test_at_most_one_row_is_read_into_memory(start: bytes, piece: bytes) -> None
         stream = Endless(start, piece)
         with pytest.raises((TltlError, program()["MonitorError"])):
             read(stream)
-        assert stream.taken <= TRACE_LINE.size + len(start) + 2
+        assert stream.bytes_read <= TRACE_LINE.size + len(start) + 2
 
 
 def test_both_readers_have_the_same_limits() -> None:

@@ -175,7 +175,7 @@ def test_many_exclusive_atoms_agree_with_the_monitor() -> None:
         assert outcome(generated.step, sample) == outcome(monitor.step, sample)
 
 
-def test_params() -> None:
+def test_params_agree_with_the_monitor() -> None:
     module = module_of(cover_and_hide())
     given_ = {"level_size": 10.0}
     assert outcome(module.Monitor(given_).step, FAR) == outcome(Monitor(cover_and_hide(), given_).step, FAR)
@@ -187,7 +187,7 @@ def test_params() -> None:
         assert str(theirs.value) == ours.value.diagnostics[0].title
 
 
-def test_reset() -> None:
+def test_after_a_reset_the_same_samples_give_the_same_steps() -> None:
     generated = module_of(cover_and_hide()).Monitor()
     first = [generated.step({**FAR, "distance(s1)": 0.5}), generated.step({**FAR, "health": 0})]
     generated.reset()
@@ -195,7 +195,7 @@ def test_reset() -> None:
 
 
 @pytest.mark.parametrize("formula", [f.TRUE, f.FALSE, f.next_(f.TRUE)])
-def test_a_spec_without_atoms(formula: f.Formula) -> None:
+def test_a_spec_without_atoms_agrees_with_the_monitor(formula: f.Formula) -> None:
     fspa = build(spec_from_formula(formula))
     generated, monitor = module_of(fspa).Monitor(), Monitor(fspa)
     for _ in range(3):
@@ -203,7 +203,7 @@ def test_a_spec_without_atoms(formula: f.Formula) -> None:
 
 
 @pytest.mark.parametrize("depth", [100])
-def test_deep_arithmetic(depth: int) -> None:
+def test_deep_arithmetic_agrees_with_the_monitor(depth: int) -> None:
     expression: Expression = SignalValue("x")
     for _ in range(depth):
         expression = Op("*", (Const(0.5), Op("+", (Op("^", (expression, Const(2.0))), Const(0.25)))))
@@ -366,7 +366,7 @@ def test_the_script_prints_the_steps(tmp_path: Path) -> None:
         (None, ["--help"], 2, "usage: python cover_and_hide_monitor.py [--full] TRACE.csv"),
     ],
 )
-def test_errors_of_the_script(
+def test_the_script_reports_errors_with_a_status_and_a_message(
     tmp_path: Path, trace: str | None, arguments: list[str], status: int, message: str
 ) -> None:
     returncode, _, errors = run_script(tmp_path, trace, *arguments)

@@ -39,7 +39,7 @@ def episode(monitor: Monitor, trace: Sequence[tuple[float, ...]]) -> list[Step]:
     return steps
 
 
-def test_progress_halfway_to_the_exit() -> None:
+def test_progress_halfway_to_the_exit_is_that_of_the_paper() -> None:
     """In `F near(e) & G alive`, at distance (b + B) / 2 and full health: 2/3 + 0.25/3 = 0.75."""
     fspa = cover_and_hide()
     outcome = reward_step(tables(fspa), 3, 3, (-1.0, -1.0, -0.75, 1.0), 2 / 3, 10)
@@ -48,7 +48,7 @@ def test_progress_halfway_to_the_exit() -> None:
     assert not outcome.done
 
 
-def test_an_episode_of_cover_and_hide() -> None:
+def test_an_episode_of_cover_and_hide_has_the_progress_computed_by_hand() -> None:
     monitor = Monitor(cover_and_hide())
     changes: list[dict[str, float]] = [
         {},
@@ -146,7 +146,7 @@ def test_the_printed_algorithm_ends_one_step_later() -> None:
     assert sum(step.reward for step in steps) == pytest.approx(1 - 1)
 
 
-def test_the_discounted_terminal_penalty() -> None:
+def test_the_discounted_terminal_penalty_sums_discounted_steps() -> None:
     fspa = automaton(f.and_(f.eventually(A), f.always(P)), 10, "goal")
     trace = [(-1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0)]
     gamma = 0.9
@@ -195,7 +195,7 @@ def test_the_order_of_operations_is_fixed() -> None:
         assert outcome.reward == (max(best, progress) - best) - 1 / 400
 
 
-def test_a_truncated_episode() -> None:
+def test_a_truncated_episode_succeeds_only_at_its_goal() -> None:
     """`last` ends the episode; a failure costs the remaining steps, and a success has full progress."""
     fspa = automaton(f.eventually(A), 10)
     monitor = Monitor(fspa)
@@ -217,7 +217,7 @@ def test_a_truncated_episode() -> None:
 
 
 @pytest.mark.parametrize(
-    ("options", "said"),
+    ("options", "message"),
     [
         ({"mode": "Sparse"}, "mode is one of 'progress', 'sparse', 'edge', 'potential', not 'Sparse'"),
         ({"mode": ""}, "mode is one of"),
@@ -231,8 +231,8 @@ def test_a_truncated_episode() -> None:
         ({"gamma": "1"}, "gamma is a number"),
     ],
 )
-def test_invalid_options_are_rejected(options: dict[str, Any], said: str) -> None:
-    with pytest.raises(ValueError, match=said):
+def test_invalid_options_are_rejected(options: dict[str, Any], message: str) -> None:
+    with pytest.raises(ValueError, match=message):
         RewardOptions(**options)
 
 

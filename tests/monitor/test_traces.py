@@ -33,7 +33,7 @@ def rejection(text: str | bytes) -> tuple[str, str, str, str]:
     return diagnostic.code, diagnostic.title, f"{line}:{column}", label.message
 
 
-def test_csv() -> None:
+def test_csv_is_read_by_the_names_of_columns() -> None:
     text = 'open,other,"near(a, b)"\ntrue,x,-1.5\r\n0,,2e3\n\nFALSE,, 7 \n'
     assert read(text) == [
         {"near(a, b)": -1.5, "open": 1.0},
@@ -42,7 +42,7 @@ def test_csv() -> None:
     ]
 
 
-def test_json_lines() -> None:
+def test_json_lines_are_read_by_the_keys_of_objects() -> None:
     assert read('\n{"near(a, b)": 1, "open": true}\n{"open": 0.0, "more": null}\n') == [
         {"near(a, b)": 1.0, "open": 1.0},
         {"open": 0.0},
@@ -67,7 +67,7 @@ def test_samples_are_read_lazily() -> None:
     stream = io.BytesIO(b'open,"near(a, b)"\n1,1\n0,1\nx\n')
     samples = read_trace(stream, "trace", SIGNALS)
     assert next(samples)["open"] == 1.0
-    assert stream.readline() == b"0,1\n", "no line is read before it is asked for"
+    assert stream.readline() == b"0,1\n", "the reader reads a line only when the next sample is requested"
     assert stream.seek(-4, io.SEEK_CUR)
     assert next(samples)["open"] == 0.0
 
@@ -118,7 +118,9 @@ HEADER = 'open,"near(a, b)"\n'
         ),
     ],
 )
-def test_traces_that_cannot_be_read(text: str | bytes, expected: tuple[str, str, str, str]) -> None:
+def test_an_error_points_at_the_place_that_cannot_be_read(
+    text: str | bytes, expected: tuple[str, str, str, str]
+) -> None:
     assert rejection(text) == expected
 
 

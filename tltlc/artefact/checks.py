@@ -1,4 +1,4 @@
-"""Check the JSON document of an artefact. Errors have codes, and point at the value in the text of the document."""
+"""Check the JSON document of an artefact. Errors point at the wrong value in the text of the document."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ RECOMPILE: Final = "compile the spec again"
 
 
 class Origin:
-    """The name of a document in messages, and its text, which is made when the first error is placed in it."""
+    """The name of a document in messages, and its text, which is made when the first error points into it."""
 
     def __init__(self, name: str, text: Callable[[], str]) -> None:
         self.name = name
@@ -47,15 +47,15 @@ def check_format(document: object, origin: Origin) -> dict[str, Any]:
     """Return the document after checking that it is an artefact of this version and fits the schema.
 
     Raises:
-        TltlError: TLT0601 it is not an artefact, TLT0602 it has another version, TLT0603 it does
-            not fit the schema.
+        TltlError: TLT0601 the document is not an artefact, TLT0602 it has another version, TLT0603
+            it does not fit the schema.
     """
     if not isinstance(document, dict) or document.get("format") != "fspa":
         title = f"`{origin.name}` is JSON, but not an artefact"
         raise TltlError([Diagnostic("TLT0601", title, help="`tltlc compile` writes artefacts: NAME.fspa.json")])
     version = document.get("version")
     if isinstance(version, bool) or version != VERSION:
-        raise TltlError([_other_version(version, origin)])
+        raise TltlError([_version_error(version, origin)])
     try:
         validate(document)
     except JsonSchemaValueException as error:
@@ -76,14 +76,14 @@ def check_arithmetic(fspa: Fspa, origin: Origin) -> None:
 
 
 def check_consistency(fspa: Fspa, origin: Origin) -> None:
-    """Raise TltlError, TLT0604, with the first inconsistencies of the automaton (:data:`MOST_PROBLEMS`)."""
+    """Raise TltlError, TLT0604, with the first :data:`MOST_PROBLEMS` inconsistencies of the automaton, if any."""
     first = islice(problems(fspa), MOST_PROBLEMS)
     errors = [origin.error("TLT0604", problem.message, problem.path) for problem in first]
     if errors:
         raise TltlError(errors)
 
 
-def _other_version(version: object, origin: Origin) -> Diagnostic:
+def _version_error(version: object, origin: Origin) -> Diagnostic:
     if not isinstance(version, int) or isinstance(version, bool):
         return origin.error("TLT0602", "this artefact does not say its version", ("version",))
     title = f"this artefact has version {version}, and only version {VERSION} can be read"
@@ -92,6 +92,6 @@ def _other_version(version: object, origin: Origin) -> Diagnostic:
 
 
 def _schema_error(error: JsonSchemaValueException, origin: Origin) -> Diagnostic:
-    from tltlc.artefact.schema_messages import worded
+    from tltlc.artefact.schema_messages import schema_error_title
 
-    return origin.error("TLT0603", worded(error), path_of(error.place))
+    return origin.error("TLT0603", schema_error_title(error), path_of(error.place))

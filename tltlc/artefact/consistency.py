@@ -15,7 +15,7 @@ from tltlc.resolve import spec
 Declared = Union[spec.Signal, spec.Param, spec.Atom]
 
 CYCLES_WORK: Final = 1_000_000
-"""Steps after which goals and verdicts over infinite traces, which depend on cycles, are left unchecked."""
+"""After this many steps, the check of goals and verdicts over infinite traces stops; they depend on cycles."""
 
 
 @record
@@ -27,13 +27,13 @@ class Problem:
 
 
 def problems(fspa: Fspa) -> Iterator[Problem]:
-    """Yield every contradiction of the first check that fails; later checks rely on the values it found wrong.
+    """Yield every contradiction of the first check that fails; later checks rely on the values of earlier ones.
 
-    The guards of a state (exactly one is true of every sample) are checked exactly, but only for
-    small automata: see :mod:`tltlc.artefact.guards`.  The same holds for the states on accepted
-    cycles and the verdicts of automata over infinite traces (:data:`CYCLES_WORK`).
+    Some checks are exact, but only for small automata: that exactly one guard of a state is true of
+    every sample (:mod:`tltlc.artefact.guards`), and over infinite traces the verdicts and the states
+    on accepted cycles (:data:`CYCLES_WORK`).
     """
-    for check in (_names, _values, _indices, _parallel, _numbering, _distances, _guards):
+    for check in (_names, _values, _indices, _parallel_edges, _numbering, _distances, _guards):
         failed = False
         for problem in check(fspa):
             failed = True
@@ -98,15 +98,15 @@ def _indices(fspa: Fspa) -> Iterator[Problem]:
                 yield Problem(("acceptance", "pairs", index, kind), f"there are only {len(fspa.edges)} edges")
 
 
-def _parallel(fspa: Fspa) -> Iterator[Problem]:
+def _parallel_edges(fspa: Fspa) -> Iterator[Problem]:
     """Check that edges with the same source and target are in different sets of pairs.
 
     Over finite traces there are no pairs, so there is at most one edge for each source and target.
     """
-    named = fspa.marks()
+    marks = fspa.marks()
     seen: set[tuple[object, ...]] = set()
     for index, edge in enumerate(fspa.edges):
-        key = (edge.source, edge.target, named[index])
+        key = (edge.source, edge.target, marks[index])
         if key in seen:
             alike = " that the same pairs name" if fspa.semantics == "infinite" else ""
             message = f"two edges{alike} lead from state {edge.source} to state {edge.target}"
@@ -117,8 +117,8 @@ def _parallel(fspa: Fspa) -> Iterator[Problem]:
 def _numbering(fspa: Fspa) -> Iterator[Problem]:
     """Check that states are numbered breadth-first.
 
-    In that order, the lowest state that leads to a state comes before it, and from state to state
-    these lowest states never decrease.
+    In this order, the lowest state that leads to a given state comes before that state, and from
+    state to state these lowest states never decrease.
     """
     parents = [len(fspa.states)] * len(fspa.states)
     for edge in fspa.edges:
@@ -170,7 +170,7 @@ def _by_states(fspa: Fspa) -> tuple[Collection[int], list[Verdict]]:
 def _by_cycles(fspa: Fspa) -> tuple[Collection[int], list[Verdict]]:
     """Return the states on accepted cycles and the verdict of each state, for an automaton over infinite traces.
 
-    If that takes too much work, returns the values of the artefact.
+    Returns the values in the artefact, unchecked, if the analysis takes too much work.
     """
     from tltlc.automaton.infinite.analysis import analysis_of_fspa
     from tltlc.automaton.work import OutOfWork, Work

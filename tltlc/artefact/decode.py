@@ -27,14 +27,14 @@ def decode(document: object, name: str) -> Fspa:
     document as :func:`json.dumps` writes it, on one line.
 
     Raises:
-        TltlError: TLT0006 it nests too deep, or its arithmetic is too large; TLT0601 it is not an
-            artefact, or has a number that is not finite; TLT0602 it has another version; TLT0603 it
-            does not fit the schema; TLT0604 it is inconsistent.
+        TltlError: TLT0006 the document nests too deep, or its arithmetic is too large; TLT0601 it
+            is not an artefact, or has a number that is not finite; TLT0602 it has another version;
+            TLT0603 it does not fit the schema; TLT0604 its parts contradict each other.
     """
     constant = first_non_finite(document)
     if constant is not None:
         raise _not_finite(name, constant)
-    return _decoded(document, Origin(name, lambda: json.dumps(document, ensure_ascii=False)))
+    return _decode_and_check(document, Origin(name, lambda: json.dumps(document, ensure_ascii=False)))
 
 
 def read(text: str, name: str) -> Fspa:
@@ -45,10 +45,10 @@ def read(text: str, name: str) -> Fspa:
             not JSON.
     """
     origin = Origin(name, lambda: text)
-    return _decoded(_parsed(origin.source), origin)
+    return _decode_and_check(_parse(origin.source), origin)
 
 
-def _parsed(source: SourceFile) -> object:
+def _parse(source: SourceFile) -> object:
     try:
         return loads(source.text, ARTEFACT, _refuse)
     except json.JSONDecodeError as error:
@@ -61,7 +61,7 @@ def _parsed(source: SourceFile) -> object:
 
 
 class _NotFiniteError(Exception):
-    """``NaN`` or ``Infinity``, which Python's parser would accept."""
+    """Raised for ``NaN`` and ``Infinity``, which Python's parser would accept."""
 
 
 def _refuse(constant: str) -> None:
@@ -77,7 +77,7 @@ def _remark(message: str) -> str:
     return (message[:1].lower() + message[1:]).removesuffix(" at").removesuffix(" starting")
 
 
-def _decoded(document: object, origin: Origin) -> Fspa:
+def _decode_and_check(document: object, origin: Origin) -> Fspa:
     try:
         fspa = _fspa(check_format(document, origin))
         check_arithmetic(fspa, origin)

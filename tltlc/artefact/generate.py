@@ -31,33 +31,33 @@ def validator_source() -> str:
     import fastjsonschema
 
     schema = json.loads((FOLDER / "fspa.schema.json").read_text(encoding="utf-8"))
-    code = fastjsonschema.compile_to_code(_inlined(schema, schema["definitions"]), use_default=False)
-    lines = [_slim(line) for line in code.splitlines() if not line.startswith(("VERSION = ", "from "))]
+    code = fastjsonschema.compile_to_code(_inline(schema, schema["definitions"]), use_default=False)
+    lines = [_shorten_line(line) for line in code.splitlines() if not line.startswith(("VERSION = ", "from "))]
     imports = "from tltlc.artefact.errors import JsonSchemaValueException\n"
     return HEADER + imports + "\n".join(lines).strip() + "\n"
 
 
-def _inlined(node: Any, definitions: dict[str, Any]) -> Any:
-    """Return the schema with all references but the recursive ones replaced by their definitions.
+def _inline(node: Any, definitions: dict[str, Any]) -> Any:
+    """Return the schema with every reference replaced by its definition, except the recursive ones.
 
-    This makes the validator faster: a reference becomes a call, and each call formats the name of
-    its place.
+    This makes the validator faster: a reference becomes a call, and each call formats the path of
+    the value.
     """
     if isinstance(node, list):
-        return [_inlined(item, definitions) for item in node]
+        return [_inline(item, definitions) for item in node]
     if not isinstance(node, dict):
         return node
     reference = node.get("$ref")
     if isinstance(reference, str) and reference not in RECURSIVE:
-        return _inlined(definitions[reference.rsplit("/", 1)[1]], definitions)
-    return {key: _inlined(value, definitions) for key, value in node.items()}
+        return _inline(definitions[reference.rsplit("/", 1)[1]], definitions)
+    return {key: _inline(value, definitions) for key, value in node.items()}
 
 
-def _slim(line: str) -> str:
+def _shorten_line(line: str) -> str:
     """Return a line of the generated code without the parts that are not needed.
 
-    Removes the value and the schema quoted in a ``raise``, decimals, and the exception for several
-    errors.
+    These are the value and the schema in a ``raise``, the class ``Decimal``, and the exception for
+    several errors.
     """
     line = re.sub(r", value=.*?, name=(.*?), definition=.*, rule='(\w+)'\)$", r", \1, '\2')", line)
     line = line.replace("(JsonSchemaValueException, JsonSchemaValuesException)", "JsonSchemaValueException")

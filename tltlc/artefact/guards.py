@@ -16,14 +16,13 @@ from tltlc.automaton.fspa import Fspa, Implicant
 Cube = tuple[int, int]
 
 WORK_LIMIT = 200_000
-"""Cube operations after which the rest is left unchecked (about a fifth of a second)."""
-
+"""The check stops after this many cube operations, which take about a fifth of a second."""
 
 _BITS_OF_A_STEP = 512
-"""Atoms that one cube operation reads; the pairs of automata with more atoms count more."""
+"""The most atoms that one cube operation reads; if there are more atoms, an operation counts as several."""
 
 
-class _SpentError(Exception):
+class _OutOfWorkError(Exception):
     """Raised when the work limit is reached."""
 
 
@@ -36,15 +35,15 @@ class _Work:
     def spend(self, amount: int = 1) -> None:
         self.left -= amount
         if self.left < 0:
-            raise _SpentError
+            raise _OutOfWorkError
 
 
 def guard_problems(fspa: Fspa) -> Iterator[tuple[Path, str]]:
     """Yield the first problem of the guards, as a path and a message.
 
-    It is a guard that is not the complete list of its prime implicants, or a state in which some
-    sample does not take exactly one edge.  Indices must be in range.  Large automata are checked up
-    to a fixed amount of work.
+    A problem is a guard that is not the complete list of its prime implicants, or a state in which
+    some sample does not take exactly one edge.  Indices must be in range.  Large automata are
+    checked up to a fixed amount of work (:data:`WORK_LIMIT`).
     """
     work = _Work()
     leaving: list[list[int]] = [[] for _ in fspa.states]
@@ -63,14 +62,14 @@ def guard_problems(fspa: Fspa) -> Iterator[tuple[Path, str]]:
                 return
         for state, edges in enumerate(leaving):
             for one, other in combinations(edges, 2):
-                if any(_meet(p, q, pairs, work) for p in cubes[one] for q in cubes[other]):
+                if any(_intersect(p, q, pairs, work) for p in cubes[one] for q in cubes[other]):
                     targets = f"to states {fspa.edges[one].target} and {fspa.edges[other].target}"
                     yield ("edges", other, "guard"), f"the guards from state {state} {targets} can be true at once"
                     return
             if not _covers_all([cube for index in edges for cube in cubes[index]] + pairs, work):
                 yield ("states", state), f"some samples lead nowhere from state {state}"
                 return
-    except _SpentError:
+    except _OutOfWorkError:
         return
 
 
@@ -119,14 +118,14 @@ def _lies_in(inner: Cube, outer: Cube) -> bool:
 
 
 def _consensus(one: Cube, other: Cube) -> Cube | None:
-    """Return the resolvent of two cubes on the atom in which they oppose; None unless there is exactly one."""
+    """Return the resolvent of two cubes that oppose in exactly one atom; else None."""
     opposed = one[0] & other[1] | one[1] & other[0]
     if opposed == 0 or opposed & (opposed - 1):
         return None
     return (one[0] | other[0]) & ~opposed, (one[1] | other[1]) & ~opposed
 
 
-def _meet(one: Cube, other: Cube, pairs: Sequence[Cube], work: _Work) -> bool:
+def _intersect(one: Cube, other: Cube, pairs: Sequence[Cube], work: _Work) -> bool:
     """Whether some sample within D is in both cubes."""
     work.spend()
     if one[0] & other[1] or one[1] & other[0]:

@@ -1,4 +1,4 @@
-"""Write JSON text that people can read, and compare line by line."""
+"""Write JSON text that people can read and compare line by line."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any, Final
 
 WIDTH: Final = 120
 _PIECES: Final = 10_000
-"""Pieces that are joined at a time."""
+"""The number of pieces of text that are joined at a time."""
 
 Encode = Callable[[Any], str]
 
@@ -22,11 +22,11 @@ _unsafe = re.compile(
 
 
 def layout(document: Any) -> Iterator[str]:
-    """Yield the JSON text of a document in pieces; values that fit on a line are not broken, keys keep their order.
+    """Yield the JSON text of a document in pieces.
 
-    Invisible and direction-changing characters are escaped.  So are ``</`` and ``<!``, which would
-    end a script element, or start a comment in it, if the text is pasted into a page.  Numbers have
-    their shortest form.
+    Values that fit on a line are not broken, and keys keep their order.  Invisible and
+    direction-changing characters are escaped.  So are ``</`` and ``<!``: in a page, they would end
+    a script element or start a comment in it.  Numbers have their shortest form.
 
     Raises:
         ValueError: a number is not finite.
@@ -41,8 +41,9 @@ def layout(document: Any) -> Iterator[str]:
 
 
 def _pieces(value: Any, indent: int, used: int, encode: Encode) -> Iterator[str]:
-    """Yield the text of ``value``, on several lines if necessary; its key takes ``used`` characters
-    of the first line.
+    """Yield the text of ``value``, on several lines if necessary.
+
+    The key of the value takes ``used`` characters of the first line.
     """
     flat = _flat(value, indent, used, encode)
     if flat is not None:

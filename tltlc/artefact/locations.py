@@ -34,7 +34,10 @@ def span_of(text: str, path: Path) -> Span:
 
 
 def _value_start(decoder: JSONDecoder, text: str, start: int, step: str | int) -> int | None:
-    """Return where the value of a key or an index begins in the object or array at ``start``; None if it has none."""
+    """Return where the value of a key or an index begins in the object or array at ``start``.
+
+    Returns None if the object or array has no such value.
+    """
     is_object = text[start] == "{"
     if text[start] not in "{[" or is_object != isinstance(step, str):
         return None

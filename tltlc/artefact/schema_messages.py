@@ -25,7 +25,7 @@ _COUNTS = {
 }
 
 
-def worded(error: JsonSchemaValueException) -> str:
+def schema_error_title(error: JsonSchemaValueException) -> str:
     """Return the title of a schema error, e.g. "`states[1].distance` must be a whole number or null"."""
     place = error.place.removeprefix("data").removeprefix(".")
     subject = f"`{place}`" if place else "the artefact"
@@ -34,11 +34,13 @@ def worded(error: JsonSchemaValueException) -> str:
         kinds = remark.removeprefix("must be ").split(" or ")
         return f"{subject} must be {' or '.join(_TYPES[kind] for kind in kinds)}"
     if error.rule == "enum":
-        return f"{subject} must be {_listed(remark.removeprefix('must be one of '), ' or ')}"
+        return f"{subject} must be {_list_items(remark.removeprefix('must be one of '), ' or ')}"
     if error.rule == "required":
-        return f"{subject} lacks {_listed(remark.removeprefix('must contain ').removesuffix(' properties'), ' and ')}"
+        return (
+            f"{subject} lacks {_list_items(remark.removeprefix('must contain ').removesuffix(' properties'), ' and ')}"
+        )
     if error.rule == "additionalProperties":
-        fields = _listed(remark.removeprefix("must not contain ").removesuffix(" properties"), " and ")
+        fields = _list_items(remark.removeprefix("must not contain ").removesuffix(" properties"), " and ")
         return f"{subject} may not hold {fields}"
     if error.rule in _COUNTS:
         count = "".join(word for word in remark.split() if word.isdigit())
@@ -46,7 +48,7 @@ def worded(error: JsonSchemaValueException) -> str:
     return f"{subject} {remark}"
 
 
-def _listed(literal: str, last: str) -> str:
-    """Return the items of a printed Python list as they stand in a sentence."""
+def _list_items(literal: str, last: str) -> str:
+    """Return the items of a printed Python list as a list in a sentence."""
     items = [f"`{item}`" for item in ast.literal_eval(literal)]
     return last.join([", ".join(items[:-1]), items[-1]]) if len(items) > 1 else items[0]

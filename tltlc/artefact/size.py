@@ -16,10 +16,10 @@ def check_size(what: str, size: int, commas: int = 0) -> None:
     """Refuse a file that could not be read again.
 
     ``what`` is the name of the file in messages, ``size`` its size in bytes, and ``commas`` the
-    number of commas in it.
+    number of commas in it, at least one less than its number of values.
 
     Raises:
-        TltlError: TLT0004 if it is larger than :data:`tltlc.io.limits.ARTEFACT` allows; TLT0006 if
+        TltlError: TLT0004 the file is larger than :data:`tltlc.io.limits.ARTEFACT` allows; TLT0006
             it has more values.
     """
     if size > ARTEFACT.size:
@@ -29,7 +29,10 @@ def check_size(what: str, size: int, commas: int = 0) -> None:
 
 
 def least_size(fspa: Fspa) -> tuple[int, int]:
-    """Return bytes and commas that the edges of an artefact take at least: they dominate a large artefact."""
+    """Return a lower bound of the bytes and of the commas of an artefact: those of its edges.
+
+    Edges take most of a large artefact.
+    """
     literals = sum(len(prime) for edge in fspa.edges for prime in edge.guard.primes)
     size = len(_SHORTEST_EDGE) * len(fspa.edges) + len("[0, true], ") * literals
     return size, 3 * len(fspa.edges) + 2 * literals - 1

@@ -6,16 +6,16 @@ from tltlc.automaton.fspa import Fspa
 from tltlc.monitor.reward import RewardOptions
 
 
-def automaton(given: object) -> Fspa:
-    """Return the given automaton; raises TypeError if it is not one."""
+def automaton_argument(given: object) -> Fspa:
+    """Return ``given`` if it is an automaton; raise TypeError otherwise."""
     if isinstance(given, Fspa):
         return given
     advice = "`tltlc.compile_file` returns a tuple of them, `tltlc.load` the one of an artefact"
     raise TypeError(f"an automaton is needed, not {given!r:.60}: {advice}")
 
 
-def reward_options(given: object) -> RewardOptions:
-    """Return the given options, the defaults for None; raises TypeError for anything else."""
+def reward_options_argument(given: object) -> RewardOptions:
+    """Return ``given`` if it is RewardOptions, and the default options if it is None; raise TypeError otherwise."""
     if given is None:
         return RewardOptions()
     if isinstance(given, RewardOptions):

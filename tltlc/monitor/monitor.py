@@ -7,7 +7,7 @@ from typing import Any, NamedTuple, SupportsFloat
 
 from tltlc.automaton.fspa import Fspa, State, Verdict
 from tltlc.diagnostics.diagnostic import Diagnostic
-from tltlc.monitor.arguments import automaton, reward_options
+from tltlc.monitor.arguments import automaton_argument, reward_options_argument
 from tltlc.monitor.guards import bounding_atom, holds, robustness
 from tltlc.monitor.reward import RewardOptions, RewardStep, reward_step
 from tltlc.monitor.samples import Samples, check_exclusive
@@ -19,12 +19,12 @@ class Step(NamedTuple):
 
     - ``state``, ``label`` (what remains to be satisfied), ``verdict`` and ``accepting`` describe
       the prefix so far.
-    - ``done``: the episode has ended, with this step or before.
-    - ``progress``: the best so far, in [0, 1].
+    - ``done``: whether the episode has ended, with this step or before.
+    - ``progress``: the best progress so far, in [0, 1].
     - ``reward``: the reward of this step; 0 after the end of the episode.
     - ``robustness``: the robustness of the edge taken, in [-1, 1].
-    - ``limiting``: the atom that bounds the nearest edge that would have reduced the distance; None
-      if the state changed or no edge reduces it.
+    - ``limiting``: the name of the atom that bounds the nearest edge that would have reduced the
+      distance; None if the state changed, or if no edge reduces the distance.
     """
 
     state: int
@@ -46,18 +46,19 @@ class Monitor:
     order, and ``success`` is true if the episode has ended in success.
 
     Raises:
-        MonitorError: TLT0307, TLT0308 for ``params`` that do not fit.
+        MonitorError: TLT0307 a value of ``params`` is outside its range, TLT0308 there is no such
+            param, or its value is not a finite number.
         TypeError: ``fspa`` is not an automaton, or ``reward`` is not RewardOptions.
     """
 
     def __init__(
         self, fspa: Fspa, params: Mapping[str, float] | None = None, reward: RewardOptions | None = None
     ) -> None:
-        self.fspa = automaton(fspa)
+        self.fspa = automaton_argument(fspa)
         self.notices: list[Diagnostic] = []
         self._samples = Samples(fspa, params, self.notices)
         self._tables = tables(fspa)
-        self._options = reward_options(reward)
+        self._options = reward_options_argument(reward)
         self._labels: dict[int, str] = {}
         self._names = tuple(atom.name for atom in fspa.atoms)
         self.reset()
@@ -73,10 +74,11 @@ class Monitor:
         self._memory: Any = None
 
     def step(self, signals: Mapping[str, SupportsFloat], *, last: bool = False) -> Step:
-        """Take one sample: a mapping of signal names to numbers in SI units or bools. Names that no
-        atom uses are ignored.
+        """Take one sample, and return the result.
 
-        With ``last``, the episode ends with this sample, whatever the spec says.
+        ``signals`` maps the names of signals to bools, or to numbers in SI units. Names that no
+        atom uses are ignored. If ``last``, the episode ends with this sample, whatever the spec
+        says.
 
         Raises:
             MonitorError: TLT0611 missing signals, TLT0612 unusable signals, TLT0613 an atom without
@@ -85,7 +87,9 @@ class Monitor:
         return self._take(self._samples.atom_values(signals, self.steps + 1), last)
 
     def step_atoms(self, values: Sequence[float], *, last: bool = False) -> Step:
-        """Take one sample given as the values of the atoms, in order, each in [-1, 1]; ``last`` as in :meth:`step`.
+        """Take one sample, given as the values of the atoms in order, and return the result.
+
+        Each value is in [-1, 1]. ``last`` has the same meaning as in :meth:`step`.
 
         Raises:
             MonitorError: TLT0614 exclusive atoms that hold at once. The state stays unchanged.
@@ -125,7 +129,7 @@ class Monitor:
         )
 
     def _label(self, state: State) -> str:
-        """Return the label of a state in ASCII notation; each is printed once."""
+        """Return the label of a state in ASCII notation; texts are cached."""
         label = self._labels.get(state.id)
         if label is None:
             label = self._labels[state.id] = str(state.label)

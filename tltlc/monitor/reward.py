@@ -25,10 +25,13 @@ class RewardOptions:
       :mod:`tltlc.monitor.reward_modes`.
     - ``termination``: ``entry`` ends an episode on entry into an accepting or trap state. ``paper``
       ends it one step later, as the listing does, and judges every spec at the goal.
+    - ``terminal_penalty``: a violation costs the penalties of the remaining steps, either their
+      sum (``undiscounted``) or their sum discounted by ``gamma`` (``discounted``).
     - ``gamma`` in (0, 1] is the discount of mode ``potential`` and of the ``discounted`` terminal
       penalty.
 
-    Other values raise ValueError.
+    Raises:
+        ValueError: an option has another value.
     """
 
     mode: Mode = "progress"
@@ -47,10 +50,10 @@ class RewardOptions:
 
 @record
 class RewardStep:
-    """The outcome of one step: ``reward``, the best ``progress`` so far, in [0, 1], and whether the
-    episode is ``done``.
+    """The outcome of one step.
 
-    ``success`` is meaningful where the episode ends; elsewhere it is False.
+    ``progress`` is the best progress so far, in [0, 1]. ``done`` says whether the episode ends with
+    this step, and ``success`` whether it then ends in success; elsewhere ``success`` is False.
     """
 
     reward: float
@@ -69,12 +72,13 @@ def reward_step(
     options: RewardOptions | None = None,
     last: bool = False,
 ) -> RewardStep:
-    """One iteration of the loop of Algorithm 1 (lines 11 to 29), from ``state`` to ``target``.
+    """Run one iteration of the loop of Algorithm 1 (lines 11 to 29), from ``state`` to ``target``.
 
     ``values`` are the atoms' values at the sample that moved the automaton (line 8). ``best`` is
-    the best progress before it (``episode progress``). ``step`` counts the samples of the episode,
-    this one included. ``last`` ends the episode here whatever the spec says, as when the game is
-    over early. With ``T`` the spec's limit in steps, the order of operations is::
+    the best progress before this sample (``episode progress``). ``step`` counts the samples of the
+    episode, including this one. ``last`` ends the episode here whatever the spec says, for example
+    because the game is over early. With ``T`` the spec's limit in steps, the order of operations
+    is::
 
         reward = max(0, progress - best)          lines 25 to 28
         reward = reward - 1 / T                   line 29, if there is a limit
@@ -83,12 +87,13 @@ def reward_step(
 
     Deviations from the listing:
 
-    ▲ line 10: the caller moved the automaton by truth, not by the highest robustness.
+    ▲ line 10: the caller moved the automaton along the edge whose guard is true, not along the edge
+    with the highest robustness.
     ▲ lines 12 to 23: the episode ends on entry into an accepting or trap state, not one step later;
     ``termination="paper"`` runs the lines as printed.
-    ▲ line 11: if S is 0, nothing is divided. A trap has no progress, so entering it gains none.
+    ▲ line 11: if S is 0, nothing is divided. A trap has no progress, so entering a trap gains none.
     ▲ line 14: the robustness that is added is capped at 0.
-    ▲ a spec judged at its limit (``judge``) ends at T, or earlier once its verdict is settled; its
+    ▲ a spec judged at its limit (``judge``) ends at T, or earlier if its verdict becomes final; its
     progress is the share of T survived.
     """
     options = options or RewardOptions()
@@ -159,18 +164,19 @@ def _end(tables: MonitorTables, state: int, target: int, step: int, options: Rew
 
 
 def _succeeds_early(tables: MonitorTables, target: int, options: RewardOptions) -> bool:
-    """Whether an episode that is cut off here is a success. A spec judged at its limit succeeds
-    only if it has no limit.
+    """Whether an episode that is cut off here is a success.
+
+    A spec judged at its limit can succeed here only if it has no limit.
     """
     at_goal = tables.fspa.judge == "goal" or options.termination == "paper"
     return tables.fspa.states[target].accepting and (at_goal or tables.fspa.limit_steps is None)
 
 
 def terminal_penalty(limit: int, step: int, options: RewardOptions) -> float:
-    """Return the step penalties saved by an end after ``step`` of ``limit`` steps.
+    """Return the sum of the step penalties that an end after ``step`` of ``limit`` steps saves.
 
-    It is ``(T - t) / T``, or with the ``discounted`` penalty the sum of these penalties discounted
-    to this step.
+    The sum is ``(T - t) / T``. With the ``discounted`` penalty, the penalties are discounted to this
+    step.
     """
     left, gamma = limit - step, options.gamma
     if options.terminal_penalty == "undiscounted" or gamma == 1.0:

@@ -12,7 +12,7 @@ from tltlc.monitor.monitor import Monitor, Step
 
 @record
 class RunStep:
-    """One step of a run: its number, from 1, the monitor's result, and the values of the atoms, in order."""
+    """One step of a run: its number (from 1), the monitor's result, and the values of the atoms in order."""
 
     number: int
     step: Step
@@ -31,7 +31,7 @@ class TraceOutcome:
 
 
 def run(monitor: Monitor, trace: Iterable[Mapping[str, SupportsFloat]]) -> Iterator[RunStep]:
-    """Yield a row per sample as the samples come in; the monitor is reset before the first one.
+    """Reset the monitor, then yield a step for each sample as the samples come in.
 
     Raises:
         TltlError: the errors of :meth:`Monitor.step` and of the trace.

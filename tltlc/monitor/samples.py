@@ -1,4 +1,4 @@
-"""Compute the values of the atoms from the game's signals: checks, clamping, predicates."""
+"""Compute the values of the atoms from the game's signals: check and clamp signals, evaluate predicates."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ ROUNDING: Final = 1e-9
 
 
 class MonitorError(TltlError):
-    """A sample that the automaton cannot take, or a param that does not fit; the state stays unchanged."""
+    """Raised for a sample that the monitor cannot take, or a param that does not fit; the state stays unchanged."""
 
 
 class Samples:
@@ -37,7 +37,7 @@ class Samples:
     def atom_values(self, signals: Mapping[str, SupportsFloat], when: int | str) -> tuple[float, ...]:
         """Return the values of the atoms at a sample, each in [-1, 1].
 
-        ``when``, the number of the sample from 1 or a phrase for it, is for messages.
+        ``when`` is for messages: the number of the sample, from 1, or a phrase for it.
 
         Raises:
             MonitorError: TLT0611 signals are missing, TLT0612 a signal has no finite value, TLT0613
@@ -45,26 +45,26 @@ class Samples:
         """
         missing = [name for name in self._names if name not in signals]
         if missing:
-            raise _error("TLT0611", when, f"no value for {listed(missing)}")
-        sample = [self._number(signal, signals[signal.name], when) for signal in self._fspa.signals]
-        values = [self._value(index, sample, when) for index in range(len(self._atoms))]
-        return tuple(self._in_range(index, value, when) for index, value in enumerate(values))
+            raise _error("TLT0611", when, f"no value for {name_list(missing)}")
+        sample = [self._signal_value(signal, signals[signal.name], when) for signal in self._fspa.signals]
+        values = [self._atom_value(index, sample, when) for index in range(len(self._atoms))]
+        return tuple(self._clamped_atom_value(index, value, when) for index, value in enumerate(values))
 
-    def _number(self, signal: Signal, given: SupportsFloat, when: int | str) -> float:
+    def _signal_value(self, signal: Signal, given: SupportsFloat, when: int | str) -> float:
         """Return the value of a signal as a number, clamped to its range."""
-        value = number(signal, given, when)
+        value = finite_signal_value(signal, given, when)
         low, high = signal.low, signal.high
         if signal.type == "bool":
             if value not in (0.0, 1.0):
-                raise _error("TLT0612", when, f"the signal `{signal.name}` is {shown(value)}, not true or false")
+                raise _error("TLT0612", when, f"the signal `{signal.name}` is {number_text(value)}, not true or false")
             return value
         nearest = low if low is not None and value < low else high if high is not None and value > high else value
         if nearest != value:
-            text = f"the signal `{signal.name}` is {shown(value)}, outside {range_text(low, high)}"
-            self._notice("TLT0615", signal.name, when, f"{text}: it counts as {shown(nearest)}")
+            text = f"the signal `{signal.name}` is {number_text(value)}, outside {range_text(low, high)}"
+            self._notice("TLT0615", signal.name, when, f"{text}: it counts as {number_text(nearest)}")
         return nearest
 
-    def _value(self, index: int, sample: Sequence[float], when: int | str) -> float:
+    def _atom_value(self, index: int, sample: Sequence[float], when: int | str) -> float:
         try:
             return self._atoms[index](sample)
         except ZeroDivisionError:
@@ -75,7 +75,7 @@ class Samples:
             problem = "takes a root or power that does not exist"
         raise _error("TLT0613", when, f"the atom `{self._fspa.atoms[index].name}` {problem}")
 
-    def _in_range(self, index: int, value: float, when: int | str) -> float:
+    def _clamped_atom_value(self, index: int, value: float, when: int | str) -> float:
         if -1.0 <= value <= 1.0:
             return value
         name = self._fspa.atoms[index].name
@@ -83,42 +83,42 @@ class Samples:
             raise _error("TLT0613", when, f"the atom `{name}` is too large to compute")
         nearest = 1.0 if value > 0.0 else -1.0
         if abs(value - nearest) > ROUNDING:
-            text = f"the atom `{name}` is {shown(value)}, outside [-1, 1]"
-            self._notice("TLT0616", name, when, f"{text}: it counts as {shown(nearest)}")
+            text = f"the atom `{name}` is {number_text(value)}, outside [-1, 1]"
+            self._notice("TLT0616", name, when, f"{text}: it counts as {number_text(nearest)}")
         return nearest
 
     def _notice(self, code: str, name: str, when: int | str, text: str) -> None:
         if (code, name) not in self._noticed:
             self._noticed.add((code, name))
-            self._notices.append(Diagnostic(code, f"{_location(when)}: {text}", (), WAYS_OUT[code], "warning"))
+            self._notices.append(Diagnostic(code, f"{_location(when)}: {text}", (), SUGGESTIONS[code], "warning"))
 
 
 def param_values(params: Sequence[Param], given: Mapping[str, float]) -> dict[str, float]:
-    """Return the value of every param: the given one, else its default.
+    """Return the value of every param: the value in ``given``, else the default.
 
     Raises:
-        MonitorError: TLT0308 there is no param of that name, or the value is not a finite number;
-            TLT0307 the value is outside its range.
+        MonitorError: TLT0308 there is no param with a given name, or the value is not a finite
+            number; TLT0307 the value is outside the range of the param.
     """
     param_by_name = {param.name: param for param in params}
     for name, value in given.items():
         if name not in param_by_name:
             advice = (
-                f"there are: {listed(list(param_by_name))}" if param_by_name else "its atoms use none: leave it out"
+                f"there are: {name_list(list(param_by_name))}" if param_by_name else "its atoms use none: leave it out"
             )
-            raise _wrong_param("TLT0308", f"there is no param `{name}` to set", advice)
+            raise _param_error("TLT0308", f"there is no param `{name}` to set", advice)
         if isinstance(value, str) or not hasattr(value, "__float__"):
-            raise _wrong_param("TLT0308", f"the value given for the param `{name}` is no number")
+            raise _param_error("TLT0308", f"the value given for the param `{name}` is no number")
         low, high = param_by_name[name].low, param_by_name[name].high
         if not isfinite(value):
-            raise _wrong_param("TLT0308", f"the param `{name}` cannot be {shown(value)}")
+            raise _param_error("TLT0308", f"the param `{name}` cannot be {number_text(value)}")
         if (low is not None and value < low) or (high is not None and value > high):
-            title = f"the param `{name}` cannot be {shown(value)}: its range is {range_text(low, high)}"
-            raise _wrong_param("TLT0307", title)
+            title = f"the param `{name}` cannot be {number_text(value)}: its range is {range_text(low, high)}"
+            raise _param_error("TLT0307", title)
     return {name: float(given.get(name, param.value)) for name, param in param_by_name.items()}
 
 
-def _wrong_param(code: str, title: str, advice: str = "give a number in its range, in SI units") -> MonitorError:
+def _param_error(code: str, title: str, advice: str = "give a number in its range, in SI units") -> MonitorError:
     return MonitorError([Diagnostic(code, title, help=advice)])
 
 
@@ -128,10 +128,10 @@ def check_exclusive(fspa: Fspa, values: Sequence[float], step: int) -> None:
         holding = [fspa.atoms[atom].name for atom in group if values[atom] > 0.0]
         if len(holding) > 1:
             declaration = ", ".join(fspa.atoms[atom].name for atom in group)
-            raise _error("TLT0614", step, f"{listed(holding)} hold at once, against `exclusive {declaration}`")
+            raise _error("TLT0614", step, f"{name_list(holding)} hold at once, against `exclusive {declaration}`")
 
 
-def shown(value: float) -> str:
+def number_text(value: float) -> str:
     """Return a number for a message: the shortest text that reads back as the same number."""
     text = repr(float(value))
     return text[:-2] if text.endswith(".0") else text
@@ -139,19 +139,19 @@ def shown(value: float) -> str:
 
 def range_text(low: float | None, high: float | None) -> str:
     """Return a range as text, for example ``[0, inf]``."""
-    return f"[{'-inf' if low is None else shown(low)}, {'inf' if high is None else shown(high)}]"
+    return f"[{'-inf' if low is None else number_text(low)}, {'inf' if high is None else number_text(high)}]"
 
 
-def listed(names: Sequence[str]) -> str:
+def name_list(names: Sequence[str]) -> str:
     """Return the names in backquotes, with ``and`` before the last one."""
     quoted = [f"`{name}`" for name in names]
     return quoted[0] if len(quoted) == 1 else f"{', '.join(quoted[:-1])} and {quoted[-1]}"
 
 
-def number(signal: Signal, given: SupportsFloat, when: int | str) -> float:
+def finite_signal_value(signal: Signal, given: SupportsFloat, when: int | str) -> float:
     """Return the value of a signal as a finite number.
 
-    ``when``, the number of the step or a phrase for it, is for messages.
+    ``when`` is for messages: the number of the step, or a phrase for it.
 
     Raises:
         MonitorError: TLT0612 the value is not a finite number.
@@ -173,7 +173,7 @@ def _as_float(signal: Signal, given: SupportsFloat, when: int | str) -> float:
         raise _error("TLT0612", when, f"the signal `{signal.name}` is too large for a number") from None
 
 
-WAYS_OUT: Final = {
+SUGGESTIONS: Final = {
     "TLT0611": "supply every signal that the atoms use, at each step",
     "TLT0612": "look where the game computes it",
     "TLT0613": "say in its predicate what holds there, with `when`",
@@ -185,7 +185,7 @@ WAYS_OUT: Final = {
 
 
 def _error(code: str, when: int | str, text: str) -> MonitorError:
-    return MonitorError([Diagnostic(code, f"{_location(when)}: {text}", help=WAYS_OUT[code])])
+    return MonitorError([Diagnostic(code, f"{_location(when)}: {text}", help=SUGGESTIONS[code])])
 
 
 def _location(when: int | str) -> str:

@@ -11,18 +11,22 @@ from tltlc.automaton.text import label_text
 from tltlc.core.record import record, replace
 from tltlc.diagnostics.diagnostic import Diagnostic, Label
 from tltlc.monitor.monitor import Monitor, Step
-from tltlc.monitor.samples import MonitorError, shown
+from tltlc.monitor.samples import MonitorError, number_text
 from tltlc.resolve.spec import Expect, ResolvedFile, Test
 
 _COMPARISONS: Final = {"<": lt, "<=": le, ">": gt, ">=": ge}
 
 _TOLERANCE: Final = 1e-12
-"""Rounding of floating-point sums: 0.1 + 0.2 meets ``progress >= 0.3`` and fails ``progress < 0.3``."""
+"""Allows for the rounding of sums: 0.1 + 0.2 counts as 0.3, so it meets ``progress >= 0.3``, not ``progress < 0.3``."""
 
 
 @record
 class TestResult:
-    """A test and its failure: None, the first expectation that failed, or a sample in which exclusive atoms hold."""
+    """A test and its failure.
+
+    The failure is a diagnostic for the first expectation that fails, or for a sample in which
+    exclusive atoms hold; None if the test passed.
+    """
 
     test: Test
     failure: Diagnostic | None
@@ -34,7 +38,7 @@ class TestResult:
 
 
 def run_tests(program: ResolvedFile, automata: Iterable[Fspa]) -> tuple[TestResult, ...]:
-    """Return the results of a program's tests, in order; tests of specs without an automaton are skipped."""
+    """Return the results of a program's tests, in order. Tests of specs without an automaton are skipped."""
     by_name = {fspa.name: fspa for fspa in automata}
     return tuple(run_test(test, by_name[test.spec]) for test in program.tests if test.spec in by_name)
 
@@ -49,7 +53,7 @@ def run_test(test: Test, fspa: Fspa) -> TestResult:
     last: Step | None = None
     for item in test.items:
         if isinstance(item, Expect):
-            failure = _unmet(item, last, fspa)
+            failure = _failed_expectation(item, last, fspa)
             if failure is not None:
                 return TestResult(test, failure)
             continue
@@ -66,36 +70,36 @@ def run_test(test: Test, fspa: Fspa) -> TestResult:
     return TestResult(test, None)
 
 
-def _unmet(expect: Expect, step: Step | None, fspa: Fspa) -> Diagnostic | None:
+def _failed_expectation(expect: Expect, step: Step | None, fspa: Fspa) -> Diagnostic | None:
     """Return why the expectation fails; None if it holds."""
     if step is None:
         return _failure(expect, "a trace has at least one sample", "put a `step` before the first `expect`")
     if expect.kind == "verdict":
         if expect.value != step.verdict:
-            return _failure(expect, f"it is {step.verdict}", _remains(step, fspa))
+            return _failure(expect, f"it is {step.verdict}", _remaining_text(step, fspa))
     elif expect.kind == "progress":
-        if not _compares(step.progress, expect):
-            return _failure(expect, f"the progress is {shown(step.progress)}", _remains(step, fspa))
+        if not _meets(step.progress, expect):
+            return _failure(expect, f"the progress is {number_text(step.progress)}", _remaining_text(step, fspa))
     else:
         texts = [label_text(fspa, step.state, notation) for notation in NOTATIONS]
-        if _squeezed(str(expect.value)) not in map(_squeezed, texts):
+        if _without_blanks(str(expect.value)) not in map(_without_blanks, texts):
             return _failure(expect, f"the state is `{step.label}`", "`tltlc render` shows every state with its label")
     return None
 
 
-def _compares(progress: float, expect: Expect) -> bool:
+def _meets(progress: float, expect: Expect) -> bool:
     value = float(expect.value)
     if abs(progress - value) <= _TOLERANCE:
         progress = value
     return bool(_COMPARISONS[expect.comparison or ">="](progress, value))
 
 
-def _squeezed(label: str) -> str:
+def _without_blanks(label: str) -> str:
     """Return a label without white space, so that `F (a)` and `F(a)` compare equal."""
     return "".join(label.split())
 
 
-def _remains(step: Step, fspa: Fspa) -> str | None:
+def _remaining_text(step: Step, fspa: Fspa) -> str | None:
     return None if step.label in ("true", "false") else f"what remains: {label_text(fspa, step.state)}"
 
 

@@ -40,7 +40,10 @@ def _improves(fspa: Fspa, edge: Edge) -> bool:
 
 
 def _base_progress(distance: int | None, spec_size: int) -> float:
-    """``(S - d) / S``, line 11 of Algorithm 1; 0 in a trap, 1 in a goal state if S is 0 (▲ the paper divides by S)."""
+    """Return ``(S - d) / S``, line 11 of Algorithm 1.
+
+    Returns 0 for a trap. ▲ If S is 0, by which the paper divides, returns 1 for a goal state.
+    """
     if distance is None:
         return 0.0
     return (spec_size - distance) / spec_size if spec_size else 1.0

@@ -1,4 +1,4 @@
-"""Read the rows of a trace by the rules of ``docs/traces.md``, before it is known which columns are needed."""
+"""Read the rows of a trace by the rules of ``docs/traces.md``, whatever columns are needed."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
 from tltlc.io.limits import TRACE_LINE
 
-OBJECTS: Final = 'write one object a line, e.g. `{"health": 1.0, "seen": false}`'
+JSON_LINES_HELP: Final = 'write one object a line, e.g. `{"health": 1.0, "seen": false}`'
 _BLANKS: Final = " \t"
 _BYTE_ORDER_MARK: Final = b"\xef\xbb\xbf"
 _NUMBER: Final = re.compile(
@@ -30,36 +30,36 @@ class Stream(Protocol):
 
 @record
 class TraceTable:
-    """A trace in CSV: its columns, and its rows as they are read, each as long as ``header``."""
+    """A trace in CSV: the names of its columns, and an iterator over its rows, each as long as ``header``."""
 
     header: tuple[str, ...]
     rows: Iterator[list[str]]
 
 
 @record
-class Objects:
-    """A trace in JSON lines: its objects as they are read."""
+class TraceObjects:
+    """A trace in JSON lines, as an iterator over its objects."""
 
     rows: Iterator[dict[str, Any]]
 
 
-def read_rows(lines: TraceLines) -> TraceTable | Objects | None:
+def read_rows(lines: TraceLines) -> TraceTable | TraceObjects | None:
     """Return the trace as CSV or JSON lines; None if it is blank.
 
     Raises:
-        TltlError: TLT0622 a line that cannot be read; the rows raise it when the reader gets there.
+        TltlError: TLT0622 a line cannot be read. For lines after the first, ``rows`` raises it.
     """
     first = lines.first_of_row()
     if first is None:
         return None
     if first.lstrip(_BLANKS).startswith("{"):
-        return Objects(_object(line, lines) for line in chain([first], _lines(lines)))
+        return TraceObjects(_object(line, lines) for line in chain([first], _lines(lines)))
     header = _cells(first, lines)
     return TraceTable(tuple(header), _rows(lines, len(header)))
 
 
 def cell_number(cell: str) -> float | None:
-    """Return the number in a cell, 1 or 0 for true or false; None if there is none."""
+    """Return the number in a cell, or 1 or 0 for true or false; None if the cell has another text."""
     text = cell.strip(_BLANKS)
     if _NUMBER.fullmatch(text):
         return float(text)
@@ -68,7 +68,7 @@ def cell_number(cell: str) -> float | None:
 
 
 class TraceLines:
-    """The lines of a stream, decoded and checked; for messages, it remembers the start of the current row.
+    """The lines of a stream, decoded and checked, with the start of the current row for messages.
 
     ``name`` is the trace's name in messages. At most one row is kept in memory; a row has at most
     ``TRACE_LINE.size`` bytes.
@@ -84,7 +84,7 @@ class TraceLines:
         self._used = 0
 
     def first_of_row(self) -> str | None:
-        """Return the next line that is not blank, without its line feed; it begins a row. None at the end.
+        """Return the next line that is not blank, without its line feed, as the start of a row; None at the end.
 
         Raises:
             TltlError: TLT0622, as in :meth:`next_of_row`.
@@ -114,9 +114,9 @@ class TraceLines:
         self._used += len(line) + 1
         if self._read == 1:
             line = line.removeprefix(_BYTE_ORDER_MARK)
-        return self._decoded(line)
+        return self._decode(line)
 
-    def _decoded(self, line: bytes) -> str:
+    def _decode(self, line: bytes) -> str:
         try:
             text = line.decode()
         except UnicodeDecodeError as error:
@@ -132,12 +132,18 @@ class TraceLines:
         return self.error(remark, (column, column + 1), help)
 
     def error(self, remark: str, columns: tuple[int, int] | None = None, help: str | None = None) -> TltlError:  # noqa: A002
-        """Return TLT0622, pointing at the first line of the current row, or at some of its columns (from 0)."""
+        """Return the error TLT0622 with a label on the first line of the current row.
+
+        ``columns``, counted from 0, restrict the label to a part of the line.
+        """
         title = f"line {self._first} of the trace cannot be read"
         return TltlError([Diagnostic("TLT0622", title, (self.label(remark, columns),), help)])
 
     def label(self, remark: str, columns: tuple[int, int] | None = None) -> Label:
-        """Return a label on the first line of the current row, or on some of its columns (from 0)."""
+        """Return a label on the first line of the current row.
+
+        ``columns``, counted from 0, restrict the label to a part of the line.
+        """
         start, end = columns or (0, len(self.text))
         offset = self._first - 1
         # Earlier lines are no longer in memory; empty ones keep the line number right. A CR would count as a line end.
@@ -157,7 +163,7 @@ def _rows(lines: TraceLines, count: int) -> Iterator[list[str]]:
     for line in _lines(lines):
         cells = _cells(line, lines)
         if len(cells) != count:
-            remark = f"{_counted(len(cells), 'value')}, under {_counted(count, 'column')}"
+            remark = f"{_count_text(len(cells), 'value')}, under {_count_text(count, 'column')}"
             raise lines.error(remark, help="give each column one value, in quotes where it holds a comma")
         yield cells
 
@@ -172,7 +178,7 @@ def _cells(line: str, lines: TraceLines) -> list[str]:
     while position < len(line):
         start = _after_blanks(line, position + 1)
         if line.startswith('"', start):
-            cell, line, position = _quoted(line, start + 1, lines)
+            cell, line, position = _quoted_cell(line, start + 1, lines)
         else:
             comma = line.find(",", start)
             position = len(line) if comma < 0 else comma
@@ -188,9 +194,11 @@ def _check_returns(text: str, lines: TraceLines) -> None:
         raise lines.error("a carriage return stands alone", help="end lines with LF or CR LF")
 
 
-def _quoted(line: str, start: int, lines: TraceLines) -> tuple[str, str, int]:
-    """Return a quoted cell whose text begins at ``start``, the line in which it ends, and the
-    position of the comma or end after it.
+def _quoted_cell(line: str, start: int, lines: TraceLines) -> tuple[str, str, int]:
+    """Return a quoted cell whose text begins at ``start``, and where it ends.
+
+    The second and third result are the line in which the cell ends, and the position in it of the
+    comma, or of the end of the line, after the cell.
     """
     pieces = []
     while (end := _closing_quote(line, start)) < 0:
@@ -225,7 +233,7 @@ def _after_blanks(line: str, start: int) -> int:
 
 
 class _BadObjectError(ValueError):
-    """A JSON object that a trace may not contain; the message says why."""
+    """Raised for a JSON object that a trace may not contain; the message says why."""
 
 
 def _object(line: str, lines: TraceLines) -> dict[str, Any]:
@@ -237,21 +245,21 @@ def _object(line: str, lines: TraceLines) -> dict[str, Any]:
         if "\r" in line.removesuffix("\r"):
             raise _BadObjectError("a carriage return stands alone")
         # Integers may have more digits than Python's int() accepts.
-        value = json.loads(line, parse_int=float, object_pairs_hook=_with_keys_once)
+        value = json.loads(line, parse_int=float, object_pairs_hook=_with_unique_keys)
         if line.count("{") + line.count("[") > TRACE_LINE.depth and _depth(value) > TRACE_LINE.depth:
             raise RecursionError
     except json.JSONDecodeError as error:
-        raise lines.error("this is not JSON", (error.pos, error.pos + 1), OBJECTS) from None
+        raise lines.error("this is not JSON", (error.pos, error.pos + 1), JSON_LINES_HELP) from None
     except RecursionError:
-        raise lines.error(f"this nests deeper than {TRACE_LINE.depth} levels", help=OBJECTS) from None
+        raise lines.error(f"this nests deeper than {TRACE_LINE.depth} levels", help=JSON_LINES_HELP) from None
     except _BadObjectError as error:
-        raise lines.error(str(error), help=OBJECTS) from None
+        raise lines.error(str(error), help=JSON_LINES_HELP) from None
     if not isinstance(value, dict):
-        raise lines.error("this is no object", help=OBJECTS)
+        raise lines.error("this is no object", help=JSON_LINES_HELP)
     return value
 
 
-def _with_keys_once(pairs: Sequence[tuple[str, Any]]) -> dict[str, Any]:
+def _with_unique_keys(pairs: Sequence[tuple[str, Any]]) -> dict[str, Any]:
     object_ = dict(pairs)
     if len(object_) < len(pairs):
         raise _BadObjectError("a key stands twice")
@@ -267,5 +275,5 @@ def _depth(value: Any) -> int:
     return 1 + max(map(_depth, value.values() if isinstance(value, dict) else value), default=0)
 
 
-def _counted(number: int, thing: str) -> str:
+def _count_text(number: int, thing: str) -> str:
     return f"{number} {thing}{'' if number == 1 else 's'}"

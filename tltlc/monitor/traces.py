@@ -6,25 +6,26 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.monitor.samples import listed
-from tltlc.monitor.trace_rows import OBJECTS, Stream, TraceLines, TraceTable, cell_number, read_rows
+from tltlc.monitor.samples import name_list
+from tltlc.monitor.trace_rows import JSON_LINES_HELP, Stream, TraceLines, TraceTable, cell_number, read_rows
 from tltlc.resolve.spec import Signal
 
 Sample = dict[str, float]
 
-_VALUES: Final = "write a number, `true` or `false`"
-_TRUTHS: Final = "write `true`, `false`, 1 or 0"
+_NUMBER_HELP: Final = "write a number, `true` or `false`"
+_BOOL_HELP: Final = "write `true`, `false`, 1 or 0"
 
 
 def read_trace(stream: Stream, name: str, signals: Sequence[Signal]) -> Iterator[Sample]:
-    """Yield the samples of a trace as its lines come in: the values of the given signals. Other columns are ignored.
+    """Yield the samples of a trace as its lines come in: the values of the given signals.
 
     ``stream`` is binary; ``name`` is the trace's name in messages. ``docs/traces.md`` has the
-    rules. Values that are missing from a JSON object or not finite are left to the monitor.
+    rules. Other columns are ignored. A value may be missing from the object of a JSON line, and
+    numbers may be infinite or NaN: the monitor reports these.
 
     Raises:
-        TltlError: TLT0620 no sample, TLT0621 no column for a signal, TLT0622 a line that cannot be
-            read. It is raised while iterating, when the reader gets there.
+        TltlError: TLT0620 the trace has no sample, TLT0621 it has no column for a signal, TLT0622 a
+            line cannot be read. The iterator raises it when it reaches the place.
     """
     lines = TraceLines(stream, name)
     trace = read_rows(lines)
@@ -44,26 +45,26 @@ def read_trace(stream: Stream, name: str, signals: Sequence[Signal]) -> Iterator
 # --- CSV ------------------------------------------------------------------------------------------
 
 
-def _columns(header: Sequence[str], at: TraceLines, signals: Sequence[Signal]) -> list[tuple[Signal, int]]:
+def _columns(header: Sequence[str], lines: TraceLines, signals: Sequence[Signal]) -> list[tuple[Signal, int]]:
     """Return the signals and the positions of their columns."""
     positions: dict[str, int] = {}
     twice = {name for position, name in enumerate(header) if positions.setdefault(name, position) != position}
     missing = [signal.name for signal in signals if signal.name not in positions]
     if missing:
-        title = f"the trace has no column for {listed(missing)}"
-        listing = f"its columns are {listed(header[:10])}" + (", …" if len(header) > 10 else "")
-        advice = _other_form(at.text) or _suggestion(missing[0], header) or listing
-        raise TltlError([Diagnostic("TLT0621", title, (at.label(""),), advice)])
+        title = f"the trace has no column for {name_list(missing)}"
+        listing = f"its columns are {name_list(header[:10])}" + (", …" if len(header) > 10 else "")
+        advice = _format_advice(lines.text) or _suggestion(missing[0], header) or listing
+        raise TltlError([Diagnostic("TLT0621", title, (lines.label(""),), advice)])
     for signal in signals:
         if signal.name in twice:
-            raise at.error(f"two columns are called `{signal.name}`", help="keep one of them")
+            raise lines.error(f"two columns are called `{signal.name}`", help="keep one of them")
     return [(signal, positions[signal.name]) for signal in signals]
 
 
-def _other_form(line: str) -> str | None:
-    """Return advice if the line looks like JSON or like another separator than commas."""
+def _format_advice(line: str) -> str | None:
+    """Return advice if the line begins a JSON list, or separates columns by other characters than commas; else None."""
     if line.lstrip().startswith("["):
-        return OBJECTS
+        return JSON_LINES_HELP
     return "separate the columns by commas" if ";" in line or "\t" in line else None
 
 
@@ -75,13 +76,13 @@ def _suggestion(name: str, columns: Sequence[str]) -> str | None:
     return f"is the column `{squeezed[close[0]]}` meant?" if close else None
 
 
-def _row_sample(row: Sequence[str], columns: Sequence[tuple[Signal, int]], at: TraceLines) -> Sample:
+def _row_sample(row: Sequence[str], columns: Sequence[tuple[Signal, int]], lines: TraceLines) -> Sample:
     sample = {}
     for signal, column in columns:
         value = cell_number(row[column])
         if value is None or not _is_allowed(signal, value):
             remark = _problem(signal, value) if row[column] else f"`{signal.name}` has no value"
-            raise at.error(remark, _cell_span(at.text, column), _advice(signal))
+            raise lines.error(remark, _cell_span(lines.text, column), _advice(signal))
         sample[signal.name] = value
     return sample
 
@@ -96,11 +97,11 @@ def _problem(signal: Signal, value: float | None) -> str:
 
 
 def _advice(signal: Signal) -> str:
-    return _TRUTHS if signal.type == "bool" else _VALUES
+    return _BOOL_HELP if signal.type == "bool" else _NUMBER_HELP
 
 
 def _cell_span(line: str, column: int) -> tuple[int, int] | None:
-    """Return the columns of a cell in its line; None if the line has quotes, which move the cells."""
+    """Return where a cell begins and ends in its line; None if the line has quotes, so that commas do not tell."""
     cells = line.split(",")
     if '"' in line or column >= len(cells):
         return None
@@ -111,7 +112,7 @@ def _cell_span(line: str, column: int) -> tuple[int, int] | None:
 # --- JSON lines -----------------------------------------------------------------------------------
 
 
-def _object_sample(object_: Mapping[str, Any], signals: Sequence[Signal], at: TraceLines) -> Sample:
+def _object_sample(object_: Mapping[str, Any], signals: Sequence[Signal], lines: TraceLines) -> Sample:
     sample = {}
     for signal in signals:
         given = object_.get(signal.name)
@@ -120,6 +121,6 @@ def _object_sample(object_: Mapping[str, Any], signals: Sequence[Signal], at: Tr
 
         value = float(given) if isinstance(given, (int, float)) else None
         if value is None or not _is_allowed(signal, value):
-            raise at.error(_problem(signal, value), help=_advice(signal))
+            raise lines.error(_problem(signal, value), help=_advice(signal))
         sample[signal.name] = value
     return sample

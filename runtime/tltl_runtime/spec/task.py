@@ -67,7 +67,7 @@ def load_task(
     fspa, _ = read_spec(spec)
     param_names = {param.name for param in fspa.params}
     values = {name: value for name, value in offered.items() if name in param_names}
-    task = Task(fspa, {**values, **params}, monitors.reward_options(reward))
+    task = Task(fspa, {**values, **params}, monitors.reward_options_argument(reward))
     task.monitor()
     return task
 

@@ -108,7 +108,7 @@ class TltlEnv(gymnasium.Wrapper[Observation, Any, Any, Any], RecordConstructorAr
         self.taken = None
         sample = self._sample("after the reset")
         for signal in self._inputs:
-            monitors.number(signal, sample[signal.name], "after the reset")
+            monitors.finite_signal_value(signal, sample[signal.name], "after the reset")
         start = self.task.fspa.states[0]
         info = {
             **info,

@@ -3,9 +3,9 @@
 A module defines ``reward(tables, transition, options, memory) -> (reward, memory)``, a pure
 function. ``memory`` is the mode's state from step to step, None at the start of an episode. None of
 these modes has step or terminal penalties. To add a mode, add its name to
-:data:`tltlc.monitor.reward.Mode`, a module of that name here, and one in
+:data:`tltlc.monitor.reward.Mode`, a module of this name here, and another one in
 ``tltl_runtime.spec.batch.reward_modes`` for many environments. Options, settings files and tests
-read the names from there.
+read the names from :data:`~tltlc.monitor.reward.Mode`.
 """
 
 from __future__ import annotations
@@ -21,7 +21,10 @@ from tltlc.monitor.tables import MonitorTables
 
 @record
 class Transition:
-    """One step of the automaton at the ``values`` of the atoms; whether the episode ends with it, and in success."""
+    """One step of the automaton, from ``state`` to ``target``, at the ``values`` of the atoms.
+
+    ``done`` says whether the episode ends with this step, ``success`` whether it ends in success.
+    """
 
     state: int
     target: int

@@ -11,7 +11,7 @@ from tltlc.monitor.tables import MonitorTables
 def reward(tables: MonitorTables, transition: Transition, _: RewardOptions, memory: None) -> tuple[float, None]:
     """Return the robustness of the disjunction of the edges that leave the state, in [-1, 1]; 0 without such edges.
 
-    ▲ Edges into a trap are left out: the disjunction would reward a violation.
+    ▲ Edges into a trap are left out: with them, the disjunction would reward a violation.
     """
     states = tables.fspa.states
     leaving = [

@@ -1,6 +1,7 @@
-"""Reward success, shaped with progress as the potential: the optimal policies are those of success alone.
+"""Reward success, with progress as the potential of a shaping reward.
 
-Ng, Harada, Russell, Policy invariance under reward transformations, ICML 1999.
+Shaping does not change the optimal policies: they are optimal for the reward of success alone (Ng,
+Harada, Russell, Policy invariance under reward transformations, ICML 1999).
 """
 
 from __future__ import annotations
@@ -16,8 +17,8 @@ def reward(
     """Return ``1`` on success, plus ``gamma * potential after - potential before``.
 
     The potential of a state at a sample is its base progress plus what line 14 of Algorithm 1 adds,
-    whether or not the state changed. It is 0 after the end of the episode. Before the first sample
-    it is the base progress of the initial state.
+    whether or not the state changed. After the end of the episode the potential is 0; before the
+    first sample it is the base progress of the initial state.
     """
     before = tables.base_progress[0] if memory is None else memory
     after = 0.0 if transition.done else _potential(tables, transition)

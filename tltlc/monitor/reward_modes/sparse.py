@@ -8,8 +8,9 @@ from tltlc.monitor.reward_modes import Transition
 from tltlc.monitor.tables import MonitorTables
 
 Widths = dict[int, float]
-"""Per state that a trace of this length can reach, the width of the widest run: the maximum over
-runs of the least edge robustness.
+"""For each state that a trace of this length can reach, the width of the widest run to it.
+
+The width of a run is its least edge robustness.
 """
 
 
@@ -18,16 +19,17 @@ def reward(
 ) -> tuple[float, Widths]:
     """Return 0, and at the end of the episode the robustness of its trace, in [-1, 1].
 
-    The robustness is the signed distance (the greatest difference of an atom's value) from the
-    trace to the nearest trace with the opposite judgement. It is positive iff the trace is
-    accepted. The least change that makes a run possible is given by its least robust edge, so the
-    nearest such trace belongs to the widest run to a state with the opposite acceptance. If there
-    is no such state, the robustness is 1 or -1.
+    The robustness is the signed distance from the trace to the nearest trace with the opposite
+    judgement; the distance of two traces is the greatest difference of an atom's value. The
+    robustness is positive if and only if the trace is accepted. The least robust edge of a run
+    gives the least change that makes the run possible. So the nearest trace with the opposite
+    judgement belongs to the widest run to a state with the opposite acceptance. If there is no such
+    state, the robustness is 1 or -1.
 
-    ▲ The paper uses the robustness of the formula. The two agree if no atom's value is 0 and no
+    ▲ The paper uses the robustness of the formula. Both values agree if no atom's value is 0 and no
     other way to write the formula gives a value nearer to 0.
     """
-    widths = _widened(tables, {0: 1.0} if memory is None else memory, transition)
+    widths = _widen(tables, {0: 1.0} if memory is None else memory, transition)
     if not transition.done:
         return 0.0, widths
     accepted = tables.fspa.states[transition.target].accepting
@@ -36,7 +38,7 @@ def reward(
     return distance if accepted else -distance + 0.0, widths
 
 
-def _widened(tables: MonitorTables, widths: Widths, transition: Transition) -> Widths:
+def _widen(tables: MonitorTables, widths: Widths, transition: Transition) -> Widths:
     """Return the widths after one more sample."""
     widened: Widths = {}
     for state, width in widths.items():

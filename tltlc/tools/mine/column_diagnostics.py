@@ -10,7 +10,7 @@ from typing import Final
 
 from tltlc.core.record import record
 from tltlc.diagnostics.diagnostic import Diagnostic
-from tltlc.monitor.samples import listed
+from tltlc.monitor.samples import name_list
 
 _MOST_NAMED: Final = 4
 """The most columns that one message names."""
@@ -73,7 +73,7 @@ def odd_columns(traces: Sequence[Columns], *, truths: bool) -> tuple[OddColumns,
 def name_list(names: Sequence[str]) -> str:
     """Return the names in words. If there are many, list the first ones and count the others."""
     if len(names) <= _MOST_NAMED:
-        return listed(names)
+        return name_list(names)
     first = names[: _MOST_NAMED - 1]
     return f"{', '.join(f'`{name}`' for name in first)} and {len(names) - len(first)} more"
 

@@ -20,7 +20,7 @@ from tltlc.grammar.parser import parse
 from tltlc.grammar.tree import Module, Parameter, SpecDecl, TestDecl
 from tltlc.io.limits import WORK
 from tltlc.logic.formula import TRUE
-from tltlc.monitor.samples import listed
+from tltlc.monitor.samples import name_list
 from tltlc.pipeline import CompileOptions, Session
 from tltlc.resolve.imports import load
 from tltlc.resolve.options import ResolveOptions
@@ -95,7 +95,7 @@ def _no_readable_atom(library: SourceFile, vocabulary: Vocabulary | None, column
     """Return the error TLT0760 for a library if none of its atoms can be computed."""
     title = f"no predicate of `{library.name.strip('<>')}` can be computed from the columns of the traces"
     missing = [signal.name for signal in vocabulary.signals if signal.name not in columns] if vocabulary else []
-    help_ = f"record what its predicates use: {listed(missing[:3])}" if missing else "declare a predicate in it"
+    help_ = f"record what its predicates use: {name_list(missing[:3])}" if missing else "declare a predicate in it"
     return TltlError([Diagnostic("TLT0760", title, help=help_)])
 
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from tltlc.automaton.fspa import Fspa, Implicant
 from tltlc.core.record import record
 from tltlc.monitor import MonitorError
-from tltlc.monitor.samples import Samples, check_exclusive, shown
+from tltlc.monitor.samples import Samples, check_exclusive, number_text
 from tltlc.resolve.spec import Signal
 from tltlc.tools.witness.search import AtomGroup, Point, atom_groups
 
@@ -134,7 +134,7 @@ def csv_text(fspa: Fspa, samples: Iterable[Sample]) -> str:
 def _cell(signal: Signal, value: float) -> str:
     if signal.type == "bool":
         return "true" if value else "false"
-    return shown(value)
+    return number_text(value)
 
 
 def _point(group: AtomGroup, polarity: Mapping[int, bool]) -> Point | UnsatisfiedLiterals:

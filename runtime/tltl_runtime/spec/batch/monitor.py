@@ -113,7 +113,7 @@ class BatchMonitor:
         dtype: torch.dtype = torch.float64,
         checked: bool = True,
     ) -> None:
-        self.fspa, options = monitors.automaton_argument(fspa), monitors.reward_options(reward)
+        self.fspa, options = monitors.automaton_argument(fspa), monitors.reward_options_argument(reward)
         self.count, self.device, self.dtype = count, torch.device(device), dtype
         self._checked = checked
         if count < 1:

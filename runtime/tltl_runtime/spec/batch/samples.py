@@ -98,7 +98,7 @@ class BatchSamples:
             return contiguous
         missing = [name for name in self.names if name not in signals]
         if missing:
-            raise _error("TLT0611", f"no value for {monitors.listed(missing)}")
+            raise _error("TLT0611", f"no value for {monitors.name_list(missing)}")
         if not self.names:
             return torch.empty((0, self._count), dtype=self._dtype, device=self._device)
         rows = [torch.as_tensor(signals[name], dtype=self._dtype, device=self._device) for name in self.names]
@@ -133,7 +133,7 @@ class BatchSamples:
         wrong = (column != 0.0) & (column != 1.0)
         if bool(wrong.any()):
             indices = _indices(wrong)
-            value = monitors.shown(float(column[indices[0]]))
+            value = monitors.number_text(float(column[indices[0]]))
             raise _error(
                 "TLT0612", f"{_environments(indices)}: the signal `{self.names[row]}` is {value}, not true or false"
             )
@@ -181,7 +181,7 @@ def check_exclusive(fspa: Fspa, truth: Tensor) -> None:
             indices = _indices(wrong)
             names = [fspa.atoms[atom].name for atom in group]
             holding = [name for name, holds in zip(names, held[:, indices[0]].tolist(), strict=True) if holds]
-            both = monitors.listed(holding)
+            both = monitors.name_list(holding)
             text = f"{_environments(indices)}: {both} hold at once, against `exclusive {', '.join(names)}`"
             raise _error("TLT0614", text)
 
@@ -200,4 +200,4 @@ def _environments(indices: Sequence[int]) -> str:
 
 
 def _error(code: str, text: str) -> MonitorError:
-    return MonitorError([Diagnostic(code, text, help=monitors.WAYS_OUT[code])])
+    return MonitorError([Diagnostic(code, text, help=monitors.SUGGESTIONS[code])])
