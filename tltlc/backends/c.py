@@ -18,13 +18,13 @@ from tltlc.automaton.fspa import Fspa
 from tltlc.backends import Files, Options, Target
 from tltlc.monitor.samples import range_text
 from tltlc.program import reward_step, snippets, states
-from tltlc.program.arithmetic import defined
+from tltlc.program.arithmetic import with_declaration
 from tltlc.program.build import program
-from tltlc.program.names import visible
+from tltlc.program.names import printable_line
 from tltlc.program.printer import Printer
-from tltlc.program.template import filled
+from tltlc.program.template import fill_template
 from tltlc.program.tree import FAILING, Assign, Int
-from tltlc.program.used_names import called, read
+from tltlc.program.used_names import functions_called, variables_read
 from tltlc.resolve.spec import Atom, Param, Signal
 
 TARGET = Target(
@@ -127,7 +127,7 @@ class _C(Printer):
 
     def comment(self, text: str) -> list[str]:
         """Return a comment in ASCII without trigraphs, since compilers differ in how they read other characters."""
-        return super().comment(re.sub(r"[^\x00-\x7f]", _escaped, visible(text)).replace("??", "? ?"))
+        return super().comment(re.sub(r"[^\x00-\x7f]", _escaped, printable_line(text)).replace("??", "? ?"))
 
     def assignment(self, statement: Assign) -> str:
         """Return an assignment; the limiting atom is assigned by its name."""
@@ -158,7 +158,7 @@ class _Source:
         signals = list(zip(fspa.signals, program_.signals, strict=True))
         params = list(zip(fspa.params, program_.params, strict=True))
         failing = program_.functions & FAILING
-        present = [*failing, *(["note"] if failing else []), *([] if all(program_.sure) else ["atom"])]
+        present = [*failing, *(["note"] if failing else []), *([] if all(program_.always_in_range) else ["atom"])]
         present += ["number"] if any(signal.type != "bool" for signal in fspa.signals) else []
         present += ["exclusive"] if program_.exclusive else []
         present += ["params"] if fspa.params else []
@@ -166,7 +166,7 @@ class _Source:
             step = _C.block(self._step())
         places = {
             "p": self._prefix,
-            "title": snippets.title(fspa, self._printer.comment),
+            "title": snippets.title_comment(fspa, self._printer.comment),
             "file": self._file,
             "signal_count": str(len(signals)),
             "atom_count": str(len(fspa.atoms)),
@@ -184,7 +184,7 @@ class _Source:
                 or ["sample.none = false;"]
             ),
             "param_defaults": _C.block(
-                [f"params.{name} = {snippets.number(param.value)};" for param, name in params]
+                [f"params.{name} = {snippets.number_literal(param.value)};" for param, name in params]
                 or ["params.none = false;"]
             ),
             "param_checks": _C.block([line for index in range(len(params)) for line in self._param_check(index)]),
@@ -197,7 +197,7 @@ class _Source:
             "step": step,
             "give": _C.block(self._give()),
         }
-        return filled("monitor.h.txt", places, present)
+        return fill_template("monitor.h.txt", places, present)
 
     def _text_size(self) -> int:
         """Return a buffer size for any message; the longest one is about an exclusive group and
@@ -217,7 +217,7 @@ class _Source:
         """Return the fields of a struct, each with its comment; C requires at least one field."""
         lines: list[str] = []
         for name, type_, declared in fields:
-            remarks = self._printer.comment(snippets.described(name, declared))
+            remarks = self._printer.comment(snippets.field_comment(name, declared))
             field = f"{type_} {name};"
             # A short comment goes on the line of its field.
             if len(remarks) == 1 and len(field) + len(remarks[0]) < 100:
@@ -229,8 +229,8 @@ class _Source:
     def _param_check(self, index: int) -> list[str]:
         param, name = self._fspa.params[index], f"params->{self._program.params[index]}"
         tests = [f"isfinite({name})"]
-        tests += [] if param.low is None else [f"{name} >= {snippets.number(param.low)}"]
-        tests += [] if param.high is None else [f"{name} <= {snippets.number(param.high)}"]
+        tests += [] if param.low is None else [f"{name} >= {snippets.number_literal(param.low)}"]
+        tests += [] if param.high is None else [f"{name} <= {snippets.number_literal(param.high)}"]
         lines = self._refused(f"{self._prefix}_wrong_param", index)
         # The message shows the value.
         lines.insert(0, f"{_INDENT}monitor->wrong = {name};")
@@ -248,8 +248,8 @@ class _Source:
         for state, ends in zip(self._fspa.states, self._program.ends, strict=True):
             values = (
                 f"{self._prefix}_{state.verdict}",
-                snippets.boolean(state.accepting),
-                snippets.boolean(ends),
+                snippets.boolean_literal(state.accepting),
+                snippets.boolean_literal(ends),
             )
             lines.append(f"{_INDENT * 2}{{{', '.join(values)}}},")
         return lines
@@ -282,7 +282,7 @@ class _Source:
         lines += self._checked_reads(numbers) if numbers else []
         lines += self._bools(None)
         lines += [] if program_.reads_sample else ["(void)sample;"]
-        used = program_.used
+        used = program_.variables_used
         return [*lines, *(f"const double {name} = monitor->params.{name};" for name in program_.params if name in used)]
 
     def _bools(self, state: int | None) -> list[str]:
@@ -296,7 +296,10 @@ class _Source:
         tests = self._range_tests([(signal, name) for _, signal, name in numbers])
         lines = _wrapped(f"if (!({' && '.join(tests)})) {{")
         for index, signal, name in numbers:
-            low, high = snippets.number(signal.low, "-HUGE_VAL"), snippets.number(signal.high, "HUGE_VAL")
+            low, high = (
+                snippets.number_literal(signal.low, "-HUGE_VAL"),
+                snippets.number_literal(signal.high, "HUGE_VAL"),
+            )
             lines.append(f"{_INDENT}{name} = {self._prefix}_read_(monitor, {index}, {low}, {high}, {name});")
             lines.append(f"{_INDENT}if (monitor->problem) return false;")
         return [*lines, "}"]
@@ -314,15 +317,15 @@ class _Source:
         for signal, name in numbers:
             low, high = signal.low, signal.high
             if low is not None and high is not None:
-                bounded += [f"{name} >= {snippets.number(low)}", f"{name} <= {snippets.number(high)}"]
+                bounded += [f"{name} >= {snippets.number_literal(low)}", f"{name} <= {snippets.number_literal(high)}"]
                 continue
             summed.append(name)
             if low is not None:
                 least.setdefault(low, []).append(name)
             if high is not None:
                 greatest.setdefault(high, []).append(name)
-        tests = [f"{self._fold('min', names)} >= {snippets.number(low)}" for low, names in least.items()]
-        tests += [f"{self._fold('max', names)} <= {snippets.number(high)}" for high, names in greatest.items()]
+        tests = [f"{self._fold('min', names)} >= {snippets.number_literal(low)}" for low, names in least.items()]
+        tests += [f"{self._fold('max', names)} <= {snippets.number_literal(high)}" for high, names in greatest.items()]
         tests += [f"isfinite({' + '.join(summed)})"] if summed else []
         return tests + bounded
 
@@ -336,7 +339,7 @@ class _Source:
         lines = [line for index in places for line in self._value(index)]
         for index in places:
             name = program_.atoms[index]
-            if not program_.sure[index]:
+            if not program_.always_in_range[index]:
                 lines.append(f"if (!(fabs({name}) <= 1.0)) {{")
                 lines.append(f"{_INDENT}{name} = {self._prefix}_value_(monitor, {index}, {name});")
                 lines += [f"{_INDENT}if (monitor->problem) return false;", "}"]
@@ -346,8 +349,8 @@ class _Source:
         """Return code for the value of an atom."""
         statements = self._program.values[index]
         lines = self._printer.comment(self._program.remarks[index])
-        lines += self._printer.lines(defined(self._program.atoms[index], statements))
-        if called(statements) & FAILING:
+        lines += self._printer.lines(with_declaration(self._program.atoms[index], statements))
+        if functions_called(statements) & FAILING:
             lines += ["if (monitor->problem) {", *self._refused("monitor->problem", index), "}"]
         return lines
 
@@ -379,7 +382,7 @@ class _Source:
 
     def _judge(self) -> list[str]:
         """Return code for progress, reward and the end of the episode."""
-        used = read(self._program.judged)
+        used = variables_read(self._program.reward_statements)
         ends, verdict = f"states[{states.TARGET}].ends", f"states[{states.TARGET}].verdict"
         lines = [f"double {reward_step.BEST} = monitor->progress;", f"bool {reward_step.DONE} = monitor->done;"]
         lines.append(f"double {reward_step.REWARD};")
@@ -390,7 +393,7 @@ class _Source:
             reward_step.SATISFIED: f"bool {reward_step.SATISFIED} = {verdict} == {self._prefix}_satisfied;",
         }
         lines += [f"const {line}" for name, line in declarations.items() if name in used]
-        return [*lines, *self._printer.lines(self._program.judged)]
+        return [*lines, *self._printer.lines(self._program.reward_statements)]
 
 
 # --- pieces ---------------------------------------------------------------------------------------
@@ -407,7 +410,7 @@ def _bytes(text: str) -> bytes:
 
 def _string(text: str) -> str:
     """Return a string literal in ASCII. Question marks are escaped, since two of them begin a trigraph."""
-    return snippets.quoted(text, _octal, snippets.in_ascii).replace("?", "\\?")
+    return snippets.string_literal(text, _octal, snippets.is_plain_ascii).replace("?", "\\?")
 
 
 def _octal(character: str) -> str:

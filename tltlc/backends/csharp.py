@@ -14,12 +14,12 @@ from tltlc.automaton.fspa import Fspa
 from tltlc.backends import Files, Options, Target
 from tltlc.monitor.samples import range_text
 from tltlc.program import reward_step, snippets, states
-from tltlc.program.arithmetic import defined
+from tltlc.program.arithmetic import with_declaration
 from tltlc.program.build import program
-from tltlc.program.printer import Printer, remark
-from tltlc.program.template import filled
+from tltlc.program.printer import Printer, comment_lines
+from tltlc.program.template import fill_template
 from tltlc.program.tree import FAILING, Assign, BinaryNumber, CommentLine, If, Statement, Variable
-from tltlc.program.used_names import called, read
+from tltlc.program.used_names import functions_called, variables_read
 from tltlc.resolve.spec import Param, Signal
 
 TARGET = Target(
@@ -64,7 +64,7 @@ _TEMPLATE = """
 def emit(fspa: Fspa, options: Options) -> Files:
     """Return ``NAME_monitor.cs``, and ``NAME_monitor_behaviour.cs`` for Unity."""
     monitor, behaviour = (f"{fspa.name}{ending}" for ending in TARGET.endings)
-    return {monitor: _Source(fspa, monitor).text(), behaviour: filled("behaviour.cs.txt", {"p": fspa.name})}
+    return {monitor: _Source(fspa, monitor).text(), behaviour: fill_template("behaviour.cs.txt", {"p": fspa.name})}
 
 
 class _CSharp(Printer):
@@ -108,17 +108,17 @@ class _Source:
         params = list(zip(fspa.params, program_.params, strict=True))
         present: list[str] = [
             *program_.functions,
-            *called(statement for state in program_.states for statement in state),
+            *functions_called(statement for state in program_.states for statement in state),
         ]
         present += ["note"] if program_.functions & FAILING else []
         present += ["exclusive"] if program_.exclusive else []
-        present += [] if all(program_.sure) else ["keep"]
+        present += [] if all(program_.always_in_range) else ["keep"]
         present += ["inlined"] if {"divide", "min", "max"} & {*present} else []
         with recursion_room():
             step = _CSharp.block(self._step(), 3)
         places = {
             "p": fspa.name,
-            "title": snippets.title(fspa, self._printer.comment),
+            "title": snippets.title_comment(fspa, self._printer.comment),
             "file": self._file,
             "signal_fields": _fields([(name, _type(signal), signal) for signal, name in signals]),
             "param_fields": _fields([(name, "double", param) for param, name in params]),
@@ -130,22 +130,22 @@ class _Source:
                 [f"none.{name} = double.NaN;" for signal, name in signals if signal.type != "bool"], 5
             ),
             "param_defaults": _CSharp.block(
-                [f"own.{name} = {snippets.number(param.value)};" for param, name in params], 5
+                [f"own.{name} = {snippets.number_literal(param.value)};" for param, name in params], 5
             ),
             "param_checks": _CSharp.block([line for param, name in params for line in _param_check(param, name)], 3),
             "states": _CSharp.block(self._states(), 3),
             "step": step,
             "give": _CSharp.block(self._give(), 3),
         }
-        return filled("monitor.cs.txt", places, present)
+        return fill_template("monitor.cs.txt", places, present)
 
     def _states(self) -> list[str]:
         lines: list[str] = []
         for state, ends in zip(self._fspa.states, self._program.ends, strict=True):
             values = (
                 f"Verdict.{state.verdict.capitalize()}",
-                snippets.boolean(state.accepting),
-                snippets.boolean(ends),
+                snippets.boolean_literal(state.accepting),
+                snippets.boolean_literal(ends),
             )
             lines.append(f"new Place({_string(str(state.label))}, {', '.join(values)}),")
         return lines
@@ -172,14 +172,14 @@ class _Source:
 
     def _read(self) -> list[str]:
         """Return code that reads signals, clamped to their ranges, and params into local variables."""
-        used = self._program.used
+        used = self._program.variables_used
         lines: list[str] = []
         for index, (signal, name) in enumerate(zip(self._fspa.signals, self._program.signals, strict=True)):
             if signal.type == "bool":
                 continue
             low, high = (
-                snippets.number(signal.low, "double.NegativeInfinity"),
-                snippets.number(signal.high, "double.PositiveInfinity"),
+                snippets.number_literal(signal.low, "double.NegativeInfinity"),
+                snippets.number_literal(signal.high, "double.PositiveInfinity"),
             )
             # A missing bound becomes a strict comparison with infinity, so that infinite values fail the test.
             above, below = ">" if signal.low is None else ">=", "<" if signal.high is None else "<="
@@ -203,9 +203,9 @@ class _Source:
         for index in self._program.computed_in(None):
             name = self._program.atoms[index]
             lines += self._printer.lines(self._value(index))
-            if self._program.sure[index]:
+            if self._program.always_in_range[index]:
                 continue
-            if called(self._program.values[index]) & FAILING:
+            if functions_called(self._program.values[index]) & FAILING:
                 lines.append(f"if (_problem != Problem.None) return Refuse(_problem, {index}, out result);")
             range_checks += _checked(f"{name} >= -1.0 && {name} <= 1.0", f"{name} = Keep({index}, {name});")
         return [*lines, *range_checks]
@@ -213,7 +213,7 @@ class _Source:
     def _value(self, index: int) -> tuple[Statement, ...]:
         """Return the statements that declare and compute an atom's value."""
         program_ = self._program
-        return (CommentLine(program_.remarks[index]), *defined(program_.atoms[index], program_.values[index]))
+        return (CommentLine(program_.remarks[index]), *with_declaration(program_.atoms[index], program_.values[index]))
 
     def _check(self) -> list[str]:
         """Return code that checks exclusive atoms."""
@@ -246,7 +246,7 @@ class _Source:
 
     def _judge(self) -> list[str]:
         """Return code for progress, reward and the end of the episode."""
-        used = read(self._program.judged)
+        used = variables_read(self._program.reward_statements)
         verdict = "entered.Verdict"
         lines = [f"Place entered = States[{states.TARGET}];"]
         lines += [
@@ -261,7 +261,7 @@ class _Source:
             reward_step.SATISFIED: f"bool {reward_step.SATISFIED} = {verdict} == Verdict.Satisfied;",
         }
         lines += [line for name, line in declarations.items() if name in used]
-        return [*lines, *self._printer.lines(self._program.judged)]
+        return [*lines, *self._printer.lines(self._program.reward_statements)]
 
 
 # --- pieces ---------------------------------------------------------------------------------------
@@ -286,7 +286,7 @@ def _fields(fields: Sequence[tuple[str, str, Signal | Param]]) -> str:
     """Return the fields of a record, each with its documentation."""
     lines: list[str] = []
     for name, type_, declared in fields:
-        remarks = [_in_xml(line) for line in remark(snippets.described(name, declared))]
+        remarks = [_in_xml(line) for line in comment_lines(snippets.field_comment(name, declared))]
         if len(remarks) == 1:
             lines.append(f"/// <summary>{remarks[0]}</summary>")
         else:
@@ -302,8 +302,8 @@ def _in_xml(text: str) -> str:
 
 def _param_check(param: Param, name: str) -> list[str]:
     tests = [f"IsFinite(given.{name})"]
-    tests += [] if param.low is None else [f"given.{name} >= {snippets.number(param.low)}"]
-    tests += [] if param.high is None else [f"given.{name} <= {snippets.number(param.high)}"]
+    tests += [] if param.low is None else [f"given.{name} >= {snippets.number_literal(param.low)}"]
+    tests += [] if param.high is None else [f"given.{name} <= {snippets.number_literal(param.high)}"]
     parts = [f"the param `{param.name}` cannot be ", f": its range is {range_text(param.low, param.high)}"]
     message = f" + Shown(given.{name}) + ".join(map(_string, parts))
     return [f"if (!({' && '.join(tests)}))", "{", f"{_INDENT}throw new ArgumentException({message});", "}"]
@@ -311,7 +311,7 @@ def _param_check(param: Param, name: str) -> list[str]:
 
 def _string(text: str) -> str:
     """Return a string literal in ASCII."""
-    return snippets.quoted(text, _escape, snippets.in_ascii)
+    return snippets.string_literal(text, _escape, snippets.is_plain_ascii)
 
 
 def _escape(character: str) -> str:

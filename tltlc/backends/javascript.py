@@ -15,13 +15,13 @@ from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import Files, Options, Target
 from tltlc.program import reward_step, snippets, states
-from tltlc.program.arithmetic import defined
+from tltlc.program.arithmetic import with_declaration
 from tltlc.program.build import program
-from tltlc.program.printer import Printer, remark
-from tltlc.program.shallow import shallow
-from tltlc.program.template import filled
+from tltlc.program.printer import Printer, comment_lines
+from tltlc.program.shallow import split_deep_values
+from tltlc.program.template import fill_template
 from tltlc.program.tree import FAILING, Assign, Compare, Declare, Expression, Int
-from tltlc.program.used_names import called, read
+from tltlc.program.used_names import functions_called, variables_read
 from tltlc.resolve.spec import Param, Signal
 
 TARGET = Target(
@@ -92,9 +92,9 @@ class _JavaScript(Printer):
             function = f"Math.{function}"
         return super().call(f"this.#{function}" if function in FAILING else function, arguments)
 
-    def _written(self, node: Expression) -> tuple[str, int]:
+    def _text_and_binding(self, node: Expression) -> tuple[str, int]:
         """Return the text of an expression and its binding strength; ``===`` compares without conversions."""
-        text, binding = super()._written(node)
+        text, binding = super()._text_and_binding(node)
         if isinstance(node, Compare) and node.op in ("==", "!="):
             text = text.replace(f" {node.op} ", f" {node.op}= ")
         return text, binding
@@ -120,19 +120,19 @@ class _Source:
             step = _JavaScript.block(self._step(), depth=2)
         present: list[str] = [*program_.functions, *(["failing"] if program_.functions & FAILING else [])]
         present += ["signal"] if fspa.signals else []
-        present += [] if all(program_.sure) else ["range"]
+        present += [] if all(program_.always_in_range) else ["range"]
         present += ["exclusive"] if program_.exclusive else []
         present += ["atom"] if {"failing", "range", "exclusive"} & {*present} else []
         present += ["some"] if fspa.signals or "atom" in present else []
         present += ["clamp"] if fspa.signals or "range" in present else []
-        present += ["params"] if program_.used & {*program_.params} else []
+        present += ["params"] if program_.variables_used & {*program_.params} else []
         places = {
-            "title": snippets.title(fspa, self._printer.comment),
+            "title": snippets.title_comment(fspa, self._printer.comment),
             "file": self._module,
             "declarations": self._declarations,
-            "example": snippets.example(fspa.signals, _key, ": "),
+            "example": snippets.example_sample(fspa.signals, _key, ": "),
             "signals": _list(
-                [_row(signal, f"isBool: {snippets.boolean(signal.type == 'bool')}") for signal in fspa.signals]
+                [_row(signal, f"isBool: {snippets.boolean_literal(signal.type == 'bool')}") for signal in fspa.signals]
             ),
             "params": _list([_row(param, f"value: {_number(param.value)}") for param in fspa.params]),
             "atoms": _list([_string(atom.name) for atom in fspa.atoms]),
@@ -142,7 +142,7 @@ class _Source:
             "states": _list(self._states()),
             "step": step,
         }
-        return filled("monitor.mjs.txt", places, present)
+        return fill_template("monitor.mjs.txt", places, present)
 
     def declarations(self) -> str:
         """Return the whole file of types."""
@@ -151,20 +151,20 @@ class _Source:
             (
                 signal.name,
                 "boolean | 0 | 1" if signal.type == "bool" else "number",
-                snippets.described(signal.name, signal),
+                snippets.field_comment(signal.name, signal),
             )
             for signal in fspa.signals
         ]
-        params = [(param.name, "number", snippets.described(param.name, param)) for param in fspa.params]
+        params = [(param.name, "number", snippets.field_comment(param.name, param)) for param in fspa.params]
         title = f"// Types of {self._module}, written by tltlc."
         places = {"title": title, "signal_fields": _fields(signals), "param_fields": _fields(params)}
         present = ["signals" if signals else "no_signals", "params" if params else "no_params"]
-        return filled("monitor.d.mts.txt", places, present)
+        return fill_template("monitor.d.mts.txt", places, present)
 
     def _states(self) -> list[str]:
         rows: list[str] = []
-        for state, ends in zip(self._fspa.states, map(snippets.boolean, self._program.ends), strict=True):
-            values = f'verdict: "{state.verdict}", accepting: {snippets.boolean(state.accepting)}, ends: {ends}'
+        for state, ends in zip(self._fspa.states, map(snippets.boolean_literal, self._program.ends), strict=True):
+            values = f'verdict: "{state.verdict}", accepting: {snippets.boolean_literal(state.accepting)}, ends: {ends}'
             rows.append(f"{{ label: {_string(str(state.label))}, {values} }}")
         return rows
 
@@ -175,7 +175,7 @@ class _Source:
 
     def _read(self) -> list[str]:
         """Return code that reads signals, clamped to their ranges, and params into local variables."""
-        used = self._program.used
+        used = self._program.variables_used
         lines: list[str] = []
         for index, (signal, name) in enumerate(zip(self._fspa.signals, self._program.signals, strict=True)):
             checked = f"this.#signal({index}, signals)"
@@ -196,8 +196,8 @@ class _Source:
     def _compute(self) -> list[str]:
         """Return code for the atoms that every step computes."""
         lines = self._values(None)
-        for index, (name, sure) in enumerate(zip(self._program.atoms, self._program.sure, strict=True)):
-            if not sure:
+        for index, (name, in_range) in enumerate(zip(self._program.atoms, self._program.always_in_range, strict=True)):
+            if not in_range:
                 lines.append(f"if (!(-1 <= {name} && {name} <= 1)) {name} = this.#inRange({index}, {name});")
         return lines
 
@@ -209,11 +209,13 @@ class _Source:
         """Return code for the value of one atom."""
         program_, statements = self._program, self._program.values[index]
         lines = self._printer.comment(program_.remarks[index])
-        if called(statements) & FAILING:
+        if functions_called(statements) & FAILING:
             lines.append(f"this.#atom = {index};")
         return [
             *lines,
-            *self._printer.lines(defined(program_.atoms[index], statements, changes=not program_.sure[index])),
+            *self._printer.lines(
+                with_declaration(program_.atoms[index], statements, changes=not program_.always_in_range[index])
+            ),
         ]
 
     def _check(self) -> list[str]:
@@ -242,13 +244,13 @@ class _Source:
             lines += [f"  {line}" for line in self._printer.comment(str(state.label))]
             lines.append(f"  case {state.id}: {{")
             lines += [f"    {line}" for line in self._values(state.id)]
-            lines += self._moves.lines(shallow(statements, self._names), depth=2)
+            lines += self._moves.lines(split_deep_values(statements, self._names), depth=2)
             lines += ["    break;", "  }"]
         return [*lines, "}"]
 
     def _judge(self) -> list[str]:
         """Return code for progress, reward and the end of the episode."""
-        used = read(self._program.judged)
+        used = variables_read(self._program.reward_statements)
         lines = [f"const {_ENTERED} = STATES[{states.TARGET}];", f"let {reward_step.BEST} = this.progress;"]
         lines += [f"let {reward_step.DONE} = this.done;", f"let {reward_step.REWARD};"]
         definitions = {
@@ -257,7 +259,7 @@ class _Source:
             reward_step.SATISFIED: f'{_ENTERED}.verdict === "satisfied"',
         }
         lines += [f"const {name} = {value};" for name, value in definitions.items() if name in used]
-        return [*lines, *self._printer.lines(self._program.judged)]
+        return [*lines, *self._printer.lines(self._program.reward_statements)]
 
 
 # --- pieces ---------------------------------------------------------------------------------------
@@ -267,7 +269,7 @@ def _fields(fields: Sequence[tuple[str, str, str]]) -> str:
     """Return the fields of an interface, each with its documentation before it."""
     lines: list[str] = []
     for name, type_, doc in fields:
-        doc_lines = [line.replace("*/", "* /") for line in remark(doc)]
+        doc_lines = [line.replace("*/", "* /") for line in comment_lines(doc)]
         if len(doc_lines) == 1:
             lines.append(f"/** {doc_lines[0]} */")
         elif doc_lines:
@@ -287,7 +289,7 @@ def _number(value: float) -> str:
 
 
 def _string(text: str) -> str:
-    return snippets.quoted(text, _escape)
+    return snippets.string_literal(text, _escape)
 
 
 def _escape(character: str) -> str:

@@ -16,14 +16,14 @@ from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import Files, Options, Target
 from tltlc.program import reward_step, snippets, states
-from tltlc.program.arithmetic import defined
+from tltlc.program.arithmetic import with_declaration
 from tltlc.program.build import program
-from tltlc.program.names import visible
+from tltlc.program.names import printable_line
 from tltlc.program.printer import Printer
-from tltlc.program.shallow import shallow
-from tltlc.program.template import filled
+from tltlc.program.shallow import split_deep_values
+from tltlc.program.template import fill_template
 from tltlc.program.tree import FAILING, Assign, Compare, Declare, Expression, If, Int, Statement
-from tltlc.program.used_names import called, read
+from tltlc.program.used_names import functions_called, variables_read
 from tltlc.resolve.spec import Param, Signal
 
 TARGET = Target(
@@ -127,8 +127,8 @@ class _Lua(Printer):
         """Return the lines that end a branch."""
         return ["end"]
 
-    def _written(self, node: Expression) -> tuple[str, int]:
-        text, binding = super()._written(node)
+    def _text_and_binding(self, node: Expression) -> tuple[str, int]:
+        text, binding = super()._text_and_binding(node)
         if isinstance(node, Compare) and node.op == "!=":
             text = text.replace(" != ", " ~= ")
         return text, binding
@@ -163,35 +163,38 @@ class _Source:
     def text(self) -> str:
         """Return the whole file."""
         fspa, program_ = self._fspa, self._program
-        functions = called(statement for part in (*program_.values, *program_.states) for statement in part)
+        functions = functions_called(statement for part in (*program_.values, *program_.states) for statement in part)
         with recursion_room():
             moves = "\n".join(self._moves())
             step = _Lua.block(self._step())
         present = [*functions, *(["failing"] if functions & FAILING else []), *(["many"] if self._many else [])]
-        present += [] if all(program_.sure) else ["kept"]
+        present += [] if all(program_.always_in_range) else ["kept"]
         present += [] if self._few_states else ["moves"]
         present += ["exclusive"] if program_.exclusive else []
         places = {
             "p": fspa.name,
-            "title": snippets.title(fspa, self._printer.comment),
+            "title": snippets.title_comment(fspa, self._printer.comment),
             "file": self._file,
             "module": self._file.removesuffix(".lua"),
-            "example": snippets.example(fspa.signals, _key, " = "),
+            "example": snippets.example_sample(fspa.signals, _key, " = "),
             "signal_fields": "\n".join(
                 _field(
                     signal.name,
                     "boolean | 0 | 1" if signal.type == "bool" else "number",
-                    snippets.described(signal.name, signal),
+                    snippets.field_comment(signal.name, signal),
                 )
                 for signal in fspa.signals
             ),
             "param_fields": "\n".join(
-                _field(param.name, "number?", snippets.described(param.name, param)) for param in fspa.params
+                _field(param.name, "number?", snippets.field_comment(param.name, param)) for param in fspa.params
             ),
             "signals": _list(
-                [_row(signal, f"is_bool = {snippets.boolean(signal.type == 'bool')}") for signal in fspa.signals]
+                [
+                    _row(signal, f"is_bool = {snippets.boolean_literal(signal.type == 'bool')}")
+                    for signal in fspa.signals
+                ]
             ),
-            "params": _list([_row(param, f"value = {snippets.number(param.value)}") for param in fspa.params]),
+            "params": _list([_row(param, f"value = {snippets.number_literal(param.value)}") for param in fspa.params]),
             "exclusive": _list(
                 [f"{{ {', '.join(_string(self._names[atom]) for atom in group)} }}" for group in fspa.exclusive]
             ),
@@ -201,12 +204,14 @@ class _Source:
             "parts": "\n".join(self._printer.parts).rstrip(),
             "step": step,
         }
-        return filled("monitor.lua.txt", places, present)
+        return fill_template("monitor.lua.txt", places, present)
 
     def _states(self) -> list[str]:
         rows: list[str] = []
-        for state, ends in zip(self._fspa.states, map(snippets.boolean, self._program.ends), strict=True):
-            values = f'verdict = "{state.verdict}", accepting = {snippets.boolean(state.accepting)}, ends = {ends}'
+        for state, ends in zip(self._fspa.states, map(snippets.boolean_literal, self._program.ends), strict=True):
+            values = (
+                f'verdict = "{state.verdict}", accepting = {snippets.boolean_literal(state.accepting)}, ends = {ends}'
+            )
             rows.append(f"[{state.id}] = {{ label = {_string(str(state.label))}, {values} }},")
         return rows
 
@@ -231,7 +236,7 @@ class _Source:
             return "signal, param, value"
         program_ = self._program
         lazy_values = [value for value, only in zip(program_.values, program_.only_in, strict=True) if only is not None]
-        used = read(statement for statements in (*program_.states, *lazy_values) for statement in statements)
+        used = variables_read(statement for statements in (*program_.states, *lazy_values) for statement in statements)
         atoms = [name for name, only in zip(program_.atoms, program_.only_in, strict=True) if only is None]
         return ", ".join(name for name in (*program_.signals, *program_.params, *atoms) if name in used)
 
@@ -250,7 +255,7 @@ class _Source:
         for index in self._program.computed_in(state):
             # An empty line separates the comments.
             lines += ["", *(f"  {line}" for line in self._value(index))]
-        statements = shallow(self._program.states[state], self._program.atoms)
+        statements = split_deep_values(self._program.states[state], self._program.atoms)
         return [*lines, *self._printer.lines(statements, depth=1)]
 
     # --- a step -----------------------------------------------------------------------------------
@@ -261,7 +266,7 @@ class _Source:
 
     def _tables(self) -> list[str]:
         """Return the declaration of ``problem``, and of the tables whose fields are variables."""
-        lines = ["local problem"] if self._fspa.signals or not all(self._program.sure) else []
+        lines = ["local problem"] if self._fspa.signals or not all(self._program.always_in_range) else []
         if self._many:
             lines.append("local signal, param, value = self._signal, self.params, self._value")
         return lines
@@ -281,7 +286,7 @@ class _Source:
                 "  if problem then return nil, problem end",
                 "end",
             ]
-        used = self._program.used
+        used = self._program.variables_used
         params = zip(self._fspa.params, self._program.params, strict=True)
         if not self._many:
             lines += [f"local {name} = self.params{_index(param.name)}" for param, name in params if name in used]
@@ -295,9 +300,9 @@ class _Source:
         for index in self._program.computed_in(None):
             atom, name = self._fspa.atoms[index], self._program.atoms[index]
             lines += self._value(index)
-            if self._program.sure[index]:
+            if self._program.always_in_range[index]:
                 continue
-            if called(self._program.values[index]) & FAILING:
+            if functions_called(self._program.values[index]) & FAILING:
                 failing = True
                 text = _string(f"the atom `{atom.name}` ")
                 lines.append(f"if failure then return nil, at_step(self, {text} .. failure) end")
@@ -314,7 +319,7 @@ class _Source:
         """Return code for the value of one atom."""
         program_ = self._program
         lines = self._printer.comment(program_.remarks[index])
-        return [*lines, *self._printer.lines(defined(program_.atoms[index], program_.values[index]))]
+        return [*lines, *self._printer.lines(with_declaration(program_.atoms[index], program_.values[index]))]
 
     def _check(self) -> list[str]:
         """Return code that checks exclusive atoms."""
@@ -339,7 +344,7 @@ class _Source:
 
     def _judge(self) -> list[str]:
         """Return code for progress, reward and the end of the episode."""
-        used = read(self._program.judged)
+        used = variables_read(self._program.reward_statements)
         definitions = {
             reward_step.ENDS: "entered.ends",
             reward_step.VIOLATED: 'entered.verdict == "violated"',
@@ -351,7 +356,7 @@ class _Source:
             f"local {', '.join(kept)} = self.steps + 1, self.progress, self.done",
             f"local {reward_step.REWARD}",
             *(f"local {name} = {value}" for name, value in definitions.items() if name in used),
-            *_Lua({}, self._names).lines(self._program.judged),
+            *_Lua({}, self._names).lines(self._program.reward_statements),
         ]
 
 
@@ -383,8 +388,8 @@ def _bodies(statement: If) -> tuple[tuple[Statement, ...], ...]:
 
 def _field(name: str, type_: str, doc: str) -> str:
     """Return a field annotation of a class, as language servers read it."""
-    description = f" {visible(doc)}" if doc else ""
-    return f"---@field {visible(_key(name))} {type_}{description}"
+    description = f" {printable_line(doc)}" if doc else ""
+    return f"---@field {printable_line(_key(name))} {type_}{description}"
 
 
 def _accepted_first(signal: Signal, variable: str) -> list[str]:
@@ -402,13 +407,13 @@ def _accepted_first(signal: Signal, variable: str) -> list[str]:
 
 
 def _row(field: Signal | Param, entries: str) -> str:
-    low, high = snippets.number(field.low, "-huge"), snippets.number(field.high, "huge")
+    low, high = snippets.number_literal(field.low, "-huge"), snippets.number_literal(field.high, "huge")
     return f"{{ name = {_string(field.name)}, {entries}, low = {low}, high = {high} }}"
 
 
 def _string(text: str) -> str:
     """Return a string literal; characters that do not print are escaped byte by byte."""
-    return snippets.quoted(text, _escape)
+    return snippets.string_literal(text, _escape)
 
 
 def _escape(character: str) -> str:

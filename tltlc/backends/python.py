@@ -18,12 +18,12 @@ from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import Files, Options, Target
 from tltlc.program import reward_step, states
-from tltlc.program.arithmetic import defined
+from tltlc.program.arithmetic import with_declaration
 from tltlc.program.build import program
-from tltlc.program.names import call, in_docstring, literal, number
+from tltlc.program.names import call_lines, docstring_text, float_literal, string_literal
 from tltlc.program.printer import Printer
-from tltlc.program.shallow import shallow
-from tltlc.program.template import filled
+from tltlc.program.shallow import split_deep_values
+from tltlc.program.template import fill_template
 from tltlc.program.tree import (
     FAILING,
     Assign,
@@ -37,7 +37,7 @@ from tltlc.program.tree import (
     Statement,
     Type,
 )
-from tltlc.program.used_names import called, read
+from tltlc.program.used_names import functions_called, variables_read
 from tltlc.resolve.spec import Signal
 
 TARGET = Target("python", "a stand-alone monitor in Python", ("_monitor.py",), ("py",))
@@ -98,7 +98,7 @@ class _Python(Printer):
         """Return the value that a statement assigns."""
         match statement:
             case Assign(states.LIMITING, Int(index)):
-                return literal(self._atoms[index]) if index >= 0 else "None"
+                return string_literal(self._atoms[index]) if index >= 0 else "None"
         return self.text(statement.value)
 
     def head(self, test: str, *, first: bool) -> str:
@@ -113,7 +113,7 @@ class _Python(Printer):
         """Return no lines: indentation ends a branch."""
         return []
 
-    def _written(self, node: Expression) -> tuple[str, int]:
+    def _text_and_binding(self, node: Expression) -> tuple[str, int]:
         """Return the text of an expression and its binding strength.
 
         A call of ``min`` or ``max`` takes as many arguments as there are: one call is faster than
@@ -121,10 +121,10 @@ class _Python(Printer):
         """
         match node:
             case NumericCall("min" | "max" as function):
-                return super()._written(NumericCall(function, tuple(_arguments(node))))
+                return super()._text_and_binding(NumericCall(function, tuple(_arguments(node))))
             case NumericCall("divide", (left, right)):
-                return super()._written(BinaryNumber("/", left, right))
-        return super()._written(node)
+                return super()._text_and_binding(BinaryNumber("/", left, right))
+        return super()._text_and_binding(node)
 
     def call(self, function: str, arguments: Sequence[str]) -> str:
         """Return a call of a function of Python."""
@@ -159,18 +159,19 @@ class _Source:
             step = _Python.block(self._step(), depth=2)
             body = "\n\n\n".join(self._function(state.id) for state in fspa.states)
         pieces = {
-            "title": in_docstring(f"Monitor of the specification `{fspa.name}`, written by tltlc."),
-            "about": in_docstring("\n\n".join(filter(None, (fspa.doc, f"{INDENT}{fspa.formula}")))),
+            "title": docstring_text(f"Monitor of the specification `{fspa.name}`, written by tltlc."),
+            "about": docstring_text("\n\n".join(filter(None, (fspa.doc, f"{INDENT}{fspa.formula}")))),
             "file": self._file,
             "step": step,
             "signals": _tuple([_signal(signal) for signal in fspa.signals]),
             "params": _dict(
                 [
-                    f"{literal(param.name)}: ({number(param.value)}, {_low(param.low)}, {_high(param.high)})"
+                    f"{string_literal(param.name)}: "
+                    f"({float_literal(param.value)}, {_low(param.low)}, {_high(param.high)})"
                     for param in fspa.params
                 ]
             ),
-            "atoms": _tuple([literal(atom.name) for atom in fspa.atoms]),
+            "atoms": _tuple([string_literal(atom.name) for atom in fspa.atoms]),
             "exclusive": _tuple([_inline([str(atom) for atom in group]) for group in fspa.exclusive]),
             "returns": ", the progress of the step" if at_goal else "",
             "states": f"\n\n{body}\n",
@@ -181,11 +182,12 @@ class _Source:
         used = [_FUNCTIONS[function] for function in self._program.functions if function in _FUNCTIONS]
         used += ["inf"] if any(re.search(r"\binf\b", pieces[name]) for name in ("step", "signals", "params")) else []
         pieces["imports"] = f"from math import {', '.join(sorted([*used, 'isfinite']))}"
-        return filled("monitor.py.txt", pieces)
+        return fill_template("monitor.py.txt", pieces)
 
     def _state(self, state: int) -> str:
         fspa_state, ends = self._fspa.states[state], self._program.ends[state]
-        return f"({literal(str(fspa_state.label))}, {literal(fspa_state.verdict)}, {fspa_state.accepting}, {ends})"
+        label, verdict = string_literal(str(fspa_state.label)), string_literal(fspa_state.verdict)
+        return f"({label}, {verdict}, {fspa_state.accepting}, {ends})"
 
     @property
     def _result(self) -> str:
@@ -194,9 +196,9 @@ class _Source:
 
     def _function(self, state: int) -> str:
         """Return the function of a state."""
-        lines = call(f"def _from_{state}", [f"{atom}: float" for atom in self._computed], f" -> {self._result}:")
+        lines = call_lines(f"def _from_{state}", [f"{atom}: float" for atom in self._computed], f" -> {self._result}:")
         lines += self._printer.lines([CommentLine(str(self._fspa.states[state].label))], depth=1)
-        body = shallow(self._program.states[state], self._names)
+        body = split_deep_values(self._program.states[state], self._names)
         match body:
             case (If(cases, otherwise),):
                 # Returns instead of `elif`: a chain of these would nest as deep as a state has edges.
@@ -227,7 +229,7 @@ class _Source:
             return [params] if self._program.params else []
         signals = [*zip(self._fspa.signals, self._program.signals, strict=True)]
         lines = ["try:"]
-        lines += [f"{INDENT}{variable} = signals[{literal(signal.name)}]" for signal, variable in signals]
+        lines += [f"{INDENT}{variable} = signals[{string_literal(signal.name)}]" for signal, variable in signals]
         lines += ["except KeyError:", f"{INDENT}raise self._missing(signals) from None"]
         for index, (signal, variable) in enumerate(signals):
             checked = f"type({variable}) is not float or not {_within(signal, variable)}:"
@@ -247,16 +249,16 @@ class _Source:
         readers = (None, *range(len(program_.states)))
         for index in (atom for reader in readers for atom in program_.computed_in(reader)):
             lines += self._printer.comment(program_.remarks[index])
-            if called(program_.values[index]) & FAILING:
+            if functions_called(program_.values[index]) & FAILING:
                 lines.append(f"failing = {index}")
                 fails = True
-            lines += self._printer.lines(defined(program_.atoms[index], program_.values[index]))
+            lines += self._printer.lines(with_declaration(program_.atoms[index], program_.values[index]))
         if fails:
             lines = ["failing = 0", "try:", *(f"{INDENT}{line}" for line in lines)]
             lines.append("except (ZeroDivisionError, OverflowError, ValueError) as error:")
             lines.append(f"{INDENT}raise self._failed(failing, error) from None")
-        for index, (name, sure) in enumerate(zip(program_.atoms, program_.sure, strict=True)):
-            if not sure:
+        for index, (name, in_range) in enumerate(zip(program_.atoms, program_.always_in_range, strict=True)):
+            if not in_range:
                 lines.append(f"if not -1.0 <= {name} <= 1.0:")
                 lines.append(f"{INDENT}{name} = self._in_range({index}, {name})")
         return lines
@@ -271,11 +273,11 @@ class _Source:
 
     def _move(self) -> list[str]:
         """Return code for the transition: the function of the state computes it."""
-        return call(f"{', '.join(self._results)} = _TRANSITIONS[self.state]", self._computed)
+        return call_lines(f"{', '.join(self._results)} = _TRANSITIONS[self.state]", self._computed)
 
     def _judge(self) -> list[str]:
         """Return code for reward, best progress and the end of the episode."""
-        used = read(self._program.judged)
+        used = variables_read(self._program.reward_statements)
         definitions = {
             reward_step.VIOLATED: 'verdict == "violated"',
             reward_step.SATISFIED: 'verdict == "satisfied"',
@@ -286,7 +288,7 @@ class _Source:
             *(f"{name} = {value}" for name, value in definitions.items() if name in used),
             f"{reward_step.BEST} = self.progress",
             f"{reward_step.DONE} = self.done",
-            *self._printer.lines(self._program.judged),
+            *self._printer.lines(self._program.reward_statements),
             f"self.state = {states.TARGET}",
             f"self.steps = {reward_step.STEPS}",
             f"self.progress = {reward_step.BEST}",
@@ -304,8 +306,8 @@ def _within(signal: Signal, variable: str) -> str:
     """Return a test that a float is in the range of a signal; infinities and NaN fail it."""
     if signal.type == "bool":
         return f"({variable} == 0.0 or {variable} == 1.0)"
-    low = f"-inf < {variable}" if signal.low is None else f"{number(signal.low)} <= {variable}"
-    return f"{low} < inf" if signal.high is None else f"{low} <= {number(signal.high)}"
+    low = f"-inf < {variable}" if signal.low is None else f"{float_literal(signal.low)} <= {variable}"
+    return f"{low} < inf" if signal.high is None else f"{low} <= {float_literal(signal.high)}"
 
 
 def _two_hold(atoms: Sequence[str]) -> str:
@@ -319,15 +321,15 @@ def _two_hold(atoms: Sequence[str]) -> str:
 
 
 def _signal(signal: Signal) -> str:
-    return f"({literal(signal.name)}, {signal.type == 'bool'}, {_low(signal.low)}, {_high(signal.high)})"
+    return f"({string_literal(signal.name)}, {signal.type == 'bool'}, {_low(signal.low)}, {_high(signal.high)})"
 
 
 def _low(low: float | None) -> str:
-    return "-inf" if low is None else number(low)
+    return "-inf" if low is None else float_literal(low)
 
 
 def _high(high: float | None) -> str:
-    return number(inf if high is None else high)
+    return float_literal(inf if high is None else high)
 
 
 def _inline(items: Sequence[str]) -> str:

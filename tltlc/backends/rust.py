@@ -15,12 +15,12 @@ from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import Files, Options, Target
 from tltlc.program import reward_step, snippets, states
-from tltlc.program.arithmetic import defined
+from tltlc.program.arithmetic import with_declaration
 from tltlc.program.build import program
-from tltlc.program.printer import Printer, remark
-from tltlc.program.template import filled
+from tltlc.program.printer import Printer, comment_lines
+from tltlc.program.template import fill_template
 from tltlc.program.tree import FAILING, Assign, BinaryNumber, CommentLine, Declare, Type, Variable
-from tltlc.program.used_names import read
+from tltlc.program.used_names import variables_read
 from tltlc.resolve.spec import Param, Signal
 
 TARGET = Target("rust", "a stand-alone monitor in Rust", ("_monitor.rs",), ("bevy", "rs"))
@@ -100,7 +100,7 @@ class _Source:
         signals = list(zip(fspa.signals, program_.signals, strict=True))
         params = list(zip(fspa.params, program_.params, strict=True))
         present = [*program_.functions, "exclusive" if program_.exclusive else "single"]
-        present += [] if all(program_.sure) else ["keep"]
+        present += [] if all(program_.always_in_range) else ["keep"]
         present += ["math"] if program_.functions & _MATH else []
         present += ["number"] if any(signal.type != "bool" for signal in fspa.signals) else []
         with recursion_room():
@@ -124,7 +124,9 @@ class _Source:
             "signal_defaults": _Rust.block(
                 [f"{name}: {'false' if signal.type == 'bool' else 'f64::NAN'}," for signal, name in signals], 3
             ),
-            "param_defaults": _Rust.block([f"{name}: {snippets.number(param.value)}," for param, name in params], 3),
+            "param_defaults": _Rust.block(
+                [f"{name}: {snippets.number_literal(param.value)}," for param, name in params], 3
+            ),
             "param_checks": _Rust.block([line for param, name in params for line in _param_check(param, name)], 2),
             "states": _Rust.block(self._states(), 1),
             "sample": "sample" if program_.reads_sample else "_",
@@ -132,13 +134,13 @@ class _Source:
             "given": "sample" if give_code else "_",
             "give": _Rust.block(give_code or ["signal < SIGNAL_NAMES.len() && value.is_finite()"], 2),
         }
-        return filled("monitor.rs.txt", places, present)
+        return fill_template("monitor.rs.txt", places, present)
 
     def _title(self) -> list[str]:
         """Return the first comment: the name of the spec, its documentation and its formula."""
         fspa = self._fspa
         title = f"Monitor of the specification `{fspa.name}`, written by tltlc."
-        formula = ["```text", *remark(str(fspa.formula).replace("```", "'''")), "```"]
+        formula = ["```text", *comment_lines(str(fspa.formula).replace("```", "'''")), "```"]
         about = [_markdown(title), _markdown(fspa.doc), formula]
         parts = ["\n".join(f"//! {line}" for line in lines) for lines in about if lines]
         return ["\n//!\n".join(parts)]
@@ -157,8 +159,8 @@ class _Source:
         for state, ends in zip(self._fspa.states, self._program.ends, strict=True):
             values = (
                 f"Verdict::{state.verdict.capitalize()}",
-                snippets.boolean(state.accepting),
-                snippets.boolean(ends),
+                snippets.boolean_literal(state.accepting),
+                snippets.boolean_literal(ends),
             )
             lines.append(f"place({_string(str(state.label))}, {', '.join(values)}),")
         return lines
@@ -182,14 +184,14 @@ class _Source:
 
     def _read(self) -> list[str]:
         """Return code that reads signals, clamped to their ranges, and params into local variables."""
-        used = self._program.used
+        used = self._program.variables_used
         lines: list[str] = []
         for index, (signal, name) in enumerate(zip(self._fspa.signals, self._program.signals, strict=True)):
             if signal.type == "bool":
                 continue
             low, high = (
-                snippets.number(signal.low, "f64::NEG_INFINITY"),
-                snippets.number(signal.high, "f64::INFINITY"),
+                snippets.number_literal(signal.low, "f64::NEG_INFINITY"),
+                snippets.number_literal(signal.high, "f64::INFINITY"),
             )
             head = f"let {name} = " if name in used else ""
             lines.append(f"{head}self.read({index}, sample.{name}, {low}, {high})?;")
@@ -206,21 +208,21 @@ class _Source:
     def _compute(self) -> list[str]:
         """Return code for the atoms that every step computes."""
         program_ = self._program
-        used = read(statement for state in program_.states for statement in state)
+        used = variables_read(statement for state in program_.states for statement in state)
         used |= {program_.atoms[atom] for _, group in program_.exclusive for atom in group}
         places = program_.computed_in(None)
         lines = [line for index in places for line in self._value(index)]
         for index in places:
             name = program_.atoms[index]
             head = f"let {name} = " if name in used else ""
-            lines += [] if program_.sure[index] else [f"{head}self.keep({index}, {name})?;"]
+            lines += [] if program_.always_in_range[index] else [f"{head}self.keep({index}, {name})?;"]
         return lines
 
     def _value(self, index: int, depth: int = 0) -> list[str]:
         """Return code for the value of one atom."""
         program_ = self._program
         self._printer.atom = index
-        statements = defined(program_.atoms[index], program_.values[index], changes=False)
+        statements = with_declaration(program_.atoms[index], program_.values[index], changes=False)
         return self._printer.lines((CommentLine(program_.remarks[index]), *statements), depth)
 
     def _values_only_in(self, state: int) -> list[str]:
@@ -251,7 +253,7 @@ class _Source:
 
     def _judge(self) -> list[str]:
         """Return code for progress, reward and the end of the episode."""
-        used = read(self._program.judged)
+        used = variables_read(self._program.reward_statements)
         verdict = "entered.verdict"
         lines = [f"let entered = &STATES[{states.TARGET}];"]
         lines += [f"let mut {reward_step.BEST} = self.progress;", f"let mut {reward_step.DONE} = self.done;"]
@@ -264,7 +266,7 @@ class _Source:
             reward_step.SATISFIED: f"let {reward_step.SATISFIED} = {verdict} == Verdict::Satisfied;",
         }
         lines += [line for name, line in declarations.items() if name in used]
-        return [*lines, *self._printer.lines(self._program.judged)]
+        return [*lines, *self._printer.lines(self._program.reward_statements)]
 
 
 # --- pieces ---------------------------------------------------------------------------------------
@@ -278,7 +280,7 @@ def _fields(fields: Sequence[tuple[str, str, Signal | Param]]) -> str:
     """Return the fields of a struct, each with its documentation."""
     lines: list[str] = []
     for name, type_, declared in fields:
-        lines += [f"/// {line}" for line in _markdown(snippets.described(name, declared))]
+        lines += [f"/// {line}" for line in _markdown(snippets.field_comment(name, declared))]
         lines.append(f"pub {name}: {type_},")
     return _Rust.block(lines, 1)
 
@@ -286,15 +288,18 @@ def _fields(fields: Sequence[tuple[str, str, Signal | Param]]) -> str:
 def _markdown(text: str) -> list[str]:
     """Return lines of documentation, escaped so that they contain no code (doctests), HTML or links."""
     escaped = re.sub(r"`{3,}|~{3,}|<|\](?=[(\[:])", lambda match: re.sub("(.)", r"\\\1", match[0]), text)
-    return remark(escaped)
+    return comment_lines(escaped)
 
 
 def _param_check(param: Param, name: str) -> list[str]:
     value = f"params.{name}"
     tests = [f"{value}.is_finite()"]
-    tests += [] if param.low is None else [f"{value} >= {snippets.number(param.low)}"]
-    tests += [] if param.high is None else [f"{value} <= {snippets.number(param.high)}"]
-    low, high = snippets.number(param.low, "f64::NEG_INFINITY"), snippets.number(param.high, "f64::INFINITY")
+    tests += [] if param.low is None else [f"{value} >= {snippets.number_literal(param.low)}"]
+    tests += [] if param.high is None else [f"{value} <= {snippets.number_literal(param.high)}"]
+    low, high = (
+        snippets.number_literal(param.low, "f64::NEG_INFINITY"),
+        snippets.number_literal(param.high, "f64::INFINITY"),
+    )
     test = f"!({' && '.join(tests)})" if tests[1:] else f"!{tests[0]}"
     wrong = f"WrongParam {{ name: {_string(param.name)}, value: {value}, low: {low}, high: {high} }}"
     return [f"if {test} {{", f"{_INDENT}return Err({wrong});", "}"]
@@ -302,7 +307,7 @@ def _param_check(param: Param, name: str) -> list[str]:
 
 def _string(text: str) -> str:
     """Return a string literal in ASCII."""
-    return snippets.quoted(text, _escape, snippets.in_ascii)
+    return snippets.string_literal(text, _escape, snippets.is_plain_ascii)
 
 
 def _escape(character: str) -> str:

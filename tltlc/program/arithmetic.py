@@ -8,8 +8,8 @@ Evaluation is as lazy as in Python: operands of ``and`` and ``or`` that need sta
 go into separate branches.
 
 Branches nest at most about :data:`_MOST_BRANCHES` deep, since Python takes 100 levels of indentation,
-and Lua 200 levels of blocks. What is deeper is computed before, into a variable, if the conditions on
-the way to it hold.
+and Lua 200 levels of blocks. A deeper branch runs before the others, if the conditions on the way to
+it hold, and assigns its value to a variable.
 """
 
 from __future__ import annotations
@@ -41,20 +41,22 @@ from tltlc.program.tree import (
 )
 
 _DEEPEST: Final = 30
-"""The depth at which expressions are split. C# and GDScript compilers take some hundreds of levels, Lua takes 200."""
+"""The depth at which expressions are split. C# and GDScript compilers take hundreds of levels, Lua takes 200."""
 
 _MOST_BRANCHES: Final = 20
-"""The depth at which branches are split, counted apart for cases inside cases and for cases one after another."""
+"""The depth at which branches are split. Cases inside cases and cases one after another are counted separately."""
 
 _Node = Union[source.Expression, source.Condition]
 _Path = tuple[source.Condition, ...]
+"""The conditions that must hold for an expression to be evaluated."""
 
 
-def defined(name: str, statements: Sequence[Statement], *, changes: bool = True) -> tuple[Statement, ...]:
-    """Return the statements of :meth:`ExpressionTranslator.assigned` with a declaration of the variable.
+def with_declaration(name: str, statements: Sequence[Statement], *, changes: bool = True) -> tuple[Statement, ...]:
+    """Return the statements of :meth:`ExpressionTranslator.assign` with a declaration of the variable.
 
-    The declaration includes the value where a single assignment gives it. Pass ``changes=True`` if
-    the variable is assigned again later, as when the value of an atom is clamped to its range.
+    If there is a single assignment, the declaration includes its value. Pass ``changes=True`` if the
+    variable is assigned again later, for example because the value of an atom is clamped to its
+    range.
     """
     *before, last = statements
     if isinstance(last, Assign) and last.name == name:
@@ -63,7 +65,7 @@ def defined(name: str, statements: Sequence[Statement], *, changes: bool = True)
 
 
 def _is_reassigned(name: str, statements: Sequence[Statement]) -> bool:
-    """Whether statements assign a first value to a variable, which branches replace."""
+    """Whether statements assign a value to a variable that later ones replace."""
     for place, statement in enumerate(statements, start=1):
         if isinstance(statement, Assign) and statement.name == name and place < len(statements):
             return True
@@ -77,15 +79,15 @@ def _is_reassigned(name: str, statements: Sequence[Statement]) -> bool:
 class ExpressionTranslator:
     """Translates expressions; ``signals`` and ``params`` map names to the names of variables.
 
-    New variables are called ``PREFIX1``, ``PREFIX2`` and so on. The count continues over all calls
-    on one object.
+    New variables are called ``PREFIX1``, ``PREFIX2`` and so on. Their numbers continue from call to
+    call.
     """
 
     def __init__(self, signals: Mapping[str, str], params: Mapping[str, str], prefix: str) -> None:
         self._signals, self._params, self._prefix = dict(signals), params, prefix
         self._count = 0
 
-    def assigned(self, name: str, expression: source.Expression) -> list[Statement]:
+    def assign(self, name: str, expression: source.Expression) -> list[Statement]:
         """Return statements that assign the value of an expression to a declared variable."""
         lines: list[Statement] = []
         if _branch_depth(expression) > _MOST_BRANCHES:
@@ -96,38 +98,41 @@ class ExpressionTranslator:
         return [*lines, Assign(name, value)]
 
     def _cases(self, name: str, node: source.When, depth: int = 1) -> list[Statement]:
-        """Return a ``when`` as branches; nested only where a condition needs statements of its own.
+        """Return a ``when`` as branches, which nest only where a condition needs statements of its own.
 
-        ``depth`` counts the branches that are nested for this reason.
+        ``depth`` is how deep branches already nest for this reason.
         """
         condition, value = node.cases[0]
         before: list[Statement] = []
-        cases = [(self._test(condition, before), tuple(self.assigned(name, value)))]
+        cases = [(self._test(condition, before), tuple(self.assign(name, value)))]
         for index, (condition_after, its_value) in enumerate(node.cases[1:], start=1):
             needed: list[Statement] = []
             test = self._test(condition_after, needed)
             if needed:
                 rest = source.When(node.cases[index:], node.otherwise)
                 if depth >= _MOST_BRANCHES:
-                    return [*before, *self._one_by_one(name, tuple(cases), rest)]
+                    return [*before, *self._sequential_cases(name, tuple(cases), rest)]
                 return [*before, If(tuple(cases), tuple(self._cases(name, rest, depth + 1)))]
-            cases.append((test, tuple(self.assigned(name, its_value))))
-        return [*before, If(tuple(cases), tuple(self.assigned(name, node.otherwise)))]
+            cases.append((test, tuple(self.assign(name, its_value))))
+        return [*before, If(tuple(cases), tuple(self.assign(name, node.otherwise)))]
 
-    def _one_by_one(
+    def _sequential_cases(
         self, name: str, first: tuple[tuple[Expression, tuple[Statement, ...]], ...], rest: source.When
     ) -> list[Statement]:
-        """Return cases as branches one after another, and a variable that says whether one is still to be found."""
+        """Return cases as branches one after another.
+
+        A new variable says whether no case was selected yet.
+        """
         lines: list[Statement] = [Assign(name, Real(0.0))]
-        open_ = Variable(self._declared("bool", lines, changes=True))
+        open_ = Variable(self._declare("bool", lines, changes=True))
         lines.append(Assign(open_.name, Bool(True)))
         lines.append(If(tuple((test, (*body, Assign(open_.name, Bool(False)))) for test, body in first)))
         for condition, value in rest.cases:
             needed: list[Statement] = []
             test = self._test(condition, needed)
-            taken = (*self.assigned(name, value), Assign(open_.name, Bool(False)))
+            taken = (*self.assign(name, value), Assign(open_.name, Bool(False)))
             lines.append(If(((open_, (*needed, If(((test, taken),)))),)))
-        lines.append(If(((open_, tuple(self.assigned(name, rest.otherwise))),)))
+        lines.append(If(((open_, tuple(self.assign(name, rest.otherwise))),)))
         return lines
 
     @overload
@@ -140,14 +145,14 @@ class ExpressionTranslator:
     def _split(self, node: _Node, lines: list[Statement], path: _Path, depth: int) -> _Node: ...
 
     def _split(self, node: _Node, lines: list[Statement], path: _Path, depth: int) -> _Node:
-        """Return the node with its cases below the greatest depth replaced by variables.
+        """Return the node with every ``when`` at the depth :data:`_MOST_BRANCHES` replaced by a variable.
 
-        Statements that compute these go to ``lines``. They run only if all conditions of ``path``, which
-        lead to the node, hold.
+        Statements that compute these variables are appended to ``lines``. They run only if all
+        conditions of ``path``, which lead to the node, hold.
         """
         if isinstance(node, source.When):
             if depth == _MOST_BRANCHES:
-                return self._computed_before(node, lines, path)
+                return self._compute_before(node, lines, path)
             cases: list[tuple[source.Condition, source.Expression]] = []
             for condition, value in node.cases:
                 test = self._split(condition, lines, path, depth + 1)
@@ -166,15 +171,15 @@ class ExpressionTranslator:
             return replace(node, args=args)
         return node
 
-    def _computed_before(self, node: source.When, lines: list[Statement], path: _Path) -> source.SignalValue:
+    def _compute_before(self, node: source.When, lines: list[Statement], path: _Path) -> source.SignalValue:
         self._count += 1
         name = f"{self._prefix}{self._count}"
         if path:
             test = self._test(source.Condition("and", path), lines)
             lines.append(Declare(name, "real", Real(0.0), changes=True))
-            lines.append(If(((test, tuple(self.assigned(name, node))),)))
+            lines.append(If(((test, tuple(self.assign(name, node))),)))
         else:
-            lines += defined(name, self.assigned(name, node), changes=False)
+            lines += with_declaration(name, self.assign(name, node), changes=False)
         # No signal of a spec has a name with blanks.
         stand_in = source.SignalValue(f"computed before: {name}")
         self._signals[stand_in.name] = name
@@ -199,13 +204,13 @@ class ExpressionTranslator:
         if node.op == "^" and isinstance(exponent := node.args[1], source.Const):
             factors = MULTIPLIED_EXPONENTS.get(exponent.value)
             if factors:
-                base = self._named(self._argument(node.args[0], lines), lines)
+                base = self._as_variable(self._argument(node.args[0], lines), lines)
                 return reduce(lambda left, right: BinaryNumber("*", left, right), [base] * factors)
         return self._operation(node, [self._argument(argument, lines) for argument in node.args])
 
     def _argument(self, node: source.Expression, lines: list[Statement]) -> Expression:
         value = self._value(node, lines)
-        return self._named(value, lines) if self._depth(value) >= _DEEPEST else value
+        return self._as_variable(value, lines) if self._depth(value) >= _DEEPEST else value
 
     def _operation(self, node: source.Op, args: list[Expression]) -> Expression:
         match node.op:
@@ -213,7 +218,7 @@ class ExpressionTranslator:
                 op = node.op
                 return reduce(lambda left, right: BinaryNumber(op, left, right), args)
             case "/":
-                return reduce(_divided, args)
+                return reduce(_divide, args)
             case "neg":
                 return Negate(args[0])
             case "^":
@@ -233,7 +238,7 @@ class ExpressionTranslator:
         if node.op == "not":
             return Not(self._part(node.args[0], lines))
         if node.op == "and" or node.op == "or":
-            return self._joined(node, lines)
+            return self._join(node, lines)
         left, right = node.args
         assert not isinstance(left, source.Condition) and not isinstance(right, source.Condition)
         op = node.op
@@ -243,15 +248,15 @@ class ExpressionTranslator:
         test = self._test(node, lines)
         if self._depth(test) < _DEEPEST:
             return test
-        name = self._declared("bool", lines)
+        name = self._declare("bool", lines)
         lines.append(Assign(name, test))
         return Variable(name)
 
-    def _joined(self, node: source.Condition, lines: list[Statement]) -> Expression:
+    def _join(self, node: source.Condition, lines: list[Statement]) -> Expression:
         """Return ``and`` or ``or`` of several tests.
 
-        If an operand needs statements first, they run only where the operands before it are
-        undecided.
+        If an operand needs statements of its own, they run only if the operands before it do not
+        decide the result.
         """
         tests: list[Expression] = []
         for part in node.args:
@@ -260,7 +265,7 @@ class ExpressionTranslator:
             if not tests:
                 lines += needed
             elif needed:
-                name = self._declared("bool", lines, changes=True)
+                name = self._declare("bool", lines, changes=True)
                 lines.append(Assign(name, _all_or_any(node.op, tests)))
                 undecided = Variable(name) if node.op == "and" else Not(Variable(name))
                 lines.append(If(((undecided, (*needed, Assign(name, test))),)))
@@ -270,7 +275,7 @@ class ExpressionTranslator:
 
     # --- variables --------------------------------------------------------------------------------
 
-    def _named(self, value: Expression, lines: list[Statement]) -> Expression:
+    def _as_variable(self, value: Expression, lines: list[Statement]) -> Expression:
         """Return the value as a variable or number, which can be repeated without computing it again."""
         if isinstance(value, (Variable, Real)):
             return value
@@ -279,7 +284,7 @@ class ExpressionTranslator:
         lines.append(Declare(name, "real", value))
         return Variable(name)
 
-    def _declared(self, type_: Type, lines: list[Statement], changes: bool = False) -> str:
+    def _declare(self, type_: Type, lines: list[Statement], changes: bool = False) -> str:
         self._count += 1
         name = f"{self._prefix}{self._count}"
         lines.append(Declare(name, type_, None, changes))
@@ -312,8 +317,8 @@ def _all_or_any(op: str, tests: list[Expression]) -> Expression:
     return All(tuple(tests)) if op == "and" else Any(tuple(tests))
 
 
-def _divided(left: Expression, right: Expression) -> Expression:
-    """Return a quotient; a plain ``/`` where the divisor is a number other than 0, else ``divide``, which may fail."""
+def _divide(left: Expression, right: Expression) -> Expression:
+    """Return a quotient: with ``/`` if the divisor is a literal other than 0, else with ``divide``, which may fail."""
     if isinstance(right, Real) and right.value != 0.0:
         return BinaryNumber("/", left, right)
     return NumericCall("divide", (left, right))

@@ -47,19 +47,18 @@ class Range:
         return self.low > 0.0 or self.high < 0.0
 
 
-def within(low: float | None, high: float | None) -> Range:
+def range_between(low: float | None, high: float | None) -> Range:
     """Return the interval of a finite value between the given ends; None means no bound."""
     return Range(-_MOST if low is None else low, _MOST if high is None else high)
 
 
-def proven(
+def prove_ranges(
     name: str, statements: Sequence[Statement], known: Mapping[str, Range]
 ) -> tuple[tuple[Statement, ...], Range | None]:
-    """Return the statements with plain ``/`` where the divisor is certainly not 0, and the range of
-    a variable after them.
+    """Return the statements with plain ``/`` where the divisor is certainly not 0, and the range of a variable.
 
-    ``known`` maps the variables that exist before to their ranges. The range is None if the
-    variable may not be a number.
+    ``known`` maps the variables that exist before the statements to their ranges. The range is that
+    of the variable ``name`` after the statements. It is None if the variable may not be a number.
     """
     facts = _Facts({Variable(variable): range_ for variable, range_ in known.items()}, frozenset())
     written = facts.statements(statements)
@@ -69,14 +68,14 @@ def proven(
 class _Facts:
     """What is known at a point of a program: ranges of expressions, and pairs ``(a, b)`` with ``a <= b``.
 
-    ``assigned`` are the variables of the enclosing scope that statements have assigned.
+    ``assigned_variables`` are the variables of the enclosing scope that statements have assigned.
     """
 
     def __init__(self, ranges: dict[Expression, Range], ordered: frozenset[tuple[Expression, Expression]]) -> None:
-        self._ranges, self._ordered = ranges, ordered
-        self._computed_before: dict[Expression, Range | None] = {}
+        self._ranges, self._at_most_pairs = ranges, ordered
+        self._cache: dict[Expression, Range | None] = {}
         self._compared: set[Expression] = set()
-        self.assigned: dict[str, None] = {}
+        self.assigned_variables: dict[str, None] = {}
 
     # --- statements -------------------------------------------------------------------------------
 
@@ -88,24 +87,24 @@ class _Facts:
             if isinstance(statement, If):
                 rewritten.append(self._branches(statement))
             elif isinstance(statement, (Declare, Assign)):
-                value = None if statement.value is None else self.written(statement.value)
-                self._give(statement.name, None if value is None else self.range(value))
+                value = None if statement.value is None else self.rewrite(statement.value)
+                self._assign(statement.name, None if value is None else self.range(value))
                 rewritten.append(replace(statement, value=value))
             else:
                 rewritten.append(statement)
             if isinstance(statement, Declare):
                 declared.add(statement.name)
         for name in declared:
-            self.assigned.pop(name, None)
+            self.assigned_variables.pop(name, None)
         return tuple(rewritten)
 
     def _branches(self, statement: If) -> If:
-        """Rewrite a branch. After it, a variable is in the union of its ranges over all cases."""
+        """Rewrite a branch. After the branch, a variable is in the union of its ranges over all cases."""
         before = self._copy()
         ends: list[_Facts] = []
         cases = []
         for test, body in statement.cases:
-            rewritten = before.written(test)
+            rewritten = before.rewrite(test)
             inside = before._copy()
             inside._assume(test, True)
             cases.append((rewritten, inside.statements(body)))
@@ -113,32 +112,32 @@ class _Facts:
             before._assume(test, False)
         otherwise = before.statements(statement.otherwise)
         ends.append(before)
-        for name in {name: None for end in ends for name in end.assigned}:
-            self._give(name, _hull([end._ranges.get(Variable(name)) for end in ends]))
+        for name in {name: None for end in ends for name in end.assigned_variables}:
+            self._assign(name, _hull([end._ranges.get(Variable(name)) for end in ends]))
         return If(tuple(cases), otherwise)
 
-    def _give(self, name: str, range_: Range | None) -> None:
+    def _assign(self, name: str, range_: Range | None) -> None:
         """Record that a variable has a new value, and drop the facts about its old one."""
         variable = Variable(name)
-        self._computed_before.clear()
+        self._cache.clear()
         self._ranges.pop(variable, None)
         if variable in self._compared:
             for node in [node for node in self._ranges if variable in parts([node])]:
                 del self._ranges[node]
-            self._ordered = frozenset(pair for pair in self._ordered if variable not in parts(pair))
+            self._at_most_pairs = frozenset(pair for pair in self._at_most_pairs if variable not in parts(pair))
         if range_ is not None:
             self._ranges[variable] = range_
-        self.assigned[name] = None
+        self.assigned_variables[name] = None
 
     def _copy(self) -> _Facts:
-        copied = _Facts(dict(self._ranges), self._ordered)
+        copied = _Facts(dict(self._ranges), self._at_most_pairs)
         copied._compared = set(self._compared)
         return copied
 
     # --- tests ------------------------------------------------------------------------------------
 
     def _assume(self, test: Expression, holds: bool) -> None:
-        """Record that a test came out as ``holds``."""
+        """Record that a test holds, or that it fails."""
         match test:
             case Not(operand):
                 self._assume(operand, not holds)
@@ -150,7 +149,7 @@ class _Facts:
                     self._assume(argument, False)
             case Compare(op, left, right) if op in _OPPOSITE:
                 low, high = self.range(left), self.range(right)
-                # Comparisons with NaN are false, so a failed test tells nothing about a value that may be NaN.
+                # Comparisons with NaN are false, so if a value may be NaN, a failed test proves nothing about it.
                 if low is None or high is None:
                     return
                 op = op if holds else _OPPOSITE[op]
@@ -160,56 +159,56 @@ class _Facts:
                 least, most = low.low, high.high
                 if op in ("<", ">"):
                     least, most = math.nextafter(least, math.inf), math.nextafter(most, -math.inf)
-                self._ordered |= {(left, right)}
+                self._at_most_pairs |= {(left, right)}
                 self._compared.update(parts((left, right)))
-                self._computed_before.clear()
+                self._cache.clear()
                 self._narrow(left, Range(low.low, min(low.high, most)))
                 self._narrow(right, Range(max(least, high.low), high.high))
 
     def _narrow(self, node: Expression, range_: Range) -> None:
-        # An empty range means that the test cannot come out this way. The branch is unreachable: any facts will do.
+        # An empty range means that the test cannot have this result. The branch is unreachable: any facts will do.
         if range_.low <= range_.high and not isinstance(node, Real):
             self._ranges[node] = range_
 
     # --- expressions ------------------------------------------------------------------------------
 
-    def written(self, node: Expression) -> Expression:
+    def rewrite(self, node: Expression) -> Expression:
         """Return the expression with plain ``/`` where the divisor is certainly not 0."""
         match node:
             case NumericCall("divide", (left, right)):
-                left, right = self.written(left), self.written(right)
+                left, right = self.rewrite(left), self.rewrite(right)
                 divisor = self.range(right)
                 if divisor is not None and divisor.without_zero():
                     return BinaryNumber("/", left, right)
                 return NumericCall("divide", (left, right))
             case NumericCall(function, args):
-                return NumericCall(function, tuple(map(self.written, args)))
+                return NumericCall(function, tuple(map(self.rewrite, args)))
             case BinaryNumber(op, left, right):
-                return BinaryNumber(op, self.written(left), self.written(right))
+                return BinaryNumber(op, self.rewrite(left), self.rewrite(right))
             case Compare(compared, left, right):
-                return Compare(compared, self.written(left), self.written(right))
+                return Compare(compared, self.rewrite(left), self.rewrite(right))
             case Negate(operand):
-                return Negate(self.written(operand))
+                return Negate(self.rewrite(operand))
             case Not(operand):
-                return Not(self.written(operand))
+                return Not(self.rewrite(operand))
             case All(args):
-                return All(tuple(map(self.written, args)))
+                return All(tuple(map(self.rewrite, args)))
             case Any(args):
-                return Any(tuple(map(self.written, args)))
+                return Any(tuple(map(self.rewrite, args)))
         return node
 
     def range(self, node: Expression) -> Range | None:
         """Return the range of an expression; None if it may not be a number, or if nothing is known."""
-        if node in self._computed_before:
-            return self._computed_before[node]
-        computed = self._computed(node)
+        if node in self._cache:
+            return self._cache[node]
+        computed = self._compute(node)
         recorded = self._ranges.get(node)
         if computed is not None and recorded is not None:
             recorded = Range(max(computed.low, recorded.low), min(computed.high, recorded.high))
-        self._computed_before[node] = recorded = recorded or computed
+        self._cache[node] = recorded = recorded or computed
         return recorded
 
-    def _computed(self, node: Expression) -> Range | None:
+    def _compute(self, node: Expression) -> Range | None:
         match node:
             case Real(value):
                 return Range(value, value)
@@ -241,7 +240,7 @@ class _Facts:
 
     def _difference(self, left: Expression, right: Expression) -> Range | None:
         range_ = _ends(lambda x, y: x - y, self.range(left), self.range(right), "-")
-        if range_ is not None and (right, left) in self._ordered:
+        if range_ is not None and (right, left) in self._at_most_pairs:
             return Range(max(range_.low, 0.0), max(range_.high, 0.0))
         return range_
 
@@ -259,7 +258,7 @@ class _Facts:
         match left, right:
             case BinaryNumber("-", minuend, b), BinaryNumber("-", other_minuend, c) if minuend == other_minuend:
                 b_range, c_range = self.range(b), self.range(c)
-                return (c, b) in self._ordered or bool(b_range and c_range and c_range.high <= b_range.low)
+                return (c, b) in self._at_most_pairs or bool(b_range and c_range and c_range.high <= b_range.low)
         return False
 
 

@@ -6,12 +6,12 @@ from collections.abc import Sequence
 from typing import Final, TypeVar
 
 _MOST: Final = 16
-"""The conversion gives up at more clauses than this; their number can be exponential."""
+"""The conversion stops if there are more clauses than this; their number can be exponential."""
 
 _Literal = TypeVar("_Literal")
 
 
-def shorter(terms: Sequence[Sequence[_Literal]]) -> list[list[_Literal]] | None:
+def shorter_clauses(terms: Sequence[Sequence[_Literal]]) -> list[list[_Literal]] | None:
     """Return the clauses equivalent to some terms if they have fewer literals, else None.
 
     ``min`` and ``max`` distribute, so the maximum over terms of their minima equals the minimum
@@ -23,8 +23,9 @@ def shorter(terms: Sequence[Sequence[_Literal]]) -> list[list[_Literal]] | None:
 
 
 def _clauses(terms: Sequence[Sequence[_Literal]]) -> list[list[_Literal]] | None:
-    """Return the minimal sets of literals that meet every term (Berge, Hypergraphs, 1989); None if
-    there are too many.
+    """Return the minimal sets of literals that have a literal of every term; None if there are more than :data:`_MOST`.
+
+    C. Berge, Hypergraphs, 1989.
     """
     literals = list(dict.fromkeys(literal for term in terms for literal in term))
     bits = {literal: 1 << index for index, literal in enumerate(literals)}

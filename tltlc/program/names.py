@@ -13,13 +13,13 @@ _WORDS: Final = {">": " over ", "<": " under ", "-": " minus ", "+": " plus ", "
 
 
 class VariableNames:
-    """Gives out unique variable names: short, readable ASCII, never one that is ``reserved``."""
+    """Makes unique variable names: short, readable ASCII, none of them ``reserved``."""
 
     def __init__(self, reserved: Iterable[str]) -> None:
         self._taken = set(reserved)
 
-    def give(self, name: str, suffix: str = "") -> str:
-        """Return a new name that resembles the given one; if that is taken, ``suffix`` is tried before numbers."""
+    def new_name(self, name: str, suffix: str = "") -> str:
+        """Return a new name that resembles ``name``; if that is taken, ``suffix`` is tried before numbers."""
         spelt = "".join(_WORDS.get(character, character) for character in name)
         base = re.sub(r"[^A-Za-z0-9]+", "_", spelt)[:_LONGEST].strip("_") or "x"
         if base[0].isdigit():
@@ -32,14 +32,14 @@ class VariableNames:
         return candidate
 
 
-def visible(text: str) -> str:
-    """Return the text on one line, with escapes for characters that do not print (control and direction marks)."""
+def printable_line(text: str) -> str:
+    """Return the text on one line, with escapes for characters that do not print, such as control characters."""
     return "".join(
         character if character.isprintable() else f"\\u{ord(character):04x}" for character in " ".join(text.split())
     )
 
 
-def call(head: str, arguments: Sequence[str], tail: str = "") -> list[str]:
+def call_lines(head: str, arguments: Sequence[str], tail: str = "") -> list[str]:
     """Return ``head(arguments)tail`` on one line, or on several if that is too long."""
     line = f"{head}({', '.join(arguments)}){tail}"
     if len(line) <= 110:
@@ -47,18 +47,18 @@ def call(head: str, arguments: Sequence[str], tail: str = "") -> list[str]:
     return [f"{head}(", *wrap(", ".join(arguments), 106, initial_indent="    ", subsequent_indent="    "), f"){tail}"]
 
 
-def in_docstring(text: str) -> str:
+def docstring_text(text: str) -> str:
     """Return the text escaped for a docstring; line breaks and indentation are kept."""
-    lines = [" " * (len(line) - len(line.lstrip(" "))) + visible(line) for line in text.splitlines()]
+    lines = [" " * (len(line) - len(line.lstrip(" "))) + printable_line(line) for line in text.splitlines()]
     return "\n".join(lines).replace("\\", "\\\\").replace('"', '\\"')
 
 
-def literal(text: str) -> str:
+def string_literal(text: str) -> str:
     """Return a Python string literal, in double quotes where that needs no escape."""
     quoted = repr(text)
     return f'"{quoted[1:-1]}"' if quoted[0] == "'" and '"' not in quoted else quoted
 
 
-def number(value: float) -> str:
+def float_literal(value: float) -> str:
     """Return a Python float literal; infinity is ``inf``."""
     return repr(float(value))

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from textwrap import wrap
 from typing import ClassVar
 
-from tltlc.program.names import visible
+from tltlc.program.names import printable_line
 from tltlc.program.tree import (
     All,
     Any,
@@ -41,7 +41,7 @@ _SHORT = 12
 
 
 class Printer:
-    """Prints statements and expressions, whatever they are for.
+    """Prints statements and expressions as C would write them.
 
     Each language has a subclass that overrides what differs.
     """
@@ -111,7 +111,7 @@ class Printer:
 
     def comment(self, text: str) -> list[str]:
         """Return a comment, on as many lines as it needs."""
-        return [f"{self.COMMENT} {line}" for line in remark(text)]
+        return [f"{self.COMMENT} {line}" for line in comment_lines(text)]
 
     # --- pieces of files --------------------------------------------------------------------------
 
@@ -122,7 +122,10 @@ class Printer:
 
     @classmethod
     def items(cls, items: Sequence[str], depth: int = 0) -> str:
-        """Return the items between the brackets of a list: on one line if short, else on lines one level deeper."""
+        """Return the items of a list as the text between its brackets.
+
+        The items are on one line if this is short, else on lines one level deeper than ``depth``.
+        """
         line = ", ".join(items)
         if len(line) <= _LONGEST_LIST:
             return line
@@ -139,7 +142,7 @@ class Printer:
 
     def text(self, node: Expression, room: int = _OR) -> str:
         """Return an expression, in parentheses if it binds more loosely than ``room``."""
-        text, binding = self._written(node)
+        text, binding = self._text_and_binding(node)
         return text if binding >= room else f"({text})"
 
     def name(self, name: str) -> str:
@@ -154,11 +157,11 @@ class Printer:
         """Return a call of a numeric function."""
         return f"{function}({', '.join(arguments)})"
 
-    def _written(self, node: Expression) -> tuple[str, int]:
+    def _text_and_binding(self, node: Expression) -> tuple[str, int]:
         """Return the text of an expression and its binding strength."""
         match node:
             case Real(value):
-                # A comparison with 0 would miss the sign of -0.0.
+                # The text shows the sign of -0.0, which a comparison with 0 would miss.
                 return (f"-{self.real(-value)}", _SIGN) if repr(value)[0] == "-" else (self.real(value), _UNIT)
             case Int(value):
                 return str(value), _SIGN if value < 0 else _UNIT
@@ -185,10 +188,10 @@ class Printer:
         raise TypeError(f"no expression: {node!r}")
 
 
-def remark(text: str) -> list[str]:
+def comment_lines(text: str) -> list[str]:
     """Return a text as comment lines of visible characters.
 
     No line ends in a backslash, which would join it to the next line.
     """
-    lines = wrap(visible(text), _LONGEST_COMMENT, break_long_words=False, break_on_hyphens=False)
+    lines = wrap(printable_line(text), _LONGEST_COMMENT, break_long_words=False, break_on_hyphens=False)
     return [re.sub(r"\\$", r"\\ .", line) for line in lines]

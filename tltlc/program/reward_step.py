@@ -1,4 +1,4 @@
-"""The statements for one step's progress, reward and end of the episode.
+"""The statements that compute the progress and the reward of one step, and whether the episode ends.
 
 They follow Algorithm 1, with the undiscounted terminal penalty.
 """
@@ -24,16 +24,19 @@ from tltlc.program.tree import (
 STEPS, STEPS_REAL, BEST, REWARD, DONE, ENDS, VIOLATED, SATISFIED = (
     *("steps", "steps_real", "best", "reward", "done", "ends", "violated", "satisfied"),
 )
-"""Variables that the statements read: the number of this step, from 1, as an int and as a real;
-whether the new state ends episodes on entry, violates or satisfies. The statements read and assign
-the best progress so far and whether the episode is over, and assign the reward.
+"""Variables of the statements.
+
+They read ``STEPS`` and ``STEPS_REAL`` (the number of this step, from 1, as an int and as a real),
+and ``ENDS``, ``VIOLATED`` and ``SATISFIED`` (whether entering the new state ends episodes, and its
+verdict). They read and assign ``BEST`` (the best progress so far) and ``DONE`` (whether the episode
+is over), and assign ``REWARD``.
 """
 BEFORE = "before"
 """The best progress before this step."""
 
 
 def statements(fspa: Fspa) -> tuple[Statement, ...]:
-    """Return the statements that come after the transition."""
+    """Return the statements, which run after the transition."""
     limit = fspa.limit_steps
     steps, zero = Variable(STEPS), Real(0.0)
     lines: list[Statement] = [] if fspa.judge == "goal" else _survived(limit)
@@ -55,10 +58,10 @@ def statements(fspa: Fspa) -> tuple[Statement, ...]:
 
 
 def _survived(limit: int | None) -> list[Statement]:
-    """Return statements for the progress of a spec statements at its limit.
+    """Return statements for the progress of a spec that is judged at its limit.
 
-    It is the share of the limit that the episode has survived. Without a limit it is 1 once
-    satisfied, else 0.
+    The progress is the share of the limit that the episode has survived. Without a limit, it is 1
+    if the spec is satisfied, else 0.
     """
     cases: list[tuple[Expression, tuple[Statement, ...]]] = [
         (Variable(SATISFIED), (Assign(PROGRESS, Real(1.0)),)),

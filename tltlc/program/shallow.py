@@ -19,23 +19,23 @@ _DEEPEST: Final = 30
 """The same limit as for predicates, see :mod:`tltlc.program.arithmetic`."""
 
 
-def shallow(statements: Sequence[Statement], taken: Collection[str] = ()) -> tuple[Statement, ...]:
-    """Return the statements of a state with parts of deep values moved to variables.
+def split_deep_values(statements: Sequence[Statement], taken: Collection[str] = ()) -> tuple[Statement, ...]:
+    """Return the statements of a state with parts of deep values moved to new variables.
 
-    The new variables have distinct names, whose prefix no name in ``taken`` begins with.
+    No name in ``taken`` begins with the prefix of the new variables.
     """
     prefix = PART
     while any(name.startswith(prefix) for name in taken):
         prefix += "_"
-    return _shallow(statements, (f"{prefix}{number}" for number in count(1)))
+    return _split_statements(statements, (f"{prefix}{number}" for number in count(1)))
 
 
-def _shallow(statements: Sequence[Statement], names: Iterator[str]) -> tuple[Statement, ...]:
+def _split_statements(statements: Sequence[Statement], names: Iterator[str]) -> tuple[Statement, ...]:
     lines: list[Statement] = []
     for statement in statements:
         if isinstance(statement, If):
-            cases = tuple((test, _shallow(body, names)) for test, body in statement.cases)
-            lines.append(If(cases, _shallow(statement.otherwise, names)))
+            cases = tuple((test, _split_statements(body, names)) for test, body in statement.cases)
+            lines.append(If(cases, _split_statements(statement.otherwise, names)))
         elif isinstance(statement, Assign):
             lines.append(Assign(statement.name, _cut(statement.value, lines, names)[0]))
         elif isinstance(statement, Declare) and statement.value is not None:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 
 from tltlc.automaton.fspa import Fspa
 from tltlc.monitor.samples import range_text
-from tltlc.program.names import visible
+from tltlc.program.names import printable_line
 from tltlc.resolve.spec import Param, Signal
 
 _LONGEST_EXAMPLE = 60
@@ -14,7 +14,7 @@ _UNITS = {"length": " m", "time": " s", "speed": " m/s", "angle": " rad"}
 _KINDS = {"ratio": "A ratio in"}
 
 
-def title(fspa: Fspa, comment: Callable[[str], list[str]]) -> str:
+def title_comment(fspa: Fspa, comment: Callable[[str], list[str]]) -> str:
     """Return the first comment: the name of the spec, its documentation and its formula.
 
     ``comment`` turns a text into comment lines.
@@ -25,34 +25,35 @@ def title(fspa: Fspa, comment: Callable[[str], list[str]]) -> str:
     return f"\n{mark}\n".join("\n".join(lines) for lines in about if lines)
 
 
-def described(name: str, field: Signal | Param, escape: Callable[[str], str] = str) -> str:
-    """Return the comment on a field called ``name``: its name in the spec if different, its text, its values.
+def field_comment(name: str, field: Signal | Param, escape: Callable[[str], str] = str) -> str:
+    """Return the comment on a field called ``name``: its documentation and its possible values.
 
-    ``escape`` replaces signs that mean something in a comment; it is not applied to the values.
+    If the field has another name in the spec, the comment begins with that name. ``escape``
+    replaces characters that have a meaning in a comment; it is not applied to the values.
     """
     # A documented bool needs no "True or false."
-    values = "" if field.doc and field.type == "bool" else kind(field)
+    values = "" if field.doc and field.type == "bool" else values_sentence(field)
     doc = f"{field.doc}." if values and field.doc[-1:].isalnum() else field.doc
     text = f"{escape(doc)} {values}".strip()
     return text if field.name == name else f"{escape(field.name)}: {text}"
 
 
-def kind(field: Signal | Param) -> str:
-    """Return a sentence on the possible values, in SI units."""
+def values_sentence(field: Signal | Param) -> str:
+    """Return a sentence about the possible values of a signal or param, in SI units."""
     if field.type == "bool":
         return "True or false."
     return f"{_KINDS.get(field.type, 'In')} {range_text(field.low, field.high)}{_UNITS.get(field.type, '')}."
 
 
-def example(signals: Sequence[Signal], key: Callable[[str], str], equals: str) -> str:
+def example_sample(signals: Sequence[Signal], key: Callable[[str], str], equals: str) -> str:
     """Return an example sample in the syntax of a call, for a comment."""
     shown = [f"{key(signal.name)}{equals}{'true' if signal.type == 'bool' else '…'}" for signal in signals[:2]]
     text = f"{{ {', '.join([*shown, *(['…'] if len(signals) > 2 else [])])} }}" if signals else "{}"
-    return visible(text) if len(text) <= _LONGEST_EXAMPLE else "signals"
+    return printable_line(text) if len(text) <= _LONGEST_EXAMPLE else "signals"
 
 
-def quoted(text: str, escape: Callable[[str], str], plain: Callable[[str], bool] = str.isprintable) -> str:
-    """Return a string literal; characters that are not ``plain`` are escaped."""
+def string_literal(text: str, escape: Callable[[str], str], plain: Callable[[str], bool] = str.isprintable) -> str:
+    """Return a string literal in double quotes; ``escape`` replaces characters that are not ``plain``."""
     return '"' + "".join(_character(character, escape, plain) for character in text) + '"'
 
 
@@ -62,12 +63,12 @@ def _character(character: str, escape: Callable[[str], str], plain: Callable[[st
     return character if plain(character) else escape(character)
 
 
-def in_ascii(character: str) -> bool:
+def is_plain_ascii(character: str) -> bool:
     """Whether the character needs no escape in an ASCII source."""
     return " " <= character <= "~"
 
 
-def boolean(value: bool) -> str:
+def boolean_literal(value: bool) -> str:
     """Return ``true`` or ``false``."""
     return "true" if value else "false"
 
@@ -77,6 +78,6 @@ def paragraphs(*parts: Sequence[str]) -> list[str]:
     return "\n\n".join("\n".join(part) for part in parts if part).split("\n")
 
 
-def number(value: float | None, otherwise: str = "") -> str:
+def number_literal(value: float | None, otherwise: str = "") -> str:
     """Return a number in the syntax that most languages share with Python; ``otherwise`` if it is None."""
     return otherwise if value is None else repr(float(value))

@@ -1,4 +1,4 @@
-"""The statements of each state: they pick the edge taken from the values of the atoms, and compute its results."""
+"""The statements of each state: they find the edge taken from the values of the atoms, and compute the results."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Final
 
 from tltlc.automaton.fspa import Edge, Guard, Implicant
 from tltlc.monitor.tables import MonitorTables
-from tltlc.program.conjunctive_form import shorter
+from tltlc.program.conjunctive_form import shorter_clauses
 from tltlc.program.tree import (
     All,
     Any,
@@ -27,17 +27,20 @@ from tltlc.program.tree import (
     Statement,
     Variable,
 )
-from tltlc.program.used_names import read
+from tltlc.program.used_names import variables_read
 
 TARGET, ROBUSTNESS, PROGRESS, LIMITING = "target", "robustness", "progress", "limiting"
-"""Variables that the statements of a state assign: the next state, the robustness of the edge
-taken, the progress of this step alone, and the index of the limiting atom (-1 for none).
+"""Variables that the statements of a state assign.
+
+They are the next state, the robustness of the edge taken, the progress of this step alone, and the
+index of the limiting atom (-1 for none).
 """
 NEAREST, OTHER = "nearest", "other"
+"""Local variables: the robustness of the best prime so far, and of the prime that is compared with it."""
 _ZERO: Final = Real(0.0)
 
 
-def of_state(tables: MonitorTables, state: int, atoms: Sequence[str]) -> tuple[Statement, ...]:
+def state_statements(tables: MonitorTables, state: int, atoms: Sequence[str]) -> tuple[Statement, ...]:
     """Return the statements of a state; ``atoms`` are the variables of the atoms' values."""
     return _State(tables, state, atoms).statements()
 
@@ -52,11 +55,11 @@ class _State:
         edges = sorted(self._tables.edges[self._state], key=lambda edge: (_size(edge.guard), edge.target))
         *tested, last = edges
         if not tested:
-            return self._taken(last)
-        cases = tuple((self._truth(edge.guard), self._taken(edge)) for edge in tested)
-        return (If(cases, self._taken(last)),)
+            return self._edge_statements(last)
+        cases = tuple((self._truth(edge.guard), self._edge_statements(edge)) for edge in tested)
+        return (If(cases, self._edge_statements(last)),)
 
-    def _taken(self, edge: Edge) -> tuple[Statement, ...]:
+    def _edge_statements(self, edge: Edge) -> tuple[Statement, ...]:
         """Return the statements that run when an edge is taken."""
         improving = self._tables.improving[edge.source] if edge.source == edge.target else ()
         lines: list[Statement] = [CommentLine(edge.guard.text), Assign(TARGET, Int(edge.target))]
@@ -64,8 +67,8 @@ class _State:
         base = Real(self._tables.base_progress[edge.target])
         if not improving:
             return (*lines, *self._progress(base), Assign(LIMITING, Int(-1)))
-        # The improving guards are all false, so each of their primes has a literal at or below 0: a literal that is
-        # known to be above 0 is never the least one.
+        # The improving guards are all false, so each of their primes has a literal at or below 0. A literal that is
+        # known to be above 0 is therefore never the least one.
         above = [literal for literal in _shared(edge.guard.primes) if literal[1]]
         primes = [prime for candidate in improving for prime in candidate.guard.primes]
         lines += self._nearest([[literal for literal in prime if literal not in above] for prime in primes])
@@ -76,8 +79,9 @@ class _State:
         return (*lines, *self._progress(BinaryNumber("+", base, share) if base.value else share))
 
     def _progress(self, value: Expression) -> list[Statement]:
-        """Return the assignment of progress; none for a spec judged at its limit, whose progress is
-        independent of edges.
+        """Return the assignment of progress.
+
+        There is none for a spec that is judged at its limit: its progress does not depend on edges.
         """
         return [Assign(PROGRESS, value)] if self._at_goal else []
 
@@ -91,17 +95,17 @@ class _State:
         return tests[0] if len(tests) == 1 else Any(tuple(tests))
 
     def _robustness(self, primes: Sequence[Implicant]) -> Expression:
-        """Return the maximum over primes of the least literal, or an equal expression with fewer
-        literals (except for -0).
+        """Return the maximum over primes of the least literal, or an equal expression with fewer literals.
 
-        Literals that all primes share are factored out.
+        The two expressions may differ in the sign of 0. Literals that all primes share are factored
+        out.
         """
         shared = _shared(primes)
         rest = [[literal for literal in prime if literal not in shared] for prime in primes]
         terms = [self._value(*literal) for literal in shared]
         if not all(rest):
             return _fold("min", terms)
-        clauses = shorter(rest)
+        clauses = shorter_clauses(rest)
         if clauses is None:
             return _fold("min", [*terms, _fold("max", [self._least(prime) for prime in rest])])
         return _fold("min", [*terms, *(self._greatest(clause) for clause in clauses)])
@@ -110,18 +114,18 @@ class _State:
         """Return statements for the most robust prime (the first of equals) and the first atom that bounds it."""
         first, *following = primes
         lines: list[Statement] = [Declare(NEAREST, "real", self._least(first), changes=bool(following))]
-        lines += self._bounding(first, NEAREST)
+        lines += self._limiting_statements(first, NEAREST)
         if following:
             lines.append(Declare(OTHER, "real", self._least(following[0]), changes=len(following) > 1))
         for index, prime in enumerate(following):
             if index:
                 lines.append(Assign(OTHER, self._least(prime)))
-            better = (Assign(NEAREST, Variable(OTHER)), *self._bounding(prime, OTHER))
+            better = (Assign(NEAREST, Variable(OTHER)), *self._limiting_statements(prime, OTHER))
             lines.append(If(((Compare(">", Variable(OTHER), Variable(NEAREST)), better),)))
-        # A single literal bounds its prime without a comparison. If nothing reads NEAREST, drop its declaration.
-        return lines if self._at_goal or NEAREST in read(lines) else lines[1:]
+        # If primes have one literal each, nothing is compared with NEAREST. Without a use, its declaration is dropped.
+        return lines if self._at_goal or NEAREST in variables_read(lines) else lines[1:]
 
-    def _bounding(self, prime: Sequence[tuple[int, bool]], value: str) -> list[Statement]:
+    def _limiting_statements(self, prime: Sequence[tuple[int, bool]], value: str) -> list[Statement]:
         """Return statements for the first atom of the prime whose literal has the given value."""
         *before, (last, _) = prime
         otherwise = Assign(LIMITING, Int(last))

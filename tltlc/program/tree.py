@@ -14,12 +14,14 @@ from tltlc.core.record import record
 Type = Literal["real", "int", "bool"]
 
 Function = Literal["divide", "power", "sqrt", "exp", "tanh", "abs", "min", "max"]
-"""``min`` and ``max`` take two arguments and return the first of equal ones: ``b < a ? b : a`` and
-``b > a ? b : a``.
+"""The numeric functions.
+
+``min`` and ``max`` take two arguments, and return the first one if both are equal: ``b < a ? b : a``
+and ``b > a ? b : a``.
 """
 
 FAILING: Final[frozenset[Function]] = frozenset({"divide", "power", "sqrt", "exp"})
-"""Functions that may have no value."""
+"""Functions that have no value for some arguments."""
 
 
 # --- expressions ----------------------------------------------------------------------------------

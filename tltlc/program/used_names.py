@@ -22,12 +22,12 @@ from tltlc.program.tree import (
 )
 
 
-def read(statements: Iterable[Statement]) -> frozenset[str]:
+def variables_read(statements: Iterable[Statement]) -> frozenset[str]:
     """Return the variables that are read."""
     return frozenset(node.name for node in parts(_values(statements)) if isinstance(node, Variable))
 
 
-def called(statements: Iterable[Statement]) -> frozenset[Function]:
+def functions_called(statements: Iterable[Statement]) -> frozenset[Function]:
     """Return the functions that are called."""
     return frozenset(node.function for node in parts(_values(statements)) if isinstance(node, NumericCall))
 

@@ -95,7 +95,7 @@ def step(
     ends = target.verdict in ("satisfied", "violated") or (program.fspa.judge == "goal" and target.accepting)
     scope.values |= {"steps": steps, "steps_real": float(steps), "best": best, "done": done, "ends": ends}
     scope.values |= {"violated": target.verdict == "violated", "satisfied": target.verdict == "satisfied"}
-    scope.run(program.judged)
+    scope.run(program.reward_statements)
     return scope.values
 
 

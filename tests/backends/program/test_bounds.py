@@ -18,24 +18,24 @@ from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.core.record import replace
 from tltlc.expression.tree import Condition, Const, Expression, Op, ParamValue, SignalValue, When
 from tltlc.logic import formula as f
-from tltlc.program.arithmetic import ExpressionTranslator, defined
-from tltlc.program.bounds import Range, proven, within
+from tltlc.program.arithmetic import ExpressionTranslator, with_declaration
+from tltlc.program.bounds import Range, prove_ranges, range_between
 from tltlc.program.build import program
 from tltlc.program.tree import Statement
-from tltlc.program.used_names import called
+from tltlc.program.used_names import functions_called
 from tltlc.resolve import spec
 
 ROOT = Path(__file__).resolve().parents[3]
-KNOWN = {"s1": within(0.0, None), "health": Range(0.0, 1.0), "size": Range(2.0, 1e4)}
+KNOWN = {"s1": range_between(0.0, None), "health": Range(0.0, 1.0), "size": Range(2.0, 1e4)}
 S1, HEALTH, SIZE = SignalValue("distance(s1)"), SignalValue("health"), ParamValue("level_size")
 
 
 def proved(expression: Expression) -> tuple[tuple[Statement, ...], tuple[Statement, ...], Range | None]:
     """Return the plain statements, the statements simplified by the proven ranges, and the range of the value."""
     arithmetic = ExpressionTranslator({"distance(s1)": "s1", "health": "health"}, {"level_size": "size"}, "t")
-    statements = arithmetic.assigned("value", expression)
-    simplified, range_ = proven("value", statements, KNOWN)
-    return defined("value", statements), defined("value", simplified), range_
+    statements = arithmetic.assign("value", expression)
+    simplified, range_ = prove_ranges("value", statements, KNOWN)
+    return with_declaration("value", statements), with_declaration("value", simplified), range_
 
 
 def quotient(x: Expression, y: Expression) -> Op:
@@ -85,9 +85,9 @@ def test_values_are_the_same_and_in_their_range(expression: Expression, s1: floa
 @pytest.mark.parametrize(
     ("expression", "range_"),
     [
-        (S1, within(0.0, None)),
+        (S1, range_between(0.0, None)),
         (less(Op("*", (Const(2.0), HEALTH)), Const(1.0)), Range(-1.0, 1.0)),
-        (quotient(S1, less(SIZE, Const(1.0))), within(0.0, None)),
+        (quotient(S1, less(SIZE, Const(1.0))), range_between(0.0, None)),
         (quotient(Const(1.0), HEALTH), None),
         (Op("clamp", (quotient(S1, HEALTH), Const(-1.0), Const(1.0))), None),
         (Op("clamp", (Op("*", (S1, S1)), Const(-1.0), Const(1.0))), Range(0.0, 1.0)),
@@ -122,17 +122,17 @@ def test_a_condition_narrows_the_range_of_what_it_compares() -> None:
 def test_a_divisor_is_safe_only_where_the_condition_holds() -> None:
     for condition in (Condition(">", (HEALTH, Const(0.0))), Condition(">=", (HEALTH, Const(1e-9)))):
         _, simplified, _ = proved(When(((condition, quotient(S1, HEALTH)),), Const(0.0)))
-        assert "divide" not in called(simplified)
+        assert "divide" not in functions_called(simplified)
         _, simplified, _ = proved(When(((condition, Const(0.0)),), quotient(S1, HEALTH)))
-        assert "divide" in called(simplified)
+        assert "divide" in functions_called(simplified)
 
 
 def test_predicates_of_the_examples_are_proven_safe() -> None:
     for name in ("navigation", "cover_and_hide", "branching"):
         for fspa in compile_file(ROOT / f"examples/{name}.tltl"):
             result = program(fspa, [])
-            assert all(result.sure)
-            assert not any(called(value) & {"divide"} for value in result.values)
+            assert all(result.always_in_range)
+            assert not any(functions_called(value) & {"divide"} for value in result.values)
 
 
 @pytest.mark.parametrize("part", [Op("/", (Const(1.0), SignalValue("x"))), Op("exp", (SignalValue("x"),))])
@@ -141,7 +141,7 @@ def test_a_condition_that_may_have_no_value_is_not_safe(part: Expression) -> Non
     value = When(((Condition(">", (part, Const(2.0))), Const(0.5)),), Const(-0.5))
     fspa = build(spec_from_formula(f.eventually(f.atom("p"))))
     signals = (spec.Signal("x", "number", None, None),)
-    assert program(replace(fspa, signals=signals, atoms=(spec.Atom("p", value),)), ()).sure == (False,)
+    assert program(replace(fspa, signals=signals, atoms=(spec.Atom("p", value),)), ()).always_in_range == (False,)
 
 
 def test_an_atom_is_computed_only_in_the_state_that_needs_it() -> None:
@@ -152,7 +152,7 @@ def test_an_atom_is_computed_only_in_the_state_that_needs_it() -> None:
     # Atoms that may report an error or a notice are computed in every state.
     atoms = tuple(replace(atom, expression=Op("*", (Const(2.0), atom.expression))) for atom in fspa.atoms)
     result = program(replace(fspa, atoms=atoms), [])
-    assert result.sure == (False,) * 3
+    assert result.always_in_range == (False,) * 3
     assert result.only_in == (None,) * 3
     # Atoms that exclude each other are compared at each step.
     numbers = {atom.name: place for place, atom in enumerate(fspa.atoms)}

@@ -9,8 +9,8 @@ from hypothesis import given, settings
 
 from tests.backends.program.interpreter import Scope
 from tests.resolve.test_comparison_signs import FINITE, THREE, nearby_numbers, signal_quantity
-from tltlc.program.arithmetic import ExpressionTranslator, defined
-from tltlc.program.bounds import proven, within
+from tltlc.program.arithmetic import ExpressionTranslator, with_declaration
+from tltlc.program.bounds import prove_ranges, range_between
 from tltlc.resolve import units
 from tltlc.resolve.margins import robustness
 from tltlc.resolve.values import constant
@@ -25,11 +25,11 @@ def test_a_threshold_agrees_with_the_exact_comparison(ends: Sequence[float], x: 
         if not possible:
             continue
         expression = robustness(side, fixed) if is_above else robustness(fixed, side)
-        assigned = ExpressionTranslator({"x": "x"}, {}, "t").assigned("value", expression)
-        statements, range_ = proven("value", assigned, {"x": within(low, high)})
+        assigned = ExpressionTranslator({"x": "x"}, {}, "t").assign("value", expression)
+        statements, range_ = prove_ranges("value", assigned, {"x": range_between(low, high)})
         for number in [*nearby_numbers(threshold, low, high), min(max(x, low), high)]:
             scope = Scope({"x": number})
-            scope.run(defined("value", statements))
+            scope.run(with_declaration("value", statements))
             value = scope.values["value"]
             exact = Fraction(number) > Fraction(threshold) if is_above else Fraction(number) < Fraction(threshold)
             assert (value > 0.0) == exact

@@ -18,12 +18,12 @@ from tltlc.expression.evaluate import evaluate
 from tltlc.expression.tree import Condition, Const, Expression, Op, SignalValue, When
 from tltlc.logic import formula as f
 from tltlc.monitor import Monitor
-from tltlc.program.arithmetic import ExpressionTranslator, defined
+from tltlc.program.arithmetic import ExpressionTranslator, with_declaration
 from tltlc.program.build import program
 from tltlc.program.printer import Printer
 from tltlc.program.states import ROBUSTNESS
 from tltlc.program.tree import Assign, Declare, If, Statement, Variable
-from tltlc.program.used_names import parts, read
+from tltlc.program.used_names import parts, variables_read
 from tltlc.resolve import spec
 
 SIGNALS = {"distance(s1)": "s1", "health": "health"}
@@ -33,7 +33,7 @@ PARAMS = {"level_size": "size"}
 def computed(expression: Expression, s1: float, health: float, size: float) -> float | str:
     scope = Scope({"s1": s1, "health": health, "size": size})
     try:
-        scope.run(defined("value", ExpressionTranslator(SIGNALS, PARAMS, "t").assigned("value", expression)))
+        scope.run(with_declaration("value", ExpressionTranslator(SIGNALS, PARAMS, "t").assign("value", expression)))
     except NoValueError as error:
         return str(error)
     return scope.values["value"]
@@ -93,7 +93,7 @@ def test_deep_expressions_are_split() -> None:
         deep = Op("+", (Const(1.0), Op("abs", (deep,))))
     with recursion_room():
         assert computed(deep, 0.0, 0.5, 1.0) == 200.5
-        depth = max(map(_depth, ExpressionTranslator(SIGNALS, PARAMS, "t").assigned("value", deep)))
+        depth = max(map(_depth, ExpressionTranslator(SIGNALS, PARAMS, "t").assign("value", deep)))
     assert 10 < depth < 40
 
 
@@ -150,7 +150,7 @@ def test_temporaries_avoid_the_names_of_a_specification() -> None:
 @given(automata() | infinite_automata(), st.sampled_from(("goal", "limit")))
 def test_every_declared_variable_is_read(fspa: Fspa, judge: spec.Judge) -> None:
     for statements in program(replace(fspa, judge=judge), ()).states:
-        assert _declared(statements) <= read(statements)
+        assert _declared(statements) <= variables_read(statements)
 
 
 def _declared(statements: Iterable[Statement]) -> set[str]:

@@ -7,7 +7,7 @@ from itertools import accumulate
 
 from tests.backends.program.interpreter import Scope
 from tltlc.program.printer import Printer
-from tltlc.program.shallow import shallow
+from tltlc.program.shallow import split_deep_values
 from tltlc.program.tree import Assign, Bool, Declare, Expression, If, Negate, NumericCall, Real, Statement, Variable
 
 
@@ -25,7 +25,7 @@ def test_values_stay_the_same() -> None:
     numbers = [Real(draw.uniform(-1.0, 1.0)) for _ in range(200)]
     deep = NumericCall("min", (Negate(greatest(numbers[:150])), NumericCall("min", (Real(0.5), greatest(numbers)))))
     statements = [If(((Bool(True), (Declare("x", "real", deep), Assign("y", Negate(Variable("x"))))),))]
-    cut = shallow(statements)
+    cut = split_deep_values(statements)
     actual, expected = Scope({}), Scope({})
     actual.run([Declare("y", "real", None, changes=True), *cut])
     expected.run([Declare("y", "real", None, changes=True), *statements])
@@ -35,10 +35,10 @@ def test_values_stay_the_same() -> None:
 
 def test_shallow_statements_are_unchanged() -> None:
     statements: list[Statement] = [Assign("x", NumericCall("min", (Real(1.0), Negate(Real(2.0)))))]
-    assert shallow(statements) == tuple(statements)
+    assert split_deep_values(statements) == tuple(statements)
 
 
 def test_new_names_avoid_existing_ones() -> None:
     statements = [Assign("x", greatest(Variable(f"part{number}") for number in range(70)))]
-    cut = shallow(statements, [f"part{number}" for number in range(70)])
+    cut = split_deep_values(statements, [f"part{number}" for number in range(70)])
     assert [line.name for line in cut if isinstance(line, Declare)] == ["part_1", "part_2"]

@@ -37,8 +37,8 @@ def test_long_items_have_separate_lines() -> None:
 
 def test_literals() -> None:
     text = 'a "b" \\ é\n'
-    assert snippets.quoted(text, lambda character: "·") == '"a \\"b\\" \\\\ é·"'
-    assert snippets.quoted(text, lambda character: "·", snippets.in_ascii) == '"a \\"b\\" \\\\ ··"'
+    assert snippets.string_literal(text, lambda character: "·") == '"a \\"b\\" \\\\ é·"'
+    assert snippets.string_literal(text, lambda character: "·", snippets.is_plain_ascii) == '"a \\"b\\" \\\\ ··"'
 
 
 @pytest.mark.parametrize(
@@ -56,7 +56,7 @@ def test_literals() -> None:
     ],
 )
 def test_fields_are_described(name: str, of: spec.Signal | spec.Param, text: str) -> None:
-    assert snippets.described(name, of) == text
+    assert snippets.field_comment(name, of) == text
 
 
 @pytest.mark.parametrize("target", ["c", "csharp", "gdscript", "gdscript3", "javascript", "lua", "rust"])
@@ -74,7 +74,7 @@ def test_the_doc_comes_before_the_range_in_every_language(target: str) -> None:
 
 
 def test_examples() -> None:
-    assert snippets.example((), str, ": ") == "{}"
-    assert snippets.example(SIGNALS, str, ": ") == "{ x: …, y: true }"
-    assert snippets.example(SIGNALS * 2, str, " = ") == "{ x = …, y = true, … }"
-    assert snippets.example(SIGNALS, lambda name: name * 60, ": ") == "signals"
+    assert snippets.example_sample((), str, ": ") == "{}"
+    assert snippets.example_sample(SIGNALS, str, ": ") == "{ x: …, y: true }"
+    assert snippets.example_sample(SIGNALS * 2, str, " = ") == "{ x = …, y = true, … }"
+    assert snippets.example_sample(SIGNALS, lambda name: name * 60, ": ") == "signals"

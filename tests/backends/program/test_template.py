@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import pytest
 
-from tltlc.program.template import fill, filled
+from tltlc.program.template import fill, fill_template
 
 
 def test_placeholders_are_filled_once() -> None:
@@ -27,4 +27,4 @@ def test_a_placeholder_without_a_piece_is_a_bug() -> None:
 
 def test_an_unknown_template_is_an_error() -> None:
     with pytest.raises(KeyError):
-        filled("monitor.py.txt", {})
+        fill_template("monitor.py.txt", {})

@@ -15,7 +15,7 @@ from tltlc.program.tree import (
     Statement,
     Variable,
 )
-from tltlc.program.used_names import called, read
+from tltlc.program.used_names import functions_called, variables_read
 
 x, y, z, zero = Variable("x"), Variable("y"), Variable("z"), Real(0.0)
 STATEMENTS: list[Statement] = [
@@ -30,9 +30,9 @@ STATEMENTS: list[Statement] = [
 
 
 def test_variables_that_are_read() -> None:
-    assert read(STATEMENTS) == {"x", "y", "z", "b"}
-    assert read([]) == frozenset()
+    assert variables_read(STATEMENTS) == {"x", "y", "z", "b"}
+    assert variables_read([]) == frozenset()
 
 
 def test_functions_that_are_called() -> None:
-    assert called(STATEMENTS) == {"sqrt", "abs", "max", "divide"}
+    assert functions_called(STATEMENTS) == {"sqrt", "abs", "max", "divide"}

@@ -57,7 +57,7 @@ def snake_case(names: Iterable[str]) -> dict[str, str]:
     """Return unique new names for those that are not in lower case; the engine's classes use capitals."""
     all_names = list(names)
     unique_names = VariableNames({*RESERVED, *all_names})
-    return {name: unique_names.give(_lower(name)) for name in all_names if name != name.lower()}
+    return {name: unique_names.new_name(_lower(name)) for name in all_names if name != name.lower()}
 
 
 def _lower(name: str) -> str:

@@ -65,7 +65,7 @@ class Gd(Printer):
         """Return a number that the engine reads exactly."""
         return number(value)
 
-    def _written(self, node: Expression) -> tuple[str, int]:
+    def _text_and_binding(self, node: Expression) -> tuple[str, int]:
         """Return the text of an expression and its binding strength.
 
         ``min`` and ``max`` of two names or numbers become a conditional expression: a call would
@@ -76,7 +76,7 @@ class Gd(Printer):
                 if _is_simple(first) and _is_simple(second):
                     first_text, second_text = self.text(first), self.text(second)
                     return f"{second_text} if {second_text} {_BETTER[function]} {first_text} else {first_text}", _CHOICE
-        return super()._written(node)
+        return super()._text_and_binding(node)
 
     def call(self, function: str, arguments: Sequence[str]) -> str:
         """Return a call of a function of the engine or of the script."""

@@ -19,11 +19,11 @@ from tltlc.backends.godot.printer import Gd
 from tltlc.core.record import record
 from tltlc.monitor.samples import range_text
 from tltlc.program import reward_step, snippets, states
-from tltlc.program.arithmetic import defined
+from tltlc.program.arithmetic import with_declaration
 from tltlc.program.build import program
-from tltlc.program.template import filled
+from tltlc.program.template import fill_template
 from tltlc.program.tree import FAILING
-from tltlc.program.used_names import called
+from tltlc.program.used_names import functions_called
 from tltlc.resolve.spec import Param, Signal
 
 ENDINGS = ("_monitor.gd", "_monitor_main.gd")
@@ -81,7 +81,7 @@ def files(fspa: Fspa, dialect: Dialect) -> Files:
     places = {"file": script, "main": main, "title": dialect.title, **dialect.types()}
     return {
         script: _Source(fspa, dialect).text(),
-        main: filled("monitor_main.gd.txt", places, [dialect.version]),
+        main: fill_template("monitor_main.gd.txt", places, [dialect.version]),
     }
 
 
@@ -103,7 +103,7 @@ class _Source:
         fspa, program_ = self._fspa, self._program
         failing = program_.functions & FAILING
         present = [*failing, *(["note"] if failing else [])]
-        present += [] if all(program_.sure) else ["atom"]
+        present += [] if all(program_.always_in_range) else ["atom"]
         present += ["number"] if any(signal.type != "bool" for signal in fspa.signals) else []
         present += ["exclusive"] if program_.exclusive else []
         present += ["params"] if fspa.params else []
@@ -113,7 +113,7 @@ class _Source:
         first = fspa.states[0]
         places = {
             **self._dialect.types(),
-            "title": snippets.title(fspa, self._printer.comment),
+            "title": snippets.title_comment(fspa, self._printer.comment),
             "engine": self._dialect.title,
             "base": self._dialect.base,
             "file": f"{fspa.name}{ENDINGS[0]}",
@@ -123,9 +123,9 @@ class _Source:
             "labels": self._strings(str(state.label) for state in fspa.states),
             "verdicts": _list([f"Verdict.{state.verdict.upper()}" for state in fspa.states]),
             "first_verdict": f"Verdict.{first.verdict.upper()}",
-            "first_accepting": snippets.boolean(first.accepting),
-            "accepting": _list([snippets.boolean(state.accepting) for state in fspa.states]),
-            "ends": _list(map(snippets.boolean, program_.ends)),
+            "first_accepting": snippets.boolean_literal(first.accepting),
+            "accepting": _list([snippets.boolean_literal(state.accepting) for state in fspa.states]),
+            "ends": _list(map(snippets.boolean_literal, program_.ends)),
             "exclusive": _list([str(list(group)) for group in fspa.exclusive]),
             "params": self._strings(param.name for param in fspa.params),
             "param_ranges": self._strings(range_text(param.low, param.high) for param in fspa.params),
@@ -141,7 +141,7 @@ class _Source:
             "sample": "sample" if program_.reads_sample else "_sample",
             "step": step,
         }
-        return filled("monitor.gd.txt", places, present)
+        return fill_template("monitor.gd.txt", places, present)
 
     # --- records ----------------------------------------------------------------------------------
 
@@ -160,7 +160,7 @@ class _Source:
         lines: list[str] = []
         for name, type_, value, declared in fields:
             # Godot 4 shows `##` comments as documentation. An opening bracket would begin a tag, except before numbers.
-            description = snippets.described(name, declared, lambda text: text.replace("[", "[lb]"))
+            description = snippets.field_comment(name, declared, lambda text: text.replace("[", "[lb]"))
             remarks = [f"#{line}" for line in self._printer.comment(description)]
             field = f"var {name}: {type_} = {value}"
             # A short comment goes on the line of its field.
@@ -182,7 +182,7 @@ class _Source:
 
     def _read(self) -> list[str]:
         """Return code that reads signals, clamped to their ranges, and params into local variables."""
-        used = self._program.used
+        used = self._program.variables_used
         lines: list[str] = []
         checked = False
         for index, (signal, name) in enumerate(zip(self._fspa.signals, self._signals, strict=True)):
@@ -216,7 +216,7 @@ class _Source:
     def _compute(self) -> list[str]:
         """Return code for the atoms that every step computes."""
         lines = self._values(None)
-        unsure = [(index, name) for index, name in enumerate(self._atoms) if not self._program.sure[index]]
+        unsure = [(index, name) for index, name in enumerate(self._atoms) if not self._program.always_in_range[index]]
         for index, name in unsure:
             lines += [f"if not ({name} >= -1.0 and {name} <= 1.0):", f"\t{name} = _value({index}, {name})"]
         return [*lines, *(self._stop() if unsure else [])]
@@ -229,8 +229,8 @@ class _Source:
         """Return code for the value of one atom."""
         program_, statements = self._program, self._program.values[index]
         lines = self._printer.comment(program_.remarks[index])
-        lines += self._printer.lines(defined(program_.atoms[index], statements))
-        if called(statements) & FAILING:
+        lines += self._printer.lines(with_declaration(program_.atoms[index], statements))
+        if functions_called(statements) & FAILING:
             lines += ["if problem != Problem.NONE:", f"\treturn _refuse(problem, {index})"]
         return lines
 
@@ -258,7 +258,7 @@ class _Source:
         """Return code for progress, reward and the end of the episode."""
         # Adding 0 turns -0 into 0.
         lines = ["robustness += 0.0", "verdict = VERDICTS[state]", "accepting = ACCEPTING[state]", "steps += 1"]
-        return [*lines, *self._printer.lines(self._program.judged)]
+        return [*lines, *self._printer.lines(self._program.reward_statements)]
 
     # --- pieces -----------------------------------------------------------------------------------
 
@@ -269,7 +269,7 @@ class _Source:
         """Return a string literal with escapes for characters that do not print; NUL would end a
         string of the engine.
         """
-        return snippets.quoted(text.replace("\0", ""), self._escape)
+        return snippets.string_literal(text.replace("\0", ""), self._escape)
 
     def _escape(self, character: str) -> str:
         code = ord(character)
