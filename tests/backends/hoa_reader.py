@@ -58,7 +58,7 @@ class Hoa:
     states: dict[int, State] = field(default_factory=dict)
     comments: list[str] = field(default_factory=list)
 
-    def taken(self, state: int, letter: Letter) -> list[tuple[int, frozenset[int]]]:
+    def edges_taken(self, state: int, letter: Letter) -> list[tuple[int, frozenset[int]]]:
         """Return the targets of the edges that a letter takes, each with its acceptance sets."""
         here = self.states[state]
         return [(edge.target, edge.sets | here.sets) for edge in here.edges if edge.label(letter)]
@@ -67,7 +67,7 @@ class Hoa:
         """Return the last state of the only run on a finite trace, or None if there is no run."""
         (state,) = self.starts
         for letter in trace:
-            taken = self.taken(state, letter)
+            taken = self.edges_taken(state, letter)
             if not taken:
                 return None
             ((state, _),) = taken
@@ -82,7 +82,7 @@ class Hoa:
             first_rounds[state] = len(rounds)
             marks: frozenset[int] = frozenset()
             for letter in cycle:
-                taken = self.taken(state, letter)
+                taken = self.edges_taken(state, letter)
                 if not taken:
                     return False
                 ((state, sets),) = taken
@@ -101,7 +101,7 @@ def read(text: str) -> Hoa:
 
 class _Reader:
     def __init__(self, text: str) -> None:
-        self.found = Hoa()
+        self.hoa = Hoa()
         self.tokens = [*self._tokens(text), ("end", "")]
         self.at = 0
 
@@ -112,7 +112,7 @@ class _Reader:
                 at += 1
             elif text.startswith("/*", at):
                 end = self._comment_end(text, at)
-                self.found.comments.append(text[at:end])
+                self.hoa.comments.append(text[at:end])
                 at = end
             else:
                 match = _TOKEN.match(text, at)
@@ -142,7 +142,7 @@ class _Reader:
         self.at += 1
         return token
 
-    def comes(self, text: str) -> bool:
+    def take_if(self, text: str) -> bool:
         if self.peek() == ("sign", text):
             self.at += 1
             return True
@@ -181,10 +181,10 @@ class _Reader:
         self.take("mark", "--END--")
         self.take("end")
         self._whole()
-        return self.found
+        return self.hoa
 
     def _item(self, name: str) -> None:
-        hoa = self.found
+        hoa = self.hoa
         match name:
             case "States:":
                 hoa.count = self.number()
@@ -228,18 +228,18 @@ class _Reader:
 
     def expression(self, leaf: Callable[[], Expression]) -> Expression:
         operands = [self._conjunction(leaf)]
-        while self.comes("|"):
+        while self.take_if("|"):
             operands.append(self._conjunction(leaf))
         return lambda values: any(operand(values) for operand in operands)
 
     def _conjunction(self, leaf: Callable[[], Expression]) -> Expression:
         operands = [self._operand(leaf)]
-        while self.comes("&"):
+        while self.take_if("&"):
             operands.append(self._operand(leaf))
         return lambda values: all(operand(values) for operand in operands)
 
     def _operand(self, leaf: Callable[[], Expression]) -> Expression:
-        if self.comes("("):
+        if self.take_if("("):
             inner = self.expression(leaf)
             self.take("sign", ")")
             return inner
@@ -249,12 +249,12 @@ class _Reader:
         return leaf()
 
     def _atom(self) -> Expression:
-        if self.comes("!"):
+        if self.take_if("!"):
             inner = self._operand(self._atom)
             return lambda letter: not inner(letter)
         if self.peek()[0] == "alias":
-            return self.found.aliases[self.take("alias")]
-        atom = self.number(len(self.found.atoms))
+            return self.hoa.aliases[self.take("alias")]
+        atom = self.number(len(self.hoa.atoms))
         return lambda letter: letter[atom]
 
     def _set(self) -> Expression:
@@ -262,7 +262,7 @@ class _Reader:
         if kind not in ("Fin", "Inf"):
             raise ValueError(f"an unknown acceptance: {kind}")
         self.take("sign", "(")
-        number = self.number(self.found.sets)
+        number = self.number(self.hoa.sets)
         self.take("sign", ")")
         return lambda sets: sets[number] == (kind == "Inf")
 
@@ -271,28 +271,28 @@ class _Reader:
     def _state(self) -> None:
         self.take("header", "State:")
         number = self.number()
-        if number in self.found.states:
+        if number in self.hoa.states:
             raise ValueError(f"state {number} twice")
         name = self.string() if self.peek()[0] == "string" else None
-        state = self.found.states[number] = State(name, self._sets())
-        while self.comes("["):
+        state = self.hoa.states[number] = State(name, self._sets())
+        while self.take_if("["):
             label = self.expression(self._atom)
             self.take("sign", "]")
             state.edges.append(Edge(label, self.number(), self._sets()))
 
     def _sets(self) -> frozenset[int]:
-        if not self.comes("{"):
+        if not self.take_if("{"):
             return frozenset()
         numbers = []
-        while not self.comes("}"):
-            numbers.append(self.number(self.found.sets))
+        while not self.take_if("}"):
+            numbers.append(self.number(self.hoa.sets))
         if len(set(numbers)) < len(numbers):
             raise ValueError("a set twice")
         return frozenset(numbers)
 
     def _whole(self) -> None:
         """Raise ValueError unless all states are defined, and only they are referred to."""
-        hoa = self.found
+        hoa = self.hoa
         if set(hoa.states) != set(range(len(hoa.states))) or hoa.count not in (None, len(hoa.states)):
             raise ValueError("a state is missing, or there is one too many")
         targets = {edge.target for state in hoa.states.values() for edge in state.edges}

@@ -56,7 +56,7 @@ def programs_of(folder: Path, compiler: str, fspas: Sequence[Fspa]) -> Programs:
     return programs
 
 
-def compiled(folder: Path, compiler: str, source: str, path: Path, *options: str) -> None:
+def compile_source(folder: Path, compiler: str, source: str, path: Path, *options: str) -> None:
     command = [*COMPILERS[compiler], *STRICT, *SANITIZED, *options, source, "-o", str(path), "-lm"]
     result = subprocess.run(command, cwd=folder, capture_output=True, text=True)
     assert result.returncode == 0, result.stderr
@@ -243,7 +243,7 @@ def test_names_of_macros_are_avoided(compiler: str, tmp_path: Path) -> None:
     assert not [name for name in names if f"double {name};" in text]
     (tmp_path / "all_monitor.h").write_text(text)
     for options in ((), ("-DTLTL_MAIN",), ("-DTLTL_MAIN", "-std=gnu++17" if compiler == "g++" else "-std=gnu17")):
-        compiled(tmp_path, compiler, "all_monitor.h", tmp_path / "all", "-fsyntax-only", *options)
+        compile_source(tmp_path, compiler, "all_monitor.h", tmp_path / "all", "-fsyntax-only", *options)
 
 
 def test_names_of_headers_do_not_clash() -> None:
@@ -263,7 +263,7 @@ def test_specs_with_similar_names_compile_together(compiler: str, tmp_path: Path
     calls = [f"    main{number}(argc, argv);" for number in range(len(names))]
     lines += ["int main(int argc, char **argv) {", *calls, "    return 0;", "}", ""]
     (tmp_path / "all.c").write_text("\n".join(lines))
-    compiled(tmp_path, compiler, "all.c", tmp_path / "all")
+    compile_source(tmp_path, compiler, "all.c", tmp_path / "all")
     assert subprocess.run([str(tmp_path / "all")], stderr=subprocess.DEVNULL).returncode == 0
 
 
@@ -318,11 +318,11 @@ int main(void) {
 
 
 @compilers
-def test_library(compiler: str, tmp_path: Path) -> None:
+def test_a_host_gets_results_notices_and_errors(compiler: str, tmp_path: Path) -> None:
     fspa = cover_and_hide()
     (tmp_path / "cover_and_hide_monitor.h").write_text(header_of(fspa))
     (tmp_path / "library.c").write_text(LIBRARY)
-    compiled(tmp_path, compiler, "library.c", tmp_path / "library")
+    compile_source(tmp_path, compiler, "library.c", tmp_path / "library")
     monitor = Monitor(fspa, {"level_size": 10.0})
     step = monitor.step({"distance(s1)": 5.0, "distance(s2)": 5.0, "distance(exit)": 5.0, "health": 1.0})
     together = "step 2: `near(s1)` and `near(exit)` hold at once, against `exclusive near(s1), near(s2), near(exit)`"

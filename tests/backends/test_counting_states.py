@@ -10,9 +10,9 @@ from tests.backends.strategies import automata, hostile_automata, infinite_autom
 from tests.backends.test_folding import automaton, chains, counting, endless
 from tests.fixtures import cover_and_hide
 from tltlc.automaton.fspa import Edge, Fspa, Guard
-from tltlc.backends.drawing.counting_states import folded_in_step
-from tltlc.backends.drawing.folding import LEAST_FOLDED, folded, whole
-from tltlc.backends.drawing.picture_content import notes, shown
+from tltlc.backends.drawing.counting_states import fold_ladders
+from tltlc.backends.drawing.folding import LEAST_FOLDED, fold_runs, whole_drawing
+from tltlc.backends.drawing.picture_content import folded_drawing, notes
 from tltlc.core.record import replace
 from tltlc.logic.formula import atom
 
@@ -64,8 +64,8 @@ ANY = in_step() | ladders() | counting() | endless() | chains() | automata() | i
 
 @given(ANY)
 def test_every_edge_is_drawn_or_lies_along_a_run(fspa: Fspa) -> None:
-    drawing = folded_in_step(fspa)
-    full = whole(fspa)
+    drawing = fold_ladders(fspa)
+    full = whole_drawing(fspa)
     first = {state.id: run for run, states in drawing.folded.items() for state in states}
     drawn = [state.id for state in drawing.states]
     assert sorted([*(set(drawn) - set(drawing.folded)), *first]) == list(range(len(full.states)))
@@ -94,8 +94,8 @@ def test_every_edge_is_drawn_or_lies_along_a_run(fspa: Fspa) -> None:
 
 @given(ANY)
 def test_folded_states_agree(fspa: Fspa) -> None:
-    drawing = folded_in_step(fspa)
-    full = whole(fspa)
+    drawing = fold_ladders(fspa)
+    full = whole_drawing(fspa)
     inner = {state.id for run in drawing.folded.values() for state in run}
     labels: dict[int, set[object]] = {state.id: set() for state in full.states}
     for edge in full.edges:
@@ -106,18 +106,18 @@ def test_folded_states_agree(fspa: Fspa) -> None:
 
 
 def test_some_random_ladder_is_folded() -> None:
-    assert folded_in_step(find(ladders(), lambda fspa: len(folded_in_step(fspa).folded) == 3))
+    assert fold_ladders(find(ladders(), lambda fspa: len(fold_ladders(fspa).folded) == 3))
 
 
 @given(counting() | in_step())
 def test_folding_ladders_draws_no_more_states_than_folding_runs(fspa: Fspa) -> None:
-    assert len(folded_in_step(fspa).states) <= len(folded(fspa).states)
+    assert len(fold_ladders(fspa).states) <= len(fold_runs(fspa).states)
 
 
 @given(ANY)
 def test_pictures_use_the_drawing_with_fewer_states_and_count_the_folded_ones(fspa: Fspa) -> None:
-    drawing = shown(fspa)
-    drawings = [folded(fspa), folded_in_step(fspa)]
+    drawing = folded_drawing(fspa)
+    drawings = [fold_runs(fspa), fold_ladders(fspa)]
     assert drawing in drawings
     assert len(drawing.states) == min(len(candidate.states) for candidate in drawings)
     hidden = len(fspa.states) - len(drawing.states)
@@ -136,12 +136,12 @@ def test_pictures_use_the_drawing_with_fewer_states_and_count_the_folded_ones(fs
         ("G(a -> F[0,9] b) & G(b -> F[0,9] c)", [], 56),
     ],
 )
-def test_the_number_of_folded_states(formula: str, inner: list[int], states: int) -> None:
-    drawing = folded_in_step(automaton(formula))
+def test_known_automata_have_these_folded_states(formula: str, inner: list[int], states: int) -> None:
+    drawing = fold_ladders(automaton(formula))
     assert [len(run) for run in drawing.folded.values()] == inner
     assert len(drawing.states) == states
 
 
 @pytest.mark.parametrize("formula", ["F[0,40] a", "G[0,12] a", "G(a -> G[0,10] b)", "F a & F b"])
 def test_a_single_run_is_folded_as_without_ladders(formula: str) -> None:
-    assert folded_in_step(automaton(formula)) == folded(automaton(formula))
+    assert fold_ladders(automaton(formula)) == fold_runs(automaton(formula))

@@ -34,19 +34,19 @@ from tltlc.resolve import spec
 pytestmark = pytest.mark.skipif(not (shutil.which("mcs") and shutil.which("mono")), reason="there is no Mono here")
 
 
-def written(fspa: Fspa, folder: Path) -> str:
+def write_monitor(fspa: Fspa, folder: Path) -> str:
     for name, text in emit("csharp", fspa).items():
         assert isinstance(text, str)
         (folder / name).write_text(text)
     return (folder / f"{fspa.name}_monitor.cs").read_text()
 
 
-def compiled(folder: Path, *words: str) -> None:
+def compile_program(folder: Path, *words: str) -> None:
     result = subprocess.run(["mcs", *STRICT[:-1], *words], cwd=folder, capture_output=True, text=True)
     assert result.returncode == 0, result.stdout + result.stderr
 
 
-def ran(folder: Path, *words: str, stdin: bytes = b"") -> Outcome:
+def run_program(folder: Path, *words: str, stdin: bytes = b"") -> Outcome:
     result = subprocess.run(["mono", *words], input=stdin, capture_output=True, cwd=folder, timeout=HANG_S)
     return result.returncode, result.stdout.decode(), result.stderr.decode()
 
@@ -68,7 +68,7 @@ def test_hostile_texts_are_no_code(tmp_path: Path, data: st.DataObject) -> None:
 
 def test_hostile_names_stay_distinct(tmp_path: Path) -> None:
     """Each atom reads a signal of the same name; the names are awkward ones, and all words of the generated file."""
-    own = re.findall(r"\w+", written(cover_and_hide(), tmp_path))
+    own = re.findall(r"\w+", write_monitor(cover_and_hide(), tmp_path))
     names = [name for name in dict.fromkeys([*NAMES, *own]) if "\0" not in name]
     atoms = [f"v{index}" for index in range(len(names))]
     fspa = build(spec_from_formula(f.eventually(f.and_(*map(f.atom, atoms)))))
@@ -135,11 +135,11 @@ internal static class Library
 """
 
 
-def test_library(tmp_path: Path) -> None:
+def test_a_host_gets_results_notices_and_errors(tmp_path: Path) -> None:
     fspa = cover_and_hide()
-    written(fspa, tmp_path)
+    write_monitor(fspa, tmp_path)
     (tmp_path / "library.cs").write_text(LIBRARY)
-    compiled(tmp_path, "-out:library.exe", "library.cs", "cover_and_hide_monitor.cs")
+    compile_program(tmp_path, "-out:library.exe", "library.cs", "cover_and_hide_monitor.cs")
     monitor = Monitor(fspa, {"level_size": 10.0})
     step = monitor.step({"distance(s1)": 5.0, "distance(s2)": 5.0, "distance(exit)": 5.0, "health": 1.0})
     together = "step 2: `near(s1)` and `near(exit)` hold at once, against `exclusive near(s1), near(s2), near(exit)`"
@@ -157,7 +157,7 @@ def test_library(tmp_path: Path) -> None:
         "step 1: the signal `health` is 2, outside [0, 1]: it counts as 1",
         "0 0",
     ]
-    assert ran(tmp_path, "library.exe") == (0, "".join(f"{line}\n" for line in lines), "")
+    assert run_program(tmp_path, "library.exe") == (0, "".join(f"{line}\n" for line in lines), "")
 
 
 UNITY = r"""
@@ -258,11 +258,11 @@ internal sealed class Game : Tltl.cover_and_hide_monitor_behaviour
 """
 
 
-def test_the_component_for_unity(tmp_path: Path) -> None:
-    written(cover_and_hide(), tmp_path)
+def test_the_component_for_unity_raises_events_and_reports_errors(tmp_path: Path) -> None:
+    write_monitor(cover_and_hide(), tmp_path)
     (tmp_path / "game.cs").write_text(UNITY)
     sources = ("game.cs", "cover_and_hide_monitor.cs", "cover_and_hide_monitor_behaviour.cs")
-    compiled(tmp_path, "-out:game.exe", *sources)
+    compile_program(tmp_path, "-out:game.exe", *sources)
     lines = [
         *("False", "error: step 1: no finite number for the signal `distance(s1)`", "False"),
         "warning: step 1: the signal `health` is 2, outside [0, 1]: it counts as 1",
@@ -271,7 +271,7 @@ def test_the_component_for_unity(tmp_path: Path) -> None:
         *("error: step 1: no finite number for the signal `distance(s1)`", "False"),
         *("error: the param `level_size` cannot be 0: its range is [2, 10000]", "False"),
     ]
-    assert ran(tmp_path, "game.exe") == (0, "".join(f"{line}\n" for line in lines), "")
+    assert run_program(tmp_path, "game.exe") == (0, "".join(f"{line}\n" for line in lines), "")
 
 
 # --- as a program ---------------------------------------------------------------------------------
@@ -280,13 +280,13 @@ def test_the_component_for_unity(tmp_path: Path) -> None:
 @pytest.fixture(scope="module")
 def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("program")
-    written(cover_and_hide(), folder)
-    compiled(folder, "-define:TLTL_MAIN", "cover_and_hide_monitor.cs")
+    write_monitor(cover_and_hide(), folder)
+    compile_program(folder, "-define:TLTL_MAIN", "cover_and_hide_monitor.cs")
     return folder
 
 
 @pytest.mark.parametrize("culture", ["de_DE.UTF-8", "tr_TR.UTF-8", "ar_SA.UTF-8"])
-def test_program_in_other_cultures(program: Path, culture: str) -> None:
+def test_the_program_prints_the_same_numbers_in_other_cultures(program: Path, culture: str) -> None:
     """Some cultures write numbers with commas, or a capital i with a dot."""
     samples = [{**FAR, "distance(s1)": 0.25}, {**FAR, "distance(s2)": 7.5}, {**FAR, "health": -1.5}]
     result = subprocess.run(
@@ -308,10 +308,10 @@ def test_public_members_have_comments(tmp_path: Path) -> None:
         + tuple(replace(signal, doc="") for signal in fspa.signals[1:]),
         params=tuple(replace(param, doc="") for param in fspa.params),
     )
-    written(fspa, tmp_path)
+    write_monitor(fspa, tmp_path)
     (tmp_path / "game.cs").write_text(f"#pragma warning disable 1591\n{UNITY}")
     sources = ("game.cs", "cover_and_hide_monitor.cs", "cover_and_hide_monitor_behaviour.cs")
-    compiled(tmp_path, "-out:game.exe", "-doc:game.xml", *sources)
+    compile_program(tmp_path, "-out:game.exe", "-doc:game.xml", *sources)
     assert "A ratio in [0, 1]." in (tmp_path / "game.xml").read_text()
 
 
@@ -353,8 +353,8 @@ def test_decimals_are_exact(program: Path) -> None:
     ]
     (program / "numbers.cs").write_text(DECIMALS)
     words = ("-define:TLTL_MAIN", "-main:Numbers", "-out:numbers.exe", "numbers.cs", "cover_and_hide_monitor.cs")
-    compiled(program, *words)
-    status, out, err = ran(program, "numbers.exe", stdin="".join(f"{text}\n" for text in texts).encode())
+    compile_program(program, *words)
+    status, out, err = run_program(program, "numbers.exe", stdin="".join(f"{text}\n" for text in texts).encode())
     assert (status, err) == (0, "")
     for text, line in zip(texts, out.splitlines(), strict=True):
         bits = struct.pack(">d", float(text)).hex()

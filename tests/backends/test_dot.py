@@ -14,19 +14,19 @@ from tltlc.automaton.fspa import Fspa, Guard, Notation, Pair, Text
 from tltlc.automaton.text import guard_text, label_text
 from tltlc.backends import Options
 from tltlc.backends.dot import FILLS, LINES, MOST_GUARDS, graph
-from tltlc.backends.drawing.folding import whole
-from tltlc.backends.drawing.texts import arrows, visible, wrapped
+from tltlc.backends.drawing.folding import whole_drawing
+from tltlc.backends.drawing.texts import escape_invisible, guards_by_arrow, wrap_text
 from tltlc.core.record import replace
 from tltlc.logic.formula import and_, atom, not_, or_
 
 
-def emitted(fspa: Fspa, options: Options | None = None) -> str:
+def dot_text(fspa: Fspa, options: Options | None = None) -> str:
     text = backends.emit("dot", fspa, options)[f"{fspa.name}.dot"]
     assert isinstance(text, str)
     return text
 
 
-def parsed(text: str) -> pygraphviz.AGraph:
+def parse_dot(text: str) -> pygraphviz.AGraph:
     return pygraphviz.AGraph(string=text)
 
 
@@ -36,13 +36,13 @@ def words_of(label: str) -> str:
 
 
 def test_loops_of_final_states_are_on_the_right_where_no_edge_arrives() -> None:
-    drawn = parsed(emitted(cover_and_hide()))
+    drawn = parse_dot(dot_text(cover_and_hide()))
     on_the_right = [edge[0] for edge in drawn.edges() if edge[0] == edge[1] and edge.attr["headport"] == "e"]
     assert on_the_right == [str(state.id) for state in cover_and_hide().states if state.verdict == "violated"]
 
 
 def test_the_picture_matches_the_figure_of_the_paper() -> None:
-    fspa, drawn = cover_and_hide(), parsed(emitted(cover_and_hide()))
+    fspa, drawn = cover_and_hide(), parse_dot(dot_text(cover_and_hide()))
     assert len(drawn.nodes()) == 1 + len(fspa.states)
     assert drawn.has_edge("start", "0")
     for state in fspa.states:
@@ -69,8 +69,8 @@ def test_the_picture_matches_the_figure_of_the_paper() -> None:
         ("english", "Reach near(exit), and keep alive throughout.", "not near(exit) and alive"),
     ],
 )
-def test_notations(notation: Notation, label: str, guard: str) -> None:
-    drawn = parsed(emitted(cover_and_hide(), Options(notation=notation)))
+def test_labels_and_guards_are_drawn_in_the_chosen_notation(notation: Notation, label: str, guard: str) -> None:
+    drawn = parse_dot(dot_text(cover_and_hide(), Options(notation=notation)))
     assert drawn.get_node("3").attr["tooltip"].endswith(": " + label)
     assert drawn.get_edge("3", "3").attr["tooltip"] == guard
 
@@ -78,13 +78,13 @@ def test_notations(notation: Notation, label: str, guard: str) -> None:
 @settings(max_examples=30, deadline=None)
 @given(automata() | infinite_automata())
 def test_every_state_and_guard_is_drawn_once(fspa: Fspa) -> None:
-    drawn = parsed(emitted(fspa))
+    drawn = parse_dot(dot_text(fspa))
     assert len(drawn.nodes()) == len(fspa.states) + 1
-    expected = arrows(whole(fspa).edges, "unicode")
+    expected = guards_by_arrow(whole_drawing(fspa).edges, "unicode")
     assert sum(map(len, expected.values())) == len(fspa.edges)
-    shown = {tuple(map(int, edge)): words_of(edge.attr["label"]) for edge in drawn.edges() if edge[0] != "start"}
-    assert len(drawn.edges()) == len(shown) + 1
-    assert {ends: text.split() for ends, text in shown.items()} == {
+    texts = {tuple(map(int, edge)): words_of(edge.attr["label"]) for edge in drawn.edges() if edge[0] != "start"}
+    assert len(drawn.edges()) == len(texts) + 1
+    assert {ends: text.split() for ends, text in texts.items()} == {
         ends: " ".join(guards).split() for ends, guards in expected.items()
     }
 
@@ -92,21 +92,21 @@ def test_every_state_and_guard_is_drawn_once(fspa: Fspa) -> None:
 @settings(max_examples=80, deadline=None)
 @given(hostile_automata())
 def test_hostile_texts_stay_texts(fspa: Fspa) -> None:
-    drawn = parsed(emitted(fspa))
+    drawn = parse_dot(dot_text(fspa))
     assert sorted(drawn.nodes()) == sorted(["start", *(str(state.id) for state in fspa.states)])
     ends = {(str(edge.source), str(edge.target)) for edge in fspa.edges}
     assert sorted(map(tuple, drawn.edges())) == sorted([("start", "0"), *ends])
     for state in fspa.states:
         attributes = drawn.get_node(str(state.id)).attr
-        shown = words_of(attributes["label"]).split()[1:]
-        assert shown == visible(" ".join(wrapped(label_text(fspa, state.id, "unicode"), 30))).split()
+        words = words_of(attributes["label"]).split()[1:]
+        assert words == escape_invisible(" ".join(wrap_text(label_text(fspa, state.id, "unicode"), 30))).split()
         assert attributes["color"] == LINES[state.verdict]
 
 
 def test_parallel_edges_share_an_arrow_that_shows_their_pairs() -> None:
     """The labels of two loops at one state would overlap."""
     (fspa,) = compile_text("signal a: bool spec s { semantics infinite require G F a }")
-    drawn = parsed(emitted(replace(fspa, acceptance=(Pair((0,), (1,)), Pair((), (0,))))))
+    drawn = parse_dot(dot_text(replace(fspa, acceptance=(Pair((0,), (1,)), Pair((), (0,))))))
     (loop,) = (edge for edge in drawn.edges() if edge[0] == edge[1])
     assert loop.attr["tooltip"] == "¬a [fin 0] [inf 1]; a [inf 0]"
     assert words_of(loop.attr["label"]).split() == "¬a [fin 0] [inf 1] a [inf 0]".split()
@@ -115,10 +115,10 @@ def test_parallel_edges_share_an_arrow_that_shows_their_pairs() -> None:
 def test_an_arrow_with_very_many_guards_counts_the_rest() -> None:
     fspa = cover_and_hide()
     edges = tuple(replace(fspa.edges[0], guard=Guard(atom(f"p{index}"), ())) for index in range(MOST_GUARDS + 3))
-    drawn = parsed(emitted(replace(fspa, edges=edges)))
+    drawn = parse_dot(dot_text(replace(fspa, edges=edges)))
     loop = drawn.get_edge("0", "0")
-    shown = words_of(loop.attr["label"]).split()
-    assert shown == [*(f"p{index}" for index in range(MOST_GUARDS)), "and", "3", "more"]
+    words = words_of(loop.attr["label"]).split()
+    assert words == [*(f"p{index}" for index in range(MOST_GUARDS)), "and", "3", "more"]
     assert loop.attr["tooltip"].endswith(f"; p{MOST_GUARDS + 2}")
 
 
@@ -141,7 +141,7 @@ def test_an_arrow_with_very_many_guards_counts_the_rest() -> None:
 )
 def test_the_legend_explains_the_pairs(formula: str, legend: str) -> None:
     (fspa,) = compile_text(f"signal a: bool signal b: bool spec s {{ semantics infinite require {formula} }}")
-    drawn = parsed(emitted(fspa))
+    drawn = parse_dot(dot_text(fspa))
     title = " ".join(words_of(drawn.graph_attr["label"]).split())
     assert (legend in title) if legend else ("accepted" not in title)
 
@@ -156,18 +156,18 @@ def test_the_legend_explains_the_pairs(formula: str, legend: str) -> None:
 )
 def test_the_legend_explains_only_what_is_drawn(formula: str, legend: str) -> None:
     (fspa,) = compile_text(f"signal a: bool spec s = {formula}")
-    drawn = parsed(emitted(fspa))
+    drawn = parse_dot(dot_text(fspa))
     assert " ".join(words_of(drawn.graph_attr["label"]).split()) == f"s {legend}"
 
 
 def test_a_sketch_has_no_guards() -> None:
-    drawn = parsed(graph(cover_and_hide(), Options(), detail="sketch"))
+    drawn = parse_dot(graph(cover_and_hide(), Options(), detail="sketch"))
     assert words_of(drawn.get_node("0").attr["label"]).split() == ["3", "0"]
     assert not drawn.get_edge("0", "1").attr["label"]
 
 
 def test_guards_can_be_shown_only_in_tooltips() -> None:
-    drawn = parsed(graph(cover_and_hide(), Options(), detail="labels"))
+    drawn = parse_dot(graph(cover_and_hide(), Options(), detail="labels"))
     assert words_of(drawn.get_node("3").attr["label"]).split() == ["1", "◇near(exit)", "∧", "□alive"]
     edge = drawn.get_edge("0", "1")
     assert (edge.attr["label"] or "", edge.attr["tooltip"]) == ("", "near(s1) ∧ alive")
@@ -179,27 +179,27 @@ def test_graphviz_can_read_texts_of_any_length(character: str) -> None:
     text = 10_000 * f"{character}{character} "
     edges = tuple(replace(edge, guard=replace(edge.guard, formula=Text(text, text, text))) for edge in fspa.edges)
     states = tuple(replace(state, label=Text(text, text, text)) for state in fspa.states)
-    drawn = parsed(emitted(replace(fspa, edges=edges, states=states)))
+    drawn = parse_dot(dot_text(replace(fspa, edges=edges, states=states)))
     assert (len(drawn.nodes()), len(drawn.edges())) == (1 + len(states), 1 + len(edges))
     assert drawn.get_edge("0", "1").attr["tooltip"].endswith(" …")
 
 
 def test_long_labels_are_wrapped_before_operators_and_cut() -> None:
-    assert wrapped("aaaa & bbbb & cccc", 9) == ["aaaa", "& bbbb", "& cccc"]
-    assert wrapped("aaaa & bbbb & cccc", 13) == ["aaaa & bbbb", "& cccc"]
-    assert wrapped("a " * 100, 1, most_lines=3) == ["a", "a", "a …"]
-    assert wrapped("one_word_that_is_too_long", 5) == ["one_word_that_is_too_long"]
-    assert wrapped("", 5) == [""]
+    assert wrap_text("aaaa & bbbb & cccc", 9) == ["aaaa", "& bbbb", "& cccc"]
+    assert wrap_text("aaaa & bbbb & cccc", 13) == ["aaaa & bbbb", "& cccc"]
+    assert wrap_text("a " * 100, 1, most_lines=3) == ["a", "a", "a …"]
+    assert wrap_text("one_word_that_is_too_long", 5) == ["one_word_that_is_too_long"]
+    assert wrap_text("", 5) == [""]
 
 
 def test_comparisons_arguments_and_bounds_stay_on_one_line() -> None:
-    assert wrapped("at & !(force > 40) & (speed < 2.5)", 9) == ["at", "& !(force > 40)", "& (speed < 2.5)"]
-    assert wrapped("near(a) & placed(cube, tray)", 15) == ["near(a)", "& placed(cube, tray)"]
-    assert wrapped("a & F[0,4] b", 8) == ["a", "& F[0,4] b"]
-    assert wrapped("aaaa & b [fin 10] [inf 2]", 8) == ["aaaa & b", "[fin 10] [inf 2]"]
-    assert wrapped("Reach near(a, close=3), then b.", 24) == ["Reach near(a, close=3),", "then b."]
-    assert wrapped("not aaaa or not bbbb", 9) == ["not aaaa", "or not bbbb"]
-    assert wrapped("a - b + c > 0", 4) == ["a - b +", "c > 0"], "no longer than two widths"
+    assert wrap_text("at & !(force > 40) & (speed < 2.5)", 9) == ["at", "& !(force > 40)", "& (speed < 2.5)"]
+    assert wrap_text("near(a) & placed(cube, tray)", 15) == ["near(a)", "& placed(cube, tray)"]
+    assert wrap_text("a & F[0,4] b", 8) == ["a", "& F[0,4] b"]
+    assert wrap_text("aaaa & b [fin 10] [inf 2]", 8) == ["aaaa & b", "[fin 10] [inf 2]"]
+    assert wrap_text("Reach near(a, close=3), then b.", 24) == ["Reach near(a, close=3),", "then b."]
+    assert wrap_text("not aaaa or not bbbb", 9) == ["not aaaa", "or not bbbb"]
+    assert wrap_text("a - b + c > 0", 4) == ["a - b +", "c > 0"], "no longer than two widths"
 
 
 def test_operators_inside_names_of_atoms_are_kept() -> None:

@@ -12,7 +12,7 @@ from tltlc import compile_text
 from tltlc.automaton.fspa import Edge, Fspa, Guard
 from tltlc.backends import Options
 from tltlc.backends.dot import graph
-from tltlc.backends.drawing.folding import LEAST_FOLDED, Drawing, EdgeLabel, folded, span, whole
+from tltlc.backends.drawing.folding import LEAST_FOLDED, Drawing, EdgeLabel, fold_runs, text_range, whole_drawing
 from tltlc.core.record import replace
 from tltlc.logic.formula import atom
 
@@ -75,8 +75,8 @@ def edges_of(drawing: Drawing, state: int) -> set[tuple[EdgeLabel, int]]:
 
 def check(fspa: Fspa) -> Drawing:
     """Assert by definition what folding promises, and return the drawing."""
-    drawing = folded(fspa)
-    full = whole(fspa)
+    drawing = fold_runs(fspa)
+    full = whole_drawing(fspa)
     inner = [state.id for run in drawing.folded.values() for state in run]
     drawn = [state.id for state in drawing.states]
     assert sorted([*(state for state in drawn if state not in drawing.folded), *inner]) == list(range(len(full.states)))
@@ -105,8 +105,8 @@ def check_run(full: Drawing, drawing: Drawing, run: list[int]) -> None:
     assert beyond != last
     for state, following in zip(path, [*path[1:], beyond], strict=True):
         assert edges_of(full, state) == common(full, run) | {(label, following)}
-    shown = {(edge.label, edge.target) for edge in drawing.edges if edge.source == run[0]}
-    assert shown == common(full, run) | {(label, last)}
+    other_edges = {(edge.label, edge.target) for edge in drawing.edges if edge.source == run[0]}
+    assert other_edges == common(full, run) | {(label, last)}
 
 
 def common(full: Drawing, run: list[int]) -> set[tuple[EdgeLabel, int]]:
@@ -132,8 +132,8 @@ def test_any_artefact_is_folded_by_the_same_rule(fspa: Fspa) -> None:
 @given(chains() | counting())
 def test_every_run_is_folded(fspa: Fspa) -> None:
     """Every path of five states that can be folded is folded."""
-    inner = {state.id for run in folded(fspa).folded.values() for state in run}
-    full = whole(fspa)
+    inner = {state.id for run in fold_runs(fspa).folded.values() for state in run}
+    full = whole_drawing(fspa)
     for edge in full.edges:
         path = [edge.source]
         shared = edges_of(full, edge.source) - {(edge.label, edge.target)}
@@ -171,10 +171,10 @@ def continues(full: Drawing, path: list[int], label: EdgeLabel, shared: set[tupl
         ("G[0,12] a", [10], 15),
     ],
 )
-def test_the_number_of_folded_states(formula: str, inner: list[int], states: int) -> None:
+def test_known_automata_have_these_folded_states(formula: str, inner: list[int], states: int) -> None:
     fspa = automaton(formula)
     assert len(fspa.states) == states
-    assert [len(run) for run in folded(fspa).folded.values()] == inner
+    assert [len(run) for run in fold_runs(fspa).folded.values()] == inner
 
 
 def test_an_entrance_from_outside_ends_a_run() -> None:
@@ -189,14 +189,14 @@ def test_an_entrance_from_outside_ends_a_run() -> None:
 
 def test_an_automaton_without_runs_is_drawn_whole() -> None:
     fspa = cover_and_hide()
-    assert folded(fspa) == whole(fspa)
-    assert graph(fspa, Options(), folded(fspa)) == graph(fspa, Options())
+    assert fold_runs(fspa) == whole_drawing(fspa)
+    assert graph(fspa, Options(), fold_runs(fspa)) == graph(fspa, Options())
 
 
-def test_ranges_of_numbers_in_labels() -> None:
-    assert span("F[0,39] p", "F[0,2] p") == "F[0,39…2] p"
-    assert span("p2", "p2") == "p2"
-    assert span("F[0,2] p", "p | X p") == "F[0,2] p … p | X p"
-    assert span("1", "12") == "1…12"
-    assert span("have p after 1 step", "have p after 1 step") == "have p after 1 step"
-    assert span("reach p within 9 steps", "reach p within 1 step") == "reach p within 9…1 steps"
+def test_labels_that_differ_in_numbers_become_ranges() -> None:
+    assert text_range("F[0,39] p", "F[0,2] p") == "F[0,39…2] p"
+    assert text_range("p2", "p2") == "p2"
+    assert text_range("F[0,2] p", "p | X p") == "F[0,2] p … p | X p"
+    assert text_range("1", "12") == "1…12"
+    assert text_range("have p after 1 step", "have p after 1 step") == "have p after 1 step"
+    assert text_range("reach p within 9 steps", "reach p within 1 step") == "reach p within 9…1 steps"

@@ -67,7 +67,7 @@ def run(folder: Path, script: str, *arguments: str, stdin: bytes = b"") -> Outco
     return result.returncode, out, result.stderr.decode()
 
 
-def monitored(folder: Path, fspa: Fspa, trace: str) -> Outcome:
+def run_monitor(folder: Path, fspa: Fspa, trace: str) -> Outcome:
     write(folder, fspa)
     (folder / "trace.csv").write_text(trace, encoding="utf-8", newline="")
     return run(folder, f"{fspa.name}_monitor_main.gd", "--full", "trace.csv")
@@ -214,7 +214,7 @@ def test_many_digits_and_ties_are_read_exactly(tmp_path: Path) -> None:
     cells += ["-1.7976931348623157e308", "-1.7976931348623158e308", "-1e-9999999999", "-179769313486231580793e289"]
     samples = [{"x": float(cell)} for cell in cells]
     fspa = one_atom(X, NUMBER)
-    outcome = monitored(tmp_path, fspa, "\n".join(["x", *cells, ""]))
+    outcome = run_monitor(tmp_path, fspa, "\n".join(["x", *cells, ""]))
     expected_outcome = expected(fspa, samples)
     assert (*outcome[:2], comparable(outcome[2])) == (*expected_outcome[:2], comparable(expected_outcome[2]))
 
@@ -267,7 +267,7 @@ def test_hostile_names_stay_distinct(tmp_path: Path) -> None:
     fspa = awkward()
     names = [signal.name for signal in fspa.signals]
     samples = [{other: -0.25 if other == name else 0.5 for other in names} for name in names]
-    outcome = monitored(tmp_path, fspa, trace_of(samples, names))
+    outcome = run_monitor(tmp_path, fspa, trace_of(samples, names))
     assert outcome[:2] == expected(fspa, samples)[:2], outcome[2]
     assert [row["limiting"] for row in csv.DictReader(io.StringIO(outcome[1], newline=""))] == names
 
@@ -390,7 +390,7 @@ func _init():
 
 
 @runs
-def test_library(tmp_path: Path) -> None:
+def test_a_host_gets_results_notices_and_errors(tmp_path: Path) -> None:
     fspa = cover_and_hide()
     write(tmp_path, fspa)
     (tmp_path / "library.gd").write_text(LIBRARY)

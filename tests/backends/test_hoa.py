@@ -18,7 +18,7 @@ from tltlc.automaton.infinite.build import build_infinite
 from tltlc.automaton.infinite.lasso import holds_on_lasso
 from tltlc.automaton.transitions import TransitionDiagrams
 from tltlc.backends import hoa
-from tltlc.backends.drawing.texts import visible
+from tltlc.backends.drawing.texts import escape_invisible
 from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.io.limits import Limit
@@ -35,7 +35,7 @@ spec fair { semantics infinite  require (G F a -> G F b) and G alive }
 """
 
 
-def emitted(fspa: Fspa) -> str:
+def hoa_text(fspa: Fspa) -> str:
     text = backends.emit("hoa", fspa)[f"{fspa.name}.hoa"]
     assert isinstance(text, str)
     return text
@@ -43,11 +43,11 @@ def emitted(fspa: Fspa) -> str:
 
 def check(fspa: Fspa) -> Hoa:
     """Assert that the file is valid and agrees with the automaton letter by letter; return the parsed file."""
-    text = emitted(fspa)
+    text = hoa_text(fspa)
     parsed = read(text)
     infinite = fspa.semantics == "infinite"
     assert text.startswith("HOA: v1\n")
-    assert all(visible(line) == line for line in text.split("\n"))
+    assert all(escape_invisible(line) == line for line in text.split("\n"))
     assert parsed.starts == [0]
     assert parsed.atoms == [atom.name for atom in fspa.atoms]
     assert [parsed.states[state.id].name for state in fspa.states] == [str(state.label) for state in fspa.states]
@@ -82,7 +82,7 @@ def same_letters(fspa: Fspa, parsed: Hoa) -> None:
         assert hoa_state.sets == ({0} if not infinite and state.accepting else set())
         for letter in all_letters:
             expected = [(edge.target, marks | hoa_state.sets) for edge, marks in leaving if holds(edge, letter)]
-            assert parsed.taken(state.id, letter) == (expected if letter in allowed else [])
+            assert parsed.edges_taken(state.id, letter) == (expected if letter in allowed else [])
             assert len(expected) == 1 or letter not in allowed
     complete = ["complete"] if len(all_letters) == len(allowed) else []
     marks = "trans-acc" if infinite else "state-acc"
@@ -102,9 +102,9 @@ def words(fspa: Fspa, least: int = 0) -> st.SearchStrategy[list[Letter]]:
     return st.lists(st.sampled_from(letters(fspa)), min_size=least, max_size=4)
 
 
-def test_an_automaton_over_infinite_traces() -> None:
+def test_an_automaton_over_infinite_traces_has_marks_on_edges() -> None:
     (fspa,) = compile_text(INFINITE)
-    assert emitted(fspa) == (
+    assert hoa_text(fspa) == (
         "HOA: v1\n"
         f'tool: "tltlc" "{__version__}"\n'
         'name: "fair"\n'
@@ -130,8 +130,8 @@ def test_an_automaton_over_infinite_traces() -> None:
     check(fspa)
 
 
-def test_an_automaton_over_finite_traces() -> None:
-    text = emitted(cover_and_hide())
+def test_an_automaton_over_finite_traces_has_marks_on_states() -> None:
+    text = hoa_text(cover_and_hide())
     assert "Alias: @allowed !(0&1) & !(0&2) & !(1&2)\n" in text
     assert "acc-name: Buchi\nAcceptance: 1 Inf(0)\n" in text
     assert "properties: trans-labels explicit-labels state-acc deterministic\n" in text
@@ -167,7 +167,7 @@ def test_over_finite_traces_the_last_state_accepts_the_traces_of_the_formula(spe
     ("formula", "name", "acceptance"),
     [("a and not a", "Rabin 0", "f"), ("a or not a", "Rabin 1", "Fin(0)&Inf(1)")],
 )
-def test_unsatisfiable_and_valid_formulas(formula: str, name: str, acceptance: str) -> None:
+def test_unsatisfiable_and_valid_formulas_have_this_acceptance(formula: str, name: str, acceptance: str) -> None:
     (fspa,) = compile_text(f"signal a: bool spec constant {{ semantics infinite  require {formula} }}")
     parsed = check(fspa)
     assert (parsed.acceptance_name, parsed.acceptance) == (name, acceptance)
@@ -188,7 +188,7 @@ def test_an_edge_can_be_in_many_sets() -> None:
     (fspa,) = compile_text("signal a: bool spec again { semantics infinite  require G F a }")
     fspa = replace(fspa, acceptance=(Pair((), (1,)), Pair((0,), (1,)), Pair((1, 1), (0,))))
     # A set that contains an edge twice is written once.
-    assert "[!0] 0 {2 5}\n[0] 0 {1 3 4}\n" in emitted(fspa)
+    assert "[!0] 0 {2 5}\n[0] 0 {1 3 4}\n" in hoa_text(fspa)
     check(fspa)
 
 
@@ -196,7 +196,7 @@ def test_labels_come_from_the_primes_not_from_the_text() -> None:
     fspa = cover_and_hide()
     text = Text("t] 0 [t", "t] 0 [t", "t] 0 [t")
     misleading = replace(fspa, edges=tuple(replace(edge, guard=Guard(text, edge.guard.primes)) for edge in fspa.edges))
-    assert emitted(misleading) == emitted(fspa)
+    assert hoa_text(misleading) == hoa_text(fspa)
 
 
 @settings(max_examples=40, deadline=None)
@@ -204,18 +204,18 @@ def test_labels_come_from_the_primes_not_from_the_text() -> None:
 def test_a_guard_too_large_for_a_short_label_is_the_sum_of_its_primes(fspa: Fspa) -> None:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(hoa, "TransitionDiagrams", lambda: TransitionDiagrams(steps=0))
-        parsed = read(emitted(replace(fspa, exclusive=())))
+        parsed = read(hoa_text(replace(fspa, exclusive=())))
     for state, letter in itertools.product(fspa.states, itertools.product((False, True), repeat=len(fspa.atoms))):
         expected = [edge.target for edge in fspa.edges_from(state.id) if holds(edge, letter)]
-        assert [target for target, _ in parsed.taken(state.id, letter)] == expected
+        assert [target for target, _ in parsed.edges_taken(state.id, letter)] == expected
 
 
 def test_an_edge_that_no_letter_takes_has_a_false_label() -> None:
     fspa = cover_and_hide()
     at = [(edge.source, edge.target) for edge in fspa.edges].index((2, 2))
     edges = (*fspa.edges[:at], Edge(2, 0, Guard(FALSE, ())), *fspa.edges[at:])
-    assert "[@allowed & f] 0\n[@allowed] 2\n" in emitted(replace(fspa, edges=edges))
-    assert "[f] 0\n[t] 2\n" in emitted(replace(fspa, edges=edges, exclusive=()))
+    assert "[@allowed & f] 0\n[@allowed] 2\n" in hoa_text(replace(fspa, edges=edges))
+    assert "[f] 0\n[t] 2\n" in hoa_text(replace(fspa, edges=edges, exclusive=()))
 
 
 @settings(max_examples=120, deadline=None)
@@ -232,8 +232,8 @@ def test_invisible_characters_are_escaped_as_in_c() -> None:
     pairs = zip(cover_and_hide().atoms, names, strict=True)
     atoms = tuple(replace(atom, base=name, arguments=()) for atom, name in pairs)
     fspa = replace(cover_and_hide(), atoms=atoms, doc="\ud800")
-    assert r'AP: 4 "\ud800" "\\ud800" "\U000e0001" "\u200b\u000a"' in emitted(fspa)
-    emitted(fspa).encode()
+    assert r'AP: 4 "\ud800" "\\ud800" "\U000e0001" "\u200b\u000a"' in hoa_text(fspa)
+    hoa_text(fspa).encode()
     check(fspa)
 
 

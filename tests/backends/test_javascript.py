@@ -46,7 +46,7 @@ Outcome = tuple[int, str, str]
 """Exit status, standard output, standard error."""
 
 
-def written(fspa: Fspa, folder: Path) -> Path:
+def write_module(fspa: Fspa, folder: Path) -> Path:
     """Write the module and its types, and return the path of the module."""
     files = emit("javascript", fspa)
     assert list(files) == [f"{fspa.name}_monitor.mjs", f"{fspa.name}_monitor.d.mts"]
@@ -56,7 +56,7 @@ def written(fspa: Fspa, folder: Path) -> Path:
     return folder / f"{fspa.name}_monitor.mjs"
 
 
-def ran(module: Path, *arguments: str, stdin: bytes = b"") -> Outcome:
+def run_module(module: Path, *arguments: str, stdin: bytes = b"") -> Outcome:
     result = subprocess.run(["node", module.name, *arguments], input=stdin, capture_output=True, cwd=module.parent)
     return result.returncode, result.stdout.decode(), result.stderr.decode()
 
@@ -80,7 +80,7 @@ def rows(fspa: Fspa, samples: Sequence[Mapping[str, float]]) -> list[list[str]]:
     return rows_
 
 
-def printed(out: str) -> list[list[str]]:
+def printed_rows(out: str) -> list[list[str]]:
     header, *rows_ = csv.reader(io.StringIO(out, newline=""), strict=True)
     assert header == "step,state,verdict,accepting,done,progress,reward,robustness,limiting".split(",")
     return rows_
@@ -100,18 +100,18 @@ def printed(out: str) -> list[list[str]]:
 def test_hostile_texts_are_no_code(tmp_path: Path, fspa: Fspa) -> None:
     assume("\0" not in fspa.signals[0].name)
     samples = [{fspa.signals[0].name: value, "health": 1.0} for value in (-1.0, 0.0, -0.5)]
-    status, out, err = ran(written(fspa, tmp_path), "--full", "-", stdin=trace_of(samples))
+    status, out, err = run_module(write_module(fspa, tmp_path), "--full", "-", stdin=trace_of(samples))
     assert (status, err) == (0, "")
-    assert printed(out) == rows(fspa, samples)
+    assert printed_rows(out) == rows(fspa, samples)
 
 
 def test_hostile_names_stay_distinct(tmp_path: Path) -> None:
     """Each atom reads a signal of the same awkward name; in each sample a different atom must be the limiting one."""
     fspa, samples = awkward(NAMES)
-    status, out, err = ran(written(fspa, tmp_path), "--full", "-", stdin=trace_of(samples))
+    status, out, err = run_module(write_module(fspa, tmp_path), "--full", "-", stdin=trace_of(samples))
     assert (status, err) == (0, "")
-    assert printed(out) == rows(fspa, samples)
-    assert [row[-1] for row in printed(out)] == [*samples[0]]
+    assert printed_rows(out) == rows(fspa, samples)
+    assert [row[-1] for row in printed_rows(out)] == [*samples[0]]
 
 
 def awkward(all_names: Sequence[str]) -> tuple[Fspa, list[dict[str, float]]]:
@@ -131,7 +131,7 @@ def awkward(all_names: Sequence[str]) -> tuple[Fspa, list[dict[str, float]]]:
 def test_docs_cannot_close_a_comment_of_the_types(tmp_path: Path) -> None:
     fspa = cover_and_hide()
     signals = (*fspa.signals[:3], replace(fspa.signals[3], doc="*/ export const x = 1; /*"))
-    text = written(replace(fspa, signals=signals), tmp_path).with_suffix(".d.mts").read_text()
+    text = write_module(replace(fspa, signals=signals), tmp_path).with_suffix(".d.mts").read_text()
     assert "/** * / export const x = 1; /* A ratio in [0, 1]. */\n  health: number;" in text
 
 
@@ -145,9 +145,9 @@ def test_numbers_are_printed_as_c_prints_them(tmp_path: Path) -> None:
     values = [sign * (1 + 2 * odd) * 2.0**-power for power in range(64) for odd in range(9) for sign in (1, -1)]
     values += [math.sin(number) * 10.0**-power for power in (0, 3, 5, 9, 99, 310) for number in range(60)]
     samples = [{"x": value} for value in values if abs(value) <= 1]
-    status, out, _ = ran(written(fspa, tmp_path), "--full", "-", stdin=trace_of(samples))
+    status, out, _ = run_module(write_module(fspa, tmp_path), "--full", "-", stdin=trace_of(samples))
     assert status == 0
-    assert printed(out) == rows(fspa, samples)
+    assert printed_rows(out) == rows(fspa, samples)
 
 
 # --- as a module ----------------------------------------------------------------------------------
@@ -184,9 +184,9 @@ console.log(monitor.steps, monitor.notices.join());
 """
 
 
-def test_module(tmp_path: Path) -> None:
+def test_a_host_gets_results_notices_and_errors(tmp_path: Path) -> None:
     fspa = cover_and_hide()
-    written(fspa, tmp_path)
+    write_module(fspa, tmp_path)
     (tmp_path / "use.mjs").write_text(USE)
     step = Monitor(fspa, {"level_size": 10.0}).step({**dict.fromkeys(FAR, 5.0), "health": 1.0})
     group = "near(s1), near(s2), near(exit)"
@@ -206,7 +206,7 @@ def test_module(tmp_path: Path) -> None:
         * 2,
         "0 step 1: the signal `health` is 2, outside [0, 1]: it counts as 1",
     ]
-    status, out, err = ran(tmp_path / "use.mjs")
+    status, out, err = run_module(tmp_path / "use.mjs")
     assert (status, err) == (0, "")
     assert out.splitlines() == lines
 
@@ -216,7 +216,7 @@ def test_a_boolean_is_a_bool_and_a_number(tmp_path: Path) -> None:
     expression = Op("-", (Op("*", (SignalValue("x"), SignalValue("seen"))), Const(0.5)))
     fspa = build(spec_from_formula(f.eventually(f.atom("p"))))
     signals = (spec.Signal("x", "number", None, None), spec.Signal("seen", "bool", 0.0, 1.0))
-    written(replace(fspa, signals=signals, atoms=(spec.Atom("p", expression),)), tmp_path)
+    write_module(replace(fspa, signals=signals, atoms=(spec.Atom("p", expression),)), tmp_path)
     (tmp_path / "use.mjs").write_text(f"""
 import {{ Monitor }} from "./{fspa.name}_monitor.mjs";
 for (const [x, seen] of [[1, true], [true, 1], [1, false], [1, 0.5], ["1", 1], [null, 1], [1, [1]], [1n, 1]]) {{
@@ -227,7 +227,7 @@ for (const [x, seen] of [[1, true], [true, 1], [1, false], [1, 0.5], ["1", 1], [
   }}
 }}
 """)
-    _, out, err = ran(tmp_path / "use.mjs")
+    _, out, err = run_module(tmp_path / "use.mjs")
     problems = ["seen` is 0.5, not true or false", "x` is no number", "x` is no number", "seen` is no number"]
     messages = [f"step 1: the signal `{message}" for message in [*problems, "x` is no number"]]
     assert out.splitlines() == ["0.5", "0.5", "0.5", *messages], err
@@ -274,7 +274,7 @@ new Monitor({ size: 1 });
 types = pytest.mark.skipif(not TSC, reason="there is no TypeScript compiler (tsc) here: types are not checked")
 
 
-def compiled(folder: Path, files: Sequence[str], **options: object) -> str:
+def type_errors(folder: Path, files: Sequence[str], **options: object) -> str:
     """Return the messages of the TypeScript compiler for the files."""
     strict = {"strict": True, "noEmit": True, "target": "es2022", "lib": ["es2022", "dom"], "types": []}
     (folder / "tsconfig.json").write_text(json.dumps({"compilerOptions": strict | options, "files": files}))
@@ -284,20 +284,20 @@ def compiled(folder: Path, files: Sequence[str], **options: object) -> str:
 @types
 @pytest.mark.parametrize(("module", "resolution"), [("nodenext", "nodenext"), ("esnext", "bundler")])
 def test_types_are_found_and_correct(tmp_path: Path, module: str, resolution: str) -> None:
-    written(cover_and_hide(), tmp_path)
-    written(build(spec_from_formula(f.TRUE, "again")), tmp_path)
+    write_module(cover_and_hide(), tmp_path)
+    write_module(build(spec_from_formula(f.TRUE, "again")), tmp_path)
     (tmp_path / "use.mts").write_text(TYPED_USE)
     (tmp_path / "plain.mts").write_text(PLAIN_USE)
-    assert compiled(tmp_path, ["use.mts", "plain.mts"], module=module, moduleResolution=resolution) == ""
+    assert type_errors(tmp_path, ["use.mts", "plain.mts"], module=module, moduleResolution=resolution) == ""
 
 
 @types
 def test_the_code_passes_the_type_checker(tmp_path: Path) -> None:
     """Some modules of the corpus, and hostile ones; untyped parameters of helpers count as ``any``."""
     fspas = [*(make().fspa for make in [*CASES.values()][::5]), awkward(NAMES)[0], build(spec_from_formula(f.TRUE))]
-    modules = [written(fspa, tmp_path).name for fspa in fspas]
+    modules = [write_module(fspa, tmp_path).name for fspa in fspas]
     (tmp_path / "node.d.ts").write_text("declare const process: any;\n")
-    messages = compiled(
+    messages = type_errors(
         tmp_path,
         ["node.d.ts", *modules],
         module="nodenext",
@@ -324,16 +324,16 @@ console.log(new Monitor().step(far).verdict);
 @pytest.mark.skipif(not ESBUILD, reason="there is no bundler (esbuild) here: no module is bundled")
 @pytest.mark.parametrize("platform", ["browser", "node"])
 @pytest.mark.parametrize("layout", ["esm", "iife", "cjs"])
-def test_bundles(tmp_path: Path, platform: str, layout: str) -> None:
+def test_bundlers_accept_the_module(tmp_path: Path, platform: str, layout: str) -> None:
     """Bundling gives no error or warning, and the bundle does not run the monitor's own program."""
-    written(cover_and_hide(), tmp_path)
+    write_module(cover_and_hide(), tmp_path)
     (tmp_path / "use.mjs").write_text(BUNDLED_USE)
     bundle = "use.bundle." + ("mjs" if layout == "esm" else "cjs")
     options = ["--bundle", f"--format={layout}", f"--platform={platform}", "--target=es2022", f"--outfile={bundle}"]
     command = [str(ESBUILD), "use.mjs", *options, "--log-level=warning"]
     result = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
     assert (result.returncode, result.stderr) == (0, "")
-    assert ran(tmp_path / bundle) == (0, "pending\n", "")
+    assert run_module(tmp_path / bundle) == (0, "pending\n", "")
 
 
 def test_the_module_imports_nothing() -> None:

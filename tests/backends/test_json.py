@@ -26,26 +26,26 @@ from tltlc.resolve.spec import Atom
 from tltlc.tools.diff.relation import different_atoms
 
 
-def emitted(fspa: Fspa) -> str:
+def json_text(fspa: Fspa) -> str:
     text = backends.emit("json", fspa)[f"{fspa.name}.fspa.json"]
     assert isinstance(text, str)
     return text
 
 
 def test_cover_and_hide_is_read_back() -> None:
-    assert read(emitted(cover_and_hide()), "x.fspa.json") == cover_and_hide()
+    assert read(json_text(cover_and_hide()), "x.fspa.json") == cover_and_hide()
 
 
 @settings(max_examples=60, deadline=None)
 @given(automata() | infinite_automata())
 def test_automata_are_read_back_unchanged(fspa: Fspa) -> None:
-    assert read(emitted(fspa), "x.fspa.json") == fspa
+    assert read(json_text(fspa), "x.fspa.json") == fspa
 
 
 @settings(max_examples=60, deadline=None)
 @given(hostile_automata())
 def test_hostile_texts_are_read_back_unchanged(fspa: Fspa) -> None:
-    text = emitted(fspa)
+    text = json_text(fspa)
     assert read(text, "x.fspa.json") == fspa
     assert "</" not in text
     assert "<!" not in text
@@ -59,12 +59,12 @@ def test_a_name_that_tltlc_would_write_otherwise_stays_a_name(name: str) -> None
     fspa = cover_and_hide()
     label = Text(name, "in unicode", "In English.")
     fspa = replace(fspa, formula=label, states=(replace(fspa.states[0], label=label), *fspa.states[1:]))
-    assert read(emitted(fspa), "x.fspa.json") == fspa
+    assert read(json_text(fspa), "x.fspa.json") == fspa
 
 
 def test_invisible_characters_are_escaped() -> None:
     unseen = [chr(code) for code in range(sys.maxunicode + 1) if unicodedata.category(chr(code)) in ("Cc", "Cf", "Cs")]
-    text = emitted(replace(cover_and_hide(), doc="".join(unseen)))
+    text = json_text(replace(cover_and_hide(), doc="".join(unseen)))
     assert not {*text} & {*unseen} - {"\n"}
     assert all(f"\\u{ord(character):04x}" in text for character in unseen if "\x7f" < character <= "\uffff")
 
@@ -74,20 +74,20 @@ def test_invisible_characters_are_escaped() -> None:
 def test_expressions_are_read_back_unchanged(expression: Expression) -> None:
     fspa = cover_and_hide()
     fspa = replace(fspa, atoms=(Atom("near", expression, "", ("s1",)), *fspa.atoms[1:]))
-    assert read(emitted(fspa), "x.fspa.json") == fspa
+    assert read(json_text(fspa), "x.fspa.json") == fspa
 
 
 @given(finite())
 def test_numbers_keep_every_digit(number: float) -> None:
     fspa = cover_and_hide()
     fspa = replace(fspa, atoms=(Atom("near", Const(number), "", ("s1",)), *fspa.atoms[1:]))
-    (atom, *_) = read(emitted(fspa), "x.fspa.json").atoms
+    (atom, *_) = read(json_text(fspa), "x.fspa.json").atoms
     assert isinstance(atom.expression, Const)
     assert repr(atom.expression.value) == repr(number)
 
 
 def test_unknown_fields_are_ignored_and_integers_may_have_a_decimal_point() -> None:
-    document = json.loads(emitted(cover_and_hide()))
+    document = json.loads(json_text(cover_and_hide()))
     document["generator"] = {"name": "another"}
     document["states"][0]["colour"] = "blue"
     document["spec_size"] = 3.0
@@ -101,7 +101,7 @@ def test_unknown_fields_are_ignored_and_integers_may_have_a_decimal_point() -> N
 def test_a_non_finite_number_is_never_written() -> None:
     fspa = cover_and_hide()
     with pytest.raises(ValueError, match="expression"):
-        emitted(replace(fspa, atoms=(Atom("near(s1)", Const(float("inf"))), *fspa.atoms[1:])))
+        json_text(replace(fspa, atoms=(Atom("near(s1)", Const(float("inf"))), *fspa.atoms[1:])))
 
 
 @pytest.mark.parametrize(
@@ -130,7 +130,7 @@ def test_invalid_artefacts_are_rejected(text: str, code: str, title: str) -> Non
 
 
 def test_an_artefact_has_pairs_only_over_infinite_traces() -> None:
-    document = json.loads(emitted(cover_and_hide()))
+    document = json.loads(json_text(cover_and_hide()))
     with pytest.raises(TltlError, match="TLT0603: the artefact lacks `acceptance`"):
         read(json.dumps({**document, "semantics": "infinite"}), "x.fspa.json")
     with pytest.raises(TltlError, match="TLT0603: `semantics` must be `infinite`"):
@@ -138,7 +138,7 @@ def test_an_artefact_has_pairs_only_over_infinite_traces() -> None:
 
 
 def test_an_error_points_at_the_value() -> None:
-    text = emitted(cover_and_hide()).replace('"distance": 2', '"distance": "2"')
+    text = json_text(cover_and_hide()).replace('"distance": 2', '"distance": "2"')
     with pytest.raises(TltlError) as caught:
         read(text, "x.fspa.json")
     (error,) = caught.value.diagnostics
@@ -150,7 +150,7 @@ def test_an_error_points_at_the_value() -> None:
 @settings(max_examples=200, deadline=None)
 @given(st.data())
 def test_damaged_texts_raise_only_errors_of_artefacts(data: st.DataObject) -> None:
-    text = emitted(cover_and_hide())
+    text = json_text(cover_and_hide())
     start = data.draw(st.integers(0, len(text)))
     end = data.draw(st.integers(start, min(len(text), start + 30)))
     patch = data.draw(st.sampled_from(["", "0", "-1", "null", '"', "[", "}", ",", "1e400", "true", '"x"', "[]", "{}"]))
@@ -172,20 +172,20 @@ def test_the_layout_changes_no_value(value: object) -> None:
 
 
 def test_lines_are_short_unless_a_text_is_long() -> None:
-    lines = emitted(cover_and_hide()).splitlines()
+    lines = json_text(cover_and_hide()).splitlines()
     assert max(map(len, lines)) <= WIDTH
     assert len(lines) < 250
 
 
 def test_an_artefact_that_is_too_large_to_read_back_is_not_written(monkeypatch: pytest.MonkeyPatch) -> None:
-    text = emitted(cover_and_hide())
+    text = json_text(cover_and_hide())
     size, values = len(text.encode()), text.count(",") + 1
     monkeypatch.setattr(sizes, "ARTEFACT", Limit(size, 900, values))
-    assert emitted(cover_and_hide()) == text
+    assert json_text(cover_and_hide()) == text
     for limit, code in ((Limit(size - 1, 900, values), "TLT0004"), (Limit(size, 900, values - 1), "TLT0006")):
         monkeypatch.setattr(sizes, "ARTEFACT", limit)
         with pytest.raises(TltlError) as caught:
-            emitted(cover_and_hide())
+            json_text(cover_and_hide())
         (diagnostic,) = caught.value.diagnostics
         assert diagnostic.code == code
         assert diagnostic.title.startswith("the artefact of `cover_and_hide` would ")
@@ -196,14 +196,14 @@ def test_an_artefact_with_very_many_edges_is_rejected_before_it_is_encoded(monke
     monkeypatch.setattr("tltlc.backends.json.encode", None)
     fspa = cover_and_hide()
     with pytest.raises(TltlError) as caught:
-        emitted(replace(fspa, edges=fspa.edges * 500_000))
+        json_text(replace(fspa, edges=fspa.edges * 500_000))
     assert [diagnostic.code for diagnostic in caught.value.diagnostics] == ["TLT0004"]
 
 
 @settings(max_examples=60, deadline=None)
 @given(automata() | infinite_automata())
 def test_the_estimated_size_is_a_lower_bound(fspa: Fspa) -> None:
-    text = emitted(fspa)
+    text = json_text(fspa)
     size, commas = sizes.least_size(fspa)
     assert size <= len(text.encode())
     assert commas <= text.count(",")
@@ -256,7 +256,7 @@ LEVELS: dict[str, tuple[int, Callable[[Expression], Expression]]] = {
 @pytest.mark.parametrize("name", LEVELS)
 def test_every_reader_of_an_automaton_handles_the_deepest_arithmetic(name: str) -> None:
     nodes, level = LEVELS[name]
-    text = emitted(with_arithmetic(nested(level, (ARITHMETIC.compared - 1) // nodes)))
+    text = json_text(with_arithmetic(nested(level, (ARITHMETIC.compared - 1) // nodes)))
     one, other = read(text, "x.fspa.json"), read(text, "x.fspa.json")
     assert one == other
     assert different_atoms(one, other) == ()
@@ -284,8 +284,8 @@ def test_deeper_arithmetic_is_rejected(name: str) -> None:
     ids=["arguments", "cases"],
 )
 def test_wide_arithmetic_is_rejected(wide: Callable[[int], Expression]) -> None:
-    fspa = read(emitted(with_arithmetic(wide(ARITHMETIC.parts))), "x.fspa.json")
+    fspa = read(json_text(with_arithmetic(wide(ARITHMETIC.parts))), "x.fspa.json")
     compile_expressions([fspa.atoms[0].expression], [signal.name for signal in fspa.signals], {"level_size": 20.0})
     with pytest.raises(TltlError) as caught:
-        read(emitted(with_arithmetic(wide(ARITHMETIC.parts + 1))), "x.fspa.json")
+        read(json_text(with_arithmetic(wide(ARITHMETIC.parts + 1))), "x.fspa.json")
     assert caught.value.diagnostics[0].code == "TLT0006"

@@ -13,7 +13,7 @@ from hypothesis import HealthCheck, Phase, assume, given, settings
 
 from tests.backends.monitors import FAR
 from tests.backends.strategies import hostile_automata
-from tests.backends.test_javascript import NAMES, Outcome, awkward, printed, rows, trace_of
+from tests.backends.test_javascript import NAMES, Outcome, awkward, printed_rows, rows, trace_of
 from tests.fixtures import cover_and_hide
 from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.finite.build import build, spec_from_formula
@@ -31,7 +31,7 @@ pytestmark = pytest.mark.skipif(not INTERPRETERS, reason="there is no Lua here")
 interpreters = pytest.mark.parametrize("interpreter", INTERPRETERS)
 
 
-def written(fspa: Fspa, folder: Path) -> Path:
+def write_module(fspa: Fspa, folder: Path) -> Path:
     ((name, text),) = emit("lua", fspa).items()
     assert name == f"{fspa.name}_monitor.lua"
     assert isinstance(text, str)
@@ -39,7 +39,7 @@ def written(fspa: Fspa, folder: Path) -> Path:
     return folder / name
 
 
-def ran(interpreter: str, module: Path, *arguments: str, stdin: bytes = b"") -> Outcome:
+def run_module(interpreter: str, module: Path, *arguments: str, stdin: bytes = b"") -> Outcome:
     command = [interpreter, module.name, *arguments]
     result = subprocess.run(command, input=stdin, capture_output=True, cwd=module.parent)
     return result.returncode, result.stdout.decode(), result.stderr.decode()
@@ -75,41 +75,41 @@ LUA_NAMES = (
 def test_hostile_texts_are_no_code(tmp_path: Path, fspa: Fspa) -> None:
     assume("\0" not in fspa.signals[0].name)
     samples = [{fspa.signals[0].name: value, "health": 1.0} for value in (-1.0, 0.0, -0.5)]
-    module = written(fspa, tmp_path)
+    module = write_module(fspa, tmp_path)
     for interpreter in INTERPRETERS:
-        status, out, err = ran(interpreter, module, "--full", "-", stdin=trace_of(samples))
+        status, out, err = run_module(interpreter, module, "--full", "-", stdin=trace_of(samples))
         assert (status, err) == (0, "")
-        assert printed(out) == rows(fspa, samples)
+        assert printed_rows(out) == rows(fspa, samples)
 
 
 @interpreters
 def test_hostile_names_stay_distinct(interpreter: str, tmp_path: Path) -> None:
     """Each atom reads a signal of the same awkward name; in each sample a different atom must be the limiting one."""
     fspa, samples = awkward([*LUA_NAMES, *NAMES])
-    status, out, err = ran(interpreter, written(fspa, tmp_path), "--full", "-", stdin=trace_of(samples))
+    status, out, err = run_module(interpreter, write_module(fspa, tmp_path), "--full", "-", stdin=trace_of(samples))
     assert (status, err) == (0, "")
-    assert printed(out) == rows(fspa, samples)
-    assert [row[-1] for row in printed(out)] == [*samples[0]]
+    assert printed_rows(out) == rows(fspa, samples)
+    assert [row[-1] for row in printed_rows(out)] == [*samples[0]]
 
 
 # --- limits of Lua --------------------------------------------------------------------------------
 
 
 @interpreters
-def test_many_signals_and_long_guards(interpreter: str, tmp_path: Path) -> None:
+def test_many_signals_and_long_guards_stay_within_the_limits_of_lua(interpreter: str, tmp_path: Path) -> None:
     """There are more signals than a function may have local variables, and than calls may nest."""
     names = [f"a{index}" for index in range(400)]
     fspa = build(spec_from_formula(f.eventually(f.or_(*map(f.atom, names)))))
     draw = random.Random(5)
     samples = [{name: -draw.random() for name in names} for _ in range(3)]
     samples.append({**samples[0], "a399": 0.5})
-    status, out, err = ran(interpreter, written(fspa, tmp_path), "--full", "-", stdin=trace_of(samples))
+    status, out, err = run_module(interpreter, write_module(fspa, tmp_path), "--full", "-", stdin=trace_of(samples))
     assert (status, err) == (0, "")
-    assert printed(out) == rows(fspa, samples)
+    assert printed_rows(out) == rows(fspa, samples)
 
 
 @interpreters
-def test_long_predicates(interpreter: str, tmp_path: Path) -> None:
+def test_long_predicates_stay_within_the_limits_of_lua(interpreter: str, tmp_path: Path) -> None:
     """A predicate has more parts than a function may have local variables."""
     x: Expression = SignalValue("x")
     total: Expression = Const(0.0)
@@ -121,15 +121,15 @@ def test_long_predicates(interpreter: str, tmp_path: Path) -> None:
     samples = [{"x": value / 10} for value in range(11)]
     with recursion_room():
         expected = rows(fspa, samples)
-        module = written(fspa, tmp_path)
-    status, out, err = ran(interpreter, module, "--full", "-", stdin=trace_of(samples))
+        module = write_module(fspa, tmp_path)
+    status, out, err = run_module(interpreter, module, "--full", "-", stdin=trace_of(samples))
     assert (status, err) == (0, "")
-    assert printed(out) == expected
+    assert printed_rows(out) == expected
 
 
 @interpreters
 @pytest.mark.parametrize("within", [False, True])
-def test_deeply_nested_cases(interpreter: str, tmp_path: Path, within: bool) -> None:
+def test_deeply_nested_cases_stay_within_the_limits_of_lua(interpreter: str, tmp_path: Path, within: bool) -> None:
     """Cases nest deeper than the blocks that a parser allows, with and without a computation after the inner value."""
     x = SignalValue("x")
     value: Expression = Const(0.5)
@@ -141,23 +141,23 @@ def test_deeply_nested_cases(interpreter: str, tmp_path: Path, within: bool) -> 
     samples = [{"x": sample / 10} for sample in (0, 3, 7, 10)]
     with recursion_room():
         expected = rows(fspa, samples)
-        module = written(fspa, tmp_path)
-    status, out, err = ran(interpreter, module, "--full", "-", stdin=trace_of(samples))
+        module = write_module(fspa, tmp_path)
+    status, out, err = run_module(interpreter, module, "--full", "-", stdin=trace_of(samples))
     assert (status, err) == (0, "")
-    assert printed(out) == expected
+    assert printed_rows(out) == expected
 
 
 @interpreters
-def test_tanh(interpreter: str, tmp_path: Path) -> None:
+def test_tanh_agrees_with_python(interpreter: str, tmp_path: Path) -> None:
     """Newer versions of Lua have no tanh; the replacement in the module keeps signs and small values."""
     fspa = build(spec_from_formula(f.eventually(f.atom("p"))))
     atom = spec.Atom("p", Op("tanh", (SignalValue("x"),)))
     fspa = replace(fspa, signals=(spec.Signal("x", "number", None, None),), atoms=(atom,))
     sizes = [0.0, 1e-300, 1e-9, 0.1, 0.25, 0.4999, 0.5, 0.5001, 0.75, 1.0, 3.0, 19.0, 25.0, 1e3, 1e308]
     samples = [{"x": sign * size} for size in sizes for sign in (-1.0, 1.0)]
-    status, out, _ = ran(interpreter, written(fspa, tmp_path), "--full", "-", stdin=trace_of(samples))
+    status, out, _ = run_module(interpreter, write_module(fspa, tmp_path), "--full", "-", stdin=trace_of(samples))
     assert status == 0
-    for row, expected in zip(printed(out), rows(fspa, samples), strict=True):
+    for row, expected in zip(printed_rows(out), rows(fspa, samples), strict=True):
         assert row[:5] == expected[:5]
         assert float(row[7]) == pytest.approx(float(expected[7]), rel=1e-15, abs=0.0)
 
@@ -170,9 +170,9 @@ def test_numbers_are_printed_as_c_prints_them(interpreter: str, tmp_path: Path) 
     values = [sign * (1 + 2 * odd) * 2.0**-power for power in range(64) for odd in range(9) for sign in (1, -1)]
     values += [math.sin(number) * 10.0**-power for power in (0, 3, 5, 9, 99, 310) for number in range(60)]
     samples = [{"x": value} for value in values if abs(value) <= 1]
-    status, out, _ = ran(interpreter, written(fspa, tmp_path), "--full", "-", stdin=trace_of(samples))
+    status, out, _ = run_module(interpreter, write_module(fspa, tmp_path), "--full", "-", stdin=trace_of(samples))
     assert status == 0
-    assert printed(out) == rows(fspa, samples)
+    assert printed_rows(out) == rows(fspa, samples)
 
 
 # --- as a module ----------------------------------------------------------------------------------
@@ -212,9 +212,9 @@ print(("%.17g"):format(monitor.params.level_size))
 
 
 @interpreters
-def test_module(interpreter: str, tmp_path: Path) -> None:
+def test_a_host_gets_results_notices_and_errors(interpreter: str, tmp_path: Path) -> None:
     fspa = cover_and_hide()
-    written(fspa, tmp_path)
+    write_module(fspa, tmp_path)
     (tmp_path / "use.lua").write_text(USE)
     step = Monitor(fspa, {"level_size": 10.0}).step({**dict.fromkeys(FAR, 5.0), "health": 1.0})
     group = "near(s1), near(s2), near(exit)"
@@ -235,7 +235,7 @@ def test_module(interpreter: str, tmp_path: Path) -> None:
         "0\t1\tstep 1: the signal `health` is 2, outside [0, 1]: it counts as 1",
         "10",
     ]
-    status, out, err = ran(interpreter, tmp_path / "use.lua")
+    status, out, err = run_module(interpreter, tmp_path / "use.lua")
     assert (status, err) == (0, "")
     assert out.splitlines() == lines
 
@@ -257,6 +257,6 @@ print(collectgarbage("count") - before < 1)
 
 @interpreters
 def test_a_step_allocates_nothing(interpreter: str, tmp_path: Path) -> None:
-    written(cover_and_hide(), tmp_path)
+    write_module(cover_and_hide(), tmp_path)
     (tmp_path / "use.lua").write_text(ALLOCATES)
-    assert ran(interpreter, tmp_path / "use.lua") == (0, "true\n", "")
+    assert run_module(interpreter, tmp_path / "use.lua") == (0, "true\n", "")

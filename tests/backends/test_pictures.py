@@ -25,13 +25,13 @@ def collect(goals: int) -> Fspa:
     return build(spec_from_formula(and_(*(eventually(atom(f"g{i}")) for i in range(goals))), "collect"))
 
 
-def drawn(fspa: Fspa, options: Options | None = None) -> ET.Element:
+def draw_svg(fspa: Fspa, options: Options | None = None) -> ET.Element:
     picture = backends.emit("svg", fspa, options)[f"{fspa.name}.svg"]
     assert isinstance(picture, bytes)
     return ET.fromstring(picture)
 
 
-def shown(picture: ET.Element) -> str:
+def text_of(picture: ET.Element) -> str:
     return " ".join("".join(text.itertext()) for text in picture.iter(f"{SVG}text"))
 
 
@@ -41,12 +41,12 @@ def title(element: ET.Element) -> str:
 
 
 def test_an_svg_shows_labels_guards_and_distances() -> None:
-    picture = drawn(cover_and_hide())
+    picture = draw_svg(cover_and_hide())
     groups = [group.get("class") for group in picture.iter(f"{SVG}g")]
     assert groups.count("node") == 6
     assert groups.count("edge") == 13
     for text in ("◇near(exit) ∧ □alive", "¬near(s1) ∧ alive", "∞", " 3 ", "⊥", "cover_and_hide"):
-        assert text in shown(picture)
+        assert text in text_of(picture)
 
 
 def test_a_png_is_a_png() -> None:
@@ -59,7 +59,7 @@ def test_a_png_is_a_png() -> None:
 @settings(max_examples=12, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(hostile_automata())
 def test_hostile_texts_stay_texts(fspa: Fspa) -> None:
-    picture = drawn(fspa)
+    picture = draw_svg(fspa)
     assert not list(picture.iter(f"{SVG}script"))
     allowed = {SVG + name for name in ("svg", "g", "title", "text", "path", "polygon", "ellipse", "polyline")}
     assert {element.tag for element in picture.iter()} <= allowed
@@ -71,27 +71,27 @@ def within_40_steps() -> Fspa:
 
 
 def test_folded_runs_are_marked_in_the_picture() -> None:
-    picture = drawn(within_40_steps(), Options(report=lambda note: pytest.fail(note.title)))
-    assert "Dashed: 39 of the 43 states, folded." in shown(picture)
+    picture = draw_svg(within_40_steps(), Options(report=lambda note: pytest.fail(note.title)))
+    assert "Dashed: 39 of the 43 states, folded." in text_of(picture)
     nodes = [group for group in picture.iter(f"{SVG}g") if group.get("class") == "node"]
     dashed = [node for node in nodes if any(path.get("stroke-dasharray") for path in node.iter(f"{SVG}path"))]
     assert len(nodes) == 1 + 5
-    assert ["39 more like these" in shown(node) for node in nodes] == [node in dashed for node in nodes]
+    assert ["39 more like these" in text_of(node) for node in nodes] == [node in dashed for node in nodes]
     assert title(dashed[0]) == "39 states, 2 to 40, pending, distance 1: ◇[0,39] fast … fast ∨ ○fast"
     assert dashed[0].get("data-states") == " ".join(map(str, range(2, 41)))
 
 
 def test_runs_that_count_in_step_are_folded() -> None:
     (fspa,) = compile_text("clock 1 Hz signal a: bool signal b: bool spec both = F[0,100] a & F[0,100] b")
-    picture = drawn(fspa, Options(report=lambda note: pytest.fail(note.title)))
-    assert "Dashed: 294 of the 303 states, folded." in shown(picture)
+    picture = draw_svg(fspa, Options(report=lambda note: pytest.fail(note.title)))
+    assert "Dashed: 294 of the 303 states, folded." in text_of(picture)
     states = [number for group in picture.iter(f"{SVG}g") for number in group.get("data-states", "").split()]
     assert sorted(map(int, states)) == list(range(303))
-    assert "98 more like these ◇[0,99…2] a ∧ ◇[0,99…2] b" in shown(picture)
+    assert "98 more like these ◇[0,99…2] a ∧ ◇[0,99…2] b" in text_of(picture)
 
 
 def test_a_picture_its_states_and_its_edges_have_titles() -> None:
-    picture = drawn(cover_and_hide())
+    picture = draw_svg(cover_and_hide())
     assert picture.get("role") == "group"
     assert title(picture) == "The automaton of cover_and_hide"
     titles = {title(group) for group in picture.iter(f"{SVG}g") if group.get("role") == "img"}
@@ -104,7 +104,7 @@ def test_a_picture_its_states_and_its_edges_have_titles() -> None:
 
 def test_texts_are_centred_in_their_shapes() -> None:
     """Texts that are aligned to the left would overflow on the right in wider fonts."""
-    for group in drawn(cover_and_hide()).iter(f"{SVG}g"):
+    for group in draw_svg(cover_and_hide()).iter(f"{SVG}g"):
         shapes = [extent(shape) for shape in group if shape.get("fill") not in (None, "none") and shape.get("stroke")]
         for text in group.findall(f"{SVG}text"):
             if group.get("class") != "graph":
@@ -129,17 +129,17 @@ def test_the_graph_is_not_folded_if_the_layout_times_out() -> None:
 
 def test_a_tangled_graph_is_sketched_with_a_note() -> None:
     notes: list[Diagnostic] = []
-    picture = drawn(collect(6), Options(report=notes.append))
+    picture = draw_svg(collect(6), Options(report=notes.append))
     assert [(note.code, note.severity) for note in notes] == [("TLT0711", "note")]
-    assert "g0" not in shown(picture)
+    assert "g0" not in text_of(picture)
 
 
 def test_many_edges_are_drawn_without_guards_with_a_note() -> None:
     notes: list[Diagnostic] = []
-    picture = drawn(collect(5), Options(report=notes.append))
+    picture = draw_svg(collect(5), Options(report=notes.append))
     assert [(note.code, note.severity) for note in notes] == [("TLT0711", "note")]
-    assert "◇g0" in shown(picture)
-    assert "¬g0" not in shown(picture)
+    assert "◇g0" in text_of(picture)
+    assert "¬g0" not in text_of(picture)
     titles = [title(group) for group in picture.iter(f"{SVG}g") if group.get("data-source")]
     assert any(edge_title.endswith(": ¬g0 ∧ ¬g1") for edge_title in titles)
 

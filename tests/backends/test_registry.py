@@ -30,14 +30,14 @@ def test_output_is_the_same_for_the_same_input(name: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "way_out"), [("jsn", "did you mean `json`?"), ("cobol", "there are: "), ("", "there are")]
+    ("name", "suggestion"), [("jsn", "did you mean `json`?"), ("cobol", "there are: "), ("", "there are")]
 )
-def test_an_unknown_target_is_an_error_with_a_suggestion(name: str, way_out: str) -> None:
+def test_an_unknown_target_is_an_error_with_a_suggestion(name: str, suggestion: str) -> None:
     with pytest.raises(TltlError) as caught:
         backends.emit(name, cover_and_hide())
     (error,) = caught.value.diagnostics
     assert error.code == "TLT0710"
-    assert way_out in (error.help or "")
+    assert suggestion in (error.help or "")
 
 
 @pytest.mark.parametrize("name", ["artefact", "drawing", "json.decoder", "..pipeline", "os"])

@@ -32,7 +32,7 @@ from tltlc.resolve import spec
 pytestmark = pytest.mark.skipif(not shutil.which("rustc"), reason="there is no Rust compiler here")
 
 
-def written(fspa: Fspa, folder: Path) -> str:
+def write_monitor(fspa: Fspa, folder: Path) -> str:
     ((name, text),) = emit("rust", fspa).items()
     assert name == f"{fspa.name}_monitor.rs"
     assert isinstance(text, str)
@@ -40,13 +40,13 @@ def written(fspa: Fspa, folder: Path) -> str:
     return text
 
 
-def compiled(folder: Path, *words: str, edition: str = "2021") -> None:
+def compile_crate(folder: Path, *words: str, edition: str = "2021") -> None:
     command = ["rustc", "--edition", edition, *STRICT[2:-2], *words]
     result = subprocess.run(command, cwd=folder, capture_output=True, text=True)
     assert result.returncode == 0, result.stderr
 
 
-def ran(program: Path, *words: str, stdin: bytes = b"") -> Outcome:
+def run_program(program: Path, *words: str, stdin: bytes = b"") -> Outcome:
     result = subprocess.run(
         [str(program), *words], input=stdin, capture_output=True, cwd=program.parent, timeout=HANG_S
     )
@@ -70,7 +70,7 @@ def test_hostile_texts_are_no_code(tmp_path: Path, data: st.DataObject) -> None:
 
 def test_hostile_names_stay_distinct(tmp_path: Path) -> None:
     """Each atom reads a signal of the same name; the names are awkward ones, and all words of the generated file."""
-    own = re.findall(r"\w+", written(cover_and_hide(), tmp_path))
+    own = re.findall(r"\w+", write_monitor(cover_and_hide(), tmp_path))
     names = [name for name in dict.fromkeys([*NAMES, *own]) if "\0" not in name]
     atoms = [f"v{index}" for index in range(len(names))]
     fspa = build(spec_from_formula(f.eventually(f.and_(*map(f.atom, atoms)))))
@@ -122,11 +122,11 @@ fn main() {
 """
 
 
-def test_library(tmp_path: Path) -> None:
+def test_a_host_gets_results_notices_and_errors(tmp_path: Path) -> None:
     fspa = cover_and_hide()
-    written(fspa, tmp_path)
+    write_monitor(fspa, tmp_path)
     (tmp_path / "library.rs").write_text(LIBRARY)
-    compiled(tmp_path, "library.rs")
+    compile_crate(tmp_path, "library.rs")
     monitor = Monitor(fspa, {"level_size": 10.0})
     step = monitor.step({"distance(s1)": 5.0, "distance(s2)": 5.0, "distance(exit)": 5.0, "health": 1.0})
     together = "step 2: `near(s1)` and `near(exit)` hold at once, against `exclusive near(s1), near(s2), near(exit)`"
@@ -143,31 +143,31 @@ def test_library(tmp_path: Path) -> None:
         *rows,
         "step 1: the signal `health` is 2, outside [0, 1]: it counts as 1",
     ]
-    assert ran(tmp_path / "library") == (0, "".join(f"{line}\n" for line in lines), "")
+    assert run_program(tmp_path / "library") == (0, "".join(f"{line}\n" for line in lines), "")
 
 
 @pytest.mark.parametrize("edition", ["2018", "2021"])
-def test_without_the_standard_library(tmp_path: Path, edition: str) -> None:
+def test_a_monitor_builds_without_the_standard_library(tmp_path: Path, edition: str) -> None:
     """With and without functions that `core` lacks, in crates that deny many lints."""
     x = SignalValue("x")
     value = Op("tanh", (Op("+", (Op("sqrt", (x,)), Op("exp", (x,)), Op("^", (x, Const(0.3))))),))
-    written(replace(one_atom(value, spec.Signal("x", "number", None, None)), name="much"), tmp_path)
-    assert "It needs `core` alone." in written(cover_and_hide(), tmp_path)
+    write_monitor(replace(one_atom(value, spec.Signal("x", "number", None, None)), name="much"), tmp_path)
+    assert "It needs `core` alone." in write_monitor(cover_and_hide(), tmp_path)
     lines = ["//! A crate.", "#![no_std]", "#![deny(missing_docs, rust_2018_idioms, unreachable_pub)]"]
     lines += ["pub mod cover_and_hide_monitor;", "pub mod much_monitor;", "mod tltl_math {"]
     lines += [f"    pub(crate) fn {name}(x: f64) -> f64 {{ x }}" for name in ("sqrt", "exp", "tanh")]
     lines += ["    pub(crate) fn pow(x: f64, _: f64) -> f64 { x }", "}", ""]
     (tmp_path / "bare.rs").write_text("\n".join(lines))
-    compiled(tmp_path, "--crate-type", "lib", "--cfg", "tltl_no_std", "bare.rs", edition=edition)
+    compile_crate(tmp_path, "--crate-type", "lib", "--cfg", "tltl_no_std", "bare.rs", edition=edition)
     assert (tmp_path / "libbare.rlib").stat().st_size > 0
 
 
-def test_a_monitor_that_reads_no_signal(tmp_path: Path) -> None:
+def test_a_monitor_that_reads_no_signal_compiles(tmp_path: Path) -> None:
     fspa = one_atom(Const(0.5), spec.Signal("open", "bool", 0.0, 1.0))
     fspa = replace(fspa, name="blind", atoms=(replace(fspa.atoms[0], doc="Of each sample.  The same."),))
-    written(fspa, tmp_path)
+    write_monitor(fspa, tmp_path)
     (tmp_path / "alone.rs").write_text("pub mod blind_monitor;\n")
-    compiled(tmp_path, "--crate-type", "lib", "--emit", "metadata", "alone.rs")
+    compile_crate(tmp_path, "--crate-type", "lib", "--emit", "metadata", "alone.rs")
     assert (tmp_path / "libalone.rmeta").stat().st_size > 0
 
 
@@ -182,7 +182,7 @@ def test_documentation_is_no_code(tmp_path: Path, text: str) -> None:
         formula=Text(text, text, text),
         signals=tuple(replace(signal, doc=text) for signal in fspa.signals),
     )
-    written(fspa, tmp_path)
+    write_monitor(fspa, tmp_path)
     (tmp_path / "host.rs").write_text("pub mod cover_and_hide_monitor;\n")
     words = ["rustdoc", "--edition", "2021", "--crate-name", "host", "host.rs"]
     result = subprocess.run([*words, "--test"], cwd=tmp_path, capture_output=True, text=True)
@@ -197,14 +197,14 @@ def test_documentation_is_no_code(tmp_path: Path, text: str) -> None:
 # --- as a program ---------------------------------------------------------------------------------
 
 
-def test_program_of_any_edition(tmp_path: Path) -> None:
+def test_the_program_builds_in_any_edition(tmp_path: Path) -> None:
     """The program uses every function that `core` lacks."""
     x = SignalValue("x")
     value = Op("tanh", (Op("+", (Op("sqrt", (x,)), Op("exp", (x,)), Op("^", (x, Const(0.3))))),))
     fspa = one_atom(value, spec.Signal("x", "number", None, None))
-    written(fspa, tmp_path)
+    write_monitor(fspa, tmp_path)
     for edition in ("2015", "2018", "2021"):
-        compiled(tmp_path, "--cfg", "tltl_main", "--emit", "metadata", f"{fspa.name}_monitor.rs", edition=edition)
+        compile_crate(tmp_path, "--cfg", "tltl_main", "--emit", "metadata", f"{fspa.name}_monitor.rs", edition=edition)
         library = tmp_path / f"lib{fspa.name}_monitor.rmeta"
         assert library.exists()
         library.unlink()
@@ -227,9 +227,9 @@ def test_decimals_agree_with_c(tmp_path: Path) -> None:
     values = [0.5**power for power in range(0, 1075, 7)] + [10.0**power for power in range(-323, 309)]
     values += [(2 * odd + 1) / 2.0**power for power in range(1, 60) for odd in (3, 5461, 131071, 200003)]
     values += [-numerator / 97 for numerator in range(98)] + [5e-324, 0.0, -0.0]
-    written(cover_and_hide(), tmp_path)
+    write_monitor(cover_and_hide(), tmp_path)
     (tmp_path / "numbers.rs").write_text(NUMBERS)
-    compiled(tmp_path, "--cfg", "tltl_main", "numbers.rs")
-    status, out, err = ran(tmp_path / "numbers", stdin="".join(f"{value!r}\n" for value in values).encode())
+    compile_crate(tmp_path, "--cfg", "tltl_main", "numbers.rs")
+    status, out, err = run_program(tmp_path / "numbers", stdin="".join(f"{value!r}\n" for value in values).encode())
     assert (status, err) == (0, "")
     assert out.splitlines() == [f"{value:.17g}" for value in values]

@@ -24,9 +24,9 @@ DEFAULT_TARGETS = ("json", "dot", "python")
 
 @record
 class Target:
-    """A target: its name (the module's name), a title for listings, and the endings of its files' names.
+    """A target: its name, which is the module's name, a title for listings, and the endings of its files' names.
 
-    ``known_as`` are other words that people search for, in lower case.
+    ``known_as`` are other words by which people search for it, in lower case.
     """
 
     name: str
@@ -90,10 +90,10 @@ def _module(name: str) -> ModuleType:
         else:
             if hasattr(module, "TARGET"):
                 return module
-    raise TltlError([_unknown(name)])
+    raise TltlError([_unknown_target(name)])
 
 
-def _unknown(name: str) -> Diagnostic:
+def _unknown_target(name: str) -> Diagnostic:
     from difflib import get_close_matches
 
     names = targets()

@@ -127,7 +127,7 @@ class _C(Printer):
 
     def comment(self, text: str) -> list[str]:
         """Return a comment in ASCII without trigraphs, since compilers differ in how they read other characters."""
-        return super().comment(re.sub(r"[^\x00-\x7f]", _escaped, printable_line(text)).replace("??", "? ?"))
+        return super().comment(re.sub(r"[^\x00-\x7f]", _escape, printable_line(text)).replace("??", "? ?"))
 
     def assignment(self, statement: Assign) -> str:
         """Return an assignment; the limiting atom is assigned by its name."""
@@ -200,8 +200,9 @@ class _Source:
         return fill_template("monitor.h.txt", places, present)
 
     def _text_size(self) -> int:
-        """Return a buffer size for any message; the longest one is about an exclusive group and
-        names its atoms twice.
+        """Return a buffer size, in bytes, that is enough for every message.
+
+        The longest message is about an exclusive group, and names the atoms of the group twice.
         """
         atoms = sum(2 * len(_bytes(atom.name)) + 12 for atom in self._fspa.atoms)
         signals = max((len(_bytes(signal.name)) for signal in self._fspa.signals), default=0)
@@ -231,14 +232,15 @@ class _Source:
         tests = [f"isfinite({name})"]
         tests += [] if param.low is None else [f"{name} >= {snippets.number_literal(param.low)}"]
         tests += [] if param.high is None else [f"{name} <= {snippets.number_literal(param.high)}"]
-        lines = self._refused(f"{self._prefix}_wrong_param", index)
+        lines = self._refusal(f"{self._prefix}_wrong_param", index)
         # The message shows the value.
         lines.insert(0, f"{_INDENT}monitor->wrong = {name};")
         return [f"if (!({' && '.join(tests)})) {{", *lines, "}"]
 
-    def _refused(self, problem: str, index: int) -> list[str]:
-        """Return the body of a branch that refuses the sample. The ``return`` is inlined so that
-        compilers can see which values callers may rely on.
+    def _refusal(self, problem: str, index: int) -> list[str]:
+        """Return the body of a branch that refuses the sample.
+
+        The ``return`` is part of it, so that compilers see which values the caller may use.
         """
         call = f"{self._prefix}_refuse_(monitor, {problem}, {index});"
         return [f"{_INDENT}{line}" for line in (call, "return false;")]
@@ -286,8 +288,9 @@ class _Source:
         return [*lines, *(f"const double {name} = monitor->params.{name};" for name in program_.params if name in used)]
 
     def _bools(self, state: int | None) -> list[str]:
-        """Return code that converts bools to numbers: those that only this state reads; for None,
-        those read at every step.
+        """Return code that converts the bools that only this state reads to numbers.
+
+        For None, it converts the bools that every step reads.
         """
         return [f"const double {name} = sample->{name} ? 1.0 : 0.0;" for name in self._program.bools_read_in(state)]
 
@@ -351,7 +354,7 @@ class _Source:
         lines = self._printer.comment(self._program.remarks[index])
         lines += self._printer.lines(with_declaration(self._program.atoms[index], statements))
         if functions_called(statements) & FAILING:
-            lines += ["if (monitor->problem) {", *self._refused("monitor->problem", index), "}"]
+            lines += ["if (monitor->problem) {", *self._refusal("monitor->problem", index), "}"]
         return lines
 
     def _check(self) -> list[str]:
@@ -361,7 +364,7 @@ class _Source:
             tests = {atom: f"{self._program.atoms[atom]} > 0.0" for atom in group}
             lines.append(f"if ({' + '.join(f'({test})' for test in tests.values())} > 1) {{")
             lines += [f"{_INDENT}monitor->holding[{atom}] = {test};" for atom, test in tests.items()]
-            lines += [*self._refused(f"{self._prefix}_together", index), "}"]
+            lines += [*self._refusal(f"{self._prefix}_together", index), "}"]
         return lines
 
     def _move(self) -> list[str]:
@@ -399,7 +402,7 @@ class _Source:
 # --- pieces ---------------------------------------------------------------------------------------
 
 
-def _escaped(match: re.Match[str]) -> str:
+def _escape(match: re.Match[str]) -> str:
     return f"\\u{ord(match[0]):04x}"
 
 

@@ -184,15 +184,16 @@ class _Source:
             # A missing bound becomes a strict comparison with infinity, so that infinite values fail the test.
             above, below = ">" if signal.low is None else ">=", "<" if signal.high is None else "<="
             lines.append(f"double {name} = sample.{name};")
-            lines += _checked(
+            lines += _check_lines(
                 f"{name} {above} {low} && {name} {below} {high}", f"{name} = Read({index}, {name}, {low}, {high});"
             )
         lines += self._bools(None)
         return [*lines, *(f"double {name} = _params.{name};" for name in self._program.params if name in used)]
 
     def _bools(self, state: int | None) -> list[str]:
-        """Return code that converts bools to numbers: those that only this state reads; for None,
-        those read at every step.
+        """Return code that converts the bools that only this state reads to numbers.
+
+        For None, it converts the bools that every step reads.
         """
         return [f"double {name} = sample.{name} ? 1.0 : 0.0;" for name in self._program.bools_read_in(state)]
 
@@ -207,7 +208,7 @@ class _Source:
                 continue
             if functions_called(self._program.values[index]) & FAILING:
                 lines.append(f"if (_problem != Problem.None) return Refuse(_problem, {index}, out result);")
-            range_checks += _checked(f"{name} >= -1.0 && {name} <= 1.0", f"{name} = Keep({index}, {name});")
+            range_checks += _check_lines(f"{name} >= -1.0 && {name} <= 1.0", f"{name} = Keep({index}, {name});")
         return [*lines, *range_checks]
 
     def _value(self, index: int) -> tuple[Statement, ...]:
@@ -267,8 +268,8 @@ class _Source:
 # --- pieces ---------------------------------------------------------------------------------------
 
 
-def _checked(test: str, otherwise: str) -> list[str]:
-    """Return code that runs ``otherwise`` if the test fails, and ends the step if that reports a problem."""
+def _check_lines(test: str, otherwise: str) -> list[str]:
+    """Return code that runs ``otherwise`` if the test fails, and ends the step if ``otherwise`` reports a problem."""
     return [
         f"if (!({test}))",
         "{",

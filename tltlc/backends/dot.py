@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Literal
 from tltlc.automaton.fspa import Fspa, State, Verdict
 from tltlc.automaton.text import label_text
 from tltlc.backends import Files, Options, Target
-from tltlc.backends.drawing.folding import Drawing, span, whole
-from tltlc.backends.drawing.html_like import BACKED, LEFT, escaped, plain, table
-from tltlc.backends.drawing.picture_content import notes, on_distances
-from tltlc.backends.drawing.texts import arrows, visible, wrapped
+from tltlc.backends.drawing.folding import Drawing, text_range, whole_drawing
+from tltlc.backends.drawing.html_like import BACKED, LEFT, escape_html, literal_text, table
+from tltlc.backends.drawing.picture_content import distance_note, notes
+from tltlc.backends.drawing.texts import escape_invisible, guards_by_arrow, wrap_text
 
 if TYPE_CHECKING:
     from graphviz import Digraph
@@ -34,8 +34,10 @@ FILLS: dict[Verdict, str] = {
 }
 
 Detail = Literal["full", "labels", "sketch"]
-"""What the drawing shows: everything; everything except guards; only the numbers of states, for a
-force-directed layout.
+"""What the drawing shows.
+
+``full`` is everything, ``labels`` everything except guards, and ``sketch`` only the numbers of
+states, for a force-directed layout.
 """
 
 LABEL_WIDTH, GUARD_WIDTH, WIDE_GUARD_WIDTH = 30, 22, 32
@@ -58,9 +60,7 @@ GRAPH = {
     "fontcolor": "#0f172a",
 }
 DENSE_FROM = 30
-"""Above this number of edges, the node distance is reduced: layers of many guards would become
-twice as tall as needed.
-"""
+"""Above this number of edges, states are drawn closer: layers of many guards would become twice as tall as needed."""
 DENSE = {"nodesep": "0.2"}
 SKETCH = {"overlap": "prism", "K": "1.2", "splines": "line", "outputorder": "edgesfirst"}
 NODE = {
@@ -90,48 +90,48 @@ def graph(fspa: Fspa, options: Options, drawing: Drawing | None = None, detail: 
     """
     from graphviz import Digraph
 
-    drawing = drawing or whole(fspa)
+    drawing = drawing or whole_drawing(fspa)
     dense = DENSE if len(drawing.edges) > DENSE_FROM else {}
     sketch = SKETCH if detail == "sketch" else {}
-    drawn = Digraph(visible(fspa.name), graph_attr={**GRAPH, "label": _title(fspa, drawing), **dense, **sketch})
+    drawn = Digraph(
+        escape_invisible(fspa.name), graph_attr={**GRAPH, "label": _title(fspa, drawing), **dense, **sketch}
+    )
     drawn.attr("node", **NODE)
     drawn.attr("edge", **EDGE)
     drawn.node("start", shape="point", style="filled", width="0.09", color="#475569", tooltip="start")
     for state in drawing.states:
         run = drawing.folded.get(state.id, (state,))
-        text = span(*(label_text(fspa, end.id, options.notation) for end in (run[0], run[-1])))
+        text = text_range(*(label_text(fspa, end.id, options.notation) for end in (run[0], run[-1])))
         _draw_state(drawn, run, text, detail != "sketch")
     drawn.edge("start", "0")
-    for (source, target), guards in arrows(drawing.edges, options.notation).items():
+    for (source, target), guards in guards_by_arrow(drawing.edges, options.notation).items():
         _draw_arrow(drawn, fspa.states[source], fspa.states[target], guards, detail == "full")
     return str(drawn.source)
 
 
 def _title(fspa: Fspa, drawing: Drawing) -> str:
     """Return the title: the name of the spec, its documentation, and a legend of the marks that occur."""
-    legend = [line for note in (_legend(fspa, drawing), *notes(fspa, drawing)) for line in wrapped(note, TITLE_WIDTH)]
-    lines = [f"<B>{escaped(fspa.name)}</B>"]
+    legend = [line for note in (_legend(fspa, drawing), *notes(fspa, drawing)) for line in wrap_text(note, TITLE_WIDTH)]
+    lines = [f"<B>{escape_html(fspa.name)}</B>"]
     if fspa.doc.strip():
-        lines += map(escaped, wrapped(fspa.doc, TITLE_WIDTH, 3))
-    lines += (f'<FONT COLOR="#64748b" POINT-SIZE="11">{escaped(line)}</FONT>' for line in legend)
+        lines += map(escape_html, wrap_text(fspa.doc, TITLE_WIDTH, 3))
+    lines += (f'<FONT COLOR="#64748b" POINT-SIZE="11">{escape_html(line)}</FONT>' for line in legend)
     lines.append('<FONT POINT-SIZE="6">&#160;</FONT>')  # space above the states
     return f"<{table(lines, LEFT, spacing=2)}>"
 
 
 def _legend(fspa: Fspa, drawing: Drawing) -> str:
     nearer = any(_is_nearer(fspa.states[edge.source], fspa.states[edge.target]) for edge in drawing.edges)
-    return on_distances(drawing, "Corner", "double outline") + " Bold arrows come nearer." * nearer
+    return distance_note(drawing, "Corner", "double outline") + " Bold arrows come nearer." * nearer
 
 
 def _draw_state(drawn: Digraph, run: tuple[State, ...], text: str, full: bool) -> None:
-    """Draw a state; for a run of folded states, draw them as one with a dashed outline and ``text``
-    for all of them.
-    """
+    """Draw a state with its ``text``; draw a run of folded states as one state with a dashed outline."""
     state, last = run[0], run[-1]
     line, fill = LINES[state.verdict], FILLS[state.verdict]
-    distance = span(*("∞" if end.distance is None else str(end.distance) for end in (state, last)))
+    distance = text_range(*("∞" if end.distance is None else str(end.distance) for end in (state, last)))
     name = f"state {state.id}" if state is last else f"{len(run)} states, {state.id} to {last.id}"
-    body = "<BR/>".join(map(escaped, wrapped(text, LABEL_WIDTH))) if full else f"<B>{state.id}</B>"
+    body = "<BR/>".join(map(escape_html, wrap_text(text, LABEL_WIDTH))) if full else f"<B>{state.id}</B>"
     style = {"peripheries": "2"} if state.accepting else {}
     if state is not last:
         body = table([f"<I>{len(run)} more like these</I>", body]) if full else f"<B>{state.id}…{last.id}</B>"
@@ -143,23 +143,26 @@ def _draw_state(drawn: Digraph, run: tuple[State, ...], text: str, full: bool) -
         f'<TD BGCOLOR="{line}" STYLE="ROUNDED">{mark}</TD></TR>'
         f'<TR><TD COLSPAN="12" CELLPADDING="6">{body}</TD></TR></TABLE>>'
     )
-    tip = plain(f"{name}, {state.verdict}, distance {distance}: {text}")
+    tip = literal_text(f"{name}, {state.verdict}, distance {distance}: {text}")
     drawn.node(str(state.id), label=html, color=line, fillcolor=fill, tooltip=tip, **style)
 
 
 def _draw_arrow(drawn: Digraph, source: State, target: State, guards: Sequence[str], full: bool) -> None:
-    attributes = {"tooltip": plain("; ".join(guards)), **_manner(source, target)}
+    attributes = {"tooltip": literal_text("; ".join(guards)), **_edge_style(source, target)}
     if full:
         width = GUARD_WIDTH if len(guards) == 1 else WIDE_GUARD_WIDTH
-        rows = ["<BR/>".join(map(escaped, wrapped(guard, width))) for guard in guards[:MOST_GUARDS]]
+        rows = ["<BR/>".join(map(escape_html, wrap_text(guard, width))) for guard in guards[:MOST_GUARDS]]
         rest = len(guards) - len(rows)
         rows += [f"and {rest} more"] if rest else []
         attributes["label"] = f"<{table(rows, BACKED, spacing=4)}>"
     drawn.edge(str(source.id), str(target.id), **attributes)
 
 
-def _manner(source: State, target: State) -> dict[str, str]:
-    """Return the style of an edge: progress is dark and kept straight; edges into a trap are pale red and may bend."""
+def _edge_style(source: State, target: State) -> dict[str, str]:
+    """Return the style of an edge.
+
+    Edges that come nearer to a goal are dark and straight; edges into a trap are pale red and may bend.
+    """
     if source.id == target.id:
         # No other edge leaves a final state, so its loop goes on the right, where no edge arrives.
         return {"headport": "e", "tailport": "e"} if source.verdict in ("satisfied", "violated") else {}

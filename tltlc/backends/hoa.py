@@ -1,8 +1,8 @@
 """The automaton in the Hanoi omega-automata format (HOA), version 1 (http://adl.github.io/hoaf/), for other tools.
 
-Over infinite traces, it is a Rabin automaton with marks on edges. The format does not know finite
-traces; for these, it is a Büchi automaton with marks on the accepting states, and a header says
-that a trace is accepted if its run ends in one.
+Over infinite traces, the file has a Rabin automaton with marks on edges. The format does not know
+finite traces. For these, the file has a Büchi automaton with marks on the accepting states, and a
+header says that a trace is accepted if its run ends in one of them.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ from tltlc.automaton.guards import Guards, TooManyPrimes
 from tltlc.automaton.infinite.mark_conditions import pair_marks
 from tltlc.automaton.transitions import ACCEPT, REJECT, TransitionDiagrams
 from tltlc.backends import Files, Options, Target
-from tltlc.backends.drawing.texts import visible
+from tltlc.backends.drawing.texts import escape_invisible
 from tltlc.logic.formula import FALSE, TRUE
 
 TARGET = Target("hoa", "an omega-automaton in the Hanoi format (HOA), for model checkers", (".hoa",))
 
-# By its capital first letter, a tool that does not know this header must warn: it would read another language.
+# A tool that does not know a header with a capital first letter must warn: it would read another language.
 FINITE_HEADER = 'Tltlc-semantics: "finite"'
 FINITE_COMMENT = "A finite trace is accepted where its run ends in a state of set 0."
 ALLOWED_COMMENT = "Exclusive atoms never hold at once: a letter that is not @allowed has no edge."
@@ -98,8 +98,8 @@ def _body(fspa: Fspa) -> Iterator[str]:
 class _Labels:
     """Guards as expressions over the numbers of atoms, true on exactly the letters that take the edge.
 
-    They are built from the primes, which everything else uses as well: a guard's text is only for
-    readers.
+    They are built from the primes, as everything else that uses guards is: a guard's text is only
+    for readers.
     """
 
     def __init__(self, fspa: Fspa) -> None:
@@ -148,7 +148,7 @@ def _string(text: str) -> str:
 def _character(character: str) -> str:
     if character in '"\\':
         return f"\\{character}"
-    if visible(character) == character:
+    if escape_invisible(character) == character:
         return character
     code = ord(character)
     return f"\\u{code:04x}" if code < 0x10000 else f"\\U{code:08x}"
@@ -156,5 +156,5 @@ def _character(character: str) -> str:
 
 def _comment(text: str) -> str:
     """Return a comment. HOA comments nest, so the text must contain no comment start or end."""
-    lines = [visible(line.strip()) for line in text.strip().splitlines()]
+    lines = [escape_invisible(line.strip()) for line in text.strip().splitlines()]
     return f"/* {re.sub('(?<=[*])(?=/)|(?<=/)(?=[*])', ' ', chr(10).join(lines))} */"

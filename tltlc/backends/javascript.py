@@ -109,7 +109,7 @@ class _Source:
         self._names = (*self._program.signals, *self._program.params, *self._program.atoms)
         names = [atom.name for atom in fspa.atoms]
         self._printer = _JavaScript(names)
-        # For values of atoms, the sign of a zero does not matter, and Math.min is faster than a function of our own.
+        # The sign of a zero does not matter for values of atoms, and Math.min is faster than a function of the monitor.
         self._moves = _JavaScript(names, ("min", "max"))
 
     def module(self) -> str:
@@ -136,7 +136,7 @@ class _Source:
             ),
             "params": _list([_row(param, f"value: {_number(param.value)}") for param in fspa.params]),
             "atoms": _list([_string(atom.name) for atom in fspa.atoms]),
-            # Names are checked even if no atom reads a param.
+            # The monitor checks the names of params even if no atom reads a param.
             "params_kept": "this.#params = " if "params" in present else "",
             "exclusive": _list([f"[{', '.join(map(str, group))}]" for group in fspa.exclusive]),
             "states": _list(self._states()),
@@ -180,7 +180,7 @@ class _Source:
         for index, (signal, name) in enumerate(zip(self._fspa.signals, self._program.signals, strict=True)):
             checked = f"this.#signal({index}, signals)"
             if name not in used:
-                # An unused signal is checked, too.
+                # The monitor checks unused signals, too.
                 lines.append(f"{checked};")
                 continue
             given = _member("signals", signal.name)

@@ -21,7 +21,7 @@ def emit(fspa: Fspa, options: Options) -> Files:
         ValueError: the automaton cannot be written in the format (a bug of the construction).
     """
     subject = f"the artefact of `{fspa.name}`"
-    # This finds most automata that are too large before any text is built.
+    # This rejects most automata that are too large before any text is built.
     check_size(subject, *least_size(fspa))
     document = encode(fspa)
     validate(document)

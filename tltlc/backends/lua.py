@@ -34,7 +34,7 @@ TARGET = Target(
 )
 
 _MOST_LOCALS: Final = 150
-"""How many local variables and arguments fit besides those of the step itself."""
+"""The most local variables and arguments that fit beside those of the step itself."""
 
 _FEW_STATES: Final = 8
 """Up to this many states are tested one after the other; with more, each state has a function."""
@@ -144,10 +144,10 @@ class _Source:
         self._at_goal = fspa.judge == "goal"
         variables = (*program_.signals, *program_.params, *program_.atoms)
         with recursion_room():
-            parts = [declaration.name for value in program_.values for declaration in _declared(value)]
+            parts = [declaration.name for value in program_.values for declaration in _declarations(value)]
             deepest = max(map(_depth, program_.values), default=0)
-        # Variables count twice because they are also arguments.
-        self._many = 2 * len(variables) + len(parts) > _MOST_LOCALS or deepest >= _DEEPEST
+        # Each variable counts twice because it is an argument, too.
+        self._variables_are_fields = 2 * len(variables) + len(parts) > _MOST_LOCALS or deepest >= _DEEPEST
         fields = {
             **{
                 name: f"signal{_index(signal.name)}"
@@ -158,7 +158,7 @@ class _Source:
             **{name: f"part.{name}" for name in parts},
         }
         self._few_states = len(fspa.states) <= _FEW_STATES
-        self._printer = _Lua(fields if self._many else {}, self._names)
+        self._printer = _Lua(fields if self._variables_are_fields else {}, self._names)
 
     def text(self) -> str:
         """Return the whole file."""
@@ -167,7 +167,11 @@ class _Source:
         with recursion_room():
             moves = "\n".join(self._moves())
             step = _Lua.block(self._step())
-        present = [*functions, *(["failing"] if functions & FAILING else []), *(["many"] if self._many else [])]
+        present = [
+            *functions,
+            *(["failing"] if functions & FAILING else []),
+            *(["many"] if self._variables_are_fields else []),
+        ]
         present += [] if all(program_.always_in_range) else ["kept"]
         present += [] if self._few_states else ["moves"]
         present += ["exclusive"] if program_.exclusive else []
@@ -217,7 +221,7 @@ class _Source:
 
     # --- the functions of states ------------------------------------------------------------------
 
-    def _returned(self) -> str:
+    def _result_names(self) -> str:
         """Return the variables that the functions of states return.
 
         Progress is one of them unless the spec is judged at its limit, where it does not depend on
@@ -232,7 +236,7 @@ class _Source:
         They are the atoms that every step computes, and the signals and params that the functions
         read.
         """
-        if self._many:
+        if self._variables_are_fields:
             return "signal, param, value"
         program_ = self._program
         lazy_values = [value for value, only in zip(program_.values, program_.only_in, strict=True) if only is not None]
@@ -245,8 +249,8 @@ class _Source:
         lines: list[str] = []
         for state in [] if self._few_states else self._fspa.states:
             lines += ["", *self._printer.comment(str(state.label))]
-            lines += [f"MOVES[{state.id}] = function({self._parameters()})", f"  local {self._returned()}"]
-            lines += [*self._branch(state.id), f"  return {self._returned()}", "end"]
+            lines += [f"MOVES[{state.id}] = function({self._parameters()})", f"  local {self._result_names()}"]
+            lines += [*self._branch(state.id), f"  return {self._result_names()}", "end"]
         return lines
 
     def _branch(self, state: int) -> list[str]:
@@ -267,7 +271,7 @@ class _Source:
     def _tables(self) -> list[str]:
         """Return the declaration of ``problem``, and of the tables whose fields are variables."""
         lines = ["local problem"] if self._fspa.signals or not all(self._program.always_in_range) else []
-        if self._many:
+        if self._variables_are_fields:
             lines.append("local signal, param, value = self._signal, self.params, self._value")
         return lines
 
@@ -278,8 +282,8 @@ class _Source:
             lines.append("-- Adding 0 makes floats of whole numbers, which would wrap around in Lua 5.3 and later.")
         for index, (signal, name) in enumerate(zip(self._fspa.signals, self._program.signals, strict=True), start=1):
             variable = self._printer.name(name)
-            lines.append(f"{'' if self._many else 'local '}{variable} = signals{_index(signal.name)}")
-            lines += _accepted_first(signal, variable)
+            lines.append(f"{'' if self._variables_are_fields else 'local '}{variable} = signals{_index(signal.name)}")
+            lines += _accepting_cases(signal, variable)
             lines += [
                 "else",
                 f"  {variable}, problem = read(self, {index}, signals)",
@@ -288,7 +292,7 @@ class _Source:
             ]
         used = self._program.variables_used
         params = zip(self._fspa.params, self._program.params, strict=True)
-        if not self._many:
+        if not self._variables_are_fields:
             lines += [f"local {name} = self.params{_index(param.name)}" for param, name in params if name in used]
         return lines
 
@@ -334,8 +338,8 @@ class _Source:
     def _move(self) -> list[str]:
         """Return code for the transition, by state."""
         if not self._few_states:
-            return [f"local {self._returned()} = MOVES[self.state]({self._parameters()})"]
-        lines = ["local state = self.state", f"local {self._returned()}"]
+            return [f"local {self._result_names()} = MOVES[self.state]({self._parameters()})"]
+        lines = ["local state = self.state", f"local {self._result_names()}"]
         for state in self._fspa.states:
             lines.append(f"{'elseif' if state.id else 'if'} state == {state.id} then")
             lines += [f"  {line}" for line in self._printer.comment(str(state.label))]
@@ -350,10 +354,10 @@ class _Source:
             reward_step.VIOLATED: 'entered.verdict == "violated"',
             reward_step.SATISFIED: 'entered.verdict == "satisfied"',
         }
-        kept = (reward_step.STEPS, reward_step.BEST, reward_step.DONE)
+        running = (reward_step.STEPS, reward_step.BEST, reward_step.DONE)
         return [
             f"local entered = STATES[{states.TARGET}]",
-            f"local {', '.join(kept)} = self.steps + 1, self.progress, self.done",
+            f"local {', '.join(running)} = self.steps + 1, self.progress, self.done",
             f"local {reward_step.REWARD}",
             *(f"local {name} = {value}" for name, value in definitions.items() if name in used),
             *_Lua({}, self._names).lines(self._program.reward_statements),
@@ -363,14 +367,14 @@ class _Source:
 # --- statements -----------------------------------------------------------------------------------
 
 
-def _declared(statements: Iterable[Statement]) -> Iterator[Declare]:
+def _declarations(statements: Iterable[Statement]) -> Iterator[Declare]:
     """Yield every declaration, including those in branches."""
     for statement in statements:
         if isinstance(statement, Declare):
             yield statement
         elif isinstance(statement, If):
             for body in _bodies(statement):
-                yield from _declared(body)
+                yield from _declarations(body)
 
 
 def _depth(statements: Iterable[Statement]) -> int:
@@ -392,7 +396,7 @@ def _field(name: str, type_: str, doc: str) -> str:
     return f"---@field {printable_line(_key(name))} {type_}{description}"
 
 
-def _accepted_first(signal: Signal, variable: str) -> list[str]:
+def _accepting_cases(signal: Signal, variable: str) -> list[str]:
     """Return the first cases of a signal's branch: values that need no further check."""
     if signal.type == "bool":
         return [
@@ -421,7 +425,7 @@ def _escape(character: str) -> str:
 
 
 def _key(name: str) -> str:
-    """Return a key as a table lists it."""
+    """Return a key as it is written in a table."""
     plain = re.fullmatch(r"[A-Za-z_][A-Za-z0-9_]*", name) and name not in _KEYWORDS
     return name if plain else f"[{_string(name)}]"
 

@@ -1,7 +1,7 @@
-"""The automaton as a Mermaid state diagram, which many wikis and code hosts draw in place; counting states are folded.
+"""The automaton as a Mermaid state diagram, which many wikis and code hosts draw in place.
 
-There is one arrow from one state to another: of several loops of a state, Mermaid would draw only
-the last one.
+Counting states are folded. All edges from one state to another share an arrow: of several loops of a
+state, Mermaid would draw only the last one.
 """
 
 from __future__ import annotations
@@ -12,9 +12,9 @@ from collections.abc import Sequence
 from tltlc.automaton.fspa import Fspa, State
 from tltlc.automaton.text import label_text
 from tltlc.backends import Files, Options, Target
-from tltlc.backends.drawing.folding import span
-from tltlc.backends.drawing.picture_content import notes, on_distances, shown
-from tltlc.backends.drawing.texts import arrows, visible, wrapped
+from tltlc.backends.drawing.folding import text_range
+from tltlc.backends.drawing.picture_content import distance_note, folded_drawing, notes
+from tltlc.backends.drawing.texts import escape_invisible, guards_by_arrow, wrap_text
 
 TARGET = Target("mermaid", "a state diagram for Mermaid", (".mmd",))
 
@@ -37,13 +37,13 @@ def emit(fspa: Fspa, options: Options) -> Files:
 
     Over infinite traces, the pairs that name an edge follow its guard.
     """
-    drawing = shown(fspa)
-    lines = ["stateDiagram-v2", "    direction LR", f"    accTitle: The automaton of {_escaped(fspa.name)}"]
+    drawing = folded_drawing(fspa)
+    lines = ["stateDiagram-v2", "    direction LR", f"    accTitle: The automaton of {_escape(fspa.name)}"]
     lines += [_state(fspa, drawing.folded.get(state.id, (state,)), options) for state in drawing.states]
     lines.append("    [*] --> s0")
-    for (source, target), guards in arrows(drawing.edges, options.notation).items():
+    for (source, target), guards in guards_by_arrow(drawing.edges, options.notation).items():
         lines.append(f"    s{source} --> s{target}: {_lines([*(f'{guard};' for guard in guards[:-1]), guards[-1]])}")
-    legend = (on_distances(drawing, "In brackets", "thick outline"), *notes(fspa, drawing))
+    legend = (distance_note(drawing, "In brackets", "thick outline"), *notes(fspa, drawing))
     lines.append(f'    state "{_lines(legend)}" as legend')
     lines += [CLASSES, DASHED, LEGEND] if drawing.folded else [CLASSES, LEGEND]
     lines += [f"    class s{state.id} {state.verdict}" for state in drawing.states]
@@ -53,25 +53,26 @@ def emit(fspa: Fspa, options: Options) -> Files:
 
 
 def _state(fspa: Fspa, run: tuple[State, ...], options: Options) -> str:
-    """Return a state, or the inner states of a run as one."""
+    """Return the line of a state; the inner states of a run share a line."""
     ends = run[0], run[-1]
-    distance = span(*("∞" if state.distance is None else str(state.distance) for state in ends))
+    distance = text_range(*("∞" if state.distance is None else str(state.distance) for state in ends))
     heading = [f"{len(run)} more like these:"] if len(run) > 1 else []
-    texts = [*heading, span(*(label_text(fspa, state.id, options.notation) for state in ends)), f"[{distance}]"]
+    texts = [*heading, text_range(*(label_text(fspa, state.id, options.notation) for state in ends)), f"[{distance}]"]
     return f'    state "{_lines(texts)}" as s{run[0].id}'
 
 
 def _lines(texts: Sequence[str]) -> str:
-    return "<br/>".join(_escaped(line) for text in texts for line in wrapped(text, WIDTH, MOST_LINES))
+    return "<br/>".join(_escape(line) for text in texts for line in wrap_text(text, WIDTH, MOST_LINES))
 
 
-def _escaped(text: str) -> str:
-    """Return text with all but letters, digits and a few marks as Mermaid escapes (``#38;``), so
-    that nothing is syntax.
+def _escape(text: str) -> str:
+    """Return the text with Mermaid escapes (``#38;``), so that nothing in it is syntax.
+
+    Only letters, digits and a few marks stay as they are.
     """
     escaped = "".join(
         character if character.isalnum() or character in _PLAIN else f"#{ord(character)};"
-        for character in visible(text)
+        for character in escape_invisible(text)
     )
     # Mermaid treats any line that contains `direction LR` as that statement.
     return re.sub("direction", lambda match: f"#{ord(match.group()[0])};{match.group()[1:]}", escaped, flags=re.I)

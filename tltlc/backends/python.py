@@ -1,8 +1,7 @@
 """A stand-alone monitor in Python: one file, standard library only, one function per state.
 
-It is printed from the program of :mod:`tltlc.program`.
-
-It gives the same results to the last bit as :class:`tltlc.monitor.Monitor` with its default reward.
+The monitor is printed from the program of :mod:`tltlc.program`. It gives the same results to the
+last bit as :class:`tltlc.monitor.Monitor` with its default reward.
 """
 
 from __future__ import annotations
@@ -66,7 +65,7 @@ def emit(fspa: Fspa, options: Options) -> Files:
 
 
 class _Python(Printer):
-    """Prints Python; atoms are limiting by their names."""
+    """Prints Python; ``atoms`` are the names that stand for limiting atoms."""
 
     COMMENT: ClassVar[str] = "#"
     TYPES: ClassVar[dict[Type, str]] = {"real": "float", "int": "int", "bool": "bool"}
@@ -78,7 +77,9 @@ class _Python(Printer):
 
     def lines(self, statements: Iterable[Statement], depth: int = 0) -> list[str]:
         """Return the lines of statements; a variable without a value needs no declaration."""
-        needed = (one for one in statements if not (isinstance(one, Declare) and one.value is None))
+        needed = (
+            statement for statement in statements if not (isinstance(statement, Declare) and statement.value is None)
+        )
         return super().lines(needed, depth)
 
     def declaration(self, statement: Declare) -> str:
@@ -116,8 +117,8 @@ class _Python(Printer):
     def _text_and_binding(self, node: Expression) -> tuple[str, int]:
         """Return the text of an expression and its binding strength.
 
-        A call of ``min`` or ``max`` takes as many arguments as there are: one call is faster than
-        several, and the first of equal arguments counts either way.
+        Nested calls of ``min`` or ``max`` become one call with many arguments, which is faster. The
+        result is the same: the first of equal arguments.
         """
         match node:
             case NumericCall("min" | "max" as function):
@@ -201,19 +202,26 @@ class _Source:
         body = split_deep_values(self._program.states[state], self._names)
         match body:
             case (If(cases, otherwise),):
-                # Returns instead of `elif`: a chain of these would nest as deep as a state has edges.
+                # Each case returns, since a chain of `elif` would nest as deep as a state has edges.
                 for test, taken in cases:
                     lines.append(f"{INDENT}{self._printer.head(self._printer.text(test), first=True)}")
-                    lines += self._taken(taken, depth=2)
+                    lines += self._edge_lines(taken, depth=2)
                 body = otherwise
-        return "\n".join([*lines, *self._taken(body, depth=1)])
+        return "\n".join([*lines, *self._edge_lines(body, depth=1)])
 
-    def _taken(self, body: Sequence[Statement], depth: int) -> list[str]:
-        """Return the lines that run when an edge is taken; what is assigned once is returned without a variable."""
-        once = {one.name: one for one in body if isinstance(one, Assign) and one.name in self._results}
+    def _edge_lines(self, body: Sequence[Statement], depth: int) -> list[str]:
+        """Return the lines that run when an edge is taken.
+
+        A result that is assigned once is returned without a variable.
+        """
+        once = {
+            statement.name: statement
+            for statement in body
+            if isinstance(statement, Assign) and statement.name in self._results
+        }
         if once.get(states.LIMITING, _NO_LIMITING) != _NO_LIMITING:
             del once[states.LIMITING]
-        rest = [one for one in body if one not in once.values()]
+        rest = [statement for statement in body if statement not in once.values()]
         results = [self._printer.result(once[name]) if name in once else name for name in self._results]
         return [*self._printer.lines(rest, depth), f"{INDENT * depth}return {', '.join(results)}"]
 
@@ -311,7 +319,7 @@ def _within(signal: Signal, variable: str) -> str:
 
 
 def _two_hold(atoms: Sequence[str]) -> str:
-    """Return a test that two of the atoms hold, which is fast if none does."""
+    """Return a test whether at least two of the atoms hold; the test is fast if none holds."""
     if len(atoms) > 8:
         return f"sum(value > 0.0 for value in {_inline(atoms)}) > 1"
     tests = [f"{atom} > 0.0" for atom in atoms]

@@ -199,8 +199,9 @@ class _Source:
         return [*lines, *(f"let {name} = self.params.{name};" for name in self._program.params if name in used)]
 
     def _bools(self, state: int | None) -> list[str]:
-        """Return code that converts bools to numbers: those that only this state reads; for None,
-        those read at every step.
+        """Return code that converts the bools that only this state reads to numbers.
+
+        For None, it converts the bools that every step reads.
         """
         names = self._program.bools_read_in(state)
         return [f"let {name} = if sample.{name} {{ 1.0 }} else {{ 0.0 }};" for name in names]

@@ -51,13 +51,13 @@ class Scope:
                     if changes:
                         self.changing.add(name)
                     if value is not None:
-                        self._give(name, self.value(value))
+                        self._assign(name, self.value(value))
                 case Assign(name, value):
-                    self._give(name, self.value(value))
+                    self._assign(name, self.value(value))
                 case If(cases, otherwise):
                     self.run(next((body for test, body in cases if self.value(test)), otherwise))
 
-    def _give(self, name: str, value: Value) -> None:
+    def _assign(self, name: str, value: Value) -> None:
         assert name in self.changing or name not in self.values, f"{name} changes, and does not say so"
         self.values[name] = value
 

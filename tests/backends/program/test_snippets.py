@@ -35,7 +35,7 @@ def test_long_items_have_separate_lines() -> None:
     assert Printer.items(["x" * 50, "y", "z" * 50]) == f"\n    {'x' * 50},\n    y,\n    {'z' * 50},\n"
 
 
-def test_literals() -> None:
+def test_quotes_and_unprintable_characters_are_escaped_in_literals() -> None:
     text = 'a "b" \\ é\n'
     assert snippets.string_literal(text, lambda character: "·") == '"a \\"b\\" \\\\ é·"'
     assert snippets.string_literal(text, lambda character: "·", snippets.is_plain_ascii) == '"a \\"b\\" \\\\ ··"'
@@ -55,7 +55,7 @@ def test_literals() -> None:
         ("b_1", spec.Signal("b", "bool", 0.0, 1.0, "Whether it is open."), "b: Whether it is open."),
     ],
 )
-def test_fields_are_described(name: str, of: spec.Signal | spec.Param, text: str) -> None:
+def test_a_comment_on_a_field_has_its_name_doc_and_values(name: str, of: spec.Signal | spec.Param, text: str) -> None:
     assert snippets.field_comment(name, of) == text
 
 
@@ -73,7 +73,7 @@ def test_the_doc_comes_before_the_range_in_every_language(target: str) -> None:
     assert "How far it is. In [2, 10] m." in text
 
 
-def test_examples() -> None:
+def test_an_example_shows_two_signals_unless_it_is_too_long() -> None:
     assert snippets.example_sample((), str, ": ") == "{}"
     assert snippets.example_sample(SIGNALS, str, ": ") == "{ x: …, y: true }"
     assert snippets.example_sample(SIGNALS * 2, str, " = ") == "{ x = …, y = true, … }"

@@ -29,10 +29,10 @@ STATEMENTS: list[Statement] = [
 ]
 
 
-def test_variables_that_are_read() -> None:
+def test_variables_that_tests_and_values_read_are_returned() -> None:
     assert variables_read(STATEMENTS) == {"x", "y", "z", "b"}
     assert variables_read([]) == frozenset()
 
 
-def test_functions_that_are_called() -> None:
+def test_functions_that_tests_and_values_call_are_returned() -> None:
     assert functions_called(STATEMENTS) == {"sqrt", "abs", "max", "divide"}

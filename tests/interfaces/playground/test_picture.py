@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 import tltlc
 from tests.backends.strategies import automata, hostile_automata, infinite_automata
 from tltlc.automaton.fspa import Fspa, Notation
-from tltlc.backends.drawing.folding import folded
+from tltlc.backends.drawing.folding import fold_runs
 from tltlc.diagnostics.formats.text import columns
 from tltlc.interfaces.playground.curves import Curve
 from tltlc.interfaces.playground.layout import Size, StateBox, layout
@@ -54,7 +54,7 @@ def test_every_state_and_edge_is_drawn_once(formula: str) -> None:
     fspa = automaton(formula)
     svg, _ = picture(fspa)
     assert svg
-    drawing = folded(fspa)
+    drawing = fold_runs(fspa)
     drawn_states = [int(number) for group in groups(svg, "state") for number in group.get("data-states", "").split()]
     assert sorted(drawn_states) == [state.id for state in fspa.states]
     edges = [(int(group.get("data-source", "")), int(group.get("data-target", ""))) for group in groups(svg, "edge")]
@@ -203,7 +203,7 @@ def test_the_numbers_of_a_state_are_inside_its_frame_and_above_its_text(formula:
 
 def test_a_picture_with_too_many_states_is_not_drawn() -> None:
     fspa = automaton("F(a & F[3,7] b) & F(b & F[2,6] c)")
-    assert len(folded(fspa).states) > MOST_STATES
+    assert len(fold_runs(fspa).states) > MOST_STATES
     assert picture(fspa) == (
         None,
         f"The automaton has {len(fspa.states)} states and {len(fspa.edges)} edges, too many for a picture.",

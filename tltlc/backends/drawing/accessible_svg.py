@@ -8,7 +8,7 @@ from typing import Final
 from xml.etree import ElementTree as ET
 
 from tltlc.automaton.fspa import State
-from tltlc.backends.drawing.texts import visible
+from tltlc.backends.drawing.texts import escape_invisible
 
 _SVG: Final = "{http://www.w3.org/2000/svg}"
 _LINK_TITLE: Final = "{http://www.w3.org/1999/xlink}title"
@@ -20,38 +20,39 @@ _number = re.compile(r"-?\d+(?:\.\d+)?")
 _ends = re.compile(r"(\d+)(?::\w+)?->(\d+)(?::\w+)?")
 
 
-def worded(svg: bytes, name: str, folded: Mapping[int, Sequence[State]]) -> bytes:
+def make_accessible(svg: bytes, name: str, folded: Mapping[int, Sequence[State]]) -> bytes:
     """Return the picture with a title, and with the tooltips of its states and edges as their titles.
 
-    States get the attribute ``data-states``: the numbers of the states that they stand for by
-    ``folded``. Edges get ``data-source`` and ``data-target``. Texts are centred in their shape: at
-    the start position that Graphviz computes, a wider font would run out of the shape.
+    ``name`` is the automaton's name. A state gets the attribute ``data-states``: its number, or the
+    numbers of all states that ``folded`` lists for it. An edge gets ``data-source`` and
+    ``data-target``. Texts are centred in their shapes: at the start position that Graphviz
+    computes, a text in a wider font would leave its shape.
     """
     root = ET.fromstring(svg)
     root.set("role", "group")
     title = ET.Element(f"{_SVG}title")
-    title.text = f"The automaton of {visible(name)}"
+    title.text = f"The automaton of {escape_invisible(name)}"
     root.insert(0, title)
     for group in list(root.iter(f"{_SVG}g")):
         kind = group.get("class")
         if kind == "graph":
             group.remove(group[0])
-            _without_links(group)
+            _unwrap_links(group)
         elif kind in ("node", "edge"):
-            _name(group, folded)
-            _centre(group)
+            _set_title(group, folded)
+            _centre_texts(group)
         group.attrib.pop("id", None)
     ET.register_namespace("", _SVG[1:-1])
-    written: bytes = ET.tostring(root, encoding="utf-8", xml_declaration=True)
-    return written + b"\n"
+    picture: bytes = ET.tostring(root, encoding="utf-8", xml_declaration=True)
+    return picture + b"\n"
 
 
-def _name(group: ET.Element, folded: Mapping[int, Sequence[State]]) -> None:
+def _set_title(group: ET.Element, folded: Mapping[int, Sequence[State]]) -> None:
     """Give a state or an edge its tooltip as title, in place of its name in the graph."""
     title = group[0]
     name = title.text or ""
     title.text = next((link.get(_LINK_TITLE, "") for link in group.iter(f"{_SVG}a")), "start")
-    _without_links(group)
+    _unwrap_links(group)
     group.set("role", "img")
     if name.isdigit():
         numbers = [str(state.id) for state in folded.get(int(name), ())]
@@ -62,7 +63,7 @@ def _name(group: ET.Element, folded: Mapping[int, Sequence[State]]) -> None:
         title.text = f"from {ends[1]} to {ends[2]}: {title.text}"
 
 
-def _without_links(group: ET.Element) -> None:
+def _unwrap_links(group: ET.Element) -> None:
     """Replace links by their contents: they carry a tooltip but have no target."""
     children: list[ET.Element] = []
     for child in group:
@@ -71,7 +72,7 @@ def _without_links(group: ET.Element) -> None:
     group[:] = children
 
 
-def _centre(group: ET.Element) -> None:
+def _centre_texts(group: ET.Element) -> None:
     """Anchor each text at the middle of the smallest shape that contains its start."""
     # An edge's curve has no fill and is not a shape around text.
     shapes = (

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from tltlc.automaton.fspa import Fspa, State
-from tltlc.backends.drawing.folding import LEAST_FOLDED, Drawing, DrawnEdge, EdgeLabel, whole
+from tltlc.backends.drawing.folding import LEAST_FOLDED, Drawing, DrawnEdge, EdgeLabel, whole_drawing
 from tltlc.core.record import replace
 
 Rung = tuple[int, ...]
@@ -17,20 +17,20 @@ Steps = Mapping[int, Mapping[EdgeLabel, int]]
 """Per state, the target of each label of an edge."""
 
 
-def folded_in_step(fspa: Fspa) -> Drawing:
+def fold_ladders(fspa: Fspa) -> Drawing:
     """Return the drawing with the inner rungs of each ladder folded into the first inner rung.
 
     Each state of a rung agrees with the next state of its run in verdict, acceptance and the labels
-    of its edges. Equal labels lead to the same target, or to one rung further. An inner rung is
-    entered only from the rung before it. The edges of the folded rung to itself along a run are
-    drawn to the last rung, as in a run that is folded alone.
+    of its edges. Edges of the two states with equal labels lead to the same target, or to states of
+    one run in neighbouring rungs. An inner rung is entered only from the rung before it. Edges along
+    a run, which would lead from the folded rung to itself, are drawn to the last rung.
     """
-    states, all_edges = fspa.states, whole(fspa).edges
+    states, all_edges = fspa.states, whole_drawing(fspa).edges
     ladders = _ladders(states, all_edges)
     runs = [run for ladder in ladders for run in zip(*ladder, strict=True)]
     first = {state: run[0] for run in runs for state in run[:-1]}
     last = {run[0]: run[-1] for run in runs}
-    edges = (_drawn(edge, first, last) for edge in all_edges if first.get(edge.source, edge.source) == edge.source)
+    edges = (_redirect(edge, first, last) for edge in all_edges if first.get(edge.source, edge.source) == edge.source)
     return Drawing(
         tuple(state for state in states if first.get(state.id, state.id) == state.id),
         tuple(edges),
@@ -38,9 +38,10 @@ def folded_in_step(fspa: Fspa) -> Drawing:
     )
 
 
-def _drawn(edge: DrawnEdge, first: Mapping[int, int], last: Mapping[int, int]) -> DrawnEdge:
-    """Return an edge of a drawn state: edges into an inner rung lead to the first one, edges along
-    a run to the last one.
+def _redirect(edge: DrawnEdge, first: Mapping[int, int], last: Mapping[int, int]) -> DrawnEdge:
+    """Return an edge of a drawn state with its target in the drawing.
+
+    Edges into an inner rung lead to the first inner rung; edges along a run lead to the last rung.
     """
     target = first.get(edge.target, edge.target)
     return replace(edge, target=last[target] if target == edge.source and target in last else target)
@@ -57,21 +58,24 @@ def _ladders(states: Sequence[State], edges: Sequence[DrawnEdge]) -> list[list[R
     used_states: set[int] = set()
     for edge in edges:
         if not used_states & {edge.source, edge.target}:
-            for ladder in _from((edge.source,), (edge.target,), states, steps, entering):
+            for ladder in _ladders_from((edge.source,), (edge.target,), states, steps, entering):
                 if used_states.isdisjoint(state for rung in ladder for state in rung):
                     ladders.append(ladder)
                     used_states.update(state for rung in ladder[:-1] for state in rung)
     return ladders
 
 
-def _from(
+def _ladders_from(
     rung: Rung, following: Rung, states: Sequence[State], steps: Steps, entering: Sequence[set[int]]
 ) -> list[list[Rung]]:
-    """Return the ladders of the path that begins with two rungs, in order; the path ends where rungs do not agree."""
+    """Return the ladders, in order, of the path that begins with two given rungs.
+
+    The path ends where rungs do not agree.
+    """
     ladders: list[list[Rung]] = []
     ladder: list[Rung] = []
     seen = set(rung)
-    while pairs := _onward(rung, following, states, steps):
+    while pairs := _next_rung(rung, following, states, steps):
         is_entered = any(not state or not entering[state] <= set(rung) for state in pairs)
         if is_entered or not seen.isdisjoint(pairs) or len(set(pairs.values())) < len(pairs):
             break
@@ -85,7 +89,7 @@ def _from(
     return [candidate for candidate in (*ladders, ladder) if len(candidate) > LEAST_FOLDED]
 
 
-def _onward(rung: Rung, following: Rung, states: Sequence[State], steps: Steps) -> dict[int, int] | None:
+def _next_rung(rung: Rung, following: Rung, states: Sequence[State], steps: Steps) -> dict[int, int] | None:
     """Return, for each state of the following rung, the next state of its run; None if the two rungs do not agree."""
     successors: dict[int, int] = {}
     for state, after in zip(rung, following, strict=True):

@@ -1,4 +1,4 @@
-"""Fold counting states: of a long run of states that differ only in a count, draw the ends."""
+"""Fold counting states: draw only the ends of a long run of states that differ only in a count."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from tltlc.automaton.fspa import Fspa, Guard, Mark, State
 from tltlc.core.record import EMPTY, record, replace
 
 LEAST_FOLDED = 3
-"""A run with at least this many inner states is folded: five states with both ends."""
+"""A run is folded if it has at least this many inner states; with both ends, it then has five states."""
 
 _number = re.compile(r"(\d+)")
 _one_step = re.compile(r"\b1 step\b")
@@ -36,8 +36,8 @@ class DrawnEdge:
 class Drawing:
     """The states and edges that are drawn, in the automaton's order.
 
-    ``folded`` maps the first inner state of each run, which is drawn for all of them, to the run's
-    inner states. Its edge along the run leads to the last state of the run.
+    One state is drawn for all inner states of a folded run: the first of them. ``folded`` maps it
+    to the inner states. Its edge along the run leads to the last state of the run.
     """
 
     states: tuple[State, ...]
@@ -45,7 +45,7 @@ class Drawing:
     folded: Mapping[int, tuple[State, ...]] = EMPTY
 
 
-def whole(fspa: Fspa) -> Drawing:
+def whole_drawing(fspa: Fspa) -> Drawing:
     """Return a drawing of every state and edge."""
     edges = (
         DrawnEdge(edge.source, edge.target, EdgeLabel(edge.guard, marks))
@@ -54,27 +54,29 @@ def whole(fspa: Fspa) -> Drawing:
     return Drawing(fspa.states, tuple(edges))
 
 
-def folded(fspa: Fspa) -> Drawing:
+def fold_runs(fspa: Fspa) -> Drawing:
     """Return the drawing with the inner states of each run folded into one.
 
-    A run is a path on which each state has an edge with the same label to the next state (the last
-    one: to another state), and all agree in verdict, acceptance and the labels and targets of their
-    other edges. An inner state is entered only from the state before it, so distances stay equal or
-    fall by one.
+    A run is a path on which each state has an edge with the same label to the next state; the last
+    state has such an edge to another state. All states of the path agree in verdict, acceptance and
+    the labels and targets of their other edges. An inner state is entered only from the state
+    before it, so distances stay equal or fall by one.
     """
-    states, edges = fspa.states, whole(fspa).edges
-    runs = _inner_states(states, edges)
+    states, edges = fspa.states, whole_drawing(fspa).edges
+    runs = _inner_runs(states, edges)
     hidden = {state for run in runs for state, _ in run[1:]}
     shortened = {run[0][1]: run[-1][1].target for run in runs}
-    kept = (replace(edge, target=shortened.get(edge, edge.target)) for edge in edges if edge.source not in hidden)
+    drawn_edges = (
+        replace(edge, target=shortened.get(edge, edge.target)) for edge in edges if edge.source not in hidden
+    )
     return Drawing(
         tuple(state for state in states if state.id not in hidden),
-        tuple(kept),
+        tuple(drawn_edges),
         {run[0][0]: tuple(states[state] for state, _ in run) for run in runs},
     )
 
 
-def _inner_states(states: Sequence[State], edges: Sequence[DrawnEdge]) -> list[list[tuple[int, DrawnEdge]]]:
+def _inner_runs(states: Sequence[State], edges: Sequence[DrawnEdge]) -> list[list[tuple[int, DrawnEdge]]]:
     """Return the inner states of each run that is long enough, each with its edge along the run."""
     outgoing: list[list[DrawnEdge]] = [[] for _ in states]
     entering: list[list[DrawnEdge]] = [[] for _ in states]
@@ -84,8 +86,8 @@ def _inner_states(states: Sequence[State], edges: Sequence[DrawnEdge]) -> list[l
     along: dict[int, DrawnEdge] = {}
     for state in range(1, len(states)):  # not state 0, which the start of the trace also enters
         if len(entering[state]) == 1:
-            onward = _onward(entering[state][0], states, outgoing)
-            if onward is not None and _onward(onward, states, outgoing) is not None:
+            onward = _next_edge(entering[state][0], states, outgoing)
+            if onward is not None and _next_edge(onward, states, outgoing) is not None:
                 along[state] = onward
     runs = []
     for state, edge in along.items():
@@ -98,7 +100,7 @@ def _inner_states(states: Sequence[State], edges: Sequence[DrawnEdge]) -> list[l
     return runs
 
 
-def _onward(edge: DrawnEdge, states: Sequence[State], outgoing: list[list[DrawnEdge]]) -> DrawnEdge | None:
+def _next_edge(edge: DrawnEdge, states: Sequence[State], outgoing: list[list[DrawnEdge]]) -> DrawnEdge | None:
     """Return the edge that continues a run after this edge; None if its two states do not belong to one run."""
     source, target = states[edge.source], states[edge.target]
     if (source.verdict, source.accepting) != (target.verdict, target.accepting):
@@ -118,7 +120,7 @@ def _without(left_out: DrawnEdge, edges: list[DrawnEdge]) -> list[tuple[EdgeLabe
     return [(edge.label, edge.target) for edge in edges if edge is not left_out]
 
 
-def span(first: str, last: str) -> str:
+def text_range(first: str, last: str) -> str:
     """Return two texts as one: with ranges if they differ only in numbers (``F[0,39…2] p``), else both."""
     for texts in ((first, last), [_one_step.sub("1 steps", text) for text in (first, last)]):
         first_parts, last_parts = map(_number.split, texts)

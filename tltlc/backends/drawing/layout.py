@@ -10,8 +10,8 @@ from pathlib import Path
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import Files, Options
 from tltlc.backends.dot import Detail, graph
-from tltlc.backends.drawing.accessible_svg import worded
-from tltlc.backends.drawing.picture_content import shown
+from tltlc.backends.drawing.accessible_svg import make_accessible
+from tltlc.backends.drawing.picture_content import folded_drawing
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.io.child_interrupts import raise_if_interrupted
 
@@ -34,12 +34,13 @@ ATTEMPTS: tuple[tuple[Detail, str, float, str], ...] = (
 
 
 def draw(fspa: Fspa, options: Options, picture_format: str) -> Files:
-    """Return ``NAME.FORMAT``, or the best that could be drawn in time.
+    """Return ``NAME.FORMAT``, with the most detail that can be drawn in time.
 
-    Counting states are folded. The attempts, each within ``options.layout_limit_s`` and skipped if
-    there are too many edges, are in this order: everything in layers; the same without guards,
-    which an SVG still has as tooltips; only the states' numbers, by forces. If none succeeds, the
-    result is ``NAME.dot`` with nothing folded. What was left out is reported (TLT0711).
+    Counting states are folded. Each attempt takes at most ``options.layout_limit_s`` seconds, and
+    is skipped if there are too many edges. The attempts are, in order: everything in layers; the
+    same without guards, which an SVG still has as tooltips; only the states' numbers, with a
+    force-directed layout. If no attempt succeeds, the result is ``NAME.dot`` with nothing folded.
+    ``options.report`` receives a note on what was left out (TLT0711).
 
     Raises:
         TltlError: TLT0730 pygraphviz is not installed, TLT0712 the layout itself failed.
@@ -48,24 +49,26 @@ def draw(fspa: Fspa, options: Options, picture_format: str) -> Files:
         title = "a picture needs `pygraphviz`, which is not installed"
         raise TltlError([Diagnostic("TLT0730", title, help="pip install 'pygraphviz'")])
     name = f"{fspa.name}.{picture_format}"
-    drawing = shown(fspa)
+    drawing = folded_drawing(fspa)
     for detail, engine, most_edges, cut in ATTEMPTS:
         if len(drawing.edges) <= most_edges:
-            picture = _laid_out(graph(fspa, options, drawing, detail), picture_format, engine, options.layout_limit_s)
+            picture = _lay_out(graph(fspa, options, drawing, detail), picture_format, engine, options.layout_limit_s)
             if picture is not None:
                 if cut:
                     title = f"the picture of `{fspa.name}` shows its {len(fspa.states)} states {cut}: it is too tangled"
                     options.report(Diagnostic("TLT0711", title, help=WHOLE_GRAPH, severity="note"))
-                return {name: worded(picture, fspa.name, drawing.folded) if picture_format == "svg" else picture}
+                return {
+                    name: make_accessible(picture, fspa.name, drawing.folded) if picture_format == "svg" else picture
+                }
     title = f"`{fspa.name}` is too tangled to be drawn in time; its graph was written as `{fspa.name}.dot`"
     options.report(Diagnostic("TLT0711", title, help="other tools may draw it", severity="note"))
     return {f"{fspa.name}.dot": graph(fspa, options)}
 
 
-def _laid_out(dot: str, picture_format: str, engine: str, limit_s: float) -> bytes | None:
-    """Return the picture of a graph; None if the time limit was reached or the process was killed.
+def _lay_out(dot: str, picture_format: str, engine: str, limit_s: float) -> bytes | None:
+    """Return the picture of a graph; None if the layout reached its time limit or its process was killed.
 
-    Raises KeyboardInterrupt if Ctrl-C ended the process.
+    Raises KeyboardInterrupt if Ctrl-C ended the process, and TltlError, TLT0712, if the layout failed.
     """
     command = [sys.executable, str(CHILD), picture_format, engine]
     try:

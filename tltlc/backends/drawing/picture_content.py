@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from tltlc.automaton.fspa import Fspa
-from tltlc.backends.drawing.counting_states import folded_in_step
-from tltlc.backends.drawing.folding import Drawing, folded
+from tltlc.backends.drawing.counting_states import fold_ladders
+from tltlc.backends.drawing.folding import Drawing, fold_runs
 
 
-def shown(fspa: Fspa) -> Drawing:
-    """Return the drawing with counting states folded, run by run or in step, whichever leaves fewer states."""
-    return min(folded(fspa), folded_in_step(fspa), key=lambda drawing: len(drawing.states))
+def folded_drawing(fspa: Fspa) -> Drawing:
+    """Return the drawing with counting states folded, as single runs or as ladders, whichever leaves fewer states."""
+    return min(fold_runs(fspa), fold_ladders(fspa), key=lambda drawing: len(drawing.states))
 
 
-def on_distances(drawing: Drawing, place: str, outline: str) -> str:
+def distance_note(drawing: Drawing, place: str, outline: str) -> str:
     """Return a sentence about the number at a state, which is at ``place``; goal states have an ``outline``."""
     goal = f" ({outline})" if any(state.accepting for state in drawing.states) else ""
     none = ", ∞ if none can be reached" if any(state.distance is None for state in drawing.states) else ""
@@ -21,16 +21,16 @@ def on_distances(drawing: Drawing, place: str, outline: str) -> str:
 
 def notes(fspa: Fspa, drawing: Drawing) -> tuple[str, ...]:
     """Return sentences about the folded states and the marks of pairs."""
-    return tuple(filter(None, (_on_folding(fspa, drawing), _on_pairs(fspa))))
+    return tuple(filter(None, (_folding_note(fspa, drawing), _pairs_note(fspa))))
 
 
-def _on_folding(fspa: Fspa, drawing: Drawing) -> str:
+def _folding_note(fspa: Fspa, drawing: Drawing) -> str:
     folded_states = sum(map(len, drawing.folded.values()))
     return f"Dashed: {folded_states} of the {len(fspa.states)} states, folded." if folded_states else ""
 
 
-def _on_pairs(fspa: Fspa) -> str:
-    """Return when a trace is accepted, in terms of the marks of guards.
+def _pairs_note(fspa: Fspa) -> str:
+    """Return a sentence about the marks of the edges that an accepted trace takes.
 
     The text is empty over finite traces, and if no trace is accepted.
     """

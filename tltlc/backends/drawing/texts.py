@@ -25,7 +25,7 @@ _TIES = frozenset({"not", "<", ">", "<=", ">=", "≤", "≥", "+", "-", "*", "/"
 _tied_end = re.compile(r"\]$|\w\([^()]*,$|\[(?:fin|inf)$")
 
 
-def arrows(edges: Iterable[DrawnEdge], notation: Notation) -> Mapping[tuple[int, int], list[str]]:
+def guards_by_arrow(edges: Iterable[DrawnEdge], notation: Notation) -> Mapping[tuple[int, int], list[str]]:
     """Return the guards of the edges between each source and target.
 
     Over infinite traces, the pairs that name an edge follow its guard: ``a & b [fin 0] [inf 1]``.
@@ -39,18 +39,18 @@ def arrows(edges: Iterable[DrawnEdge], notation: Notation) -> Mapping[tuple[int,
     return guards_of_arrow
 
 
-def visible(text: str) -> str:
-    r"""Return the text with characters that are invisible or reorder others spelt out as ``\uXXXX``."""
+def escape_invisible(text: str) -> str:
+    r"""Return the text with invisible characters, and characters that reorder others, as ``\uXXXX``."""
     return _unseen.sub(lambda match: f"\\u{ord(match.group()):04x}", text)
 
 
-def wrapped(text: str, width: int, most_lines: int = 8) -> list[str]:
-    """Return the text on lines of about ``width`` characters, broken at blanks and before infix operators.
+def wrap_text(text: str, width: int, most_lines: int = 8) -> list[str]:
+    """Return the lines of the text, of about ``width`` characters, broken at blanks and before infix operators.
 
-    Words are never split, nor are comparisons or lists of arguments of up to two widths. Text
-    beyond ``most_lines`` is cut and marked by an ellipsis.
+    Words are not split, and neither are comparisons or lists of arguments of up to twice the width.
+    Text beyond ``most_lines`` lines is replaced by an ellipsis.
     """
-    pieces = _pieces(visible(" ".join(text.split())).split(" "), 2 * width)
+    pieces = _pieces(escape_invisible(" ".join(text.split())).split(" "), 2 * width)
     lines = [pieces[0]]
     for word in pieces[1:]:
         if len(lines[-1]) + 1 + len(word) <= width:
@@ -63,7 +63,7 @@ def wrapped(text: str, width: int, most_lines: int = 8) -> list[str]:
 
 
 def _pieces(words: list[str], longest: int) -> list[str]:
-    """Return the words; words that belong on one line are joined unless they become longer than ``longest``."""
+    """Return the words; words that belong on one line are joined, up to ``longest`` characters."""
     pieces = [words[0]]
     for before, word in pairwise(words):
         tied = word in _TIES or before in _TIES or _tied_end.search(pieces[-1]) is not None

@@ -1,4 +1,4 @@
-"""Number literals that every version of the engine reads as exactly the same double."""
+"""Number literals that every version of Godot reads as exactly the same double."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ _EXACT: Final = 2**53
 _LARGEST_POWER: Final = 22
 """The largest power of ten that is exactly a double is 10 to this power."""
 _MOST_DIGITS: Final = 18
-"""The engine ignores further digits; leading zeros count."""
+"""The engine ignores digits after this many; leading zeros count."""
 _LARGEST_DIVISOR: Final = 10_000
 
 

@@ -17,9 +17,9 @@ _CHOICE = -1
 class Gd(Printer):
     """Prints GDScript.
 
-    ``names`` maps variables of the program to their names here. ``functions`` maps functions that
-    the engine has to their names there; ``swapped`` are those whose arguments are passed in reverse
-    order. The other functions belong to the script.
+    ``names`` maps variables of the program to their names in the script. ``functions`` maps
+    functions that the engine has to their names in the engine; ``swapped`` are those whose
+    arguments are passed in reverse order. The other functions belong to the script.
     """
 
     INDENT: ClassVar[str] = "\t"
@@ -68,8 +68,8 @@ class Gd(Printer):
     def _text_and_binding(self, node: Expression) -> tuple[str, int]:
         """Return the text of an expression and its binding strength.
 
-        ``min`` and ``max`` of two names or numbers become a conditional expression: a call would
-        cost more than the rest.
+        ``min`` and ``max`` of two variables or numbers become a conditional expression: a call would
+        cost more than the comparison.
         """
         match node:
             case NumericCall("min" | "max" as function, (first, second)) if function not in self._functions:

@@ -42,8 +42,9 @@ _MEMBERS = {
     reward_step.VIOLATED: "verdict == Verdict.VIOLATED",
     reward_step.SATISFIED: "verdict == Verdict.SATISFIED",
 }
-"""What variables of the program are called here: mostly members of the monitor. A refused step
-returns before it assigns any of them.
+"""The texts for variables of the program, which are mostly members of the monitor here.
+
+A step that refuses its sample returns before it assigns any of them.
 """
 
 
@@ -204,8 +205,9 @@ class _Source:
         return [*lines, *self._stop()] if checked else lines
 
     def _bools(self, state: int | None) -> list[str]:
-        """Return code that converts bools to numbers: those that only this state reads; for None,
-        those read at every step.
+        """Return code that converts the bools that only this state reads to numbers.
+
+        For None, it converts the bools that every step reads.
         """
         names = map(self._printer.name, self._program.bools_read_in(state))
         return [f"var {name}: float = 1.0 if sample.{name} else 0.0" for name in names]
@@ -266,8 +268,9 @@ class _Source:
         return _list([self._string(text) for text in texts])
 
     def _string(self, text: str) -> str:
-        """Return a string literal with escapes for characters that do not print; NUL would end a
-        string of the engine.
+        """Return a string literal with escapes for characters that do not print.
+
+        NUL is left out: it would end a string of the engine.
         """
         return snippets.string_literal(text.replace("\0", ""), self._escape)
 

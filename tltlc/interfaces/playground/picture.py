@@ -8,9 +8,9 @@ from typing import Final
 
 from tltlc.automaton.fspa import Fspa, Notation, State
 from tltlc.automaton.text import label_text
-from tltlc.backends.drawing.folding import Drawing, span
-from tltlc.backends.drawing.picture_content import notes, shown
-from tltlc.backends.drawing.texts import arrows, visible, wrapped
+from tltlc.backends.drawing.folding import Drawing, text_range
+from tltlc.backends.drawing.picture_content import folded_drawing, notes
+from tltlc.backends.drawing.texts import escape_invisible, guards_by_arrow, wrap_text
 from tltlc.diagnostics.formats.text import columns
 from tltlc.interfaces.playground.curves import Point, bent, drawn
 from tltlc.interfaces.playground.layout import Size, StateBox, layout
@@ -43,7 +43,7 @@ def picture(fspa: Fspa, notation: Notation = "english") -> tuple[str | None, str
     ``data-source`` and ``data-target``. The title of both is their full text in words; the picture
     shows only the start of a long text.
     """
-    drawing = shown(fspa)
+    drawing = folded_drawing(fspa)
     if len(drawing.states) > MOST_STATES or len(drawing.edges) > MOST_EDGES:
         return None, f"The automaton has {len(fspa.states)} states and {len(fspa.edges)} edges, too many for a picture."
     return _Picture(fspa, drawing, notation).svg(), " ".join(notes(fspa, drawing))
@@ -55,8 +55,8 @@ class _Picture:
     def __init__(self, fspa: Fspa, drawing: Drawing, notation: Notation) -> None:
         self.fspa, self.drawing = fspa, drawing
         self.trap = _trap(drawing)
-        self.guards = arrows(drawing.edges, notation)
-        self.titles = arrows(drawing.edges, "english")
+        self.guards = guards_by_arrow(drawing.edges, notation)
+        self.titles = guards_by_arrow(drawing.edges, "english")
         self.lines = {ends: self._lines(ends) for ends in self.guards}
         self.runs = {state.id: drawing.folded.get(state.id, (state,)) for state in drawing.states}
         self.labels = {state: _label_lines(fspa, run, notation) for state, run in self.runs.items()}
@@ -103,8 +103,8 @@ class _Picture:
     def _state(self, state: State) -> str:
         run = self.runs[state.id]
         left, top, right, bottom = self._frame(state.id)
-        number = span(str(run[0].id), str(run[-1].id))
-        distance = span(*("∞" if end.distance is None else str(end.distance) for end in (run[0], run[-1])))
+        number = text_range(str(run[0].id), str(run[-1].id))
+        distance = text_range(*("∞" if end.distance is None else str(end.distance) for end in (run[0], run[-1])))
         classes = f"state {state.verdict}{' accepting' if state.accepting else ''}{' folded' if len(run) > 1 else ''}"
         title = _escaped(f"State {number}, {state.verdict}: {label_text(self.fspa, run[0].id)}")
         frame = _rectangle("frame", left, top, right, bottom, 9)
@@ -161,12 +161,12 @@ def _label_lines(fspa: Fspa, run: Sequence[State], notation: Notation) -> list[s
     first, last = (label_text(fspa, end.id, notation) for end in (run[0], run[-1]))
     if len(run) == 1:
         return _shortened([first], _LABEL)
-    return [f"{len(run)} more like these", *_shortened([span(first, last)], _LABEL)]
+    return [f"{len(run)} more like these", *_shortened([text_range(first, last)], _LABEL)]
 
 
 def _shortened(texts: Sequence[str], width: int) -> list[str]:
     """Wrap texts to lines of about that width; an ellipsis replaces what does not fit."""
-    lines = [line for text in texts for line in wrapped(text, width, _MOST_LINES)]
+    lines = [line for text in texts for line in wrap_text(text, width, _MOST_LINES)]
     if len(lines) > _MOST_LINES:
         lines = [*lines[: _MOST_LINES - 1], "…"]
     return [line if len(line) <= 2 * width else f"{line[: 2 * width - 1]}…" for line in lines]
@@ -194,4 +194,4 @@ def _text(lines: Sequence[str], middle: Point, height: float, kind: str) -> str:
 
 
 def _escaped(text: str) -> str:
-    return escape(visible(text))
+    return escape(escape_invisible(text))

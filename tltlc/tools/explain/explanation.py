@@ -10,7 +10,7 @@ from typing import Final
 from tltlc.automaton.fspa import Fspa, Guard, Implicant, Text
 from tltlc.automaton.text import formula_text, label_text
 from tltlc.automaton.work import OutOfWork
-from tltlc.backends.drawing.folding import folded
+from tltlc.backends.drawing.folding import fold_runs
 from tltlc.core.record import record
 from tltlc.logic.formula import TRUE, Formula, and_, atom, not_, or_, rebuild
 from tltlc.logic.text.outline import Outline, outline
@@ -141,7 +141,7 @@ def explain(fspa: Fspa) -> Explanation:
         limit_s=limit_s,
         spec_size=fspa.spec_size,
         states=_states(fspa, guards),
-        counting=tuple(tuple(state.id for state in run) for run in folded(fspa).folded.values()),
+        counting=tuple(tuple(state.id for state in run) for run in fold_runs(fspa).folded.values()),
         succeed=_example_trace(fspa, _witness(moves, accept=True)),
         fail=_example_trace(fspa, _witness(moves, accept=False)),
     )

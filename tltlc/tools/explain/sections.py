@@ -5,7 +5,7 @@ The text and Markdown outputs are written from these sections.
 
 from __future__ import annotations
 
-from tltlc.backends.drawing.folding import span
+from tltlc.backends.drawing.folding import text_range
 from tltlc.core.record import record
 from tltlc.tools.explain.ending import limit_text
 from tltlc.tools.explain.explanation import ANYTHING, ExampleTrace, Explanation, StateRow, TrapCondition
@@ -132,8 +132,8 @@ def _row(run: tuple[StateRow, ...]) -> tuple[str, ...]:
     return (
         _numbers([state.id for state in run]),
         first.verdict,
-        span(_distance_text(first), _distance_text(last)),
-        span(first.remains, last.remains),
+        text_range(_distance_text(first), _distance_text(last)),
+        text_range(first.remains, last.remains),
         "; ".join([*leads, *([f"{rest} more"] * bool(rest))]),
     )
 

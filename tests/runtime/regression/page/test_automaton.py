@@ -18,7 +18,7 @@ from tltl_runtime.stealth.recordings.episode import Episode
 from tltlc import compile_text
 from tltlc.automaton.fspa import Fspa
 from tltlc.automaton.text import label_text
-from tltlc.backends.drawing.picture_content import shown
+from tltlc.backends.drawing.picture_content import folded_drawing
 
 
 def explained_episodes(episodes: tuple[Episode, ...]) -> list[ExplainedEpisode]:
@@ -157,7 +157,7 @@ def test_a_folded_run_of_states_is_one_group() -> None:
 def test_a_folded_run_counts_episodes_that_enter_at_any_of_its_states() -> None:
     (fspa,) = compile_text("clock 1 Hz  signal a: bool  signal b: bool  spec both = F[0,9] a & F[0,9] b")
     # The states in which one of the two atoms has not been true yet.
-    inner = {state.id for state in shown(fspa).folded[4]}
+    inner = {state.id for state in folded_drawing(fspa).folded[4]}
     entering = [(edge.source, edge.target) for edge in fspa.edges if edge.source not in inner and edge.target in inner]
     assert len({target for _, target in entering}) == len(entering) == 7
     took = tuple(frozenset({edge}) for edge in entering)
@@ -171,11 +171,11 @@ def test_a_folded_run_counts_episodes_that_enter_at_any_of_its_states() -> None:
 
 def test_an_edge_between_two_folded_runs_is_counted_at_the_drawn_edge() -> None:
     (fspa,) = compile_text("clock 1 Hz  signal a: bool  signal b: bool  spec both = F[0,9] a & F[0,9] b")
-    folded = shown(fspa).folded
+    folded = folded_drawing(fspa).folded
     ends = {run[-1].id: first for first, run in folded.items()}
     # The edges of the last states of the runs: beyond the own end, beyond the end of another run, to success.
     last_edges = [(edge.source, edge.target) for edge in fspa.edges if edge.source in ends]
-    drawn_ends = {(edge.source, edge.target) for edge in shown(fspa).edges}
+    drawn_ends = {(edge.source, edge.target) for edge in folded_drawing(fspa).edges}
     crossing = [edge for edge in last_edges if (ends[edge[0]], edge[1]) not in drawn_ends]
     assert len(crossing) == 2
     drawing = draw_automaton(fspa)
