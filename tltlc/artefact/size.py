@@ -12,10 +12,10 @@ _ADVICE: Final = "declare atoms that never hold together `exclusive`, give the g
 _SHORTEST_EDGE: Final = '    {"source": 0, "target": 0, "guard": {"text": "", "primes": []}},\n'
 
 
-def check_size(what: str, size: int, commas: int = 0) -> None:
+def check_size(subject: str, size: int, commas: int = 0) -> None:
     """Refuse a file that could not be read again.
 
-    ``what`` is the name of the file in messages, ``size`` its size in bytes, and ``commas`` the
+    ``subject`` is the name of the file in messages, ``size`` its size in bytes, and ``commas`` the
     number of commas in it, at least one less than its number of values.
 
     Raises:
@@ -23,9 +23,9 @@ def check_size(what: str, size: int, commas: int = 0) -> None:
             it has more values.
     """
     if size > ARTEFACT.size:
-        raise _too_large("TLT0004", f"{what} would be larger than {ARTEFACT.size >> 20} MiB")
+        raise _too_large("TLT0004", f"{subject} would be larger than {ARTEFACT.size >> 20} MiB")
     if ARTEFACT.values is not None and commas >= ARTEFACT.values:
-        raise _too_large("TLT0006", f"{what} would hold more than {ARTEFACT.values:,} values")
+        raise _too_large("TLT0006", f"{subject} would hold more than {ARTEFACT.values:,} values")
 
 
 def least_size(fspa: Fspa) -> tuple[int, int]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import Any, Final, Literal
 
 from tltlc.core.record import record
-from tltlc.logic.formula import FlatNodes, Formula, flattened, unflattened
+from tltlc.logic.formula import FlatNodes, Formula, flatten, unflatten
 from tltlc.resolve.spec import Atom, Judge, Param, Signal
 
 Verdict = Literal["satisfied", "holding", "pending", "violated"]
@@ -146,7 +146,7 @@ class Fspa:
         guards = {id(edge.guard): edge.guard for edge in self.edges}
         labels = [state.label for state in self.states]
         formulas = (self.formula, *labels, *(guard.formula for guard in guards.values()))
-        nodes, indices = flattened(formula for formula in formulas if isinstance(formula, Formula))
+        nodes, indices = flatten(formula for formula in formulas if isinstance(formula, Formula))
         index = iter(indices)
         table = [next(index) if isinstance(formula, Formula) else formula for formula in formulas]
         states = [(state.id, state.accepting, state.verdict, state.distance) for state in self.states]
@@ -154,10 +154,10 @@ class Fspa:
         edges = [(edge.source, edge.target, place[id(edge.guard)]) for edge in self.edges]
         primes = [guard.primes for guard in guards.values()]
         fields = {name: getattr(self, name) for name in type(self).__match_args__}
-        return _unpickled, (nodes, table, primes, {**fields, "formula": None, "states": states, "edges": edges})
+        return _unpickle, (nodes, table, primes, {**fields, "formula": None, "states": states, "edges": edges})
 
 
-def _unpickled(
+def _unpickle(
     nodes: FlatNodes, table: list[int | Text], primes: list[tuple[Implicant, ...]], fields: dict[str, Any]
 ) -> Fspa:
     """Return the automaton.
@@ -165,7 +165,7 @@ def _unpickled(
     ``table`` has the formula of the spec, then the labels of the states and the formulas of the
     guards, each as a text or as an index into ``nodes``.  ``primes`` are those of the guards.
     """
-    subformulas = unflattened(nodes)
+    subformulas = unflatten(nodes)
     formulas = iter([entry if isinstance(entry, Text) else subformulas[entry] for entry in table])
     fields["formula"] = next(formulas)
     fields["states"] = tuple([State(number, next(formulas), *rest) for number, *rest in fields["states"]])

@@ -34,20 +34,20 @@ _PRIMES_OF_CONSTANTS: dict[int, tuple[Cube, ...]] = {REJECT: (), ACCEPT: ((),)}
 class TooManyPrimes(Exception):
     """Raised when the guards of an automaton are too large.
 
-    ``whose`` and ``what`` name the count that is over its ``limit``: the prime implicants of a
+    ``subject`` and ``unit`` name the count that is over its ``limit``: the prime implicants of a
     guard or the products of its short form (:data:`PRIME_LIMIT`), the prime implicants of all
     guards (:data:`TOTAL_PRIME_LIMIT`), or the rows "edges" and "partial products" of
     :data:`~tltlc.io.limits.WORK`.
     """
 
-    def __init__(self, whose: str = "a guard", limit: int = PRIME_LIMIT, what: str = "prime implicants") -> None:
-        super().__init__(f"{whose}: more than {limit} {what}")
-        self.whose, self.limit, self.what = whose, limit, what
+    def __init__(self, subject: str = "a guard", limit: int = PRIME_LIMIT, unit: str = "prime implicants") -> None:
+        super().__init__(f"{subject}: more than {limit} {unit}")
+        self.subject, self.limit, self.unit = subject, limit, unit
 
     def title(self, name: str) -> str:
         """Return the title of the diagnostic about the automaton of this name."""
-        verb = "have" if self.whose == "all guards" else "has"
-        return f"{self.whose} of `{name}` {verb} more than {self.limit} {self.what}"
+        verb = "have" if self.subject == "all guards" else "has"
+        return f"{self.subject} of `{name}` {verb} more than {self.limit} {self.unit}"
 
 
 class Guards:

@@ -60,7 +60,7 @@ class Formula:
 
     def __reduce__(self) -> tuple[object, ...]:
         # Pickle a flat list: pickling nested operands recurses, and bounds nest deep.
-        return _last_of, (flattened([self])[0],)
+        return _unpickle, (flatten([self])[0],)
 
     def walk(self) -> Iterator[Formula]:
         """Yield every distinct subformula: the formula itself first, left before right, without recursion."""
@@ -214,7 +214,7 @@ FlatNodes = list[tuple[Op, tuple[int, ...], str]]
 """Nodes as tuples: operator, indices of the operands, and name. Operands come before the nodes that use them."""
 
 
-def flattened(formulas: Iterable[Formula]) -> tuple[FlatNodes, list[int]]:
+def flatten(formulas: Iterable[Formula]) -> tuple[FlatNodes, list[int]]:
     """Return the distinct nodes of formulas as plain data, and the index of each formula."""
     nodes: FlatNodes = []
     index: dict[Formula, int] = {}
@@ -227,7 +227,7 @@ def flattened(formulas: Iterable[Formula]) -> tuple[FlatNodes, list[int]]:
     return nodes, places
 
 
-def unflattened(nodes: FlatNodes) -> list[Formula]:
+def unflatten(nodes: FlatNodes) -> list[Formula]:
     """Return the formulas of all nodes, in order."""
     formulas: list[Formula] = []
     for op, args, name in nodes:
@@ -235,8 +235,8 @@ def unflattened(nodes: FlatNodes) -> list[Formula]:
     return formulas
 
 
-def _last_of(nodes: FlatNodes) -> Formula:
-    return unflattened(nodes)[-1]
+def _unpickle(nodes: FlatNodes) -> Formula:
+    return unflatten(nodes)[-1]
 
 
 def temporal(op: Op, operands: tuple[Formula, ...]) -> Formula:

@@ -48,15 +48,15 @@ def recursion_room() -> Iterator[None]:
 def budget_error(spec: Spec, reason: Exception, state_budget: int) -> TltlError:
     """Return the error for a spec whose automaton outgrew a budget: TLT0501 (states) or TLT0502 (prime implicants)."""
     too_large = f"needs more than {state_budget} states" if isinstance(reason, OutOfStates) else failure_text(reason)
-    left = WORK["states of blamed parts"]
+    remaining = WORK["states of blamed parts"]
 
     def size(part: Conjunct, spec: Spec) -> Size | None:
-        nonlocal left
-        if left < 0:
+        nonlocal remaining
+        if remaining < 0:
             # A message names fewer parts than were measured so far.
             return Size(0, "")
         measured = _size(part, spec)
-        left -= measured.number if measured else 0
+        remaining -= measured.number if measured else 0
         return measured
 
     return error_with_clauses(spec, reason, too_large, size)
@@ -105,10 +105,10 @@ def error_with_clauses(
 def _guard_advice(spec: Spec, reason: TooManyPrimes) -> str:
     """Return advice on how to make the guards smaller or fewer."""
     pairs = sum(len(group) * (len(group) - 1) // 2 for group in spec.exclusive)
-    if reason.whose == "a guard" and 2 * pairs > reason.limit:
+    if reason.subject == "a guard" and 2 * pairs > reason.limit:
         # The prime implicants are those of `guard or not D`, and `not D` has one for each pair.
         return f"declare fewer atoms `exclusive`, or several smaller groups: now {pairs} pairs exclude each other"
-    if reason.whose == "a guard":
+    if reason.subject == "a guard":
         return "split the spec, or name the condition as a predicate"
     order = "give the goals an order, or split the spec"
     return order if spec.exclusive else f"declare atoms that never hold together `exclusive`, {order}"

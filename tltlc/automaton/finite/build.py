@@ -148,12 +148,12 @@ def _targets(minimal: Machine, diagrams: TransitionDiagrams) -> dict[int, list[i
     Raises :class:`TooManyPrimes` if there are more edges than the row "edges" of ``WORK`` allows.
     """
     targets: dict[int, list[int]] = {}
-    left = WORK["edges"]
+    remaining = WORK["edges"]
     for leaf in state_leaves(minimal, diagrams):
         reached = diagrams.leaves(minimal.transitions[diagrams.value[leaf][0]])
         targets[leaf] = [target for target in reached if target != IMPOSSIBLE]
-        left -= len(targets[leaf])
-        if left < 0:
+        remaining -= len(targets[leaf])
+        if remaining < 0:
             raise TooManyPrimes("the automaton", WORK["edges"], "edges")
     return targets
 
@@ -244,13 +244,13 @@ def _labels(
     labels = Labels(successors, minimal, negation_normal_form(source), allowed)
     restored = _arrow_forms(source, labels)
     formulas: dict[int, Formula] = {}
-    left = WORK["label nodes"]
+    remaining = WORK["label nodes"]
     own = labels.simplify_label(source)
     for state in minimal.transitions:
         formula = _restore_arrows(labels.label(state), restored)
         formulas[state] = own if state == minimal.initial and labels.size(own) <= labels.size(formula) else formula
-        left -= labels.size(formulas[state])
-        if left < 0:
+        remaining -= labels.size(formulas[state])
+        if remaining < 0:
             raise LabelsTooLong
     value = diagrams.value
     return {leaf: formulas[value[leaf][0]] for leaf in order}
@@ -263,11 +263,11 @@ def _arrow_forms(source: Formula, labels: Labels) -> dict[Formula, Formula]:
     than the row "arrow nodes" of ``WORK`` allows, leaves out the largest ones too.
     """
     parts = [part for part in source.walk() if part.op in ("implies", "iff")]
-    left = WORK["arrow nodes"]
+    remaining = WORK["arrow nodes"]
     written: dict[Formula, Formula] = {}
     for part in sorted(parts, key=labels.size):
-        left -= labels.size(part)
-        if left < 0 or labels.size(part) > LONGEST_SIMPLIFIED:
+        remaining -= labels.size(part)
+        if remaining < 0 or labels.size(part) > LONGEST_SIMPLIFIED:
             break
         written[negation_normal_form(part)] = part
     return written

@@ -41,7 +41,7 @@ class _Composition:
         self._successors = successors
         self._state_budget = state_budget
         self._allowed = allowed
-        self._left = max(WORK["states of parts"], 3 * state_budget)
+        self._remaining = max(WORK["states of parts"], 3 * state_budget)
         self._estimate = Estimate(successors.diagrams, WORK["estimate of states"])
 
     def minimal(self, formula: Formula) -> Machine:
@@ -55,10 +55,10 @@ class _Composition:
             return self._by_parts(formula)
 
     def _machine(self, obligation: int) -> Machine:
-        if self._left < 0:
+        if self._remaining < 0:
             raise OutOfStates
         minimal = machine(self._successors, obligation, self._state_budget, self._allowed)
-        self._left -= len(minimal.representative)
+        self._remaining -= len(minimal.representative)
         return minimal
 
     def _by_parts(self, formula: Formula) -> Machine:

@@ -41,7 +41,7 @@ class Estimate:
 
     def __init__(self, diagrams: TransitionDiagrams, steps: int) -> None:
         self._diagrams = diagrams
-        self._left = steps
+        self._remaining = steps
         self._leaf_without_atoms: dict[int, int] = {}
 
     def exceeds(self, machines: Sequence[Machine], conjunction: bool, budget: int) -> bool:
@@ -78,8 +78,8 @@ class Estimate:
         return False
 
     def _spend(self, steps: int) -> None:
-        self._left -= steps
-        if self._left < 0:
+        self._remaining -= steps
+        if self._remaining < 0:
             raise _OutOfSteps
 
     def _table(self, machine: Machine) -> _Table:

@@ -217,13 +217,13 @@ def matches_state(
         return known[obligation] == state
     assumed = {obligation: state}
     queue = [obligation]
-    for left in queue:
+    for current in queue:
         if len(queue) > pair_limit:
             raise OutOfSteps
-        transition = successors.of_obligation(left)
+        transition = successors.of_obligation(current)
         if allowed != ACCEPT:
             transition = diagrams.constrain(transition, allowed)
-        stack = [(transition, machine.transitions[assumed[left]])]
+        stack = [(transition, machine.transitions[assumed[current]])]
         visited = set(stack)
         while stack:
             m, n = stack.pop()

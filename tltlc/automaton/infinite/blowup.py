@@ -23,19 +23,19 @@ def budget_error(spec: Spec, reason: Exception) -> TltlError:
     too_large, advice = failure_text(reason), ADVICE
     if isinstance(reason, OutOfWork):
         too_large, advice = "takes too long to make", f"{ADVICE}; or allow more work by `--state-budget`"
-    left = _FOR_ALL_PARTS
+    remaining = _FOR_ALL_PARTS
 
     def size(part: Conjunct, spec: Spec) -> Size | None:
-        nonlocal left
-        if left < _FOR_A_PART:
+        nonlocal remaining
+        if remaining < _FOR_A_PART:
             # A message names fewer parts than were measured so far.
             return Size(0, "")
         try:
             automaton = rabin(part.formula, [atom.name for atom in spec.atoms], spec.exclusive, _FOR_A_PART)
         except (OutOfWork, OutOfSteps, TooManyPrimes, RecursionError):
-            left -= _FOR_A_PART
+            remaining -= _FOR_A_PART
             return None
-        left -= _FOR_A_PART - automaton.letters.work.left
+        remaining -= _FOR_A_PART - automaton.letters.work.left
         states, pairs = len(automaton.steps), automaton.pairs
         words = f"{states} state{'s' * (states != 1)} and {pairs} pair{'s' * (pairs != 1)}"
         return Size(states * max(pairs, 1), words)

@@ -131,9 +131,9 @@ def explore(
     return steps, smallest_bottom(targets, initial)
 
 
-def merge_equal_states(letters: Diagrams[Any], one: ComponentAutomaton) -> ComponentAutomaton:
+def merge_equal_states(letters: Diagrams[Any], component: ComponentAutomaton) -> ComponentAutomaton:
     """Merge states that cannot be distinguished by labels and by the marks that clauses use."""
-    labels, steps, accepts = one.labels, one.steps, one.accepts
+    labels, steps, accepts = component.labels, component.steps, component.accepts
     used = frozenset().union(*(clause.fins | clause.infs for clause in accepts))
     block = {state: labels[state] for state in steps}
     count = len(set(block.values()))
@@ -159,8 +159,8 @@ def merge_equal_states(letters: Diagrams[Any], one: ComponentAutomaton) -> Compo
         target, marks = leaf
         return leaf if target[0] == "exit" else (first[block[target]], marks & used)
 
-    kept = {state: letters.map_leaves(final, steps[state], memo) for state in first.values()}
-    return ComponentAutomaton({state: labels[state] for state in kept}, kept, accepts)
+    merged_steps = {state: letters.map_leaves(final, steps[state], memo) for state in first.values()}
+    return ComponentAutomaton({state: labels[state] for state in merged_steps}, merged_steps, accepts)
 
 
 def _step(

@@ -30,7 +30,7 @@ _Edge = tuple[State, State, Marks, int]
 
 
 def factor(
-    letters: Diagrams[Any], one: ComponentAutomaton, key: Callable[[State], State], work: Work
+    letters: Diagrams[Any], component: ComponentAutomaton, key: Callable[[State], State], work: Work
 ) -> RabinComponent | None:
     """Return the factor of a component by a key of its states; None if its edges cannot decide acceptance.
 
@@ -38,7 +38,7 @@ def factor(
     OutOfWork.
     """
     groups: dict[State, list[State]] = {}
-    for state in one.steps:
+    for state in component.steps:
         groups.setdefault(key(state), []).append(state)
     if max(map(len, groups.values())) > _MOST_TOGETHER:
         return None
@@ -48,7 +48,7 @@ def factor(
     for name, states in groups.items():
         step = letters.leaf(())
         for state in states:
-            step = letters.apply(lambda all_, leaf: (*all_, leaf), step, one.steps[state], {})
+            step = letters.apply(lambda all_, leaf: (*all_, leaf), step, component.steps[state], {})
         together[name] = step
         for leaves in letters.values(step):
             number = classes.setdefault((name, leaves), len(classes))
@@ -56,7 +56,7 @@ def factor(
                 if target[0] != "exit":
                     edges.append((state, target, marks, number))
                 work.spend()
-    ranks = _ranks(edges, one, work)
+    ranks = _ranks(edges, component, work)
     if ranks is None:
         return None
     accepting = sorted({rank for rank in ranks.values() if rank % 2 == 0})
@@ -77,30 +77,30 @@ def factor(
             return key(target), marks_of(ranks.get(classes[name, leaves]))
 
         steps[name] = letters.map_leaves(change, step, {})
-    return RabinComponent({name: one.labels[states[0]] for name, states in groups.items()}, steps, len(accepting))
+    return RabinComponent({name: component.labels[states[0]] for name, states in groups.items()}, steps, len(accepting))
 
 
-def _ranks(edges: list[_Edge], one: ComponentAutomaton, work: Work) -> dict[int, int] | None:
+def _ranks(edges: list[_Edge], component: ComponentAutomaton, work: Work) -> dict[int, int] | None:
     """Return the rank of each edge of the factor; None if some edge gets no rank."""
     # The functions of `cycles` read three fields of an edge; the number only keeps the edges distinct.
-    left: frozenset[Any] = frozenset(edges)
+    unranked: frozenset[Any] = frozenset(edges)
     ranks: dict[int, int] = {}
     rank = 0
     stuck = 0
-    while left:
-        cycles = parts(left, work)
+    while unranked:
+        cycles = parts(unranked, work)
         if not cycles:
-            return {**ranks, **{edge[3]: rank | 1 for edge in left}}
+            return {**ranks, **{edge[3]: rank | 1 for edge in unranked}}
         bad: set[int] = set()
         inside: Callable[..., list[frozenset[Any]]] = rejecting_parts if rank % 2 == 0 else accepting_parts
         for cycle in cycles:
-            for part in inside(cycle, one.accepts, work):
+            for part in inside(cycle, component.accepts, work):
                 bad |= {edge[3] for edge in part}
-        here = {edge[3] for edge in left} - bad
+        here = {edge[3] for edge in unranked} - bad
         stuck = 0 if here else stuck + 1
         if stuck == 2:
             return None
         ranks.update(dict.fromkeys(here, rank))
-        left = frozenset(edge for edge in left if edge[3] not in here)
+        unranked = frozenset(edge for edge in unranked if edge[3] not in here)
         rank += 1
     return ranks

@@ -133,14 +133,14 @@ class Recurrence:
         marked = over in attempts
         if marked and not self._keep:
             return (), True
-        left = {attempt for attempt in attempts if attempt not in (over, out)}
+        undecided = {attempt for attempt in attempts if attempt not in (over, out)}
         combine: Callable[[int, int], int]
         combine = self._after.obligations.either if self.kind == "inf" else self._after.obligations.both
         # If an attempt succeeds only if another one does, remembering the other one is enough.
         needed = [
             attempt
-            for attempt in left
-            if not any(other != attempt and combine(attempt, other) == other for other in left)
+            for attempt in undecided
+            if not any(other != attempt and combine(attempt, other) == other for other in undecided)
         ]
         return tuple(sorted(needed)), marked
 
@@ -174,7 +174,7 @@ class RoundRobin:
                 other = self._parts[(at + offset) % count].step(())
                 step = letters.apply(lambda all_, one: (*all_, one), step, other, {})
 
-            def stepped(leaves: Sequence[tuple[Memory, bool]]) -> tuple[Memory, bool]:
+            def next_leaf(leaves: Sequence[tuple[Memory, bool]]) -> tuple[Memory, bool]:
                 over = False
                 for offset, (left, marked) in enumerate(leaves):
                     here = (at + offset) % count
@@ -183,7 +183,7 @@ class RoundRobin:
                     over = over or here == count - 1
                 return (at, leaves[0][0]), True
 
-            step = letters.map_leaves(stepped, step, {})
+            step = letters.map_leaves(next_leaf, step, {})
             self._steps[memory] = step
         return step
 

@@ -109,10 +109,10 @@ def _nary(op: str, operands: Iterable[Formula]) -> Formula:
     if absorbing in flat or any(operand.op == "not" and operand.args[0] in flat for operand in flat):
         return absorbing
     inner = "or" if op == "and" else "and"
-    kept = [operand for operand in flat if not (operand.op == inner and any(part in flat for part in operand.args))]
-    if not kept:
+    needed = [operand for operand in flat if not (operand.op == inner and any(part in flat for part in operand.args))]
+    if not needed:
         return neutral
-    return build.and_(*kept) if op == "and" else build.or_(*kept)
+    return build.and_(*needed) if op == "and" else build.or_(*needed)
 
 
 def is_rigid(formula: Formula) -> bool:

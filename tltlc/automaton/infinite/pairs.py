@@ -35,49 +35,49 @@ class RabinComponent:
     pairs: int
 
 
-def with_pairs(letters: Diagrams[Any], one: ComponentAutomaton, work: Work) -> RabinComponent:
+def with_pairs(letters: Diagrams[Any], component: ComponentAutomaton, work: Work) -> RabinComponent:
     """Return the component with Rabin pairs: the smallest result of the methods of this module.
 
     Raises OutOfWork.
     """
     candidates: list[RabinComponent] = []
-    direct = clauses_as_pairs(letters, one)
+    direct = clauses_as_pairs(letters, component)
     try:
         with work.at_most(work.left // 2 if direct is None else _FOR_FEWER_PAIRS):
-            tree = decomposition(_edges(letters, one), one.accepts, work)
-            candidates.append(_follow_tree(letters, one, tree, one_at_a_time=False, work=work))
-            candidates.append(_follow_tree(letters, one, tree, one_at_a_time=True, work=work))
+            tree = decomposition(_edges(letters, component), component.accepts, work)
+            candidates.append(_follow_tree(letters, component, tree, one_at_a_time=False, work=work))
+            candidates.append(_follow_tree(letters, component, tree, one_at_a_time=True, work=work))
     except OutOfWork:
         pass
     if direct is not None:
         candidates.append(direct)
     if not candidates:
-        candidates.append(_wait_in_turn(letters, one, work))
+        candidates.append(_wait_in_turn(letters, component, work))
     return min(candidates, key=lambda candidate: (len(candidate.steps), candidate.pairs))
 
 
-def clauses_as_pairs(letters: Diagrams[Any], one: ComponentAutomaton) -> RabinComponent | None:
+def clauses_as_pairs(letters: Diagrams[Any], component: ComponentAutomaton) -> RabinComponent | None:
     """Return the component with its clauses as pairs; None unless each clause has at most one ``inf`` mark."""
-    if any(len(clause.infs) > 1 for clause in one.accepts):
+    if any(len(clause.infs) > 1 for clause in component.accepts):
         return None
 
     def change(leaf: Leaf) -> tuple[State, PairMarks]:
         target, marks = leaf
         if target[0] == "exit":
             return target, NO_MARKS
-        pair_marks: set[Mark] = {(pair, "inf") for pair, clause in enumerate(one.accepts) if clause.infs <= marks}
-        pair_marks |= {(pair, "fin") for pair, clause in enumerate(one.accepts) if clause.fins & marks}
+        pair_marks: set[Mark] = {(pair, "inf") for pair, clause in enumerate(component.accepts) if clause.infs <= marks}
+        pair_marks |= {(pair, "fin") for pair, clause in enumerate(component.accepts) if clause.fins & marks}
         return target, frozenset(pair_marks)
 
     memo: dict[int, int] = {}
-    steps = {state: letters.map_leaves(change, step, memo) for state, step in one.steps.items()}
-    return RabinComponent(one.labels, steps, len(one.accepts))
+    steps = {state: letters.map_leaves(change, step, memo) for state, step in component.steps.items()}
+    return RabinComponent(component.labels, steps, len(component.accepts))
 
 
-def _wait_in_turn(letters: Diagrams[Any], one: ComponentAutomaton, work: Work) -> RabinComponent:
+def _wait_in_turn(letters: Diagrams[Any], component: ComponentAutomaton, work: Work) -> RabinComponent:
     """Return the component with a Rabin pair for each clause, which waits for the clause's ``infs`` in turn."""
-    orders = [sorted(clause.infs) for clause in one.accepts]
-    first = next(iter(one.steps))
+    orders = [sorted(clause.infs) for clause in component.accepts]
+    first = next(iter(component.steps))
 
     def step_of(state: State) -> int:
         inner, waiting = state
@@ -87,7 +87,9 @@ def _wait_in_turn(letters: Diagrams[Any], one: ComponentAutomaton, work: Work) -
             if target[0] == "exit":
                 return target, NO_MARKS
             work.spend(1 + len(orders))
-            pair_marks: set[Mark] = {(pair, "fin") for pair, clause in enumerate(one.accepts) if clause.fins & marks}
+            pair_marks: set[Mark] = {
+                (pair, "fin") for pair, clause in enumerate(component.accepts) if clause.fins & marks
+            }
             following = []
             for pair, (order, place) in enumerate(zip(orders, waiting, strict=True)):
                 while place < len(order) and order[place] in marks:
@@ -99,18 +101,18 @@ def _wait_in_turn(letters: Diagrams[Any], one: ComponentAutomaton, work: Work) -
             return (target, tuple(following)), frozenset(pair_marks)
 
         work.spend(10)
-        return letters.map_leaves(change, one.steps[inner], {})
+        return letters.map_leaves(change, component.steps[inner], {})
 
     steps, best = explore(letters, (first, (0,) * len(orders)), step_of)
     return RabinComponent(
-        {state: one.labels[state[0]] for state in best}, {state: steps[state] for state in best}, len(orders)
+        {state: component.labels[state[0]] for state in best}, {state: steps[state] for state in best}, len(orders)
     )
 
 
-def _edges(letters: Diagrams[Any], one: ComponentAutomaton) -> list[Edge]:
+def _edges(letters: Diagrams[Any], component: ComponentAutomaton) -> list[Edge]:
     return [
         (state, target, marks)
-        for state, step in one.steps.items()
+        for state, step in component.steps.items()
         for target, marks in letters.values(step)
         if target[0] != "exit"
     ]
@@ -191,10 +193,10 @@ class _Walks:
 
 
 def _follow_tree(
-    letters: Diagrams[Any], one: ComponentAutomaton, tree: Node, *, one_at_a_time: bool, work: Work
+    letters: Diagrams[Any], component: ComponentAutomaton, tree: Node, *, one_at_a_time: bool, work: Work
 ) -> RabinComponent:
     walks = _Walks(tree, one_at_a_time=one_at_a_time)
-    first = next(iter(one.steps))
+    first = next(iter(component.steps))
 
     def step_of(state: State) -> int:
         inner, walk = state
@@ -213,9 +215,9 @@ def _follow_tree(
             return (target, after), frozenset(pair_marks)
 
         work.spend(10)
-        return letters.map_leaves(change, one.steps[inner], {})
+        return letters.map_leaves(change, component.steps[inner], {})
 
     steps, best = explore(letters, (first, walks.begin(tree, first)), step_of)
     return RabinComponent(
-        {state: one.labels[state[0]] for state in best}, {state: steps[state] for state in best}, walks.pairs
+        {state: component.labels[state[0]] for state in best}, {state: steps[state] for state in best}, walks.pairs
     )

@@ -56,10 +56,10 @@ def _redirect(letters: Diagrams[Any], component: RabinComponent, state: Any, oth
 
     groups = components(list(steps), within)
     # The first component leads to no other.
-    kept = set(groups[0])
+    bottom = set(groups[0])
     return RabinComponent(
-        {source: label for source, label in component.labels.items() if source in kept},
-        {source: step for source, step in steps.items() if source in kept},
+        {source: label for source, label in component.labels.items() if source in bottom},
+        {source: step for source, step in steps.items() if source in bottom},
         component.pairs,
     )
 

@@ -62,7 +62,7 @@ class FormulaParser:
         others = sorted(set(known) - self._plain, key=len, reverse=True)
         self._others = re.compile(rf"(?:{'|'.join(map(re.escape, others))})(?![\w.])") if others else None
         self._expansions: dict[tuple[str, Formula], list[Formula]] = {}
-        self._left = WORK["expanded bounds"]
+        self._remaining = WORK["expanded bounds"]
         self._parsed: dict[str, Formula | None] = {}
 
     def formula(self, text: str) -> Formula | None:
@@ -151,8 +151,8 @@ class FormulaParser:
         """Return ``F[0,steps] body`` or ``G[0,steps] body`` as nexts."""
         expansions = self._expansions.setdefault((op, body), [body])
         while len(expansions) <= steps:
-            self._left -= 1 + len(body.args)
-            if self._left < 0:
+            self._remaining -= 1 + len(body.args)
+            if self._remaining < 0:
                 raise _NoFormulaError
             inner = expansions[-1]
             expansions.append(
