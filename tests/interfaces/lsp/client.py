@@ -31,7 +31,7 @@ main(['lsp'])
 """
 
 
-class Refused(Exception):
+class RefusedError(Exception):
     """The server answered with an error."""
 
 
@@ -40,10 +40,10 @@ class Client:
         path = [str(Path(__file__).with_name("endless")), *sys.path]
         environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path)}
         # The file lies beside the folder, which must contain only the files of the test.
-        self._begun = folder.with_name(f"{folder.name}.begun") if folder else None
-        if self._begun:
-            self._begun.touch()
-            environment["BEGUN"] = str(self._begun)
+        self._analyses_file = folder.with_name(f"{folder.name}.begun") if folder else None
+        if self._analyses_file:
+            self._analyses_file.touch()
+            environment["BEGUN"] = str(self._analyses_file)
         self.process = subprocess.Popen(
             [sys.executable, "-c", PROGRAM],
             stdin=subprocess.PIPE,
@@ -88,16 +88,16 @@ class Client:
     def ask(self, method: str, params: Any) -> Any:
         answer = self.answer(self.start(method, params))
         if "error" in answer:
-            raise Refused(answer["error"]["message"])
+            raise RefusedError(answer["error"]["message"])
         return answer["result"]
 
     def answer(self, number: int) -> dict[str, Any]:
         """Return the answer to a request, which has already arrived or will arrive."""
 
-        def is_it(message: dict[str, Any]) -> bool:
+        def is_answer(message: dict[str, Any]) -> bool:
             return message.get("id") == number and "method" not in message
 
-        return next(filter(is_it, self.received), None) or self._next(is_it)
+        return next(filter(is_answer, self.received), None) or self._next(is_answer)
 
     def diagnostics(self, uri: str, wanted: Callable[[list[Any]], bool] = lambda _: True) -> list[dict[str, Any]]:
         """Return the next diagnostics of a document for which ``wanted`` is true."""
@@ -126,13 +126,13 @@ class Client:
             return True
         return False
 
-    def until_it_analyses(self, number: int = 1) -> None:
+    def wait_for_analyses(self, number: int = 1) -> None:
         """Wait until the server has started this many endless analyses."""
 
         def has_begun() -> bool:
-            assert self._begun, "a client without a folder has no such analyses"
+            assert self._analyses_file, "a client without a folder has no such analyses"
             assert self.process.poll() is None, self.errors
-            return self._begun.read_text(encoding="utf-8").count("\n") >= number
+            return self._analyses_file.read_text(encoding="utf-8").count("\n") >= number
 
         until(has_begun, "an analysis")
 
@@ -173,7 +173,7 @@ class Client:
         assert self.process.stdout
         os.dup2(os.open(os.devnull, os.O_RDONLY), self.process.stdout.fileno())
 
-    def until_nobody_is_left(self) -> None:
+    def wait_for_processes(self) -> None:
         """Wait until all processes started by the server have ended; they share its standard error."""
         self._listening.join(HANG_S)
         assert not self._listening.is_alive()

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from tests.interfaces.lsp.texts import opened
+from tests.interfaces.lsp.texts import open_text
 from tltlc.interfaces.lsp.completion import completions
-from tltlc.interfaces.lsp.edits import applied
+from tltlc.interfaces.lsp.edits import apply_edits
 
 BEFORE = """\
 import stealth
@@ -21,8 +21,8 @@ spec leave { tag smoke  reach near(s1) }
 """
 
 
-def offered(text: str, folder: Path | None = None, before: str = BEFORE, **others: str) -> list[str]:
-    document, at, _ = opened(before + text, folder, **others)
+def offered_labels(text: str, folder: Path | None = None, before: str = BEFORE, **others: str) -> list[str]:
+    document, at, _ = open_text(before + text, folder, **others)
     return [item.label for item in completions(document, at, "utf-16")]
 
 
@@ -68,18 +68,18 @@ def offered(text: str, folder: Path | None = None, before: str = BEFORE, **other
     ids=lambda value: value.replace("\n", " ") if isinstance(value, str) else "",
 )  # fmt: skip
 def test_the_offered_items_fit_the_place(text: str, among: list[str], absent: list[str]) -> None:
-    items = offered(text)
+    items = offered_labels(text)
     assert [item for item in among if item not in items] == []
     assert [item for item in absent if item in items] == []
 
 
 def test_nothing_is_offered_twice() -> None:
-    items = offered("spec a { reach ¦")
+    items = offered_labels("spec a { reach ¦")
     assert len(items) == len(set(items))
 
 
 def test_a_choice_replaces_the_part_of_the_word() -> None:
-    document, at, _ = opened("import core as c\nsignal n: ratio\nspec a = c.ab¦")
+    document, at, _ = open_text("import core as c\nsignal n: ratio\nspec a = c.ab¦")
     item = next(candidate for candidate in completions(document, at, "utf-16") if candidate.label == "c.above")
     assert item.text_edit is not None
     assert item.text_edit.range.start.character == len("spec a = ")
@@ -88,16 +88,16 @@ def test_a_choice_replaces_the_part_of_the_word() -> None:
 
 def test_unsaved_files_and_libraries_are_offered(tmp_path: Path) -> None:
     (tmp_path / "saved.tltl").write_text("entity s1\n", encoding="utf-8")
-    assert {"saved", "fresh"} <= set(offered("import ¦", tmp_path, "", fresh="entity s2"))
-    assert {"saved.tltl", "fresh.tltl"} <= set(offered('import "¦', tmp_path, "", fresh="entity s2"))
-    assert offered('test "¦', tmp_path, "", fresh="entity s2") == []
+    assert {"saved", "fresh"} <= set(offered_labels("import ¦", tmp_path, "", fresh="entity s2"))
+    assert {"saved.tltl", "fresh.tltl"} <= set(offered_labels('import "¦', tmp_path, "", fresh="entity s2"))
+    assert offered_labels('test "¦', tmp_path, "", fresh="entity s2") == []
 
 
 def test_every_offered_keyword_can_start_a_clause() -> None:
     """The parser accepts every keyword that is offered at the start of a clause."""
-    document, at, _ = opened(BEFORE + "spec a {\n    keep alive\n    ¦\n}")
+    document, at, _ = open_text(BEFORE + "spec a {\n    keep alive\n    ¦\n}")
     for item in completions(document, at, "utf-16"):
         text = document.source.text[:at] + item.label + " (" + document.source.text[at:]
-        assert applied(text, []) == text
-        with_keyword, _, _ = opened(text)
-        assert not any(f"found `{item.label}`" in diagnostic.title for diagnostic in with_keyword.said)
+        assert apply_edits(text, []) == text
+        with_keyword, _, _ = open_text(text)
+        assert not any(f"found `{item.label}`" in diagnostic.title for diagnostic in with_keyword.diagnostics)

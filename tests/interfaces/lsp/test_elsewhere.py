@@ -25,7 +25,7 @@ def unused(diagnostics: list[dict[str, object]]) -> list[object]:
     return [diagnostic["message"] for diagnostic in diagnostics if diagnostic["code"] in ("TLT0421", "TLT0422")]
 
 
-def is_one(diagnostics: list[dict[str, object]]) -> bool:
+def is_hushed_unused(diagnostics: list[dict[str, object]]) -> bool:
     return unused(diagnostics) == ["nothing uses the let `hushed`\nremove it, or use it"]
 
 
@@ -35,7 +35,7 @@ def write(folder: Path, **texts: str) -> None:
         (folder / f"{name}.tltl").write_text(text, encoding="utf-8")
 
 
-def watched(client: Client, file: Path, kind: int) -> None:
+def report_change(client: Client, file: Path, kind: int) -> None:
     client.tell("workspace/didChangeWatchedFiles", {"changes": [{"uri": file.as_uri(), "type": kind}]})
 
 
@@ -67,18 +67,18 @@ def test_neighbouring_files_are_read_only_if_something_seems_unused(
         analyse(Request(SourceFile(str(tmp_path / "library.tltl"), LIBRARY), (), {}, {}))
 
 
-def test_uses_in_unsaved_texts_count(client: Client, tmp_path: Path) -> None:
+def test_uses_in_unsaved_texts_count_as_uses(client: Client, tmp_path: Path) -> None:
     write(tmp_path, library=LIBRARY, main=MAIN)
     library = client.open(tmp_path / "library.tltl", LIBRARY)
     assert client.diagnostics(library) == []
     main_uri = client.open(tmp_path / "main.tltl", MAIN)
     # `hushed` becomes unused, and then used again; the library itself does not change.
     client.change(main_uri, MAIN.replace("= hushed", "= F dark"), 2)
-    assert client.diagnostics(library, is_one)
+    assert client.diagnostics(library, is_hushed_unused)
     client.change(main_uri, MAIN, 3)
     assert client.diagnostics(library, lambda diagnostics: not diagnostics) == []
     client.change(main_uri, "signal loud: bool\nspec hush = F loud\n", 4)
-    assert client.diagnostics(library, is_one)
+    assert client.diagnostics(library, is_hushed_unused)
     # Closing drops the unsaved text, so the saved file counts again.
     client.tell("textDocument/didClose", {"textDocument": {"uri": main_uri}})
     assert client.diagnostics(library, lambda diagnostics: not diagnostics) == []
@@ -87,7 +87,7 @@ def test_uses_in_unsaved_texts_count(client: Client, tmp_path: Path) -> None:
 def test_uses_in_a_new_unsaved_file_count(client: Client, tmp_path: Path) -> None:
     write(tmp_path, library=LIBRARY)
     library = client.open(tmp_path / "library.tltl", LIBRARY)
-    assert client.diagnostics(library, is_one)
+    assert client.diagnostics(library, is_hushed_unused)
     client.open(tmp_path / "main.tltl", MAIN)
     assert client.diagnostics(library, lambda diagnostics: not diagnostics) == []
 
@@ -95,13 +95,13 @@ def test_uses_in_a_new_unsaved_file_count(client: Client, tmp_path: Path) -> Non
 def test_closed_files_that_are_created_and_deleted_count(client: Client, tmp_path: Path) -> None:
     write(tmp_path, library=LIBRARY)
     library = client.open(tmp_path / "library.tltl", LIBRARY)
-    assert client.diagnostics(library, is_one)
+    assert client.diagnostics(library, is_hushed_unused)
     write(tmp_path, main=MAIN)
-    watched(client, tmp_path / "main.tltl", 1)
+    report_change(client, tmp_path / "main.tltl", 1)
     assert client.diagnostics(library, lambda diagnostics: not diagnostics) == []
     (tmp_path / "main.tltl").unlink()
-    watched(client, tmp_path / "main.tltl", 3)
-    assert client.diagnostics(library, is_one)
+    report_change(client, tmp_path / "main.tltl", 3)
+    assert client.diagnostics(library, is_hushed_unused)
 
 
 def test_an_import_that_another_file_relies_on_is_used(client: Client, tmp_path: Path) -> None:
@@ -111,5 +111,5 @@ def test_an_import_that_another_file_relies_on_is_used(client: Client, tmp_path:
     assert client.diagnostics(uri) == []
     assert client.diagnostics(uri) == []
     (tmp_path / "main.tltl").unlink()
-    watched(client, tmp_path / "main.tltl", 3)
+    report_change(client, tmp_path / "main.tltl", 3)
     assert unused(client.diagnostics(uri, bool)) == ["nothing of `library.tltl` is used\nremove the import, or use it"]

@@ -59,10 +59,10 @@ def test_the_server_and_its_processes_end(
     if busy:
         uri = client.open(tmp_path / "slow.tltl", ENDLESS)
         assert client.diagnostics(uri) == []
-        client.until_it_analyses()
+        client.wait_for_analyses()
     end(client)
     assert client.process.wait(HANG_S) == status
-    client.until_nobody_is_left()
+    client.wait_for_processes()
 
 
 def test_a_closed_pipe_ends_the_server(client: Client, tmp_path: Path) -> None:
@@ -101,7 +101,7 @@ def test_unknown_notifications_are_ignored_silently(client: Client, tmp_path: Pa
 def test_a_closed_document_does_not_block_others(client: Client, tmp_path: Path) -> None:
     slow = client.open(tmp_path / "slow.tltl", ENDLESS)
     assert client.diagnostics(slow) == []
-    client.until_it_analyses()
+    client.wait_for_analyses()
     other = client.open(tmp_path / "other.tltl", "signal a: bool\nspec s = G (a or not a)\n")
     assert client.diagnostics(other) == []
     client.tell("textDocument/didClose", {"textDocument": {"uri": slow}})

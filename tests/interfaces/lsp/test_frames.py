@@ -15,7 +15,7 @@ from tltlc.io.limits import MESSAGE, MESSAGE_HEAD
 MESSAGES = (b"{}", b'{"a": [1, "}"]}', b'{"text": "Content-Length: 3\\r\\n\\r\\n"}', b"[" + b"7, " * 300 + b"8]")
 
 
-def framed(data: bytes, extra: int = 0) -> bytes:
+def with_header(data: bytes, extra: int = 0) -> bytes:
     return b"Content-Length: %d\r\n\r\n%b" % (len(data) + extra, data)
 
 
@@ -29,7 +29,7 @@ def bodies(*pieces: bytes) -> list[bytes]:
 
 
 def test_messages_are_split_by_their_headers() -> None:
-    data = b"".join(map(framed, MESSAGES))
+    data = b"".join(map(with_header, MESSAGES))
     assert frames(data) == [Body(message) for message in MESSAGES]
     assert frames(*(data[at : at + 1] for at in range(len(data)))) == [Body(message) for message in MESSAGES]
 
@@ -46,32 +46,32 @@ def test_messages_are_split_by_their_headers() -> None:
     ],
 )
 def test_headers_may_be_written_in_several_ways(head: bytes) -> None:
-    assert frames(head % 2 + b"{}" + framed(b"[]")) == [Body(b"{}"), Body(b"[]")]
+    assert frames(head % 2 + b"{}" + with_header(b"[]")) == [Body(b"{}"), Body(b"[]")]
 
 
 @pytest.mark.parametrize("extra", [*range(1, 80), 1000, MESSAGE.size - 100])
 def test_a_header_within_a_body_ends_the_body(extra: int) -> None:
-    typed = b"Content-Type: a/b\r\n" + framed(b"[]")
-    for following in (framed(b"[]") * 3, typed * 3):
-        data = framed(b"{}", extra) + following
+    typed = b"Content-Type: a/b\r\n" + with_header(b"[]")
+    for following in (with_header(b"[]") * 3, typed * 3):
+        data = with_header(b"{}", extra) + following
         assert bodies(data) == [b"{}", b"[]", b"[]", b"[]"]
         assert bodies(*(data[at : at + 1] for at in range(len(data)))) == [b"{}", b"[]", b"[]", b"[]"]
 
 
 def test_a_broken_body_also_ends_at_the_next_header() -> None:
-    assert bodies(framed(b'{"a": "b', 40) + framed(b"[]")) == [b'{"a": "b', b"[]"]
+    assert bodies(with_header(b'{"a": "b', 40) + with_header(b"[]")) == [b'{"a": "b', b"[]"]
 
 
 @pytest.mark.parametrize("extra", [1, 2, 80, MESSAGE.size - 1000])
 @pytest.mark.parametrize("message", MESSAGES)
 def test_a_body_is_complete_at_its_last_bracket(message: bytes, extra: int) -> None:
     """An editor that waits for the answer sends nothing more."""
-    data = framed(message, extra)
+    data = with_header(message, extra)
     assert Frames().feed(data) == [Body(message)]
     reader = Frames()
     assert [reader.feed(data[at : at + 1]) for at in range(len(data))][-1] == [Body(message)]
     # The fault is detected only when more bytes arrive.
-    assert reader.feed(framed(b"[]")) == [
+    assert reader.feed(with_header(b"[]")) == [
         Fault(f"a message is shorter than its header says: {len(message)} bytes, not {len(message) + extra}"),
         Body(b"[]"),
     ]
@@ -79,15 +79,15 @@ def test_a_body_is_complete_at_its_last_bracket(message: bytes, extra: int) -> N
 
 @pytest.mark.parametrize("padding", [b" ", b"\n", b"\r\n\r\n", b"\t" * 100])
 def test_white_space_at_the_end_of_a_body_is_no_fault(padding: bytes) -> None:
-    data = framed(b"{}" + padding) * 2
+    data = with_header(b"{}" + padding) * 2
     assert frames(data) == [Body(b"{}")] * 2
     assert frames(*(data[at : at + 1] for at in range(len(data)))) == [Body(b"{}")] * 2
 
 
 def test_bytes_after_the_last_bracket_are_reported_once_and_skipped() -> None:
     fault = Fault("a message is shorter than its header says: 2 bytes, not 10")
-    for data in (framed(b"{} nothing", 0), framed(b"{} no\nthin"), framed(b"{}} = {}}", 1)):
-        assert frames(data + framed(b"[]")) == [Body(b"{}"), fault, Body(b"[]")]
+    for data in (with_header(b"{} nothing", 0), with_header(b"{} no\nthin"), with_header(b"{}} = {}}", 1)):
+        assert frames(data + with_header(b"[]")) == [Body(b"{}"), fault, Body(b"[]")]
 
 
 @given(st.recursive(st.none() | st.text(), st.lists, max_leaves=20), st.integers(1, 200), st.integers(0, 10**9))
@@ -109,23 +109,23 @@ def test_a_length_above_the_limit_is_reported_at_once() -> None:
     assert reader.feed(b"{" + b"a" * 100_000 + b"}") == []
     # Of the skipped bytes, at most the size of a header is kept.
     assert len(reader._buffer) <= MESSAGE_HEAD.size
-    assert reader.feed(framed(b"{}")) == [Body(b"{}")]
+    assert reader.feed(with_header(b"{}")) == [Body(b"{}")]
 
 
 def test_skipped_bytes_are_reported_once() -> None:
-    (fault, *rest) = frames(b"Content-Length: -5\r\n\r\n{\n" + b' "a": 1,\n' * 1000 + b"}" + framed(b"{}"))
+    (fault, *rest) = frames(b"Content-Length: -5\r\n\r\n{\n" + b' "a": 1,\n' * 1000 + b"}" + with_header(b"{}"))
     assert fault == Fault(r"a message without a header `Content-Length` is passed over: b'Content-Length: -5\r\n'")
     assert rest == [Body(b"{}")]
 
 
 def test_the_bytes_left_at_the_end_are_a_message() -> None:
-    assert bodies(framed(b"{}", 5)) == [b"{}"]
+    assert bodies(with_header(b"{}", 5)) == [b"{}"]
     assert bodies(b"Content-Length: 5\r\n") == []
 
 
 PIECES = st.one_of(
-    st.sampled_from(MESSAGES).map(framed),
-    st.builds(framed, st.sampled_from(MESSAGES), st.integers(-3, 100)),
+    st.sampled_from(MESSAGES).map(with_header),
+    st.builds(with_header, st.sampled_from(MESSAGES), st.integers(-3, 100)),
     st.sampled_from(
         [
             b"Content-Length: ",
@@ -151,9 +151,11 @@ def test_the_split_does_not_depend_on_the_pieces(data: bytes, sizes: list[int]) 
     for size in sizes:
         pieces.append(rest[:size])
         rest = rest[size:]
-    one, other = frames(data), frames(*pieces, rest)
-    assert [frame for frame in one if isinstance(frame, Body)] == [frame for frame in other if isinstance(frame, Body)]
-    assert [type(frame) for frame in one] == [type(frame) for frame in other]
+    frames_at_once, frames_in_pieces = frames(data), frames(*pieces, rest)
+    assert [frame for frame in frames_at_once if isinstance(frame, Body)] == [
+        frame for frame in frames_in_pieces if isinstance(frame, Body)
+    ]
+    assert [type(frame) for frame in frames_at_once] == [type(frame) for frame in frames_in_pieces]
 
 
 WRONG = st.sampled_from(
@@ -162,8 +164,8 @@ WRONG = st.sampled_from(
             b"Content-Length: %b\r\n\r\n{}" % length
             for length in (b"-2", b"+2", b"many", b"", b"2.0", b"\xb2", b"9" * 70)
         ),
-        *(framed(b'{"a": 1}', extra) for extra in range(-7, 100)),
-        framed(b"{}", MESSAGE.size),
+        *(with_header(b'{"a": 1}', extra) for extra in range(-7, 100)),
+        with_header(b"{}", MESSAGE.size),
         b"Content-Length: 2\r\n{}",
         b"Content-Length: 1\r\nContent-Length: 2\r\n\r\n{}",
         b"a" * 10_000,
@@ -175,9 +177,9 @@ WRONG = st.sampled_from(
 
 @given(st.lists(WRONG, max_size=5).map(b"".join), st.sampled_from(MESSAGES))
 def test_a_valid_message_after_invalid_ones_is_read(wrong: bytes, right: bytes) -> None:
-    assert bodies(wrong + framed(right))[-1] == right
+    assert bodies(wrong + with_header(right))[-1] == right
 
 
 @given(st.recursive(st.none() | st.text(), st.lists, max_leaves=20).map(lambda value: json.dumps([value]).encode()))
 def test_a_valid_message_is_never_cut(message: bytes) -> None:
-    assert frames(framed(message) * 2) == [Body(message)] * 2
+    assert frames(with_header(message) * 2) == [Body(message)] * 2

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from lsprotocol import types
 
-from tests.interfaces.lsp.texts import EXAMPLES, opened
+from tests.interfaces.lsp.texts import EXAMPLES, open_text
 from tltlc.core.source import Span
 from tltlc.diagnostics.diagnostic import Edit, TltlError
 from tltlc.interfaces.lsp import (
@@ -26,9 +26,9 @@ from tltlc.interfaces.lsp import (
 )
 from tltlc.interfaces.lsp.analysed_text import Document
 from tltlc.interfaces.lsp.analysis import DocumentAnalysis, SpecFigures
-from tltlc.interfaces.lsp.cursor import cursor, quoted
-from tltlc.interfaces.lsp.diagnostics import label_in, remark
-from tltlc.interfaces.lsp.edits import applied
+from tltlc.interfaces.lsp.cursor import cursor, quoted_text
+from tltlc.interfaces.lsp.diagnostics import label_in, protocol_diagnostic
+from tltlc.interfaces.lsp.edits import apply_edits
 from tltlc.interfaces.lsp.paths import uri_of
 from tltlc.interfaces.lsp.positions import offset, position, range_of
 from tltlc.interfaces.lsp.workspace import Workspace
@@ -47,20 +47,24 @@ def test_random_edits_keep_all_answers_consistent(path: Path) -> None:
     generator = random.Random(path.stem)
     whole = path.read_text(encoding="utf-8")
     for _ in range(8):
-        document, _, workspace = opened(whole, path.parent)
+        document, _, workspace = open_text(whole, path.parent)
         uri, text = uri_of(document.source.name), whole
         for version in range(2, 2 + generator.randint(1, 5)):
-            text = edited(text, generator)
+            text = random_edit(text, generator)
             workspace.put(uri, version, text)
             changed = workspace.document(uri)
             assert changed is not None
             assert (changed.source.text, workspace.version(uri)) == (text, version)
             ask_everything(changed, workspace, generator)
-        reparsed, _, _ = opened(text, path.parent)
-        assert (changed.said, changed.names, changed.module) == (reparsed.said, reparsed.names, reparsed.module)
+        reparsed, _, _ = open_text(text, path.parent)
+        assert (changed.diagnostics, changed.names, changed.module) == (
+            reparsed.diagnostics,
+            reparsed.names,
+            reparsed.module,
+        )
 
 
-def edited(text: str, generator: random.Random) -> str:
+def random_edit(text: str, generator: random.Random) -> str:
     """Return a text after a random edit, as by typing."""
     start = generator.randint(0, len(text))
     end = min(len(text), start + generator.choice((0, 0, 1, 3, 20, 300)))
@@ -72,11 +76,11 @@ def edited(text: str, generator: random.Random) -> str:
 def ask_everything(document: Document, workspace: Workspace, generator: random.Random) -> None:
     source = document.source
     encoding = generator.choice(("utf-8", "utf-16", "utf-32"))
-    check_remarks(document, encoding)
+    check_diagnostics(document, encoding)
     check_symbols(document, encoding)
     links = imports.links(document, encoding, uri_of)
     targets = [source.slice(span) for span, _ in imports.targets(document)]
-    assert [written(document, link.range, encoding) for link in links] == targets
+    assert [text_at(document, link.range, encoding) for link in links] == targets
     check_folds(document)
     check_tokens(document, encoding)
     lenses.lenses(document, "file:///x", NOTHING, encoding)
@@ -88,7 +92,7 @@ def ask_everything(document: Document, workspace: Workspace, generator: random.R
         back = offset(source, position(source, at, encoding), encoding)
         assert back == at or source.text[at - 1 : at + 1] == "\r\n"
         cursor(source, at)
-        quoted(source, at)
+        quoted_text(source, at)
         completion.completions(document, at, encoding)
         hover.hover(document, at, NOTHING, encoding)
         named = document.name_at(at)
@@ -106,37 +110,37 @@ def ask_everything(document: Document, workspace: Workspace, generator: random.R
     range_of(source, Span(0, len(source.text) + 5), encoding)
 
 
-def written(document: Document, where: types.Range, encoding: str) -> str:
+def text_at(document: Document, where: types.Range, encoding: str) -> str:
     """Return the text at a range of the editor."""
     start, end = (offset(document.source, position_, encoding) for position_ in (where.start, where.end))
     assert start <= end
     return document.source.text[start:end]
 
 
-def check_remarks(document: Document, encoding: str) -> None:
+def check_diagnostics(document: Document, encoding: str) -> None:
     """Assert that the diagnostics are at the compiler's positions, in columns of the editor."""
-    for diagnostic in document.said:
-        shown, label = remark(diagnostic, document, encoding, uri_of), label_in(diagnostic, document)
+    for diagnostic in document.diagnostics:
+        shown, label = protocol_diagnostic(diagnostic, document, encoding, uri_of), label_in(diagnostic, document)
         assert shown.message.startswith(diagnostic.title)
         if label is not None:
             source, span = document.source, label.span
-            assert written(document, shown.range, encoding) == written(document, range_of(source, span), "utf-16")
+            assert text_at(document, shown.range, encoding) == text_at(document, range_of(source, span), "utf-16")
 
 
 def check_symbols(document: Document, encoding: str) -> None:
     """Assert that the name of a declaration is within its range, and that a search finds it."""
     shown = symbols.symbols(document, encoding)
     for symbol in shown:
-        own = written(document, symbol.selection_range, encoding)
-        assert own in written(document, symbol.range, encoding)
+        own = text_at(document, symbol.selection_range, encoding)
+        assert own in text_at(document, symbol.range, encoding)
         assert own == symbol.name or symbol.kind in (types.SymbolKind.Module, types.SymbolKind.Event)
-    names = {symbol.name for symbol in symbols.found(document, "", encoding, "file:///x")}
+    names = {symbol.name for symbol in symbols.matching_symbols(document, "", encoding, "file:///x")}
     assert names == {symbol.name for symbol in shown if symbol.kind != types.SymbolKind.Module}
 
 
 def check_rename(document: Document, changed: list[tuple[Document, list[Edit]]]) -> None:
     for other, edits in changed:
-        text = applied(other.source.text, edits)
+        text = apply_edits(other.source.text, edits)
         assert text.count("brand_new") >= len(edits)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from lsprotocol import types
 
-from tests.interfaces.lsp.texts import opened
+from tests.interfaces.lsp.texts import open_text
 from tltlc.interfaces.lsp.analysed_text import Document
 from tltlc.interfaces.lsp.analysis import Request, analyse
 from tltlc.interfaces.lsp.hover import hover
@@ -28,7 +28,7 @@ spec leave {
 
 
 def hover_text(at: str, text: str = TEXT) -> str:
-    document, offset, _ = opened(text.replace(at, "¦" + at, 1))
+    document, offset, _ = open_text(text.replace(at, "¦" + at, 1))
     result = hover(document, offset, None, "utf-16")
     assert result is not None
     assert isinstance(result.contents, types.MarkupContent)
@@ -61,7 +61,7 @@ def test_the_hover_text_has_the_expected_parts(at: str, parts: tuple[str, ...]) 
 
 
 def test_the_hover_text_of_a_spec_describes_its_automaton() -> None:
-    document, offset, _ = opened(TEXT.replace("leave {", "¦leave {"))
+    document, offset, _ = open_text(TEXT.replace("leave {", "¦leave {"))
     analysis = analyse(Request(document.source, (), {}, {}))
     result = hover(document, offset, analysis, "utf-16")
     assert result is not None
@@ -71,7 +71,7 @@ def test_the_hover_text_of_a_spec_describes_its_automaton() -> None:
 
 
 def test_a_space_has_no_hover_text() -> None:
-    document, _, _ = opened(TEXT)
+    document, _, _ = open_text(TEXT)
     assert hover(document, TEXT.index("= 2 m"), None, "utf-16") is None
 
 
@@ -81,7 +81,7 @@ def test_operators_of_infinite_specs_are_explained_as_such() -> None:
 
 
 def test_a_name_that_shadows_another_is_resolved_correctly() -> None:
-    document, offset, _ = opened("entity s1, s2\nsignal at(x: entity): bool\nspec a = all s in (s1, s2): F at(¦s)")
+    document, offset, _ = open_text("entity s1, s2\nsignal at(x: entity): bool\nspec a = all s in (s1, s2): F at(¦s)")
     result = hover(document, offset, None, "utf-16")
     assert result is not None
     assert isinstance(document, Document)

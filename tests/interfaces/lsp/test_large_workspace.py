@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.interfaces.lsp.client import Client, Refused
+from tests.interfaces.lsp.client import Client, RefusedError
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.interfaces.lsp import workspace as module
 from tltlc.interfaces.lsp.workspace import Workspace
@@ -81,5 +81,5 @@ def test_a_rename_in_a_workspace_that_is_too_large_is_rejected(client: Client, t
         (tmp_path / f"{number}.tltl").write_text(f"{TEXT}{filler}")
     uri = client.open(tmp_path / "0.tltl", TEXT)
     at = {"textDocument": {"uri": uri}, "position": {"line": 0, "character": 8}}
-    with pytest.raises(Refused, match=r"hold more than 4 MiB of sources that may matter here.*TLT0004"):
+    with pytest.raises(RefusedError, match=r"hold more than 4 MiB of sources that may matter here.*TLT0004"):
         client.ask("textDocument/rename", {**at, "newName": "calm"})

@@ -46,7 +46,7 @@ def client(tmp_path: Path) -> Iterator[Client]:
 
 
 @pytest.fixture(scope="module")
-def lasting(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Client]:
+def shared_client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Client]:
     """One server for all messages that do not end it; a message of one test must not affect the
     next test."""
     started = Client(tmp_path_factory.mktemp("malformed"))
@@ -67,7 +67,7 @@ def code_of(client: Client, number: object) -> int | None:
     return code
 
 
-def lives(client: Client) -> bool:
+def is_alive(client: Client) -> bool:
     return client.ask("textDocument/documentSymbol", {"textDocument": {"uri": HERE}}) is None
 
 
@@ -89,10 +89,10 @@ NO_JSON = {"broken": b'{"jsonrpc": "2.0", oh', "UTF-16": b"\xff\xfe{}", "deep": 
 
 
 @pytest.mark.parametrize("data", NO_JSON.values(), ids=NO_JSON)
-def test_invalid_json_is_answered_with_a_parse_error(data: bytes, lasting: Client) -> None:
-    send(lasting, data)
-    assert code_of(lasting, None) == -32700
-    assert lives(lasting)
+def test_invalid_json_is_answered_with_a_parse_error(data: bytes, shared_client: Client) -> None:
+    send(shared_client, data)
+    assert code_of(shared_client, None) == -32700
+    assert is_alive(shared_client)
 
 
 WRONG = [
@@ -133,11 +133,11 @@ WRONG = [
 
 @pytest.mark.parametrize(("message", "number", "code"), WRONG, ids=lambda value: json.dumps(value)[:60])
 def test_an_invalid_request_is_answered_with_its_code(
-    message: Any, number: int | None, code: int | None, lasting: Client
+    message: Any, number: int | None, code: int | None, shared_client: Client
 ) -> None:
-    send(lasting, json.dumps(message).encode())
-    assert code_of(lasting, number) == code
-    assert lives(lasting)
+    send(shared_client, json.dumps(message).encode())
+    assert code_of(shared_client, number) == code
+    assert is_alive(shared_client)
 
 
 def test_invalid_notifications_are_only_logged(client: Client) -> None:
@@ -153,7 +153,7 @@ def test_invalid_notifications_are_only_logged(client: Client) -> None:
         {"jsonrpc": "2.0", "id": [], "error": {}},
     ):
         send(client, json.dumps(message).encode())
-    assert lives(client)
+    assert is_alive(client)
     assert [message for message in client.received if message.get("id", 0) is None or "method" in message] == []
     client.kill()
     client._listening.join()
@@ -193,21 +193,21 @@ UNTIMELY = [
 
 
 @pytest.mark.parametrize("message", UNTIMELY, ids=lambda value: json.dumps(value)[17:70])
-def test_invalid_notifications_show_nothing_to_the_user(message: Any, lasting: Client) -> None:
-    before = len(lasting.received)
-    send(lasting, json.dumps(message).encode())
-    assert lives(lasting)
+def test_invalid_notifications_show_nothing_to_the_user(message: Any, shared_client: Client) -> None:
+    before = len(shared_client.received)
+    send(shared_client, json.dumps(message).encode())
+    assert is_alive(shared_client)
     window_messages = [
-        message for message in lasting.received[before:] if str(message.get("method", "")).startswith("window/")
+        message for message in shared_client.received[before:] if str(message.get("method", "")).startswith("window/")
     ]
     assert window_messages == []
 
 
-def test_a_notification_sent_as_a_request_is_answered(lasting: Client) -> None:
-    send(lasting, json.dumps(request("$/cancelRequest", id=[])).encode())
-    assert code_of(lasting, 900) == -32602
-    send(lasting, json.dumps(request("notebookDocument/didClose", a=1)).encode())
-    assert code_of(lasting, 900) == -32600
+def test_a_notification_sent_as_a_request_is_answered(shared_client: Client) -> None:
+    send(shared_client, json.dumps(request("$/cancelRequest", id=[])).encode())
+    assert code_of(shared_client, 900) == -32602
+    send(shared_client, json.dumps(request("notebookDocument/didClose", a=1)).encode())
+    assert code_of(shared_client, 900) == -32600
 
 
 def test_messages_before_initialization_are_rejected() -> None:
@@ -231,10 +231,10 @@ def test_messages_after_shutdown_are_rejected(client: Client) -> None:
     "header",
     ["content-length: %d\r\n\r\n", "Content-Length:%d\r\n\r\n", "Content-Type: a/b\r\nContent-Length: %d\n\n"],
 )
-def test_other_spellings_of_headers_are_accepted(header: str, lasting: Client) -> None:
+def test_other_spellings_of_headers_are_accepted(header: str, shared_client: Client) -> None:
     data = json.dumps(hover()).encode()
-    send(lasting, data, (header % len(data)).encode())
-    assert code_of(lasting, 900) is None
+    send(shared_client, data, (header % len(data)).encode())
+    assert code_of(shared_client, 900) is None
 
 
 @pytest.mark.parametrize(
@@ -253,70 +253,70 @@ def test_other_spellings_of_headers_are_accepted(header: str, lasting: Client) -
     ],
     ids=lambda value: repr(value)[:24],
 )
-def test_an_invalid_header_loses_only_its_own_message(header: str, lasting: Client) -> None:
+def test_an_invalid_header_loses_only_its_own_message(header: str, shared_client: Client) -> None:
     """The message is lost, but the following ones are read."""
-    before = lines_so_far(lasting)
-    send(lasting, json.dumps(hover()).encode(), header.encode())
-    assert lives(lasting)
-    assert lives(lasting)
-    errors = lasting.errors[before : lines_so_far(lasting) - 1]
+    before = lines_so_far(shared_client)
+    send(shared_client, json.dumps(hover()).encode(), header.encode())
+    assert is_alive(shared_client)
+    assert is_alive(shared_client)
+    errors = shared_client.errors[before : lines_so_far(shared_client) - 1]
     assert errors
     assert all(line.startswith("a message ") for line in errors)
 
 
 @pytest.mark.parametrize("length", [MESSAGE.size + 1, 10**9, 10**12, 10**40])
-def test_a_length_above_the_limit_is_answered_without_waiting(length: int, lasting: Client) -> None:
+def test_a_length_above_the_limit_is_answered_without_waiting(length: int, shared_client: Client) -> None:
     """Either nothing or all of the message arrives; the server does not wait for missing bytes."""
-    send(lasting, b"", b"Content-Length: %d\r\n\r\n" % length)
-    assert code_of(lasting, None) == -32600
-    send(lasting, json.dumps(hover()).encode(), b"Content-Length: %d\r\n\r\n" % length)
-    assert code_of(lasting, None) == -32600
-    assert lives(lasting)
+    send(shared_client, b"", b"Content-Length: %d\r\n\r\n" % length)
+    assert code_of(shared_client, None) == -32600
+    send(shared_client, json.dumps(hover()).encode(), b"Content-Length: %d\r\n\r\n" % length)
+    assert code_of(shared_client, None) == -32600
+    assert is_alive(shared_client)
 
 
-def test_a_message_above_the_limit_is_skipped_as_a_whole(lasting: Client) -> None:
+def test_a_message_above_the_limit_is_skipped_as_a_whole(shared_client: Client) -> None:
     item = {"uri": HERE, "languageId": "tltl", "version": 1, "text": "// Content-Length: 5\n" * (MESSAGE.size // 20)}
-    send(lasting, json.dumps(notification("textDocument/didOpen", textDocument=item)).encode())
-    assert code_of(lasting, None) == -32600
-    assert lives(lasting)
+    send(shared_client, json.dumps(notification("textDocument/didOpen", textDocument=item)).encode())
+    assert code_of(shared_client, None) == -32600
+    assert is_alive(shared_client)
 
 
 @pytest.mark.parametrize("more", [1, 10, 26, 100, 4000, MESSAGE.size - 1000])
-def test_a_length_that_reaches_into_later_messages_loses_none(more: int, lasting: Client) -> None:
-    before = lines_so_far(lasting)
+def test_a_length_that_reaches_into_later_messages_loses_none(more: int, shared_client: Client) -> None:
+    before = lines_so_far(shared_client)
     data = json.dumps(hover()).encode()
-    send(lasting, data, b"Content-Length: %d\r\n\r\n" % (len(data) + more))
-    later = lasting.start("textDocument/documentSymbol", {"textDocument": {"uri": HERE}})
-    assert code_of(lasting, 900) is None
-    assert code_of(lasting, later) is None
-    assert lives(lasting)
-    errors = lasting.errors[before : lines_so_far(lasting) - 1]
+    send(shared_client, data, b"Content-Length: %d\r\n\r\n" % (len(data) + more))
+    later = shared_client.start("textDocument/documentSymbol", {"textDocument": {"uri": HERE}})
+    assert code_of(shared_client, 900) is None
+    assert code_of(shared_client, later) is None
+    assert is_alive(shared_client)
+    errors = shared_client.errors[before : lines_so_far(shared_client) - 1]
     assert [line[:39] for line in errors] == ["a message is shorter than its header sa"]
 
 
 @pytest.mark.parametrize("more", [1, 10, 4000, MESSAGE.size - 1000])
-def test_a_length_that_is_too_large_delays_no_answer(more: int, lasting: Client) -> None:
+def test_a_length_that_is_too_large_delays_no_answer(more: int, shared_client: Client) -> None:
     """The editor waits for the answer before it sends anything else."""
     data = json.dumps(hover()).encode()
-    send(lasting, data, b"Content-Length: %d\r\n\r\n" % (len(data) + more))
-    assert code_of(lasting, 900) is None
-    assert lives(lasting)
+    send(shared_client, data, b"Content-Length: %d\r\n\r\n" % (len(data) + more))
+    assert code_of(shared_client, 900) is None
+    assert is_alive(shared_client)
 
 
-def test_a_missing_empty_line_after_the_header_is_accepted(lasting: Client) -> None:
+def test_a_missing_empty_line_after_the_header_is_accepted(shared_client: Client) -> None:
     data = json.dumps(hover()).encode()
-    send(lasting, data, b"Content-Length: %d\r\n" % len(data))
-    assert code_of(lasting, 900) is None
-    assert lives(lasting)
+    send(shared_client, data, b"Content-Length: %d\r\n" % len(data))
+    assert code_of(shared_client, 900) is None
+    assert is_alive(shared_client)
 
 
 @pytest.mark.parametrize("other", [-3, 0, 3])
-def test_a_repeated_length_is_accepted(other: int, lasting: Client) -> None:
+def test_a_repeated_length_is_accepted(other: int, shared_client: Client) -> None:
     data = json.dumps(hover()).encode()
     header = b"Content-Length: %d\r\nContent-Length: %d\r\n\r\n" % (len(data) + other, len(data))
-    send(lasting, data, header)
-    assert code_of(lasting, 900) is None
-    assert lives(lasting)
+    send(shared_client, data, header)
+    assert code_of(shared_client, 900) is None
+    assert is_alive(shared_client)
 
 
 def test_a_document_may_be_closed_during_a_request(client: Client, tmp_path: Path) -> None:
@@ -324,7 +324,7 @@ def test_a_document_may_be_closed_during_a_request(client: Client, tmp_path: Pat
     running = client.start("workspace/executeCommand", {"command": "tltlc.runTests", "arguments": [uri, "slow"]})
     client.tell("textDocument/didClose", {"textDocument": {"uri": uri}})
     assert code_of(client, running) is None
-    assert lives(client)
+    assert is_alive(client)
 
 
 def test_invalid_uris_have_names() -> None:

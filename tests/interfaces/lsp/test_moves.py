@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from tests.interfaces.lsp.client import Client
-from tltlc.interfaces.lsp.edits import applied
+from tltlc.interfaces.lsp.edits import apply_edits
 from tltlc.interfaces.lsp.file_renames import edits_of_moves
 from tltlc.interfaces.lsp.workspace import Workspace
 
@@ -60,7 +60,7 @@ def test_imports_follow_renamed_files(moves: dict[str, str], expected: dict[str,
     workspace.folders = [str(tmp_path)]
     moved = edits_of_moves([(str(tmp_path / old), str(tmp_path / new)) for old, new in moves.items()], workspace)
     after = {
-        str(Path(document.source.name).relative_to(tmp_path)): applied(document.source.text, edits)
+        str(Path(document.source.name).relative_to(tmp_path)): apply_edits(document.source.text, edits)
         for document, edits in moved
     }
     assert after == expected
@@ -69,7 +69,7 @@ def test_imports_follow_renamed_files(moves: dict[str, str], expected: dict[str,
         (tmp_path / name).write_text(text, encoding="utf-8")
     for old, new in moves.items():
         (tmp_path / old).rename(tmp_path / new)
-    assert [document.said for document in workspace.all()] == [()] * 4
+    assert [document.diagnostics for document in workspace.all()] == [()] * 4
 
 
 @pytest.mark.parametrize("name", ['p"q', "p\nq", "p\rq"])

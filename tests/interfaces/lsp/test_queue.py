@@ -17,31 +17,31 @@ from tltlc.interfaces.lsp import queue
 from tltlc.interfaces.lsp.analysis import DocumentAnalysis
 from tltlc.interfaces.lsp.server import create
 
-FOUND = DocumentAnalysis(())
+ANALYSIS = DocumentAnalysis(())
 
 
-class Desk:
+class ControlledQueue:
     """A queue whose analyses run until they are ended or abandoned; ``begun`` lists all that were
     started."""
 
     def __init__(self) -> None:
         self.queue = queue.Queue(self._analyse, self._give_up)
-        self.begun: list[str] = []
+        self.started: list[str] = []
         self._now: asyncio.Future[DocumentAnalysis | None] | None = None
 
     async def open(self, *uris: str) -> None:
         for uri in uris:
-            self.queue.looked_at(uri)
+            self.queue.record_look(uri)
             self.queue.put(uri)
-        await settled()
+        await run_pending_tasks()
 
-    async def end(self, found: DocumentAnalysis | None = FOUND) -> None:
+    async def end(self, analysis: DocumentAnalysis | None = ANALYSIS) -> None:
         assert self._now is not None
-        self._now.set_result(found)
-        await settled()
+        self._now.set_result(analysis)
+        await run_pending_tasks()
 
     async def _analyse(self, uri: str, again: bool) -> DocumentAnalysis | None:
-        self.begun.append(uri)
+        self.started.append(uri)
         self._now = asyncio.get_running_loop().create_future()
         return await self._now
 
@@ -50,22 +50,24 @@ class Desk:
             self._now.set_result(None)
 
 
-async def settled() -> None:
+async def run_pending_tasks() -> None:
     for _ in range(9):
         await asyncio.sleep(0)
 
 
-def on_a_desk(long_s: float) -> Callable[[Callable[[Desk], Awaitable[None]]], Callable[[pytest.MonkeyPatch], None]]:
+def on_a_controlled_queue(
+    long_s: float,
+) -> Callable[[Callable[[ControlledQueue], Awaitable[None]]], Callable[[pytest.MonkeyPatch], None]]:
     """A decorator for a test of a desk on which an analysis gives way after ``long_s`` seconds."""
 
-    def decorated(test: Callable[[Desk], Awaitable[None]]) -> Callable[[pytest.MonkeyPatch], None]:
+    def decorated(test: Callable[[ControlledQueue], Awaitable[None]]) -> Callable[[pytest.MonkeyPatch], None]:
         def run(monkeypatch: pytest.MonkeyPatch) -> None:
             monkeypatch.setattr(queue, "LONG_S", long_s)
 
-            async def go() -> None:
-                await test(Desk())
+            async def run_test() -> None:
+                await test(ControlledQueue())
 
-            asyncio.run(go())
+            asyncio.run(run_test())
 
         return run
 
@@ -75,90 +77,90 @@ def on_a_desk(long_s: float) -> Callable[[Callable[[Desk], Awaitable[None]]], Ca
 NEVER, AT_ONCE = 1e6, 0.0
 
 
-@on_a_desk(NEVER)
-async def test_the_last_document_looked_at_is_analysed_first(desk: Desk) -> None:
-    await desk.open("a", "b", "c", "d")
-    assert desk.begun == ["d"]
-    desk.queue.looked_at("b")
+@on_a_controlled_queue(NEVER)
+async def test_the_last_document_looked_at_is_analysed_first(controlled: ControlledQueue) -> None:
+    await controlled.open("a", "b", "c", "d")
+    assert controlled.started == ["d"]
+    controlled.queue.record_look("b")
     for _ in range(4):
-        await desk.end()
-    assert desk.begun == ["d", "b", "c", "a"]
+        await controlled.end()
+    assert controlled.started == ["d", "b", "c", "a"]
 
 
-@on_a_desk(AT_ONCE)
-async def test_a_long_analysis_gives_way_and_starts_again(desk: Desk) -> None:
-    await desk.open("large")
-    await desk.open("small")
-    assert desk.begun == ["large", "small"]
-    await desk.end()
-    assert desk.begun == ["large", "small", "large"]
+@on_a_controlled_queue(AT_ONCE)
+async def test_a_long_analysis_gives_way_and_starts_again(controlled: ControlledQueue) -> None:
+    await controlled.open("large")
+    await controlled.open("small")
+    assert controlled.started == ["large", "small"]
+    await controlled.end()
+    assert controlled.started == ["large", "small", "large"]
     # A document that the user has not looked at waits for its turn.
-    desk.queue.put("other", again=True)
-    await settled()
-    assert desk.begun[3:] == []
-    desk.queue.looked_at("other")
-    await settled()
-    assert desk.begun[3:] == ["other"]
+    controlled.queue.put("other", again=True)
+    await run_pending_tasks()
+    assert controlled.started[3:] == []
+    controlled.queue.record_look("other")
+    await run_pending_tasks()
+    assert controlled.started[3:] == ["other"]
 
 
-@on_a_desk(NEVER)
-async def test_an_analysis_gives_way_when_time_passes(desk: Desk) -> None:
-    await desk.open("large")
-    await desk.open("small")
-    assert desk.begun == ["large"]
+@on_a_controlled_queue(NEVER)
+async def test_an_analysis_gives_way_when_time_passes(controlled: ControlledQueue) -> None:
+    await controlled.open("large")
+    await controlled.open("small")
+    assert controlled.started == ["large"]
     loop = asyncio.get_running_loop()
     later = loop.time() + 2 * NEVER
     loop.time = lambda: later  # type: ignore[method-assign]
-    await settled()
-    assert desk.begun == ["large", "small"]
+    await run_pending_tasks()
+    assert controlled.started == ["large", "small"]
 
 
-@on_a_desk(AT_ONCE)
-async def test_answers_wait_for_an_analysis_that_gave_way(desk: Desk) -> None:
-    answer = asyncio.ensure_future(desk.queue.answer("large"))
-    await settled()
-    await desk.open("small")
-    await desk.end()
-    assert desk.begun == ["large", "small", "large"]
+@on_a_controlled_queue(AT_ONCE)
+async def test_answers_wait_for_an_analysis_that_gave_way(controlled: ControlledQueue) -> None:
+    answer = asyncio.ensure_future(controlled.queue.answer("large"))
+    await run_pending_tasks()
+    await controlled.open("small")
+    await controlled.end()
+    assert controlled.started == ["large", "small", "large"]
     assert not answer.done()
-    await desk.end()
-    assert answer.result() is FOUND
+    await controlled.end()
+    assert answer.result() is ANALYSIS
 
 
-@on_a_desk(NEVER)
-async def test_dropped_documents_are_answered_with_none(desk: Desk) -> None:
-    working, waiting = (asyncio.ensure_future(desk.queue.answer(uri)) for uri in ("a", "b"))
-    await settled()
-    (first,) = desk.begun
+@on_a_controlled_queue(NEVER)
+async def test_requests_for_dropped_documents_return_none(controlled: ControlledQueue) -> None:
+    working, waiting = (asyncio.ensure_future(controlled.queue.answer(uri)) for uri in ("a", "b"))
+    await run_pending_tasks()
+    (first,) = controlled.started
     for uri in ("a", "b"):
-        desk.queue.drop(uri)
-    await settled()
+        controlled.queue.drop(uri)
+    await run_pending_tasks()
     assert (working.result(), waiting.result()) == (None, None)
-    assert desk.begun == [first]
+    assert controlled.started == [first]
 
 
-@on_a_desk(NEVER)
-async def test_a_failed_analysis_does_not_stop_the_next(desk: Desk) -> None:
-    answer = asyncio.ensure_future(desk.queue.answer("a"))
-    await settled()
-    assert desk._now is not None
-    desk._now.set_exception(OSError("no more processes"))
-    await settled()
+@on_a_controlled_queue(NEVER)
+async def test_a_failed_analysis_does_not_stop_the_next(controlled: ControlledQueue) -> None:
+    answer = asyncio.ensure_future(controlled.queue.answer("a"))
+    await run_pending_tasks()
+    assert controlled._now is not None
+    controlled._now.set_exception(OSError("no more processes"))
+    await run_pending_tasks()
     assert answer.result() is None
-    await desk.open("b")
-    assert desk.begun == ["a", "b"]
+    await controlled.open("b")
+    assert controlled.started == ["a", "b"]
 
 
-@on_a_desk(AT_ONCE)
-async def test_no_analysis_gives_way_to_a_closed_document(desk: Desk) -> None:
+@on_a_controlled_queue(AT_ONCE)
+async def test_no_analysis_gives_way_to_a_closed_document(controlled: ControlledQueue) -> None:
     server = create()
-    server.queue = desk.queue
+    server.queue = controlled.queue
     server.protocol.set_writer(io.BytesIO())
-    await desk.open("file:///small.tltl", "file:///large.tltl")
+    await controlled.open("file:///small.tltl", "file:///large.tltl")
     document = types.TextDocumentIdentifier("file:///small.tltl")
     server.protocol.fm.features[types.TEXT_DOCUMENT_DID_CLOSE](types.DidCloseTextDocumentParams(document))
-    await settled()
-    assert desk.begun == ["file:///large.tltl"]
+    await run_pending_tasks()
+    assert controlled.started == ["file:///large.tltl"]
 
 
 def test_a_small_file_does_not_wait_for_a_large_one(client: Client, tmp_path: Path) -> None:

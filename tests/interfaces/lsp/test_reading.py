@@ -9,13 +9,13 @@ import pytest
 from lsprotocol import types
 
 from tests.interfaces.lsp.client import Client
-from tests.interfaces.lsp.texts import EXAMPLES, opened
+from tests.interfaces.lsp.texts import EXAMPLES, open_text
 from tltlc.core.source import Span
 from tltlc.interfaces.lsp.analysed_text import Document
 from tltlc.interfaces.lsp.durations import hints
 from tltlc.interfaces.lsp.folding import folds
 from tltlc.interfaces.lsp.positions import offset
-from tltlc.interfaces.lsp.symbols import found
+from tltlc.interfaces.lsp.symbols import matching_symbols
 from tltlc.interfaces.lsp.tokens import LEGEND, tokens
 
 TEXT = """\
@@ -45,7 +45,7 @@ test "t" for leave {
 """
 
 
-def coloured(document: Document, numbers: list[int]) -> list[tuple[str, str, set[str]]]:
+def decode_tokens(document: Document, numbers: list[int]) -> list[tuple[str, str, set[str]]]:
     """Return the names with their token types and modifiers, decoded as an editor does."""
     names = []
     line = column = 0
@@ -59,8 +59,8 @@ def coloured(document: Document, numbers: list[int]) -> list[tuple[str, str, set
 
 
 def test_names_are_coloured_by_their_kind() -> None:
-    document, _, _ = opened(TEXT)
-    names = coloured(document, tokens(document, "utf-16"))
+    document, _, _ = open_text(TEXT)
+    names = decode_tokens(document, tokens(document, "utf-16"))
     for expected in (
         ("door", "enumMember", {"declaration"}),
         ("most", "variable", {"declaration", "readonly"}),
@@ -80,7 +80,7 @@ def test_names_are_coloured_by_their_kind() -> None:
 
 
 def test_blocks_statements_comments_and_imports_fold() -> None:
-    document, _, _ = opened(TEXT)
+    document, _, _ = open_text(TEXT)
     lines = TEXT.splitlines()
     folded = [(lines[fold.start_line], lines[fold.end_line], fold.kind) for fold in folds(document)]
     assert folded == [
@@ -94,20 +94,20 @@ def test_blocks_statements_comments_and_imports_fold() -> None:
 
 
 def test_the_valid_part_of_a_broken_text_folds() -> None:
-    document, _, _ = opened(TEXT.replace("entity s1", "entity (s1"))
+    document, _, _ = open_text(TEXT.replace("entity s1", "entity (s1"))
     assert document.is_broken
     assert len(folds(document)) == 6
 
 
 def test_symbols_are_found_by_their_letters() -> None:
-    document, _, _ = opened(TEXT)
-    assert [symbol.name for symbol in found(document, "LV", "utf-16", "")] == ["leave"]
-    assert [symbol.name for symbol in found(document, "", "utf-16", "")] == [
+    document, _, _ = open_text(TEXT)
+    assert [symbol.name for symbol in matching_symbols(document, "LV", "utf-16", "")] == ["leave"]
+    assert [symbol.name for symbol in matching_symbols(document, "", "utf-16", "")] == [
         *("s1", "door", "most", "noise", "calm", "leave", "t"),
     ]
 
 
-def test_an_editor_gets_all_reading_aids(client: Client, tmp_path: Path) -> None:
+def test_an_editor_gets_tokens_folds_links_and_symbols(client: Client, tmp_path: Path) -> None:
     (tmp_path / "common.tltl").write_text("signal loud: bool\n", encoding="utf-8")
     text = 'import "common.tltl"\nspec hush {\n    keep not loud\n}\n'
     uri = client.open(tmp_path / "main.tltl", text)
@@ -123,8 +123,8 @@ def test_an_editor_gets_all_reading_aids(client: Client, tmp_path: Path) -> None
 
 def test_every_name_of_the_examples_has_a_colour() -> None:
     for path in EXAMPLES:
-        document, _, _ = opened(path.read_text(encoding="utf-8"), path.parent)
-        names = coloured(document, tokens(document, "utf-16"))
+        document, _, _ = open_text(path.read_text(encoding="utf-8"), path.parent)
+        names = decode_tokens(document, tokens(document, "utf-16"))
         assert [name for name, _, _ in names] == [occurrence.symbol.name for occurrence in document.names]
 
 
@@ -139,7 +139,7 @@ spec s {
 """
 
 
-def steps_behind(document: Document, span: Span) -> list[tuple[str, str]]:
+def hints_with_units(document: Document, span: Span) -> list[tuple[str, str]]:
     """Return the hints in a part of a document, each with the unit before it."""
     units_and_labels = []
     for hint in hints(document, span, "utf-16"):
@@ -149,18 +149,18 @@ def steps_behind(document: Document, span: Span) -> list[tuple[str, str]]:
 
 
 def test_times_are_shown_in_steps() -> None:
-    document, _, _ = opened(f"clock 20 Hz\n{TIMES}")
+    document, _, _ = open_text(f"clock 20 Hz\n{TIMES}")
     whole = Span(0, len(document.source.text))
-    assert steps_behind(document, whole) == [
+    assert hints_with_units(document, whole) == [
         ("ms", "= 3 steps"),
         ("min", "= 1200 steps"),
         ("s", "= 20 steps"),
         ("s", "= 1 step"),
     ]
     limit = document.source.text.index("limit")
-    assert steps_behind(document, Span(limit, limit + 12)) == [("min", "= 1200 steps")]
-    without_clock, _, _ = opened(TIMES)
-    assert steps_behind(without_clock, whole) == []
+    assert hints_with_units(document, Span(limit, limit + 12)) == [("min", "= 1200 steps")]
+    without_clock, _, _ = open_text(TIMES)
+    assert hints_with_units(without_clock, whole) == []
 
 
 def test_the_client_of_these_tests_finds_diagnostics_that_came_before_an_answer(client: Client, tmp_path: Path) -> None:

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from tests.interfaces.lsp.texts import EXAMPLES, opened
+from tests.interfaces.lsp.texts import EXAMPLES, open_text
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.interfaces.lsp.analysis import Request, analyse
-from tltlc.interfaces.lsp.edits import applied
+from tltlc.interfaces.lsp.edits import apply_edits
 from tltlc.interfaces.lsp.references import references, rename
 
 LIBRARY = """\
@@ -37,13 +37,15 @@ test "t" for leave {
 ALIASED = 'import "common.tltl" as c\nspec other = G c.lurking & F c.careful(G c.lurking(10 %))\n'
 
 
-def renamed(at: str, name: str, *, text: str = MAIN, folder: Path = Path("/nowhere"), **others: str) -> dict[str, str]:
+def texts_after_rename(
+    at: str, name: str, *, text: str = MAIN, folder: Path = Path("/nowhere"), **others: str
+) -> dict[str, str]:
     """Rename the name at a place; return the new texts by the stems of their files."""
-    document, offset, workspace = opened(text.replace(at, f"¦{at}", 1), folder, **others)
+    document, offset, workspace = open_text(text.replace(at, f"¦{at}", 1), folder, **others)
     occurrence = document.name_at(offset)
     assert occurrence is not None
     changed = rename(occurrence.symbol, name, workspace)
-    return {Path(document_.source.name).stem: applied(document_.source.text, edits) for document_, edits in changed}
+    return {Path(document_.source.name).stem: apply_edits(document_.source.text, edits) for document_, edits in changed}
 
 
 @pytest.mark.parametrize(
@@ -56,13 +58,13 @@ def renamed(at: str, name: str, *, text: str = MAIN, folder: Path = Path("/nowhe
     ],
 )
 def test_a_name_is_renamed_in_its_file(at: str, old: str, new: str, count: int) -> None:
-    texts = renamed(at, new.partition(" ")[0].partition("(")[0], common=LIBRARY)
+    texts = texts_after_rename(at, new.partition(" ")[0].partition("(")[0], common=LIBRARY)
     assert texts == {"main": MAIN.replace(old, new)}
     assert MAIN.count(old) == count
 
 
 def test_a_predicate_is_renamed_in_every_file_and_after_its_alias() -> None:
-    texts = renamed("lurking(least = most) or", "hidden", common=LIBRARY, aliased=ALIASED)
+    texts = texts_after_rename("lurking(least = most) or", "hidden", common=LIBRARY, aliased=ALIASED)
     assert texts == {
         "main": MAIN.replace("lurking", "hidden"),
         "common": LIBRARY.replace("lurking", "hidden"),
@@ -71,7 +73,7 @@ def test_a_predicate_is_renamed_in_every_file_and_after_its_alias() -> None:
 
 
 def test_a_parameter_is_renamed_in_keyword_arguments() -> None:
-    texts = renamed("least = most) or", "lowest", common=LIBRARY)
+    texts = texts_after_rename("least = most) or", "lowest", common=LIBRARY)
     assert texts == {"main": MAIN.replace("least", "lowest"), "common": LIBRARY.replace("least", "lowest")}
 
 
@@ -79,11 +81,11 @@ def test_a_signal_declared_in_two_files_is_one_symbol() -> None:
     first = "signal n: ratio\nlet low = n < 10 %\n"
     main = 'import "first.tltl"\nimport "second.tltl"\nspec a = G (low and high)\n'
     second = first.replace("low", "high")
-    texts = renamed("n: ratio", "level_of_noise", text=first, first=second, second=second)
+    texts = texts_after_rename("n: ratio", "level_of_noise", text=first, first=second, second=second)
     # The two files are unrelated until a third one imports both.
     assert set(texts) == {"main"}
-    document, _, workspace = opened(main, first=first, second=second)
-    symbol = workspace.named("/nowhere/first.tltl")
+    document, _, workspace = open_text(main, first=first, second=second)
+    symbol = workspace.document_named("/nowhere/first.tltl")
     assert symbol is not None
     changed = rename(symbol.names[0].symbol, "m", workspace)
     assert sorted(Path(document_.source.name).stem for document_, _ in changed) == ["first", "second"]
@@ -103,16 +105,16 @@ def test_a_signal_declared_in_two_files_is_one_symbol() -> None:
 )
 def test_invalid_new_names_are_rejected(at: str, name: str, code: str) -> None:
     with pytest.raises(TltlError) as refusal:
-        renamed(at, name, common=LIBRARY)
+        texts_after_rename(at, name, common=LIBRARY)
     assert refusal.value.diagnostics[0].code == code
 
 
 def test_a_name_that_would_capture_another_is_rejected() -> None:
     text = "entity door, gate\nsignal at(x: entity): bool\nspec a = all x in (door, gate): F (at(x) or at(gate))\n"
     with pytest.raises(TltlError, match="TLT0771"):
-        renamed("x in (door", "gate", text=text)
+        texts_after_rename("x in (door", "gate", text=text)
     harmless = text.replace("at(gate)", "at(door)")
-    assert set(renamed("x in (door", "gate", text=harmless)) == {"main"}
+    assert set(texts_after_rename("x in (door", "gate", text=harmless)) == {"main"}
 
 
 def test_names_of_a_library_cannot_be_renamed() -> None:
@@ -121,14 +123,14 @@ def test_names_of_a_library_cannot_be_renamed() -> None:
     )
     for at in ("near", "alive", "health: ratio"):
         with pytest.raises(TltlError) as refusal:
-            renamed(at, "other", text=text)
+            texts_after_rename(at, "other", text=text)
         assert refusal.value.diagnostics[0].code == "TLT0770"
 
 
 def test_references_are_found_in_files_that_are_not_open(tmp_path: Path) -> None:
     (tmp_path / "common.tltl").write_text(LIBRARY, encoding="utf-8")
     (tmp_path / "aliased.tltl").write_text(ALIASED, encoding="utf-8")
-    document, offset, workspace = opened(MAIN.replace("careful(F", "¦careful(F"), tmp_path)
+    document, offset, workspace = open_text(MAIN.replace("careful(F", "¦careful(F"), tmp_path)
     occurrence = document.name_at(offset)
     assert occurrence is not None
     places = {Path(document_.source.name).stem: len(at) for document_, at in references(occurrence.symbol, workspace)}
@@ -142,7 +144,7 @@ def test_a_rename_changes_only_names(path: Path) -> None:
     """Every name that an example declares is renamed and renamed back; the diagnostics stay the
     same."""
     text = path.read_text(encoding="utf-8")
-    document, _, workspace = opened(text)
+    document, _, workspace = open_text(text)
     own = {diagnostic.symbol.key: diagnostic.symbol for diagnostic in document.names if diagnostic.declares}
     assert own
     for symbol in own.values():
@@ -151,28 +153,30 @@ def test_a_rename_changes_only_names(path: Path) -> None:
         except TltlError as error:
             assert error.diagnostics[0].code == "TLT0770"
             continue
-        changed = applied(text, edits)
-        after, _, workspace_after = opened(changed)
-        assert [diagnostic.code for diagnostic in after.said] == [diagnostic.code for diagnostic in document.said]
+        changed = apply_edits(text, edits)
+        after, _, workspace_after = open_text(changed)
+        assert [diagnostic.code for diagnostic in after.diagnostics] == [
+            diagnostic.code for diagnostic in document.diagnostics
+        ]
         assert len(after.names) == len(document.names)
         renamed_occurrence = after.name_at(changed.index("another_name"))
         assert renamed_occurrence is not None
         ((_, back),) = rename(renamed_occurrence.symbol, symbol.name, workspace_after)
-        assert applied(changed, back) == text
+        assert apply_edits(changed, back) == text
 
 
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
 def test_tests_pass_after_a_rename(path: Path) -> None:
     """This includes tests that expect a state whose label contains names."""
     text = path.read_text(encoding="utf-8")
-    document, _, workspace = opened(text)
+    document, _, workspace = open_text(text)
     before = analyse(Request(document.source, (), {}, {}))
     for name in {occurrence.symbol.name: None for occurrence in document.names if occurrence.declares}:
         symbol = next(occurrence.symbol for occurrence in document.names if occurrence.symbol.name == name)
         with suppress(TltlError):
             ((_, edits),) = rename(symbol, f"{name}_x", workspace)
-            text = applied(text, edits)
-            document, _, workspace = opened(text)
+            text = apply_edits(text, edits)
+            document, _, workspace = open_text(text)
     after = analyse(Request(document.source, (), {}, {}))
     assert "_x" in text
     assert after.failures == before.failures == ()
@@ -186,14 +190,14 @@ def test_the_label_of_a_state_has_no_aliases() -> None:
         'spec s = G c.lurking\ntest "t" for s { step c.lurking expect state "G lurking" expect state "always" }\n'
     )
     main = f'import "common.tltl" as c\n{expected}'
-    texts = renamed("lurking\ntest", "hidden", text=main, common=LIBRARY)
+    texts = texts_after_rename("lurking\ntest", "hidden", text=main, common=LIBRARY)
     assert texts["main"] == main.replace("lurking", "hidden")
 
 
 def test_a_closed_file_counts_with_its_saved_text(tmp_path: Path) -> None:
     (tmp_path / "common.tltl").write_text(LIBRARY, encoding="utf-8")
     other = tmp_path / "other.tltl"
-    document, offset, workspace = opened(MAIN.replace("careful(F", "¦careful(F"), tmp_path)
+    document, offset, workspace = open_text(MAIN.replace("careful(F", "¦careful(F"), tmp_path)
     occurrence = document.name_at(offset)
     assert occurrence is not None
     assert len(references(occurrence.symbol, workspace)) == 2

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.interfaces.lsp.client import Client, Refused, place
-from tests.interfaces.lsp.test_fuzz import edited
+from tests.interfaces.lsp.client import Client, RefusedError, place
+from tests.interfaces.lsp.test_fuzz import random_edit
 from tests.interfaces.lsp.texts import ENDLESS, EXAMPLES
 
 SPEC = """\
@@ -30,8 +30,8 @@ test "in order" for leave {
 """
 
 
-def codes(found: list[dict[str, object]]) -> list[object]:
-    return [diagnostic["code"] for diagnostic in found]
+def codes(diagnostics: list[dict[str, object]]) -> list[object]:
+    return [diagnostic["code"] for diagnostic in diagnostics]
 
 
 def test_a_diagnostic_is_fixed_by_its_action(client: Client, tmp_path: Path) -> None:
@@ -185,7 +185,7 @@ def test_unsaved_documents_are_checked(client: Client) -> None:
 
 def test_a_rejected_rename_has_a_readable_message(client: Client, tmp_path: Path) -> None:
     uri = client.open(tmp_path / "leave.tltl", SPEC)
-    with pytest.raises(Refused, match=r"`near` is declared in .*spatial.tltl.* \(TLT0770\)"):
+    with pytest.raises(RefusedError, match=r"`near` is declared in .*spatial.tltl.* \(TLT0770\)"):
         client.at("rename", uri, SPEC, "near(s1) then", newName="close")
     changed = client.at("rename", uri, SPEC, "leave {", newName="flee")["changes"][uri]
     assert [edit["newText"] for edit in changed] == ["flee", "flee"]
@@ -194,7 +194,7 @@ def test_a_rejected_rename_has_a_readable_message(client: Client, tmp_path: Path
 def test_a_long_analysis_is_abandoned_when_the_text_changes(client: Client, tmp_path: Path) -> None:
     uri = client.open(tmp_path / "slow.tltl", ENDLESS)
     assert client.diagnostics(uri) == []
-    client.until_it_analyses()
+    client.wait_for_analyses()
     client.change(uri, "signal a: bool\nspec s = G (a or not a)\n", 2)
     assert codes(client.diagnostics(uri, bool)) == ["TLT0411"]
     assert client.close() == 0
@@ -221,7 +221,7 @@ def test_fast_random_edits_end_in_the_same_state_as_a_new_server(client: Client,
     for _ in range(15):
         text = whole
         for _ in range(6):
-            text, version = edited(text, generator), version + 1
+            text, version = random_edit(text, generator), version + 1
             client.change(uri, text, version)
         at = place(text, generator.randint(0, len(text)))
         for method in ("hover", "completion", "definition"):

@@ -12,14 +12,14 @@ from lsprotocol import types
 
 from tests.calls import calls
 from tests.interfaces.lsp.client import Client
-from tests.interfaces.lsp.texts import opened
+from tests.interfaces.lsp.texts import open_text
 from tests.waiting import printed
 from tltlc.core.source import SourceFile
 from tltlc.grammar.parser import parse
 from tltlc.grammar.tree import EntityDecl
 from tltlc.interfaces.lsp import names, symbols
 from tltlc.interfaces.lsp.analysed_text import Document
-from tltlc.interfaces.lsp.diagnostics import remark
+from tltlc.interfaces.lsp.diagnostics import protocol_diagnostic
 from tltlc.interfaces.lsp.paths import uri_of
 from tltlc.interfaces.lsp.positions import UTF_16, offset, range_of
 from tltlc.interfaces.lsp.references import rename
@@ -57,7 +57,9 @@ def test_a_keystroke_costs_a_few_parses(tmp_path: Path) -> None:
         workspace.put(uri, version, TEXT + f"// {version}")
         document = workspace.document(uri)
         assert document is not None
-        assert [remark(diagnostic, document, "utf-16", uri_of) for diagnostic in document.said] == []
+        assert [
+            protocol_diagnostic(diagnostic, document, "utf-16", uri_of) for diagnostic in document.diagnostics
+        ] == []
 
     keystroke()  # Warm up: read the libraries.
     parse(SourceFile("many.tltl", TEXT))  # Warm up: read the tables of the grammar.
@@ -91,7 +93,7 @@ def _offsets(document: Document, _: Workspace) -> object:
 
 
 def _diagnostics(document: Document, _: Workspace) -> object:
-    return document.said
+    return document.diagnostics
 
 
 def _rename(document: Document, workspace: Workspace) -> object:
@@ -110,7 +112,7 @@ WORK: dict[str, tuple[Callable[[Document, Workspace], object], str, str]] = {
 @pytest.mark.parametrize(("work", "text", "piece"), WORK.values(), ids=WORK)
 def test_the_work_is_linear_in_the_text(work: Callable[..., object], text: str, piece: str) -> None:
     def cost(count: int) -> int:
-        document, _, workspace = opened(text % "".join(piece.replace("#", str(number)) for number in range(count)))
+        document, _, workspace = open_text(text % "".join(piece.replace("#", str(number)) for number in range(count)))
         assert document.resolution
         return calls(lambda: work(document, workspace))
 
@@ -127,7 +129,7 @@ def test_symbols_read_each_declaration_once(monkeypatch: pytest.MonkeyPatch) -> 
 
     original: Callable[..., str] = vars(symbols)["declaration_text"]
     monkeypatch.setattr(symbols, "declaration_text", recording)
-    document, _, _ = opened(f"entity {', '.join(f'e{i}' for i in range(50))}")
+    document, _, _ = open_text(f"entity {', '.join(f'e{i}' for i in range(50))}")
     assert len(symbols.symbols(document, UTF_16)) == 50
     assert [type(declaration) for declaration in read] == [EntityDecl]
 
@@ -142,7 +144,7 @@ def test_the_label_of_a_state_is_parsed_on_its_own(monkeypatch: pytest.MonkeyPat
     parse_formula = vars(names)["parse_formula"]
     monkeypatch.setattr(names, "parse_formula", recording)
     label = 'step a\n    expect state "F a"\n'
-    document, _, _ = opened(f'signal a: bool\nspec s = F a\ntest "t" for s {{\n{label * 30}}}')
+    document, _, _ = open_text(f'signal a: bool\nspec s = F a\ntest "t" for s {{\n{label * 30}}}')
     spans = [occurrence.span for occurrence in document.names if occurrence.symbol.name == "a"]
     assert {document.source.slice(span) for span in spans} == {"a"}
     assert len(spans) == 2 + 2 * 30

@@ -6,9 +6,9 @@ from pathlib import Path
 
 from tests.interfaces.lsp.client import Client
 from tests.interfaces.lsp.test_server import SPEC, codes
-from tests.interfaces.lsp.texts import ENDLESS, opened
+from tests.interfaces.lsp.texts import ENDLESS, open_text
 from tltlc.interfaces.lsp.analysis import Request, analyse
-from tltlc.interfaces.lsp.previous_diagnostics import kept
+from tltlc.interfaces.lsp.previous_diagnostics import previous_diagnostics
 
 END = {"line": 9, "character": 0}
 IDLE = "spec idle = G (alive or not alive)\n"
@@ -37,18 +37,18 @@ def test_lenses_and_diagnostics_stay_while_the_text_is_broken(client: Client, tm
 
 def test_a_diagnostic_moves_with_its_words() -> None:
     text = "signal a: bool\nspec s = G (a or not a)\n// end\n"
-    document, _, _ = opened(text)
+    document, _, _ = open_text(text)
     analysis = analyse(Request(document.source, (), {}, {}))
-    (diagnostic,) = analysis.said
+    (diagnostic,) = analysis.diagnostics
     place = document.source.slice(diagnostic.labels[0].span)
     for edited in ("// é\r\n" + text, text + "spec t = ", text.replace("bool", "ratio"), text):
-        now, _, _ = opened(edited)
-        (moved,) = kept(document, analysis, now)
+        now, _, _ = open_text(edited)
+        (moved,) = previous_diagnostics(document, analysis, now)
         assert moved.labels[0].source == now.source
         assert now.source.slice(moved.labels[0].span) == place
     for edited in (text.replace("s =", "st ="), text.replace("spec s", "spec  s"), ""):
-        now, _, _ = opened(edited)
-        assert kept(document, analysis, now) == ()
+        now, _, _ = open_text(edited)
+        assert previous_diagnostics(document, analysis, now) == ()
 
 
 def test_saving_an_open_file_publishes_nothing(client: Client, tmp_path: Path) -> None:
@@ -176,7 +176,7 @@ def test_a_long_analysis_gives_way_to_the_edited_document(client: Client, tmp_pa
     assert client.diagnostics(uri) == []
     for version in (2, 3):
         # It starts again after each analysis to which it gave way.
-        client.until_it_analyses(version - 1)
+        client.wait_for_analyses(version - 1)
         client.change(uri, f"signal a{version}: bool\nspec s = G (a{version} or not a{version})\n", version)
         assert client.diagnostics(uri) == []
         assert codes(client.diagnostics(uri)) == ["TLT0411"]
@@ -194,13 +194,13 @@ def test_hints_follow_the_clock_of_another_file(tmp_path: Path) -> None:
     def hints() -> list[tuple[int, str]]:
         return [(hint["position"]["character"], hint["label"]) for hint in client.ask("textDocument/inlayHint", params)]
 
-    def refreshed() -> None:
+    def wait_for_refresh() -> None:
         client._next(lambda message: message.get("method") == "workspace/inlayHint/refresh")
 
     assert hints() == [(21, "= 40 steps")]
-    refreshed()
-    refreshed()
+    wait_for_refresh()
+    wait_for_refresh()
     client.change(common, "clock 10 Hz\nsignal a: bool\n")
-    refreshed()
+    wait_for_refresh()
     assert hints() == [(21, "= 20 steps")]
     assert client.close() == 0

@@ -41,15 +41,15 @@ STEPS = st.tuples(
     st.integers(0, 2),
 )
 BEGINNING = [("write", "common.tltl", 0), ("write", "middle.tltl", 0), ("write", "shared/common.tltl", 0)]
-Said = tuple[Diagnostic, ...]
+Diagnostics = tuple[Diagnostic, ...]
 
 
-def said_of(workspace: Workspace, uri: str) -> tuple[Said, Said]:
+def diagnostics_of(workspace: Workspace, uri: str) -> tuple[Diagnostics, Diagnostics]:
     """Return the diagnostics of a document and of its project, without help and fixes, which search
     whole folders."""
     document = workspace.document(uri)
     assert document is not None
-    diagnostics = tuple(replace(diagnostic, help=None, fixes=()) for diagnostic in document.said)
+    diagnostics = tuple(replace(diagnostic, help=None, fixes=()) for diagnostic in document.diagnostics)
     return diagnostics, workspace.project(document.source.name)[1]
 
 
@@ -60,7 +60,7 @@ def test_every_history_gives_the_results_of_a_new_workspace(main: int, steps: li
     with TemporaryDirectory() as place:
         folder = Path(place)
         (folder / "shared").mkdir()
-        workspace, shown, texts = Workspace(), {}, {}
+        workspace, published, texts = Workspace(), {}, {}
         for action, name, number in (*BEGINNING, ("type", "main.tltl", main), *steps):
             file, text = folder / name, TEXTS[name][number % len(TEXTS[name])]
             uri = file.as_uri()
@@ -69,7 +69,7 @@ def test_every_history_gives_the_results_of_a_new_workspace(main: int, steps: li
                 touched = workspace.put(uri, None, text)
             elif action == "close":
                 texts.pop(uri, None)
-                shown.pop(uri, None)
+                published.pop(uri, None)
                 touched = workspace.close(uri)
             else:
                 if action == "write":
@@ -80,11 +80,11 @@ def test_every_history_gives_the_results_of_a_new_workspace(main: int, steps: li
                     file.unlink(missing_ok=True)
                 touched = workspace.refresh()
             for changed_uri in touched:
-                shown[changed_uri] = said_of(workspace, changed_uri)
+                published[changed_uri] = diagnostics_of(workspace, changed_uri)
         fresh = Workspace()
         for uri, text in texts.items():
             fresh.put(uri, None, text)
-        assert shown == {uri: said_of(fresh, uri) for uri in texts}
+        assert published == {uri: diagnostics_of(fresh, uri) for uri in texts}
 
 
 def test_pipes_in_the_folders_of_the_workspace_are_not_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

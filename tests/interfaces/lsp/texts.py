@@ -17,7 +17,7 @@ ENDLESS = f"signal a: bool\nspec slow = F a\n{NEVER_ENDS}"
 EXAMPLES = sorted((Path(__file__).parents[3] / "examples").glob("*.tltl"))
 
 
-def opened(marked: str, folder: Path | None = None, **others: str) -> tuple[Document, int, Workspace]:
+def open_text(marked: str, folder: Path | None = None, **others: str) -> tuple[Document, int, Workspace]:
     """Return a document, the position of the mark in it, and its workspace; ``others`` are open
     files by name."""
     text, at = marked.replace(MARK, ""), max(0, marked.find(MARK))

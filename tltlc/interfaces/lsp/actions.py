@@ -9,7 +9,7 @@ from lsprotocol import types
 from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.interfaces.lsp.analysed_text import Document
-from tltlc.interfaces.lsp.diagnostics import remark
+from tltlc.interfaces.lsp.diagnostics import protocol_diagnostic
 from tltlc.interfaces.lsp.edits import text_edit
 from tltlc.tools.lint.fixes import fixes_of_errors, fixes_of_findings
 from tltlc.tools.lint.rule import LintFinding
@@ -23,27 +23,31 @@ def actions(
     uri_of: Callable[[str], str],
     edit_of: Callable[[dict[str, list[types.TextEdit]]], types.WorkspaceEdit],
 ) -> list[types.CodeAction]:
-    """Return the fixes for diagnostics that touch a span, as quick-fix actions."""
+    """Return the fixes for diagnostics that touch a span, as quick-fix actions.
+
+    ``findings`` are those of the linter. ``uri_of`` returns the URI of a file by its name, and
+    ``edit_of`` makes a workspace edit of edits by URI.
+    """
     uri = uri_of(document.source.name)
 
     def errors(source: SourceFile) -> tuple[Sequence[Diagnostic], Sequence[Diagnostic]]:
         edited = document
         if source != document.source:
             edited = Document(source, document.project, {**document.texts, source.name: source.text})
-        return edited.syntax_errors, edited.said
+        return edited.syntax_errors, edited.diagnostics
 
-    near = [finding for finding in findings if _touches(finding.diagnostic, document, span)]
-    diagnostics = [diagnostic for diagnostic in document.said if _touches(diagnostic, document, span)]
+    findings_at_span = [finding for finding in findings if _touches(finding.diagnostic, document, span)]
+    diagnostics = [diagnostic for diagnostic in document.diagnostics if _touches(diagnostic, document, span)]
     return [
         types.CodeAction(
             offer.fix.title,
             kind=types.CodeActionKind.QuickFix,
-            diagnostics=[remark(offer.diagnostic, document, encoding, uri_of)],
+            diagnostics=[protocol_diagnostic(offer.diagnostic, document, encoding, uri_of)],
             edit=edit_of({uri: [text_edit(document.source, edit, encoding) for edit in offer.fix.edits]}),
             # Editors may apply a preferred action without asking, so it must not be a guess.
             is_preferred=offer.fix.applicability == "safe",
         )
-        for offer in (*fixes_of_findings(near, document.module), *fixes_of_errors(diagnostics, document.source, errors))
+        for offer in (*fixes_of_findings(findings_at_span, document.module), *fixes_of_errors(diagnostics, document.source, errors))
     ]
 
 

@@ -12,7 +12,7 @@ from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.grammar.allow_index import drop_silenced
 from tltlc.grammar.lexer import Token, Tokens, tokenize
 from tltlc.grammar.tree import Module
-from tltlc.interfaces.lsp.follow_up_errors import unread
+from tltlc.interfaces.lsp.follow_up_errors import unparsed_parts
 from tltlc.interfaces.lsp.names import Occurrence, occurrences
 from tltlc.interfaces.lsp.paths import path_of
 from tltlc.io.files import Stamp, access_log, stamp, unsaved_texts
@@ -29,8 +29,8 @@ if TYPE_CHECKING:
 class Document:
     """One state of a text.
 
-    ``texts`` has the texts of all open documents by path; they replace the files. ``notes`` are the
-    states of the files that were looked at before. Each property is computed on first use and then
+    ``texts`` has the texts of all open documents by path; they replace the files. ``notes`` has the
+    states of the files that were read to find the project, by path. Each property is computed on first use and then
     cached, because the text does not change.
     """
 
@@ -80,17 +80,17 @@ class Document:
         return bool(self.syntax_errors)
 
     @cached_property
-    def said(self) -> tuple[Diagnostic, ...]:
+    def diagnostics(self) -> tuple[Diagnostic, ...]:
         """The diagnostics of syntax and names, without those that comments or the project allow."""
         if self.is_broken:
-            # Report only errors in names, and only those that the unread parts cannot explain.
+            # Report only errors in names, and only those that the unparsed parts cannot explain.
             errors = [diagnostic for diagnostic in self.resolution.diagnostics if diagnostic.severity == "error"]
-            missing = unread(self.module, self.tokens)
-            return (*self.syntax_errors, *(diagnostic for diagnostic in errors if not missing.may_mend(diagnostic)))
+            unparsed = unparsed_parts(self.module, self.tokens)
+            return (*self.syntax_errors, *(diagnostic for diagnostic in errors if not unparsed.may_explain(diagnostic)))
         resolved = self.resolution
         remaining = drop_silenced((loaded.module for loaded in resolved.modules), resolved.diagnostics)
-        kept = apply_levels(map(LintFinding, remaining), self.project.lint)
-        return tuple(finding.diagnostic for finding in kept)
+        remaining_findings = apply_levels(map(LintFinding, remaining), self.project.lint)
+        return tuple(finding.diagnostic for finding in remaining_findings)
 
     @property
     def is_clean(self) -> bool:
@@ -115,11 +115,11 @@ class Document:
         return occurrences(self.scope, self.tokens)
 
     def name_at(self, offset: int) -> Occurrence | None:
-        """Return the name at an offset, or one that ends there."""
+        """Return the name at an offset, or the name that ends there; None if there is neither."""
         return next((name for name in self.names if name.span.start <= offset <= name.span.end), None)
 
     def token_at(self, offset: int) -> Token | None:
-        """Return the token at an offset."""
+        """Return the token at an offset; None between tokens."""
         return next((token for token in self.tokens if token.start <= offset < token.end), None)
 
     @cached_property

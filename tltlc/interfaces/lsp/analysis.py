@@ -20,7 +20,7 @@ from tltlc.tools.lint.rule import LintFinding
 from tltlc.tools.lint.rules import rules
 from tltlc.tools.lint.run import apply_levels, findings, view_of
 
-_OF_USE: Final = ("TLT0421", "TLT0422")
+_USE_RULES: Final = ("TLT0421", "TLT0422")
 """Codes of the rules that depend on which names other files use."""
 
 
@@ -53,20 +53,23 @@ class SpecFigures:
 
 @record
 class DocumentAnalysis:
-    """The findings of compiler and linter, the failures of tests, and numbers for each spec."""
+    """The findings of compiler and linter, the failed tests, and the figures of each spec."""
 
     findings: tuple[LintFinding, ...]
     failures: tuple[Diagnostic, ...] = ()
     figures: tuple[SpecFigures, ...] = ()
 
     @property
-    def said(self) -> tuple[Diagnostic, ...]:
+    def diagnostics(self) -> tuple[Diagnostic, ...]:
         """The diagnostics of the findings and the failed tests."""
         return (*(finding.diagnostic for finding in self.findings), *self.failures)
 
 
 def analyse(request: Request) -> DocumentAnalysis:
-    """Compile, lint and test a text."""
+    """Compile, lint and test a text.
+
+    If the text has errors, the analysis contains only them.
+    """
     with unsaved_texts(request.texts):
         try:
             view = view_of(request.source, CompileOptions(library_dirs=request.libraries))
@@ -81,7 +84,7 @@ def analyse(request: Request) -> DocumentAnalysis:
 
 def _seems_unused(view: View) -> bool:
     """Whether the file itself never uses one of its declarations or imports."""
-    return any(True for rule in rules() if rule.code in _OF_USE for _ in rule.check(view))
+    return any(True for rule in rules() if rule.code in _USE_RULES for _ in rule.check(view))
 
 
 def _elsewhere(request: Request) -> Container[str]:

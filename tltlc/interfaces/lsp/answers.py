@@ -1,4 +1,4 @@
-"""The handlers of the editor's requests; each passes its request on to a module."""
+"""Handle the editor's requests: find the document, and call the module that computes the answer."""
 
 from __future__ import annotations
 
@@ -124,8 +124,10 @@ def _format(server: EditorSession, params: types.DocumentFormattingParams) -> li
 
 def _actions(server: EditorSession, params: types.CodeActionParams) -> list[types.CodeAction] | None:
     document = server.texts.document(params.text_document.uri)
-    wanted = params.context.only
-    if document is None or (wanted is not None and not {"", types.CodeActionKind.QuickFix}.intersection(wanted)):
+    requested_kinds = params.context.only
+    if document is None or (
+        requested_kinds is not None and not {"", types.CodeActionKind.QuickFix}.intersection(requested_kinds)
+    ):
         return None
     analysis = server.analysis(document)
     findings = analysis.findings if analysis else ()
@@ -166,7 +168,9 @@ async def _find_symbols(server: EditorSession, params: types.WorkspaceSymbolPara
     return [
         symbol
         for document in server.texts.all()
-        for symbol in symbols.found(document, params.query, server.encoding, server.texts.uri(document.source.name))
+        for symbol in symbols.matching_symbols(
+            document, params.query, server.encoding, server.texts.uri(document.source.name)
+        )
     ]
 
 
@@ -189,10 +193,12 @@ async def run_tests(server: EditorSession, uri: str, spec: str) -> None:
     server.window_show_message(types.ShowMessageParams(kind, text))
 
 
-def _workspace_edit(server: EditorSession, changed: list[tuple[Document, list[Edit]]]) -> types.WorkspaceEdit:
+def _workspace_edit(server: EditorSession, changes: list[tuple[Document, list[Edit]]]) -> types.WorkspaceEdit:
     edits = {
-        server.texts.uri(document.source.name): [text_edit(document.source, edit, server.encoding) for edit in own]
-        for document, own in changed
+        server.texts.uri(document.source.name): [
+            text_edit(document.source, edit, server.encoding) for edit in document_edits
+        ]
+        for document, document_edits in changes
     }
     return server.workspace_edit(edits)
 
@@ -216,7 +222,10 @@ def _name(server: EditorSession, params: Any) -> Occurrence | None:
 async def _name_everywhere(
     server: EditorSession, params: Any, is_needed: Callable[[Symbol, str], bool]
 ) -> Occurrence | None:
-    """Parse the required texts of the workspace, then return the name that a request is about."""
+    """Parse the texts that ``is_needed`` selects, then return the name that a request is about.
+
+    Return None if there is no name at that place.
+    """
     name = _name(server, params)
     if name is not None:
         await server.texts.parse(lambda text: is_needed(name.symbol, text))

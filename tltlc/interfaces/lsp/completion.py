@@ -1,4 +1,4 @@
-"""Complete keywords, visible names, units, verdicts and libraries at a place."""
+"""Complete keywords, visible names, units, verdicts and libraries at the cursor."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tltlc.grammar.lexer import END, Token
 from tltlc.grammar.tables import load
 from tltlc.grammar.tree import Clause, LetDecl, NameExpr, PredicateDecl, SignalDecl, SpecDecl
 from tltlc.interfaces.lsp.analysed_text import Document
-from tltlc.interfaces.lsp.cursor import Cursor, cursor, quoted
+from tltlc.interfaces.lsp.cursor import Cursor, cursor, quoted_text
 from tltlc.interfaces.lsp.declaration_text import declaration_text
 from tltlc.interfaces.lsp.paths import path_of
 from tltlc.interfaces.lsp.positions import range_of
@@ -34,15 +34,15 @@ _KINDS: Final = {
 }
 _FORMS: Final = {**DECLARATIONS, **CLAUSES, **TEST_ITEMS}
 _HEADS: Final = ("signal", "param", "predicate", "let")
-_OF_TIME: Final = ("step", "steps")
+_STEP_UNITS: Final = ("step", "steps")
 _NAMES: Final = {"NAME"}
 
 
 def completions(document: Document, offset: int, encoding: str) -> list[types.CompletionItem]:
-    """Return what may be written at an offset, likelier items first."""
-    inside = quoted(document.source, offset)
-    if inside is not None:
-        before, span = inside
+    """Return what may be written at an offset, the likeliest items first."""
+    quotation = quoted_text(document.source, offset)
+    if quotation is not None:
+        before, span = quotation
         return _edits(_paths(document), document, span, encoding) if before == "import" else []
     place = cursor(document.source, offset)
     if place is None:
@@ -92,12 +92,14 @@ def _keywords(allowed: Iterable[str], place: Cursor) -> Iterator[types.Completio
 
 
 def _units(place: Cursor) -> Iterator[types.CompletionItem]:
-    counted = place.first == "limit" or any(token.text in ("within", "for", "after") for token in place.piece[-2:])
-    counted = counted or (any(token.type == "LSQB" for token in place.piece[-4:]) and place.start != "declaration")
-    known = [*_OF_TIME, *units.time_units()] if counted else [unit for unit in load().units if unit not in _OF_TIME]
+    is_count = place.first == "limit" or any(token.text in ("within", "for", "after") for token in place.piece[-2:])
+    is_count = is_count or (any(token.type == "LSQB" for token in place.piece[-4:]) and place.start != "declaration")
+    unit_names = (
+        [*_STEP_UNITS, *units.time_units()] if is_count else [unit for unit in load().units if unit not in _STEP_UNITS]
+    )
     if place.first == "clock":
-        known = ["Hz", *units.time_units()]
-    for unit in known:
+        unit_names = ["Hz", *units.time_units()]
+    for unit in unit_names:
         conversion = units.in_si(1.0, unit)
         detail = units.dimension_text(conversion[1]) if conversion else "samples"
         yield types.CompletionItem(unit, kind=Kind.Unit, detail=detail)
@@ -123,16 +125,16 @@ def _names(document: Document, place: Cursor) -> Iterator[types.CompletionItem]:
         )
     elif place.start == "declaration" and (len(place.piece) == 1 or first in ("entity", "clock")):
         if first == "exclusive":
-            yield from _expression(document, place)
-    elif place.start == "declaration" and first in _HEADS and not _in_body(place.piece):
+            yield from _expression_names(document, place)
+    elif place.start == "declaration" and first in _HEADS and not _is_in_body(place.piece):
         if place.last == "COLON":
             yield from _types(first)
         elif place.last in ("EQUAL", "LSQB", "COMMA") and _depth(place.piece, "LSQB"):
-            yield from _visible(document, ("param",))
+            yield from _visible_names(document, ("param",))
     elif place.last in ("ALL", "ANY"):
         return
     else:
-        yield from _expression(document, place)
+        yield from _expression_names(document, place)
 
 
 def _settings(document: Document, clause: str) -> Iterator[types.CompletionItem]:
@@ -159,32 +161,32 @@ def _types(head: str) -> Iterator[types.CompletionItem]:
         yield types.CompletionItem(name, kind=Kind.TypeParameter, detail=detail)
 
 
-def _expression(document: Document, place: Cursor) -> Iterator[types.CompletionItem]:
+def _expression_names(document: Document, place: Cursor) -> Iterator[types.CompletionItem]:
     call = _open_call(place.piece)
     binding = document.scope.names.get(call[0]) if call else None
     if call and call[0] == "in":
-        yield from _visible(document, ("entity",))
+        yield from _visible_names(document, ("entity",))
         return
     if call and binding and isinstance(binding.declaration, (SignalDecl, PredicateDecl, LetDecl)):
         position, parameters = call[1], binding.declaration.parameters
         if binding.kind == "signal" or (position < len(parameters) and parameters[position].type == "entity"):
-            yield from _local(place.piece)
-            yield from _visible(document, ("entity",))
+            yield from _local_names(place.piece)
+            yield from _visible_names(document, ("entity",))
             return
         for parameter in parameters[position:]:
             if place.last in ("LPAR", "COMMA"):
                 detail = f"of {binding.name}" + (f", a {parameter.type}" if parameter.type else "")
                 yield types.CompletionItem(f"{parameter.name} = ", kind=Kind.Property, detail=detail)
-    yield from _local(place.piece)
+    yield from _local_names(place.piece)
     if place.start == "test_item":
         yield from _atoms(document, place.around)
-    yield from _visible(document, ("predicate", "let", "signal", "param"))
+    yield from _visible_names(document, ("predicate", "let", "signal", "param"))
     yield from (types.CompletionItem(name, kind=Kind.Operator, detail="function") for name in FUNCTIONS)
     if call:
-        yield from _visible(document, ("entity",))
+        yield from _visible_names(document, ("entity",))
 
 
-def _visible(document: Document, kinds: tuple[str, ...]) -> Iterator[types.CompletionItem]:
+def _visible_names(document: Document, kinds: tuple[str, ...]) -> Iterator[types.CompletionItem]:
     """Yield the visible names, kind by kind, those of the text itself before imported ones."""
     scope = document.scope
     bindings = [(name, binding) for name, binding in scope.names.items() if binding.kind in kinds]
@@ -216,7 +218,7 @@ def _atoms(document: Document, block: tuple[Token, ...]) -> Iterator[types.Compl
                 )
 
 
-def _local(piece: tuple[Token, ...]) -> Iterator[types.CompletionItem]:
+def _local_names(piece: tuple[Token, ...]) -> Iterator[types.CompletionItem]:
     """Yield the parameters of the enclosing declaration, and the variables of quantifiers."""
     names: dict[str, None] = {}
     if piece and piece[0].text in ("predicate", "let"):
@@ -232,7 +234,10 @@ def _local(piece: tuple[Token, ...]) -> Iterator[types.CompletionItem]:
 
 
 def _open_call(piece: tuple[Token, ...]) -> tuple[str, int] | None:
-    """Return the word before the innermost open bracket, and how many commas follow the bracket."""
+    """Return the word before the innermost open bracket, and how many commas follow the bracket.
+
+    Return None if no bracket is open, or if no name precedes it.
+    """
     open_: list[tuple[str, int]] = []
     for index, token in enumerate(piece):
         if token.type == "LPAR":
@@ -245,7 +250,7 @@ def _open_call(piece: tuple[Token, ...]) -> tuple[str, int] | None:
     return open_[-1] if open_ and open_[-1][0] else None
 
 
-def _in_body(piece: tuple[Token, ...]) -> bool:
+def _is_in_body(piece: tuple[Token, ...]) -> bool:
     """Whether a place is after the ``=`` of a declaration."""
     depth = 0
     for token in piece:
@@ -269,17 +274,17 @@ def _imports(document: Document, place: Cursor) -> Iterator[types.CompletionItem
     elif place.last in ("LPAR", "COMMA"):
         # The incomplete import cannot be parsed, so resolve an import of the whole file instead.
         alone = SourceFile(document.source.name, f"import {place.piece[1].text}")
-        yield from _visible(Document(alone, document.project, document.texts), tuple(_KINDS))
+        yield from _visible_names(Document(alone, document.project, document.texts), tuple(_KINDS))
 
 
 def _libraries(document: Document) -> Iterator[types.CompletionItem]:
     """Yield the libraries that an import finds by name, those next to the text first."""
-    seen: dict[str, Path] = {}
+    folders: dict[str, Path] = {}
     for folder in (_folder(document), *document.project.libraries, standard_library()):
         for path in _sources(folder, document):
             if path.stem.isidentifier() and path.stem not in load().words and str(path) != document.source.name:
-                seen.setdefault(path.stem, folder)
-    for name, folder in seen.items():
+                folders.setdefault(path.stem, folder)
+    for name, folder in folders.items():
         detail = "standard library" if folder == standard_library() else str(folder)
         yield types.CompletionItem(name, kind=Kind.Module, detail=detail)
 

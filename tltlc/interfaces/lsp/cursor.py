@@ -48,7 +48,7 @@ class Cursor:
 
 
 def cursor(source: SourceFile, offset: int) -> Cursor | None:
-    """Return the place at an offset; None inside comments and quoted texts."""
+    """Return the place at an offset; None inside a comment or a quoted text."""
     before = source.text[:offset]
     start = _word_start(before)
     lexed = tokenize(before[:start])
@@ -57,7 +57,7 @@ def cursor(source: SourceFile, offset: int) -> Cursor | None:
         return None
     if tokens and tokens[-1].type == BAD and tokens[-1].text.startswith('"'):
         return None
-    return _placed(SourceFile(source.name, before[:start]), tokens, Span(start, offset))
+    return _cursor_after(SourceFile(source.name, before[:start]), tokens, Span(start, offset))
 
 
 def _word_start(text: str) -> int:
@@ -70,15 +70,18 @@ def _word_start(text: str) -> int:
     return start
 
 
-def quoted(source: SourceFile, offset: int) -> tuple[str, Span] | None:
-    """Return the word before the quoted text at an offset, and the span of that text so far."""
+def quoted_text(source: SourceFile, offset: int) -> tuple[str, Span] | None:
+    """Return the word before the quoted text at an offset, and the span of the text up to there.
+
+    The word is empty if nothing precedes the text. Return None outside quoted texts.
+    """
     tokens = tokenize(source.text[:offset]).tokens[:-1]
     if not tokens or tokens[-1].type != BAD or not tokens[-1].text.startswith('"'):
         return None
     return (tokens[-2].text if len(tokens) > 1 else ""), Span(tokens[-1].start + 1, offset)
 
 
-def _placed(source: SourceFile, tokens: Sequence[Token], word: Span) -> Cursor:
+def _cursor_after(source: SourceFile, tokens: Sequence[Token], word: Span) -> Cursor:
     pieces = list(declarations(source, tokens))
     piece = pieces[-1] if pieces else []
     kind = block_kind(piece) if piece else None
@@ -87,13 +90,13 @@ def _placed(source: SourceFile, tokens: Sequence[Token], word: Span) -> Cursor:
         keywords, start = _LINES[kind]
         body = list(lines(source, piece[brace + 1 :], keywords))
         line = body[-1] if body else []
-        allowed = _accepted(start, line)
+        allowed = _accepted_terminals(start, line)
         if allowed is not None and (not line or END in allowed):
-            allowed = allowed | (_accepted(start, []) or set()) | {"RBRACE"}
+            allowed = allowed | (_accepted_terminals(start, []) or set()) | {"RBRACE"}
         return Cursor(word, start, tuple(line), tuple(piece), _frozen(allowed))
-    allowed = _accepted("declaration", piece)
+    allowed = _accepted_terminals("declaration", piece)
     if allowed is not None and END in allowed:
-        allowed = allowed | (_accepted("declaration", []) or set())
+        allowed = allowed | (_accepted_terminals("declaration", []) or set())
     return Cursor(word, "declaration", tuple(piece), (), _frozen(allowed))
 
 
@@ -101,7 +104,7 @@ def _frozen(allowed: set[str] | None) -> frozenset[str] | None:
     return None if allowed is None else frozenset(allowed)
 
 
-def _accepted(start: str, tokens: Sequence[Token]) -> set[str] | None:
+def _accepted_terminals(start: str, tokens: Sequence[Token]) -> set[str] | None:
     """Return the terminals that may follow these tokens, parsed as a ``start``.
 
     Return None if they have an error.

@@ -28,9 +28,9 @@ from tltlc.resolve.spec import Spec
 from tltlc.resolve.values import Env, number_text, range_text
 
 _LONGEST: Final = 600
-"""A longer declaration is shown by its head only."""
+"""A longer declaration is interval_text by its head only."""
 
-_SUPPLIED: Final = {
+_SUPPLIED_AS: Final = {
     "length": "metres",
     "time": "seconds",
     "speed": "metres per second",
@@ -102,8 +102,10 @@ def _facts(symbol: Symbol, env: Env) -> Iterator[str]:
             yield f"{_article(param.type)} constant, {value}{_range(param.low, param.high, param.type)}."
     elif isinstance(declaration, PredicateDecl):
         low, high = (declaration.interval.low, declaration.interval.high) if declaration.interval else (None, None)
-        shown = f"[{symbol.source.slice(low.span)}, {symbol.source.slice(high.span)}]" if low and high else "[-1, 1]"
-        yield f"An atom, with values in {shown}: it holds where the value is above 0."
+        interval_text = (
+            f"[{symbol.source.slice(low.span)}, {symbol.source.slice(high.span)}]" if low and high else "[-1, 1]"
+        )
+        yield f"An atom, with values in {interval_text}: it holds where the value is above 0."
     elif isinstance(declaration, LetDecl) and not declaration.parameters:
         sentence = _english(declaration, env)
         if sentence:
@@ -116,7 +118,7 @@ def _signal(declaration: SignalDecl, context: Context) -> Iterator[str]:
     info = context.signal_infos.get(declaration.name)
     if info is None:
         return
-    text = f"{_article(info.type)} signal, supplied by the game as {_SUPPLIED.get(info.type, 'a plain number')}"
+    text = f"{_article(info.type)} signal, supplied by the game as {_SUPPLIED_AS.get(info.type, 'a plain number')}"
     yield f"{text}{_range(info.low, info.high, info.type)}."
 
 

@@ -23,7 +23,9 @@ _UNNECESSARY: Final = {"TLT0421", "TLT0422", "TLT0425", "TLT0427"}
 """Warnings about parts that can be removed, which editors show faded."""
 
 
-def remark(diagnostic: Diagnostic, document: Document, encoding: str, uri_of: Callable[[str], str]) -> types.Diagnostic:
+def protocol_diagnostic(
+    diagnostic: Diagnostic, document: Document, encoding: str, uri_of: Callable[[str], str]
+) -> types.Diagnostic:
     """Convert a diagnostic for display in a document.
 
     A diagnostic of an imported file appears at the import that leads there.
@@ -56,11 +58,11 @@ def remark(diagnostic: Diagnostic, document: Document, encoding: str, uri_of: Ca
 
 
 def label_in(diagnostic: Diagnostic, document: Document) -> Label | None:
-    """Return the first label of a diagnostic that lies in a document."""
+    """Return the first label of a diagnostic that lies in a document; None if no label does."""
     return next((label for label in diagnostic.labels if label.source.name == document.source.name), None)
 
 
-def remark_on_project(diagnostic: Diagnostic, encoding: str) -> types.Diagnostic:
+def project_file_diagnostic(diagnostic: Diagnostic, encoding: str) -> types.Diagnostic:
     """Convert a diagnostic of a project file, for display in that file."""
     diagnostic = shorten(diagnostic)
     label = diagnostic.labels[0]
@@ -76,7 +78,7 @@ def remark_on_project(diagnostic: Diagnostic, encoding: str) -> types.Diagnostic
 def _import_of(diagnostic: Diagnostic, document: Document) -> Span:
     """Return the span of the import that leads to the file of a diagnostic.
 
-    If none does, return the first import, or the start of the text.
+    If no import does, return the span of the first import, or the start of the text.
     """
     names = {label.source.name for label in diagnostic.labels}
     for declaration, loaded in document.resolution.modules[-1].imports:

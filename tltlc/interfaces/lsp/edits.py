@@ -1,4 +1,4 @@
-"""Convert edits of a text to those of the protocol, and apply and compute edits."""
+"""Convert edits to those of the protocol, apply edits to a text, and compute the edit between two texts."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from tltlc.interfaces.lsp.positions import range_of
 
 
 def text_edit(source: SourceFile, edit: Edit, encoding: str) -> types.TextEdit:
-    """Convert an edit of the linter."""
+    """Convert an edit of a source text to an edit of the protocol."""
     return types.TextEdit(range_of(source, edit.span, encoding), edit.text)
 
 
-def applied(text: str, edits: list[Edit]) -> str:
-    """Apply edits that do not overlap."""
+def apply_edits(text: str, edits: list[Edit]) -> str:
+    """Return the text after the edits, which must not overlap."""
     pieces, end = [], 0
     for edit in sorted(edits, key=lambda edit: edit.span.start):
         pieces += [text[end : edit.span.start], edit.text]

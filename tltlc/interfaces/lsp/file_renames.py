@@ -1,4 +1,4 @@
-"""When files or folders are renamed, update imports so that they still lead to the same files."""
+"""Update imports when files or folders are renamed, so that they still lead to the same files."""
 
 from __future__ import annotations
 
@@ -38,22 +38,26 @@ def _edits(document: Document, moves: Moves) -> Iterator[Edit]:
         there = path_of(loaded.module.source.name)
         if loaded.module.source.name.startswith(STANDARD_LIBRARY_NAME):
             continue
-        if (_moved(here, moves), _moved(there, moves)) != (here, there):
-            folder = dirname(_moved(here, moves))  # noqa: PTH120
-            target = _target(declaration, _moved(there, moves), folder, document.project.libraries)
-            written = document.source.slice(declaration.target_span)
-            if target is not None and target != written and not _leads(declaration, folder, _moved(there, moves)):
+        if (_path_after(here, moves), _path_after(there, moves)) != (here, there):
+            folder = dirname(_path_after(here, moves))  # noqa: PTH120
+            target = _target(declaration, _path_after(there, moves), folder, document.project.libraries)
+            current_target = document.source.slice(declaration.target_span)
+            if (
+                target is not None
+                and target != current_target
+                and not _leads_to(declaration, folder, _path_after(there, moves))
+            ):
                 yield Edit(declaration.target_span, target)
 
 
-def _moved(path: str, moves: Moves) -> str:
+def _path_after(path: str, moves: Moves) -> str:
     for old, new in moves:
         if is_below(path, old):
             return new + path[len(old) :]
     return path
 
 
-def _leads(declaration: Import, folder: str, there: str) -> bool:
+def _leads_to(declaration: Import, folder: str, there: str) -> bool:
     """Whether the import as written leads to that path."""
     return declaration.is_path and normpath(PurePath(folder, declaration.target)) == there
 

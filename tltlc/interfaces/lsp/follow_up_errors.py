@@ -19,12 +19,11 @@ _HEADS: Final = ("signal", "entity", "param", "predicate", "let", "spec")
 
 
 @record
-class Unread:
+class UnparsedParts:
     """What the unparsed parts of a broken text may contain.
 
     ``declared`` has the names that they may declare. ``imports`` and ``clock`` are whether they may
-    contain an import or a clock. ``tests`` has the spans that stand for a whole test in
-    diagnostics.
+    contain an import or a clock. ``tests`` has the spans by which diagnostics name a whole test.
     """
 
     declared: frozenset[str]
@@ -33,8 +32,8 @@ class Unread:
     tests: frozenset[Span]
     source: SourceFile
 
-    def may_mend(self, diagnostic: Diagnostic) -> bool:
-        """Whether a part that could not be parsed may contain what a diagnostic misses."""
+    def may_explain(self, diagnostic: Diagnostic) -> bool:
+        """Whether a diagnostic may be a follow-up error: an unparsed part may contain what it misses."""
         if diagnostic.code == _NO_SUCH_ATOM:
             # The atom may belong to a clause that is being written.
             return True
@@ -51,12 +50,12 @@ class Unread:
         return self.imports or (label.source == self.source and label.source.slice(label.span) in self.declared)
 
 
-def unread(module: Module, tokens: Sequence[Token]) -> Unread:
+def unparsed_parts(module: Module, tokens: Sequence[Token]) -> UnparsedParts:
     """Collect what the unparsed parts may contain, from the parsed declarations and the tokens."""
     words = [token.text for token in tokens]
     imports_read = sum(isinstance(declaration, Import) for declaration in module.declarations)
-    return Unread(
-        frozenset(_declared(tokens)),
+    return UnparsedParts(
+        frozenset(_declared_names(tokens)),
         words.count("import") > imports_read,
         "clock" in words,
         frozenset(declaration.spec.span for declaration in module.declarations if isinstance(declaration, TestDecl)),
@@ -64,7 +63,7 @@ def unread(module: Module, tokens: Sequence[Token]) -> Unread:
     )
 
 
-def _declared(tokens: Sequence[Token]) -> Iterator[str]:
+def _declared_names(tokens: Sequence[Token]) -> Iterator[str]:
     """Yield the names after the keywords of declarations, up to the end of the text."""
     head = ""
     for token in tokens:

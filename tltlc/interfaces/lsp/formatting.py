@@ -13,7 +13,7 @@ from tltlc.tools.fmt import format_source
 def formatting(document: Document, encoding: str) -> list[types.TextEdit] | None:
     """Return the edit that formats a document in the style of its project.
 
-    Return None if its syntax is broken.
+    Return None if the document has a syntax error.
 
     Raises:
         TltlError: TLT0004, the text is too large, or would become too large.

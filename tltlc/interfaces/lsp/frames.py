@@ -1,8 +1,8 @@
 """Split the bytes from an editor into messages: headers, an empty line, and a body.
 
-Some editors send wrong lengths. A body ends at the bracket that closes its first one, even if the
-header announces more bytes, because an editor that waits for an answer sends nothing more. A body
-also ends at the next header: JSON has no raw line breaks inside strings, so a line
+Some editors send wrong lengths. So a body ends at the bracket that closes its first bracket, even
+if the header announces more bytes: an editor that waits for an answer sends nothing more. A body
+also ends at the next header. A JSON string contains no raw line break, so a line
 ``Content-Length: N`` cannot be part of a JSON text and always starts a message.
 """
 
@@ -24,7 +24,7 @@ _HEADER: Final = re.compile(
 )
 _OTHER_HEADER: Final = re.compile(rb"Content-Type:", re.IGNORECASE)
 _OVERLAP: Final = 512
-"""More bytes than both headers together; searched again when more bytes arrive."""
+"""Bytes at the end of the buffer that are searched again when more arrive; both headers fit in."""
 _MOST_DIGITS: Final = 9
 
 
@@ -37,7 +37,10 @@ class Body:
 
 @record
 class Fault:
-    """A problem with the headers, in words; ``is_answered`` is whether the editor is informed."""
+    """A problem with the headers, in words.
+
+    ``is_answered`` is whether the editor gets an error response; otherwise the fault is only logged.
+    """
 
     text: str
     is_answered: bool = False
@@ -54,38 +57,38 @@ class Frames:
         self._searched = 0
         """Length of the start of the buffer that contains no header."""
         self._length: int | None = None
-        """Length of the next body, as its header says."""
+        """Length of the next body in bytes, from its header; None before the header."""
         self._in_body = False
         self._json_end = JsonEnd()
-        self._left = 0
-        """How many bytes follow the last bracket of the last body, as its header says."""
-        self._doubt: Fault | None = None
-        """The fault to report if they are more than white space."""
-        self._is_lost = False
-        """Whether it was already reported that something is skipped."""
-        self._found: list[Frame] = []
+        self._padding = 0
+        """How many bytes should still follow the last bracket of the last body, by its header."""
+        self._padding_fault: Fault | None = None
+        """The fault to report if those bytes are not all white space."""
+        self._is_skipping = False
+        """Whether bytes are being skipped, which is reported once."""
+        self._frames: list[Frame] = []
 
     def feed(self, data: bytes) -> list[Frame]:
-        """Return the frames that these bytes complete; how the bytes are split does not matter."""
+        """Return the frames that these bytes complete. The bytes of a frame may come in any pieces."""
         self._buffer += data
         while self._read_part():
             pass
-        return self._taken()
+        return self._take_frames()
 
     def end(self) -> list[Frame]:
-        """Return the rest as the last message, when no more bytes come."""
+        """Return the remaining frames after the last byte; an incomplete body becomes a frame."""
         if self._in_body and self._buffer:
-            self._give(len(self._buffer))
-        return self._taken()
+            self._add_body(len(self._buffer))
+        return self._take_frames()
 
     def _read_part(self) -> bool:
         """Read the next part of a message; return False if it is not complete."""
         if self._in_body:
             return self._read_body()
-        return self._read_padding() if self._left else self._read_line()
+        return self._read_padding() if self._padding else self._read_line()
 
-    def _taken(self) -> list[Frame]:
-        frames, self._found = self._found, []
+    def _take_frames(self) -> list[Frame]:
+        frames, self._frames = self._frames, []
         return frames
 
     # --- headers ------------------------------------------------------------------------------
@@ -93,7 +96,7 @@ class Frames:
     def _read_line(self) -> bool:
         """Read a line of the headers; return False if it is not complete."""
         if self._length is not None and self._buffer.startswith((b"{", b"[")):
-            self._found.append(Fault("a message without an empty line before it is read as if it had one"))
+            self._frames.append(Fault("a message without an empty line before it is read as if it had one"))
             self._begin_body()
             return True
         end = self._buffer.find(b"\n", self._searched)
@@ -114,24 +117,24 @@ class Frames:
         number = digits.lstrip(b"0")
         length = int(number or b"0") if len(number) <= _MOST_DIGITS else MESSAGE.size + 1
         if self._length not in (None, length):
-            self._found.append(Fault("a message has two lengths, of which the last one counts"))
+            self._frames.append(Fault("a message has two lengths, of which the last one counts"))
         self._length = length
-        self._is_lost = False
+        self._is_skipping = False
 
     def _begin_body(self) -> None:
         if (self._length or 0) > MESSAGE.size:
-            self._found.append(Fault(f"a message is larger than {MESSAGE.size >> 20} MiB, and is passed over", True))
+            self._frames.append(Fault(f"a message is larger than {MESSAGE.size >> 20} MiB, and is passed over", True))
             # Its bytes may never come, so search for the next header at once.
-            self._length, self._is_lost = None, True
+            self._length, self._is_skipping = None, True
         else:
             self._in_body = True
             self._json_end = JsonEnd()
 
-    def _pass_over(self, lost: bytes, *, is_long: bool) -> None:
-        """Report once that something stands in place of a header."""
-        if lost.strip() and not self._is_lost and (is_long or not _OTHER_HEADER.match(lost)):
-            self._is_lost = True
-            self._found.append(Fault(f"a message without a header `Content-Length` is passed over: {lost[:60]!r}"))
+    def _pass_over(self, skipped: bytes, *, is_long: bool) -> None:
+        """Report once that something other than a header is skipped."""
+        if skipped.strip() and not self._is_skipping and (is_long or not _OTHER_HEADER.match(skipped)):
+            self._is_skipping = True
+            self._frames.append(Fault(f"a message without a header `Content-Length` is passed over: {skipped[:60]!r}"))
 
     def _drop_long_line(self) -> None:
         """Keep only the end of a line that is too long; the next header may start there."""
@@ -146,7 +149,7 @@ class Frames:
     def _read_body(self) -> bool:
         """Read a body up to its last bracket, its length or the next header.
 
-        Return False if none has arrived.
+        Return False if none of these has arrived.
         """
         length = self._length or 0
         json_end = self._json_end.find(self._buffer, length)
@@ -156,73 +159,73 @@ class Frames:
         has_lines = self._buffer.find(b"\n", start, limit) >= 0
         header = _HEADER.search(self._buffer, start, limit) if has_lines else None
         if header:
-            self._found.append(_short(header.start(), length))
-            self._give(header.start())
+            self._frames.append(_short_body(header.start(), length))
+            self._add_body(header.start())
         elif json_end is not None:
-            self._left, self._doubt = length - json_end, _short(json_end, length)
-            self._give(json_end)
+            self._padding, self._padding_fault = length - json_end, _short_body(json_end, length)
+            self._add_body(json_end)
         elif len(self._buffer) >= length:
-            begun = _begun_header(bytes(self._buffer[max(0, length - _OVERLAP) : length]))
-            if begun:
-                self._found.append(_short(length - begun, length))
-            self._give(length - begun)
+            partial = _partial_header_size(bytes(self._buffer[max(0, length - _OVERLAP) : length]))
+            if partial:
+                self._frames.append(_short_body(length - partial, length))
+            self._add_body(length - partial)
         else:
             self._searched = len(self._buffer)
             return False
         return True
 
     def _read_padding(self) -> bool:
-        """Skip white space after the last bracket of a body.
+        """Skip white space after the last bracket of a body; return whether all of it is skipped.
 
         If anything else follows, the header was wrong.
         """
-        padding = self._buffer[: self._left]
+        padding = self._buffer[: self._padding]
         blank = len(padding) - len(padding.lstrip(_WHITE))
         self._drop(blank)
-        self._left -= blank
-        if blank < len(padding) and self._doubt:
-            self._found.append(self._doubt)
+        self._padding -= blank
+        if blank < len(padding) and self._padding_fault:
+            self._frames.append(self._padding_fault)
             # What is skipped up to the next header belongs to the same fault.
-            self._left, self._is_lost = 0, True
-        return self._left == 0
+            self._padding, self._is_skipping = 0, True
+        return self._padding == 0
 
-    def _give(self, size: int) -> None:
-        self._found.append(Body(bytes(self._buffer[:size])))
+    def _add_body(self, size: int) -> None:
+        self._frames.append(Body(bytes(self._buffer[:size])))
         self._drop(size)
-        self._length, self._in_body, self._is_lost = None, False, False
+        self._length, self._in_body, self._is_skipping = None, False, False
 
     def _drop(self, size: int) -> None:
         del self._buffer[:size]
         self._searched = 0
 
 
-def _short(size: int, length: int) -> Fault:
+def _short_body(size: int, length: int) -> Fault:
     return Fault(f"a message is shorter than its header says: {size} bytes, not {length}")
 
 
-def _beginnings(word: bytes, behind: bytes) -> bytes:
-    """Return a pattern for each prefix of a word, and for the word followed by ``behind``."""
-    pattern = behind
+def _prefix_pattern(word: bytes, ending: bytes) -> bytes:
+    """Return a pattern for each prefix of a word, and for the word followed by ``ending``."""
+    pattern = ending
     for letter in reversed(word):
         pattern = b"(?:%c%s)?" % (letter, pattern)
     return pattern
 
 
-_BEGUN_HEADER: Final = re.compile(
+_PARTIAL_HEADER: Final = re.compile(
     rb"(?:%s\r?\n)?(?:%s|%s)\Z"
     % (
         _TYPE,
-        _beginnings(b"Content-Type:", rb"[^\r\n]{0,200}\r?"),
-        _beginnings(b"Content-Length:", rb"%s[0-9]{0,64}%s\r?" % (_SPACE, _SPACE)),
+        _prefix_pattern(b"Content-Type:", rb"[^\r\n]{0,200}\r?"),
+        _prefix_pattern(b"Content-Length:", rb"%s[0-9]{0,64}%s\r?" % (_SPACE, _SPACE)),
     ),
     re.IGNORECASE,
 )
 
 
-def _begun_header(tail: bytes) -> int:
+def _partial_header_size(tail: bytes) -> int:
     """Return how many bytes at the end of a body start the next header.
 
     No JSON message ends with such bytes.
     """
-    match = _BEGUN_HEADER.search(tail)
+    match = _PARTIAL_HEADER.search(tail)
     return len(match[0]) if match else 0

@@ -22,13 +22,13 @@ from tltlc.resolve import formulas
 from tltlc.resolve.problem import ResolutionError
 
 _FORMS: Final = {**DECLARATIONS, **CLAUSES, **TEST_ITEMS}
-_ASKING: Final = ("reach", "keep", "avoid", "require")
+_FORMULA_CLAUSES: Final = ("reach", "keep", "avoid", "require")
 _LARGEST: Final = 2000
-"""Formulas with more parts get no English sentence."""
+"""Formulas with more subformulas get no English sentence."""
 
 
 def hover(document: Document, offset: int, analysis: DocumentAnalysis | None, encoding: str) -> types.Hover | None:
-    """Describe the name, operator, duration or keyword at an offset."""
+    """Describe the name, operator, duration or keyword at an offset; None if there is none."""
     description = (
         _name(document, offset, analysis)
         or _operator(document, offset)
@@ -52,8 +52,8 @@ def _name(document: Document, offset: int, analysis: DocumentAnalysis | None) ->
             (candidate for candidate in document.resolution.program.specs if candidate.name == symbol.name), None
         )
         figures = next((entry for entry in analysis.figures if entry.spec == symbol.name), None) if analysis else None
-        shown = f"{figures_text(figures)}." if figures else None
-        return spec_markdown(symbol.declaration, spec, document.source, shown), name.span
+        size_text = f"{figures_text(figures)}." if figures else None
+        return spec_markdown(symbol.declaration, spec, document.source, size_text), name.span
     via = None if symbol.source.name == document.source.name else symbol.source.name.rpartition("/")[2]
     return symbol_markdown(symbol, document.resolution.env, via), name.span
 
@@ -83,7 +83,7 @@ def _operator(document: Document, offset: int) -> tuple[str, Span] | None:
         if not isinstance(declaration, SpecDecl) or not declaration.span.start <= offset < declaration.span.end:
             continue
         for clause in declaration.clauses:
-            if clause.kind in _ASKING and clause.span.start <= offset < clause.span.end:
+            if clause.kind in _FORMULA_CLAUSES and clause.span.start <= offset < clause.span.end:
                 return _part(document, clause, offset)
     return None
 

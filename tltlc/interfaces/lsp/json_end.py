@@ -12,7 +12,10 @@ _QUOTE: Final = ord('"')
 
 
 class JsonEnd:
-    """Follows the brackets of one JSON text. Looks at each byte once, and checks nothing else."""
+    """Follows the brackets of one JSON text.
+
+    Looks at each byte once, and does not check the syntax otherwise.
+    """
 
     def __init__(self) -> None:
         self._at = 0
@@ -22,8 +25,8 @@ class JsonEnd:
     def find(self, data: bytearray, limit: int) -> int | None:
         """Return the offset after the bracket that closes the first one.
 
-        Return None if it is not in ``data[:limit]``. Each call must pass the same bytes as the last
-        one, plus any new ones.
+        Return None if that bracket is not in ``data[:limit]``. ``data`` must start with the bytes of
+        the previous call.
         """
         limit = min(limit, len(data))
         while self._at < limit:
@@ -38,9 +41,9 @@ class JsonEnd:
         return None
 
     def _leave_string(self, data: bytearray, limit: int) -> bool:
-        """Whether the string ends.
+        """Whether the string ends in these bytes.
 
-        If not, the next call resumes at the end of the bytes, or at half an escape.
+        If it does not, the next call resumes at their end, or at an escape that they cut off.
         """
         match = _INSIDE.match(data, self._at, limit)
         self._at = match.end() if match else limit

@@ -17,12 +17,12 @@ Kind = Literal["signal", "param", "predicate", "let", "entity", "spec", "paramet
 MERGED: tuple[Kind, ...] = ("signal", "param", "entity")
 """If several files of a program declare one name of these kinds, the declarations count as one."""
 
-_FORMULAS = ("reach", "keep", "avoid", "require")
+_FORMULA_CLAUSES = ("reach", "keep", "avoid", "require")
 
 
 @record
 class Symbol:
-    """The declaration that a name refers to; ``span`` is the place of the name in ``source``."""
+    """The declaration that a name refers to; ``span`` is the place of the declared name in ``source``."""
 
     kind: Kind
     name: str
@@ -36,7 +36,7 @@ class Symbol:
         return self.kind, self.source.name, self.span.start
 
     def is_same(self, other: Symbol) -> bool:
-        """Whether both are the same thing, given that their files are parts of one program."""
+        """Whether both are the same symbol, if their files are parts of one program."""
         if self.kind in MERGED:
             return (self.kind, self.name) == (other.kind, other.name)
         return self.key == other.key
@@ -59,7 +59,7 @@ def occurrences(scope: Scope, tokens: Sequence[Token]) -> tuple[Occurrence, ...]
     walk = _Walk(scope, tokens)
     for declaration in scope.module.declarations:
         walk.declaration(declaration)
-    return tuple(sorted(walk.found, key=lambda occurrence: occurrence.span.start))
+    return tuple(sorted(walk.occurrences, key=lambda occurrence: occurrence.span.start))
 
 
 def symbol_of(binding: Binding) -> Symbol:
@@ -74,14 +74,14 @@ class _Walk:
     """Collects names, declaration by declaration."""
 
     def __init__(self, scope: Scope, tokens: Sequence[Token]) -> None:
-        self.found: list[Occurrence] = []
+        self.occurrences: list[Occurrence] = []
         self._scope = scope
         self._starts = {token.start: index for index, token in enumerate(tokens)}
         self._tokens = tokens
         self._visible: Mapping[str, Binding] = scope.names
         self._unaliased = {binding.name: binding for binding in scope.names.values()}
         self._label_start: int | None = None
-        """The offset of the label that is being read: the spans of its formula count from there."""
+        """The offset of the label that is being read, to which the spans of its formula are relative."""
         self._specs: dict[str, Symbol] = {}
         for declaration in scope.module.declarations:
             if isinstance(declaration, tree.SpecDecl):
@@ -98,17 +98,17 @@ class _Walk:
                     if binding is not None and binding.scope is not self._scope:
                         self._note(name.span, symbol_of(binding))
             case tree.SignalDecl() | tree.ParamDecl() | tree.PredicateDecl() | tree.LetDecl():
-                self._declared(declaration.name, declaration.name_span)
+                self._note_declaration(declaration.name, declaration.name_span)
                 self._head(declaration)
             case tree.EntityDecl():
                 for name in declaration.names:
-                    self._declared(name.name, name.span)
+                    self._note_declaration(name.name, name.span)
             case tree.ExclusiveDecl():
                 self._expressions(declaration.atoms)
             case tree.SpecDecl():
                 self._note(declaration.name_span, self._specs[declaration.name], declares=True)
                 for clause in declaration.clauses:
-                    if clause.kind in _FORMULAS and not isinstance(clause.value, tuple):
+                    if clause.kind in _FORMULA_CLAUSES and not isinstance(clause.value, tuple):
                         self._expressions([clause.value])
             case tree.TestDecl():
                 if declaration.spec.name in self._specs:
@@ -153,20 +153,20 @@ class _Walk:
         while waiting:
             part, visible = waiting.pop()
             if isinstance(part, tree.NameExpr):
-                self._used(part.name, part.span, visible)
+                self._note_use(part.name, part.span, visible)
             elif isinstance(part, tree.CallExpr):
-                self._used(part.name, part.name_span, visible)
+                self._note_use(part.name, part.name_span, visible)
                 self._keywords(part)
             elif isinstance(part, tree.Quantified):
                 for name in part.entities:
-                    self._used(name.name, name.span, visible)
+                    self._note_use(name.name, name.span, visible)
                 visible = self._with_variable(part, visible)
             waiting += [(child, visible) for child in children(part)]
 
     def _with_variable(self, part: tree.Quantified, local: _Locals) -> _Locals:
         """Return the local names in the body of a quantifier.
 
-        Its variable is the token after its first one.
+        The variable is the second token of the quantifier.
         """
         index = self._starts.get(part.span.start) if self._label_start is None else None
         if index is None or index + 1 >= len(self._tokens):
@@ -189,12 +189,12 @@ class _Walk:
                 symbol = Symbol("parameter", parameter.name, parameter, binding.scope.source, parameter.name_span)
                 self._note(Span(start, start + len(parameter.name)), symbol)
 
-    def _declared(self, name: str, span: Span) -> None:
+    def _note_declaration(self, name: str, span: Span) -> None:
         binding = self._scope.names.get(name)
         if binding is not None:
             self._note(span, symbol_of(binding), declares=True)
 
-    def _used(self, name: str, span: Span, local: _Locals) -> None:
+    def _note_use(self, name: str, span: Span, local: _Locals) -> None:
         if name in local:
             self._note(span, local[name])
             return
@@ -205,4 +205,4 @@ class _Walk:
     def _note(self, span: Span, symbol: Symbol, *, declares: bool = False) -> None:
         if self._label_start is not None:
             span = Span(self._label_start + span.start, self._label_start + span.end)
-        self.found.append(Occurrence(span, symbol, declares))
+        self.occurrences.append(Occurrence(span, symbol, declares))

@@ -24,7 +24,7 @@ UTF_16: Final = "utf-16"
 _WIDE: Final = {"utf-8": re.compile("[^\x00-\x7f]"), UTF_16: re.compile("[^\x00-\uffff]")}
 """The characters that count more than one unit; in UTF-32 there are none."""
 _TEXTS: Final = 16
-"""How many texts are cached with their wide characters; a request looks at few texts in turn."""
+"""How many texts are cached with their wide characters; one request looks at few texts."""
 
 
 @record

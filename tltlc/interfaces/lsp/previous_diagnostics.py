@@ -10,14 +10,19 @@ from tltlc.interfaces.lsp.analysis import DocumentAnalysis
 from tltlc.interfaces.lsp.edits import difference
 
 
-def kept(before: Document, analysis: DocumentAnalysis, now: Document) -> tuple[Diagnostic, ...]:
-    """Return earlier diagnostics that need automata, moved to their new places.
+def previous_diagnostics(before: Document, analysis: DocumentAnalysis, now: Document) -> tuple[Diagnostic, ...]:
+    """Return the earlier diagnostics of the slow analysis, moved to their places in the new text.
 
-    Leaves out diagnostics whose places were edited, and those that the new text has anyway.
+    ``analysis`` is that of the text ``before``. Diagnostics whose places were edited are left out,
+    and so are those that the text ``now`` reports itself.
     """
     edits = difference(before.source, now.source.text)
-    reported = {_without_fixes(diagnostic) for diagnostic in now.said}
-    moved = (_moved(diagnostic, edits, now.source) for diagnostic in analysis.said if diagnostic not in before.said)
+    reported = {_without_fixes(diagnostic) for diagnostic in now.diagnostics}
+    moved = (
+        _at_new_place(diagnostic, edits, now.source)
+        for diagnostic in analysis.diagnostics
+        if diagnostic not in before.diagnostics
+    )
     return tuple(diagnostic for diagnostic in moved if diagnostic is not None and diagnostic not in reported)
 
 
@@ -26,7 +31,7 @@ def _without_fixes(diagnostic: Diagnostic) -> Diagnostic:
     return replace(diagnostic, fixes=())
 
 
-def _moved(diagnostic: Diagnostic, edits: list[Edit], source: SourceFile) -> Diagnostic | None:
+def _at_new_place(diagnostic: Diagnostic, edits: list[Edit], source: SourceFile) -> Diagnostic | None:
     """Return the diagnostic at its new place, or None if that place was edited."""
     labels: list[Label] = []
     for label in diagnostic.labels:

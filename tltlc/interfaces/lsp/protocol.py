@@ -25,14 +25,14 @@ from tltlc.interfaces.lsp.frames import Fault, Frame
 LOG: Final = logging.getLogger("tltlc.interfaces.lsp")
 """Logs to standard error, which editors show as the server's log."""
 _ANSWERS: Final = {"result", "error"}
-_OF_NOTEBOOKS: Final = "notebookDocument/"
+_NOTEBOOK_METHODS: Final = "notebookDocument/"
 
 
 class Protocol(LanguageServerProtocol):
     """The protocol of pygls; it checks whole messages, so that it can answer malformed ones."""
 
-    def take(self, frame: Frame) -> None:
-        """Handle a message, or report a fault."""
+    def receive(self, frame: Frame) -> None:
+        """Handle a message; answer or log a fault."""
         if isinstance(frame, Fault):
             if frame.is_answered:
                 self.refuse(None, JsonRpcInvalidRequest(frame.text))
@@ -50,7 +50,7 @@ class Protocol(LanguageServerProtocol):
     def handle_message(self, message: Any) -> None:
         """Check a message and handle it."""
         try:
-            structured = self._understood(message)
+            structured = self._parse(message)
         except JsonRpcException as error:
             self.refuse(message, error)
         else:
@@ -65,7 +65,7 @@ class Protocol(LanguageServerProtocol):
             error_content = {"code": error.code, "message": error.message}
             self._send_data({"jsonrpc": self.VERSION, "id": number if _is_id(number) else None, "error": error_content})
 
-    def _understood(self, message: Any) -> Any:
+    def _parse(self, message: Any) -> Any:
         if not isinstance(message, dict) or message.get("jsonrpc") != self.VERSION:
             raise JsonRpcInvalidRequest("this is no message of JSON-RPC 2.0")
         if "method" in message:
@@ -92,9 +92,9 @@ class Protocol(LanguageServerProtocol):
         method = message["method"]
         if not isinstance(method, str) or ("id" in message and not _is_id(message["id"])):
             raise JsonRpcInvalidRequest("a method is a text, an id is a number or a text")
-        if method == types.CANCEL_REQUEST and not _cancels(message.get("params")):
+        if method == types.CANCEL_REQUEST and not _has_id(message.get("params")):
             raise JsonRpcInvalidParams("an id is a number or a text")
-        if method.startswith(_OF_NOTEBOOKS):
+        if method.startswith(_NOTEBOOK_METHODS):
             raise JsonRpcInvalidRequest("notebooks are not supported, as the server has said at its start")
         if method == types.INITIALIZE and self._workspace is not None:
             raise JsonRpcInvalidRequest("the server is initialized already")
@@ -107,7 +107,7 @@ class Protocol(LanguageServerProtocol):
             message.setdefault("params", None)
 
 
-def _cancels(params: Any) -> bool:
+def _has_id(params: Any) -> bool:
     return isinstance(params, dict) and _is_id(params.get("id"))
 
 

@@ -1,6 +1,6 @@
 """Choose the document to analyse next: the one that the user looked at last.
 
-Long analyses give way to it.
+A long analysis of another document is given up for it, and repeated afterwards.
 """
 
 from __future__ import annotations
@@ -12,17 +12,18 @@ from typing import Final
 from tltlc.interfaces.lsp.analysis import DocumentAnalysis
 
 LONG_S: Final = 0.5
-"""Seconds after which an analysis gives way to a document that the user looked at since.
+"""Seconds after which an analysis gives way to a document that the user has looked at since.
 
-The analysis restarts afterwards. This limit is much longer than the analysis of a small file, and
-than a restart of the process.
+The analysis is repeated afterwards. This limit is much longer than the analysis of a small file, and
+longer than a restart of the process.
 """
 
 
 class Queue:
     """Analyses documents one after another.
 
-    ``analyse`` does the work, and ends early after ``give_up`` is called.
+    ``analyse`` takes a URI, and whether to ignore a known analysis. It returns None early after
+    ``give_up`` is called.
     """
 
     def __init__(
@@ -31,17 +32,17 @@ class Queue:
         self._analyse = analyse
         self._give_up = give_up
         self._waiting: dict[str, bool] = {}
-        """The documents to analyse, and whether to do so even if an analysis is known."""
+        """For each document to analyse: whether to do so even if its analysis is known."""
         self._looks: dict[str, int] = {}
         """The number of the last look at each document; later looks have greater numbers."""
-        self._working: str | None = None
-        self._working_since = 0.0
+        self._current: str | None = None
+        self._current_since = 0.0
         self._task: asyncio.Task[None] | None = None
         self._timer: asyncio.TimerHandle | None = None
-        self._asked: dict[str, list[asyncio.Future[DocumentAnalysis | None]]] = {}
+        self._answers: dict[str, list[asyncio.Future[DocumentAnalysis | None]]] = {}
 
-    def looked_at(self, uri: str) -> None:
-        """Record that the user is at a document, which is then analysed before others."""
+    def record_look(self, uri: str) -> None:
+        """Record that the user looks at a document, which is then analysed before others."""
         self._looks[uri] = max(self._looks.values(), default=0) + 1
         self._give_way()
 
@@ -53,23 +54,23 @@ class Queue:
         self._give_way()
 
     async def answer(self, uri: str) -> DocumentAnalysis | None:
-        """Return the analysis of a document, which goes first.
+        """Analyse a document before all others, and return the result.
 
-        Return None if it is dropped or takes too long.
+        Return None if the analysis is dropped or takes too long.
         """
         future: asyncio.Future[DocumentAnalysis | None] = asyncio.get_running_loop().create_future()
-        self._asked.setdefault(uri, []).append(future)
-        self.looked_at(uri)
+        self._answers.setdefault(uri, []).append(future)
+        self.record_look(uri)
         self.put(uri)
         return await future
 
     def drop(self, uri: str) -> None:
         """Cancel the analysis of a document, whose text is outdated."""
         self._waiting.pop(uri, None)
-        if self._working == uri:
+        if self._current == uri:
             self._give_up()
         else:
-            self._tell(uri, None)
+            self._set_answer(uri, None)
 
     def clear(self) -> None:
         """Cancel all analyses."""
@@ -77,21 +78,21 @@ class Queue:
             self.drop(uri)
         self._give_up()
 
-    def _look(self, uri: str) -> int:
+    def _last_look(self, uri: str) -> int:
         return self._looks.get(uri, 0)
 
     async def _work(self) -> None:
         while self._waiting:
-            uri = max(self._waiting, key=self._look)
+            uri = max(self._waiting, key=self._last_look)
             again = self._waiting.pop(uri)
-            self._working, self._working_since = uri, asyncio.get_running_loop().time()
+            self._current, self._current_since = uri, asyncio.get_running_loop().time()
             analysis = None
             try:
                 analysis = await self._analyse(uri, again)
             finally:
-                self._working = None
+                self._current = None
                 if uri not in self._waiting:
-                    self._tell(uri, analysis)
+                    self._set_answer(uri, analysis)
 
     def _give_way(self) -> None:
         """Give up a long analysis if the user has looked at a waiting document since.
@@ -100,17 +101,17 @@ class Queue:
         """
         if self._timer is not None:
             self._timer.cancel()
-        working = self._working
-        if working is None or all(self._look(uri) <= self._look(working) for uri in self._waiting):
+        current = self._current
+        if current is None or all(self._last_look(uri) <= self._last_look(current) for uri in self._waiting):
             return
-        loop, end = asyncio.get_running_loop(), self._working_since + LONG_S
+        loop, end = asyncio.get_running_loop(), self._current_since + LONG_S
         if loop.time() < end:
             self._timer = loop.call_at(end, self._give_way)
         else:
-            self._waiting[working] = True
+            self._waiting[current] = True
             self._give_up()
 
-    def _tell(self, uri: str, analysis: DocumentAnalysis | None) -> None:
-        for future in self._asked.pop(uri, ()):
+    def _set_answer(self, uri: str, analysis: DocumentAnalysis | None) -> None:
+        for future in self._answers.pop(uri, ()):
             if not future.done():
                 future.set_result(analysis)

@@ -12,7 +12,7 @@ from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic, Edit, TltlError
 from tltlc.grammar.tables import load
 from tltlc.interfaces.lsp.analysed_text import Document
-from tltlc.interfaces.lsp.edits import applied
+from tltlc.interfaces.lsp.edits import apply_edits
 from tltlc.interfaces.lsp.file_renames import may_import
 from tltlc.interfaces.lsp.names import MERGED, Occurrence, Symbol
 from tltlc.interfaces.lsp.paths import path_of
@@ -20,17 +20,17 @@ from tltlc.interfaces.lsp.workspace import Workspace
 from tltlc.resolve.scope import FUNCTIONS
 
 _LOCAL: Final = ("parameter", "variable")
-_OF_ONE_FILE: Final = ("variable", "spec")
-"""Variables of formulas, and specs: they are used in one file only."""
+_FILE_LOCAL: Final = ("variable", "spec")
+"""The kinds of symbols that are used in one file only: variables of quantifiers, and specs."""
 _NAME: Final = re.compile(r"[A-Za-z_][A-Za-z0-9_]*(?:\.[A-Za-z_][A-Za-z0-9_]*)*\Z")
 _PLAIN: Final = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\Z")
 
-Found = list[tuple[Document, list[Occurrence]]]
-"""Documents, each with places in it."""
+Matches = list[tuple[Document, list[Occurrence]]]
+"""Documents, each with the places where the symbol occurs."""
 
 
-def references(symbol: Symbol, workspace: Workspace) -> Found:
-    """Return every place that refers to the same thing as a symbol, by document."""
+def references(symbol: Symbol, workspace: Workspace) -> Matches:
+    """Return every place that refers to the same symbol, by document."""
     documents = _documents(symbol, workspace)
     programs = _programs(symbol, documents)
     result = []
@@ -44,7 +44,7 @@ def references(symbol: Symbol, workspace: Workspace) -> Found:
 
 def may_have_references(symbol: Symbol, text: str) -> bool:
     """Whether the uses of a symbol may depend on the declarations and imports of another text."""
-    if symbol.kind in _OF_ONE_FILE:
+    if symbol.kind in _FILE_LOCAL:
         return False
     # A signal that two files declare is the same one in a third file that imports both.
     return symbol.name in text or (symbol.kind in MERGED and may_import(text))
@@ -58,8 +58,8 @@ def may_refuse_rename(symbol: Symbol, text: str) -> bool:
 def rename(symbol: Symbol, name: str, workspace: Workspace) -> list[tuple[Document, list[Edit]]]:
     """Return the edits that rename a symbol everywhere.
 
-    Raises TltlError: TLT0770 if it is declared outside the workspace, TLT0771 if the new name
-    cannot be used.
+    Raises TltlError: TLT0770 if the symbol is declared outside the workspace, TLT0771 if the new
+    name cannot be used.
     """
     check_renamable(symbol, workspace)
     if name == symbol.name:
@@ -68,27 +68,27 @@ def rename(symbol: Symbol, name: str, workspace: Workspace) -> list[tuple[Docume
     matches = references(symbol, workspace)
     for document, _ in matches:
         if path_of(document.source.name) not in workspace.texts() and not workspace.is_own(document.source.name):
-            raise _elsewhere(symbol, document.source.name)
-    changed = [(document, [Edit(place.span, name) for place in _distinct(places)]) for document, places in matches]
-    _check_free(symbol, name, changed, workspace)
-    return changed
+            raise _outside_workspace(symbol, document.source.name)
+    changes = [(document, [Edit(place.span, name) for place in _distinct(places)]) for document, places in matches]
+    _check_free(symbol, name, changes, workspace)
+    return changes
 
 
 def check_renamable(symbol: Symbol, workspace: Workspace) -> None:
     """Raise TLT0770 if a symbol is declared outside the workspace."""
     if not workspace.is_own(symbol.source.name):
-        raise _elsewhere(symbol, symbol.source.name)
+        raise _outside_workspace(symbol, symbol.source.name)
     if symbol.kind in MERGED:
         for document in _documents(symbol, workspace):
             for loaded in document.resolution.modules:
                 source = loaded.module.source
                 if workspace.is_own(source.name) or not _declares(document, symbol, source):
                     continue
-                raise _elsewhere(symbol, source.name)
+                raise _outside_workspace(symbol, source.name)
 
 
 def _declares(document: Document, symbol: Symbol, source: SourceFile) -> bool:
-    """Whether a library declares the same thing, in a program that contains the symbol's file."""
+    """Whether a library declares the same symbol, in a program that contains the symbol's file."""
     if path_of(symbol.source.name) not in document.reads:
         return False
     modules = document.resolution.modules
@@ -102,8 +102,8 @@ def _declares(document: Document, symbol: Symbol, source: SourceFile) -> bool:
 
 def _documents(symbol: Symbol, workspace: Workspace) -> list[Document]:
     """Return the documents that may contain a symbol, its own first."""
-    own = workspace.named(path_of(symbol.source.name))
-    candidates = [] if symbol.kind in _OF_ONE_FILE else [*workspace.all()]
+    own = workspace.document_named(path_of(symbol.source.name))
+    candidates = [] if symbol.kind in _FILE_LOCAL else [*workspace.all()]
     candidates = [document for document in candidates if may_have_references(symbol, document.source.text)]
     by_name = {document.source.name: document for document in candidates}
     if own is not None:
@@ -128,61 +128,65 @@ def _distinct(places: list[Occurrence]) -> list[Occurrence]:
     return list({place.span: place for place in places}.values())
 
 
-# --- refusals -----------------------------------------------------------------------------------
+# --- checks of the new name ---------------------------------------------------------------------
 
 
 def _check_form(symbol: Symbol, name: str) -> None:
     pattern = _NAME if symbol.kind in ("signal", "param", "predicate", "let", "entity") else _PLAIN
     if not pattern.match(name):
-        raise _refused(f"`{name}` is no name", "a name has letters, digits and `_`, and begins with no digit")
+        raise _rename_error(f"`{name}` is no name", "a name has letters, digits and `_`, and begins with no digit")
     if any(part in load().words for part in name.split(".")[:1]) and name in load().words:
-        raise _refused(f"`{name}` is a reserved word", f"choose another one, e.g. `{name}_`")
+        raise _rename_error(f"`{name}` is a reserved word", f"choose another one, e.g. `{name}_`")
     if name in FUNCTIONS:
-        raise _refused(f"`{name}` is a function of the language", f"choose another one, e.g. `{name}_of`")
+        raise _rename_error(f"`{name}` is a function of the language", f"choose another one, e.g. `{name}_of`")
 
 
-def _check_free(symbol: Symbol, name: str, changed: list[tuple[Document, list[Edit]]], workspace: Workspace) -> None:
+def _check_free(symbol: Symbol, name: str, changes: list[tuple[Document, list[Edit]]], workspace: Workspace) -> None:
     """Raise TLT0771 if the rename would change what any name refers to, or add errors."""
     texts = workspace.texts()
-    for document, edits in changed:
-        texts[path_of(document.source.name)] = applied(document.source.text, edits)
-    for document, edits in changed:
+    for document, edits in changes:
+        texts[path_of(document.source.name)] = apply_edits(document.source.text, edits)
+    for document, edits in changes:
         after = Document(
             SourceFile(document.source.name, texts[path_of(document.source.name)]), document.project, texts
         )
-        if _shape(document, edits) != _shape(after, edits, shift=True) or _errors(after) > _errors(document):
+        if _name_targets(document, edits) != _name_targets(after, edits, shift=True) or _errors(after) > _errors(
+            document
+        ):
             where = document.source.name
-            raise _refused(f"`{name}` means something else in `{where}` already", "choose a name that is not taken")
+            raise _rename_error(
+                f"`{name}` means something else in `{where}` already", "choose a name that is not taken"
+            )
     importing = (
         [] if symbol.kind in _LOCAL else [document for document in workspace.all() if may_import(document.source.text)]
     )
     for document in importing:
-        if any(path_of(other.source.name) in document.reads for other, _ in changed) and not any(
-            other.source.name == document.source.name for other, _ in changed
+        if any(path_of(changed.source.name) in document.reads for changed, _ in changes) and not any(
+            changed.source.name == document.source.name for changed, _ in changes
         ):
             after = Document(document.source, document.project, texts)
             if _errors(after) > _errors(document):
                 title = f"`{name}` means something else in `{document.source.name}` already"
-                raise _refused(title, "choose a name that is not taken")
+                raise _rename_error(title, "choose a name that is not taken")
 
 
-def _shape(document: Document, edits: list[Edit], *, shift: bool = False) -> list[tuple[int, str, int]]:
-    """Return where the names of a text lead to, with offsets before the edit.
+def _name_targets(document: Document, edits: list[Edit], *, shift: bool = False) -> list[tuple[int, str, int]]:
+    """Return the declaration of each name of a text, with offsets before the edits.
 
-    A correct rename preserves this.
+    A correct rename does not change the result.
     """
     own = document.source.name
-    before = _before(edits if shift else [])
+    before = _offset_before(edits if shift else [])
     targets = []
     for occurrence in document.names:
         symbol = occurrence.symbol
-        # Another file may be edited as well, so compare only the kind and the file there.
+        # Another file may be edited as well, so for its declarations compare only kind and file.
         target = before(symbol.span.start) if symbol.source.name == own else 0
         targets.append((before(occurrence.span.start), f"{symbol.kind} {symbol.source.name}", target))
     return targets
 
 
-def _before(edits: list[Edit]) -> Callable[[int], int]:
+def _offset_before(edits: list[Edit]) -> Callable[[int], int]:
     """Return a function that maps a character offset after the edits to the one before them."""
     ordered = sorted(edits, key=lambda edit: edit.span.start)
     shifts = [0, *accumulate(len(edit.text) - (edit.span.end - edit.span.start) for edit in ordered)]
@@ -195,12 +199,12 @@ def _errors(document: Document) -> int:
     return sum(diagnostic.severity == "error" for diagnostic in diagnostics)
 
 
-def _elsewhere(symbol: Symbol, name: str) -> TltlError:
+def _outside_workspace(symbol: Symbol, name: str) -> TltlError:
     title = f"`{symbol.name}` is declared in `{name}`, outside of this workspace"
     let_help = "a `let` of yours may give it another name"
     help_ = let_help if symbol.kind in ("predicate", "let") else "change it there, in an editor that shows its folder"
     return TltlError([Diagnostic("TLT0770", title, help=help_)])
 
 
-def _refused(title: str, help_: str) -> TltlError:
+def _rename_error(title: str, help_: str) -> TltlError:
     return TltlError([Diagnostic("TLT0771", title, help=help_)])

@@ -1,4 +1,4 @@
-"""The server itself: how it starts and ends, and how it handles notifications of editors."""
+"""Run the language server, and handle the notifications of the editor."""
 
 from __future__ import annotations
 
@@ -26,22 +26,23 @@ from tltlc.interfaces.lsp.paths import name_of
 from tltlc.interfaces.lsp.protocol import LOG, Protocol
 from tltlc.interfaces.lsp.session import EditorSession
 
-_REFUSED: Final = -32803
+_REQUEST_FAILED: Final = -32803
 """The protocol's error code RequestFailed, for failures whose reason the user should read."""
-_PIECE: Final = 1 << 16
+_READ_SIZE: Final = 1 << 16
 """Bytes that are read at once."""
-_NOBODY_READS: Final = 141
+_CLOSED_PIPE: Final = 141
+"""The exit status if the editor stops reading: 128 plus the number of SIGPIPE."""
 
 
 def serve() -> bool:
     """Serve an editor over standard input and output until it exits.
 
-    Return whether it sent ``shutdown`` before.
+    Return whether the editor sent ``shutdown`` before it exited or closed the connection.
     """
-    # Use copies of both streams, and send everything else that is printed to standard error.
-    lines_in, lines_out = os.fdopen(os.dup(0), "rb"), _Line(os.fdopen(os.dup(1), "wb"))
+    # Use copies of both streams; everything else that this process prints goes to standard error.
+    editor_input, editor_output = os.fdopen(os.dup(0), "rb"), _EditorOutput(os.fdopen(os.dup(1), "wb"))
     os.dup2(2, 1)
-    # Log only errors of the library: editors may cancel answered requests, and send unknown notifications.
+    # Log only errors of pygls: editors may cancel answered requests, and send unknown notifications.
     logging.getLogger("pygls").setLevel(logging.ERROR)
     for part in ("pygls.protocol.json_rpc", "pygls.server"):
         logging.getLogger(part).addFilter(_is_unforeseen)
@@ -50,11 +51,11 @@ def serve() -> bool:
             # A thread waits for the editor's next line, and a normal exit of Python would wait for that thread.
             signal.signal(number, lambda number, _: os._exit(128 + number))
     server = create()
-    cast("Protocol", server.protocol).set_writer(StdoutWriter(cast("BinaryIO", lines_out)))
+    cast("Protocol", server.protocol).set_writer(StdoutWriter(cast("BinaryIO", editor_output)))
     # The library raises SystemExit at the message `exit`.
     with suppress(SystemExit):
         try:
-            asyncio.run(_listen(server, lines_in))
+            asyncio.run(_listen(server, editor_input))
         finally:
             server.worker.abandon()
             server.shutdown()  # type: ignore[no-untyped-call]
@@ -67,10 +68,10 @@ async def _listen(server: EditorSession, file: BufferedReader) -> None:
     loop = asyncio.get_running_loop()
     data = b"?"
     while data:
-        data = await loop.run_in_executor(server.thread_pool, file.read1, _PIECE)
+        data = await loop.run_in_executor(server.thread_pool, file.read1, _READ_SIZE)
         for frame in frames.feed(data) if data else frames.end():
             try:
-                protocol.take(frame)
+                protocol.receive(frame)
             except Exception as error:
                 LOG.exception("a message was not understood")
                 server.report_server_error(error, JsonRpcException)
@@ -78,7 +79,7 @@ async def _listen(server: EditorSession, file: BufferedReader) -> None:
             await asyncio.sleep(0)
 
 
-class _Line:
+class _EditorOutput:
     """Output to the editor. The process ends when the editor stops reading.
 
     After ``exit`` the file is closed, and answers that are still in progress are dropped.
@@ -97,7 +98,7 @@ class _Line:
         try:
             self._file.flush()
         except OSError:
-            os._exit(_NOBODY_READS)
+            os._exit(_CLOSED_PIPE)
 
     def close(self) -> None:
         self.flush()
@@ -105,7 +106,7 @@ class _Line:
 
 
 def _is_unforeseen(record: logging.LogRecord) -> bool:
-    """Whether a log record is about more than a refused message."""
+    """Whether a log record reports something other than a refused message."""
     error = record.exc_info[1] if record.exc_info else None
     return not isinstance(error, JsonRpcException) and not record.msg.startswith("Unable to deserialize message")
 
@@ -113,13 +114,13 @@ def _is_unforeseen(record: logging.LogRecord) -> bool:
 def create() -> EditorSession:
     """Create a server with all its handlers."""
     server = EditorSession()
-    for method, handler, options in (*_TOLD, *ANSWERS):
-        server.feature(method, options)(_guarded(server, handler))
+    for method, handler, options in (*_NOTIFICATIONS, *ANSWERS):
+        server.feature(method, options)(_with_error_answers(server, handler))
     server.command(RUN_TESTS)(partial(run_tests, server))
     return server
 
 
-def _guarded(server: EditorSession, handler: Callable[[EditorSession, Any], Any]) -> Callable[[Any], Any]:
+def _with_error_answers(server: EditorSession, handler: Callable[[EditorSession, Any], Any]) -> Callable[[Any], Any]:
     """Wrap a handler: a TltlError becomes an error response.
 
     A request counts as a look of the user at its document.
@@ -127,37 +128,37 @@ def _guarded(server: EditorSession, handler: Callable[[EditorSession, Any], Any]
     if iscoroutinefunction(handler):
 
         async def answer_in_steps(params: Any) -> Any:
-            with _refusals(server, params):
+            with _error_answers(server, params):
                 return await handler(server, params)
 
         return answer_in_steps
 
     def answer(params: Any) -> Any:
-        with _refusals(server, params):
+        with _error_answers(server, params):
             return handler(server, params)
 
     return answer
 
 
 @contextmanager
-def _refusals(server: EditorSession, params: Any) -> Iterator[None]:
+def _error_answers(server: EditorSession, params: Any) -> Iterator[None]:
     try:
         yield
     except TltlError as error:
         diagnostic = shorten(error.diagnostics[0])
         text = f"{diagnostic.title}; {diagnostic.help}" if diagnostic.help else diagnostic.title
-        raise JsonRpcException(f"{text} ({diagnostic.code})", _REFUSED) from None
+        raise JsonRpcException(f"{text} ({diagnostic.code})", _REQUEST_FAILED) from None
     finally:
-        # Only now: a document that was closed or changed no longer waits, so nothing gives way to it.
+        # Record the look only now: the handler may have changed or closed a document that waited for its analysis.
         document = getattr(params, "text_document", None)
         if document is not None:
-            server.queue.looked_at(document.uri)
+            server.queue.record_look(document.uri)
 
 
 # --- notifications ------------------------------------------------------------------------------
 
 
-def _initialized(server: EditorSession, _: types.InitializedParams) -> None:
+def _on_initialized(server: EditorSession, _: types.InitializedParams) -> None:
     root = server.workspace.root_uri
     server.texts.folders = [name_of(uri) for uri in server.workspace.folders or ([root] if root else [])]
     capabilities = server.client_capabilities.workspace
@@ -169,51 +170,51 @@ def _initialized(server: EditorSession, _: types.InitializedParams) -> None:
         server.client_register_capability(types.RegistrationParams([registration]))
 
 
-def _shut_down(server: EditorSession, _: None) -> None:
+def _on_shutdown(server: EditorSession, _: None) -> None:
     server.shut_down()
 
 
-def _opened(server: EditorSession, params: types.DidOpenTextDocumentParams) -> None:
+def _on_open(server: EditorSession, params: types.DidOpenTextDocumentParams) -> None:
     item = params.text_document
-    server.changed(server.texts.put(item.uri, item.version, item.text))
+    server.on_change(server.texts.put(item.uri, item.version, item.text))
 
 
-def _changed(server: EditorSession, params: types.DidChangeTextDocumentParams) -> None:
+def _on_change(server: EditorSession, params: types.DidChangeTextDocumentParams) -> None:
     if params.content_changes:
         item = params.text_document
-        server.changed(server.texts.put(item.uri, item.version, params.content_changes[-1].text))
+        server.on_change(server.texts.put(item.uri, item.version, params.content_changes[-1].text))
 
 
-def _closed(server: EditorSession, params: types.DidCloseTextDocumentParams) -> None:
+def _on_close(server: EditorSession, params: types.DidCloseTextDocumentParams) -> None:
     touched = server.texts.close(params.text_document.uri)
-    server.closed(params.text_document.uri)
-    server.changed(touched)
+    server.on_close(params.text_document.uri)
+    server.on_change(touched)
 
 
-def _watched_files_changed(server: EditorSession, params: types.DidChangeWatchedFilesParams) -> None:
+def _on_watched_files(server: EditorSession, params: types.DidChangeWatchedFilesParams) -> None:
     # For open files, the text in the editor counts, saved or not.
     if not all(server.texts.is_open(change.uri) for change in params.changes):
-        _files_changed(server, params)
+        _on_files(server, params)
 
 
-def _files_changed(server: EditorSession, _: Any) -> None:
-    server.changed(server.texts.refresh())
-    server.used_otherwise(server.texts.opened())
+def _on_files(server: EditorSession, _: Any) -> None:
+    server.on_change(server.texts.refresh())
+    server.on_use_change(server.texts.open_uris())
 
 
-def _folders_changed(server: EditorSession, _: types.DidChangeWorkspaceFoldersParams) -> None:
+def _on_folders(server: EditorSession, _: types.DidChangeWorkspaceFoldersParams) -> None:
     server.texts.folders = [name_of(uri) for uri in server.workspace.folders]
 
 
-_TOLD: Final[tuple[tuple[str, Callable[[EditorSession, Any], Any], Any], ...]] = (
-    (types.INITIALIZED, _initialized, None),
-    (types.SHUTDOWN, _shut_down, None),
-    (types.TEXT_DOCUMENT_DID_OPEN, _opened, None),
-    (types.TEXT_DOCUMENT_DID_CHANGE, _changed, None),
-    (types.TEXT_DOCUMENT_DID_CLOSE, _closed, None),
-    (types.WORKSPACE_DID_CHANGE_WATCHED_FILES, _watched_files_changed, None),
+_NOTIFICATIONS: Final[tuple[tuple[str, Callable[[EditorSession, Any], Any], Any], ...]] = (
+    (types.INITIALIZED, _on_initialized, None),
+    (types.SHUTDOWN, _on_shutdown, None),
+    (types.TEXT_DOCUMENT_DID_OPEN, _on_open, None),
+    (types.TEXT_DOCUMENT_DID_CHANGE, _on_change, None),
+    (types.TEXT_DOCUMENT_DID_CLOSE, _on_close, None),
+    (types.WORKSPACE_DID_CHANGE_WATCHED_FILES, _on_watched_files, None),
     # File watchers are not notified about the sources in a folder that is renamed or deleted.
-    (types.WORKSPACE_DID_RENAME_FILES, _files_changed, FILES_AND_FOLDERS),
-    (types.WORKSPACE_DID_DELETE_FILES, _files_changed, FILES_AND_FOLDERS),
-    (types.WORKSPACE_DID_CHANGE_WORKSPACE_FOLDERS, _folders_changed, None),
+    (types.WORKSPACE_DID_RENAME_FILES, _on_files, FILES_AND_FOLDERS),
+    (types.WORKSPACE_DID_DELETE_FILES, _on_files, FILES_AND_FOLDERS),
+    (types.WORKSPACE_DID_CHANGE_WORKSPACE_FOLDERS, _on_folders, None),
 )

@@ -15,10 +15,10 @@ from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.grammar.tree import SpecDecl
 from tltlc.interfaces.lsp.analysed_text import Document
 from tltlc.interfaces.lsp.analysis import DocumentAnalysis, Request
-from tltlc.interfaces.lsp.diagnostics import remark, remark_on_project
+from tltlc.interfaces.lsp.diagnostics import project_file_diagnostic, protocol_diagnostic
 from tltlc.interfaces.lsp.paths import name_of, path_of
 from tltlc.interfaces.lsp.positions import UTF_16
-from tltlc.interfaces.lsp.previous_diagnostics import kept
+from tltlc.interfaces.lsp.previous_diagnostics import previous_diagnostics
 from tltlc.interfaces.lsp.protocol import LOG, Protocol
 from tltlc.interfaces.lsp.queue import Queue
 from tltlc.interfaces.lsp.worker import AnalysisWorker
@@ -46,8 +46,8 @@ class EditorSession(LanguageServer):
         self.was_shut_down = False
         self._analyses: dict[str, tuple[Document, DocumentAnalysis]] = {}
         self._timers: dict[tuple[str, str], asyncio.TimerHandle] = {}
-        self._imported: dict[str, list[str]] = {}
-        self._said_of_project: dict[str, tuple[Diagnostic, ...]] = {}
+        self._imported_uris: dict[str, list[str]] = {}
+        self._project_diagnostics: dict[str, tuple[Diagnostic, ...]] = {}
 
     @property
     def encoding(self) -> str:
@@ -56,12 +56,12 @@ class EditorSession(LanguageServer):
         return str(getattr(agreed, "value", agreed) or UTF_16)
 
     def analysis(self, document: Document) -> DocumentAnalysis | None:
-        """Return the analysis of a document if it is up to date."""
-        made_of, analysis = self._analyses.get(document.source.name, (None, None))
-        return analysis if made_of is document else None
+        """Return the analysis of a document; None if there is none for its current text."""
+        analysed_document, analysis = self._analyses.get(document.source.name, (None, None))
+        return analysis if analysed_document is document else None
 
     def last_analysis(self, document: Document) -> DocumentAnalysis | None:
-        """Return the last analysis of a document, which may have changed since."""
+        """Return the last analysis of a document, perhaps of an earlier text; None if there is none."""
         _, analysis = self._analyses.get(document.source.name, (None, None))
         return analysis
 
@@ -88,23 +88,23 @@ class EditorSession(LanguageServer):
 
     # --- changes ------------------------------------------------------------------------------
 
-    def changed(self, uris: Iterable[str]) -> None:
+    def on_change(self, uris: Iterable[str]) -> None:
         """Handle documents whose texts, or the texts that they import, have changed."""
         for uri in uris:
             self.queue.drop(uri)
-            self._at("now", uri, SOON_S, self._publish, restart=False)
-            self._at("later", uri, LATER_S, self._analyse, restart=True)
+            self._schedule("now", uri, SOON_S, self._publish, restart=False)
+            self._schedule("later", uri, LATER_S, self._schedule_analysis, restart=True)
 
-    def used_otherwise(self, uris: Iterable[str]) -> None:
+    def on_use_change(self, uris: Iterable[str]) -> None:
         """Handle a change in files that may import these documents.
 
         Names that those files used may be unused now, or the other way round.
         """
         for uri in uris:
             if self.texts.is_open(uri):
-                self._at("again", uri, LATER_S, self._analyse_again, restart=True)
+                self._schedule("again", uri, LATER_S, self._schedule_reanalysis, restart=True)
 
-    def closed(self, uri: str) -> None:
+    def on_close(self, uri: str) -> None:
         """Forget a closed document, and clear its diagnostics."""
         self.queue.drop(uri)
         self._analyses.pop(name_of(uri), None)
@@ -113,8 +113,8 @@ class EditorSession(LanguageServer):
             if timer is not None:
                 timer.cancel()
         self.text_document_publish_diagnostics(types.PublishDiagnosticsParams(uri, []))
-        # Its file counts again, and may use different names than the closed text.
-        self.used_otherwise(dict.fromkeys([*self._imported.pop(uri, []), *self.texts.imported(uri)]))
+        # The file on disk replaces the closed text, and may use other names of its imports.
+        self.on_use_change(dict.fromkeys([*self._imported_uris.pop(uri, []), *self.texts.open_imports(uri)]))
 
     def shut_down(self) -> None:
         """Stop all work and all notifications."""
@@ -123,7 +123,7 @@ class EditorSession(LanguageServer):
             timer.cancel()
         self.queue.clear()
 
-    def _at(self, task: str, uri: str, delay_s: float, then: Callable[[str], None], *, restart: bool) -> None:
+    def _schedule(self, task: str, uri: str, delay_s: float, then: Callable[[str], None], *, restart: bool) -> None:
         key = (task, uri)
         timer = self._timers.get(key)
         if timer is not None:
@@ -142,49 +142,53 @@ class EditorSession(LanguageServer):
         document = self.texts.document(uri) if self.texts.is_open(uri) else None
         if document is None:
             return
-        made_of, analysis = self._analyses.get(document.source.name, (document, None))
+        analysed_document, analysis = self._analyses.get(document.source.name, (document, None))
         if analysis is None:
-            diagnostics = document.said
-        elif made_of is document:
-            diagnostics = analysis.said
+            diagnostics = document.diagnostics
+        elif analysed_document is document:
+            diagnostics = analysis.diagnostics
         else:
-            diagnostics = (*document.said, *kept(made_of, analysis, document))
-        remarks = [remark(diagnostic, document, self.encoding, self.texts.uri) for diagnostic in diagnostics]
+            diagnostics = (*document.diagnostics, *previous_diagnostics(analysed_document, analysis, document))
+        protocol_diagnostics = [
+            protocol_diagnostic(diagnostic, document, self.encoding, self.texts.uri) for diagnostic in diagnostics
+        ]
         version = self.texts.version(uri)
-        self.text_document_publish_diagnostics(types.PublishDiagnosticsParams(uri, remarks, version))
+        self.text_document_publish_diagnostics(types.PublishDiagnosticsParams(uri, protocol_diagnostics, version))
         self._publish_project(document)
 
     def _publish_project(self, document: Document) -> None:
-        """Publish the diagnostics of the project file.
+        """Publish the diagnostics of the document's project file.
 
-        Project files that had diagnostics before are updated as well.
+        Update the diagnostics of other project files that had some before.
         """
         errors = self.texts.project(document.source.name)[1]
         places = {label.source.name for diagnostic in errors for label in diagnostic.labels}
-        for name in dict.fromkeys([*self._said_of_project, *sorted(places)]):
+        for name in dict.fromkeys([*self._project_diagnostics, *sorted(places)]):
             project_errors = self.texts.project(path_of(name))[1]
             own = tuple(
                 diagnostic
                 for diagnostic in project_errors
                 if diagnostic.labels and diagnostic.labels[0].source.name == name
             )
-            if self._said_of_project.get(name, ()) != own:
-                self._said_of_project[name] = own
-                remarks = [remark_on_project(diagnostic, self.encoding) for diagnostic in own]
-                self.text_document_publish_diagnostics(types.PublishDiagnosticsParams(self.texts.uri(name), remarks))
+            if self._project_diagnostics.get(name, ()) != own:
+                self._project_diagnostics[name] = own
+                protocol_diagnostics = [project_file_diagnostic(diagnostic, self.encoding) for diagnostic in own]
+                self.text_document_publish_diagnostics(
+                    types.PublishDiagnosticsParams(self.texts.uri(name), protocol_diagnostics)
+                )
 
     # --- automata -----------------------------------------------------------------------------
 
-    def _analyse(self, uri: str) -> None:
+    def _schedule_analysis(self, uri: str) -> None:
         """Schedule the analysis of a document and of its imports.
 
-        The document may have started or stopped using names of its imports.
+        Its imports are analysed again, because the document may use other names of them than before.
         """
-        before, self._imported[uri] = self._imported.get(uri, []), self.texts.imported(uri)
-        self.used_otherwise(dict.fromkeys([*before, *self._imported[uri]]))
+        before, self._imported_uris[uri] = self._imported_uris.get(uri, []), self.texts.open_imports(uri)
+        self.on_use_change(dict.fromkeys([*before, *self._imported_uris[uri]]))
         self.queue.put(uri)
 
-    def _analyse_again(self, uri: str) -> None:
+    def _schedule_reanalysis(self, uri: str) -> None:
         document = self.texts.document(uri)
         # Names in a file without specs may all be used elsewhere.
         if document is not None and any(
@@ -193,37 +197,37 @@ class EditorSession(LanguageServer):
             self.queue.put(uri, again=True)
 
     async def analysis_of(self, uri: str) -> DocumentAnalysis | None:
-        """Return the analysis of a document, made if needed.
+        """Return the analysis of a document, and make it if needed.
 
-        Return None if the document is missing, broken or changing.
+        Return None if the document is missing, has errors or changes meanwhile.
         """
         document = self.texts.document(uri)
         return (self.analysis(document) if document else None) or await self.queue.answer(uri)
 
     async def _analyse_now(self, uri: str, again: bool) -> DocumentAnalysis | None:
-        """Analyse a document and publish the result.
+        """Analyse a document and publish the result; with ``again``, even if the analysis is known.
 
-        Return None if the document is missing, broken or changing.
+        Return None if the document is missing, has errors or changes meanwhile.
         """
         document = self.texts.document(uri)
         if document is None or not document.is_clean:
             return None
-        known = self.analysis(document)
-        if known is not None and not again:
-            return known
+        previous = self.analysis(document)
+        if previous is not None and not again:
+            return previous
         project = document.project
         request = Request(document.source, project.libraries, dict(project.lint), self.texts.texts())
         analysis = await self.worker.analyse(request)
         if analysis is None or self.texts.document(uri) is not document:
             return None
         self._analyses[document.source.name] = (document, analysis)
-        if analysis == known:
+        if analysis == previous:
             return analysis
         self._publish(uri)
-        self._ask_to_look_again()
+        self._refresh_editor()
         return analysis
 
-    def _ask_to_look_again(self) -> None:
+    def _refresh_editor(self) -> None:
         """Ask the editor to refresh lenses and hints.
 
         Lenses show the analysis, and hints may depend on other files.

@@ -30,7 +30,7 @@ def symbols(document: Document, encoding: str) -> list[types.DocumentSymbol]:
     for declaration in document.module.declarations:
         children = [_clause(clause, document, encoding) for clause in _clauses(declaration)]
         head = declaration_text(declaration, source, head=True)
-        for name, kind, span, name_span in _named(declaration):
+        for name, kind, span, name_span in _outline_entries(declaration):
             outline.append(
                 types.DocumentSymbol(
                     name,
@@ -44,28 +44,28 @@ def symbols(document: Document, encoding: str) -> list[types.DocumentSymbol]:
     return outline
 
 
-def found(document: Document, query: str, encoding: str, uri: str) -> list[types.WorkspaceSymbol]:
-    """Return the declarations whose names contain the letters of a query in order.
+def matching_symbols(document: Document, query: str, encoding: str, uri: str) -> list[types.WorkspaceSymbol]:
+    """Return the declarations whose names contain the letters of a query, in this order.
 
-    An empty query matches all declarations.
+    Case does not matter. An empty query matches all declarations.
     """
     source = document.source
     return [
         types.WorkspaceSymbol(types.Location(uri, range_of(source, name_span, encoding)), name, kind)
         for declaration in document.module.declarations
         if not isinstance(declaration, tree.Import)
-        for name, kind, _, name_span in _named(declaration)
+        for name, kind, _, name_span in _outline_entries(declaration)
         if _has_letters(name.lower(), query.lower())
     ]
 
 
 def _has_letters(name: str, query: str) -> bool:
-    left = iter(name)
-    return all(letter in left for letter in query)
+    remaining_letters = iter(name)
+    return all(letter in remaining_letters for letter in query)
 
 
-def _named(declaration: tree.Declaration) -> Iterator[tuple[str, types.SymbolKind, Span, Span]]:
-    """Yield the name, the kind, and the spans of the declaration and of its name."""
+def _outline_entries(declaration: tree.Declaration) -> Iterator[tuple[str, types.SymbolKind, Span, Span]]:
+    """Yield each declared name with its kind, the span of the declaration and that of the name."""
     match declaration:
         case tree.Import():
             yield declaration.target, Kind.Module, declaration.span, declaration.target_span

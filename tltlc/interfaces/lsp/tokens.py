@@ -1,4 +1,4 @@
-"""Tell editors what each name refers to, so they can colour it; a grammar only sees names."""
+"""Semantic tokens: tell editors what each name refers to, so that they can colour it."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _NUMBERS: Final = {token_type: number for number, token_type in enumerate(dict.f
 LEGEND: Final = types.SemanticTokensLegend(
     [member.value for member in _NUMBERS], [member.value for member in _MODIFIERS]
 )
-"""What the numbers of types and the bits of modifiers mean."""
+"""The token types by number, and the modifiers by bit."""
 
 
 def tokens(document: Document, encoding: str) -> list[int]:

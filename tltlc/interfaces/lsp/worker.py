@@ -1,7 +1,4 @@
-"""Run slow analyses in their own process.
-
-It can be killed at any time, even while it builds an automaton.
-"""
+"""Run slow analyses in a process of their own, which can be killed while it builds an automaton."""
 
 from __future__ import annotations
 
@@ -32,11 +29,12 @@ class AnalysisWorker:
     async def analyse(self, request: Request) -> DocumentAnalysis | None:
         """Analyse a text.
 
-        Return None if that was given up, took too long, or no process can be started.
+        Return None if the analysis is abandoned, takes longer than :data:`LONGEST_S`, or no process
+        can be started.
         """
         pipe = None
         try:
-            pipe = self._started()
+            pipe = self._connection()
             # A large text blocks the sender until the process reads from the pipe, so send it in a thread.
             answer = asyncio.get_running_loop().run_in_executor(None, _exchange, pipe, request)
             return await asyncio.wait_for(answer, LONGEST_S)
@@ -57,7 +55,8 @@ class AnalysisWorker:
         # The thread that waits at the old pipe sees its end and releases it.
         self._process = self._pipe = None
 
-    def _started(self) -> Connection:
+    def _connection(self) -> Connection:
+        """Return the pipe to the process, which is started if it is not alive."""
         if self._pipe is None or self._process is None or not self._process.is_alive():
             self.abandon()
             context = multiprocessing.get_context("spawn")
@@ -93,7 +92,7 @@ def answer_all(pipe: Connection) -> None:
 def _end_with_server() -> None:
     """End this process as soon as the server ends, even if the server is killed.
 
-    It ends even in the middle of an automaton.
+    This also ends an analysis that is still running.
     """
     server = multiprocessing.parent_process()
     if server is not None:

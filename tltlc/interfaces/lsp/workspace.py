@@ -17,9 +17,9 @@ from tltlc.resolve.imports import standard_library
 
 
 class Workspace:
-    """The open texts by name, and their documents.
+    """The open texts, the files around them, and a document for each that was needed.
 
-    ``folders`` are the folders that the editor shows.
+    ``folders`` are the paths of the folders that the editor shows.
     """
 
     def __init__(self) -> None:
@@ -50,18 +50,18 @@ class Workspace:
     def refresh(self) -> list[str]:
         """Drop the documents that depend on a changed file.
 
-        Return the URIs of those that are open.
+        Return the URIs of the dropped documents that are open.
         """
         return self._drop([name for name, document in self._documents.items() if not document.is_current()])
 
     # --- documents ----------------------------------------------------------------------------
 
     def document(self, uri: str) -> Document | None:
-        """Return the current document: the open one, or the file; None if neither exists."""
-        return self.named(name_of(uri))
+        """Return the document with the open text, or else with the file; None if neither can be read."""
+        return self.document_named(name_of(uri))
 
-    def named(self, name: str) -> Document | None:
-        """Like :meth:`document`, by name."""
+    def document_named(self, name: str) -> Document | None:
+        """Like :meth:`document`, by name: an absolute path, or ``<URI>`` if it is not a file."""
         opened = self._open.get(name)
         document = self._documents.get(name)
         # The editor reports changes of open texts; closed files may change without notice.
@@ -80,12 +80,12 @@ class Workspace:
         return document
 
     def version(self, uri: str) -> int | None:
-        """Return the version of an open document."""
+        """Return the version of an open document; None if it is not open or has no version."""
         opened = self._open.get(name_of(uri))
         return opened[1] if opened else None
 
     def uri(self, name: str) -> str:
-        """Return the URI of a file; if it is open, as the editor writes it."""
+        """Return the URI of a file, as the editor writes it if the file is open."""
         opened = self._open.get(path_of(name))
         return opened[0] if opened else uri_of(name)
 
@@ -93,11 +93,11 @@ class Workspace:
         """Whether a document is open in the editor."""
         return name_of(uri) in self._open
 
-    def opened(self) -> list[str]:
+    def open_uris(self) -> list[str]:
         """Return the URIs of the open documents."""
         return [uri for uri, _, _ in self._open.values()]
 
-    def imported(self, uri: str) -> list[str]:
+    def open_imports(self, uri: str) -> list[str]:
         """Return the URIs of the other open documents that a document imports, also indirectly."""
         document = self.document(uri)
         names = document.reads - {document.source.name} if document else ()
@@ -123,9 +123,11 @@ class Workspace:
         path = path_of(name)
         if path.startswith("<"):
             return True
-        if is_below(path, str(standard_library().absolute())) and not self._shows(str(standard_library().absolute())):
+        if is_below(path, str(standard_library().absolute())) and not self._is_in_folders(
+            str(standard_library().absolute())
+        ):
             return False
-        return path in self._open or self._shows(path)
+        return path in self._open or self._is_in_folders(path)
 
     def all(self) -> Iterator[Document]:
         """Yield the documents of the workspace: open ones, and the files of its folders.
@@ -135,7 +137,7 @@ class Workspace:
         """
         size = 0
         for name in self._names():
-            document = self.named(name)
+            document = self.document_named(name)
             if document is not None:
                 size += len(document.source.text)
                 if size > WORKSPACE.size:
@@ -172,13 +174,13 @@ class Workspace:
                 names.update(dict.fromkeys(filter(may_be_file, paths)))
         return [*names]
 
-    def _shows(self, path: str) -> bool:
+    def _is_in_folders(self, path: str) -> bool:
         return any(is_below(path, folder) for folder in self.folders)
 
     def _forget(self, name: str) -> list[str]:
-        """Drop the document of a text and those that depend on it.
+        """Drop the document of a text and the documents that depend on it.
 
-        Return the URIs of the latter that are open.
+        Return the URIs of the dependent documents that are open.
         """
         self._documents.pop(name, None)
         return self._drop(
