@@ -9,7 +9,7 @@ from tests.waiting import HANG_S
 from tltlc.interfaces.playground.server import PlaygroundServer
 
 
-def connected(server: PlaygroundServer) -> socket.socket:
+def connect(server: PlaygroundServer) -> socket.socket:
     return socket.create_connection(("127.0.0.1", server.server_address[1]), timeout=HANG_S)
 
 
@@ -34,8 +34,8 @@ def statuses(answers: bytes) -> list[int]:
     return codes
 
 
-def refused(server: PlaygroundServer, data: bytes) -> list[int]:
+def statuses_until_closed(server: PlaygroundServer, data: bytes) -> list[int]:
     """Return the status codes if the server closes the connection itself."""
-    with connected(server) as connection:
+    with connect(server) as connection:
         connection.sendall(data)
         return statuses(read_to_end(connection))

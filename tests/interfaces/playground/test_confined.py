@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tests.interfaces.playground.test_server import JSON, ask, serving
+from tests.interfaces.playground.test_server import JSON, ask, running_server
 from tltlc.interfaces.playground import view
 from tltlc.interfaces.playground.child import readable_folders
 from tltlc.io.files import confine_reads, exists, is_dir, is_file, may_read, outside_diagnostic, read_source
@@ -189,7 +189,7 @@ def test_the_server_confines_its_requests(tmp_path: Path, monkeypatch: pytest.Mo
     (tmp_path / "secret.tltl").write_text(SECRET, encoding="utf-8")
     (tmp_path / "own").mkdir()
     monkeypatch.chdir(tmp_path / "own")
-    with serving() as server:
+    with running_server() as server:
         for target in ("../secret.tltl", "/etc/passwd"):
             text = json.dumps({"text": f'import "{target}"\n{SPEC}'})
             answer = json.loads(ask(server, "POST", "/api", text, JSON)[2])

@@ -16,8 +16,8 @@ from typing import Any
 
 import pytest
 
-from tests.interfaces.playground.raw import connected, read_to_end, statuses
-from tests.interfaces.playground.test_server import JSON, PATIENT, SLOW, ask, eventually, request, serving
+from tests.interfaces.playground.raw import connect, read_to_end, statuses
+from tests.interfaces.playground.test_server import JSON, PATIENT, SLOW, ask, request, running_server, wait_until
 from tests.waiting import HANG_S, until
 from tltlc.core.record import replace
 from tltlc.interfaces.playground import children
@@ -42,23 +42,23 @@ def room() -> Iterator[None]:
 
 
 @pytest.fixture
-def turns(monkeypatch: pytest.MonkeyPatch) -> list[int]:
+def wakeups(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     """A list that grows by one whenever the server wakes up."""
     wakeups: list[int] = []
     select = selectors.DefaultSelector.select
 
-    def counted(selector: Any, timeout: float | None = None) -> Any:
+    def count_wakeup(selector: Any, timeout: float | None = None) -> Any:
         wakeups.append(0)
         return select(selector, timeout)
 
-    monkeypatch.setattr(selectors.DefaultSelector, "select", counted)
+    monkeypatch.setattr(selectors.DefaultSelector, "select", count_wakeup)
     return wakeups
 
 
 @contextmanager
-def held(server: PlaygroundServer, number: int, data: bytes = b"") -> Iterator[list[socket.socket]]:
+def open_connections(server: PlaygroundServer, number: int, data: bytes = b"") -> Iterator[list[socket.socket]]:
     """Connections on which this data is sent, and nothing more."""
-    made = [connected(server) for _ in range(number)]
+    made = [connect(server) for _ in range(number)]
     try:
         for connection in made:
             connection.sendall(data)
@@ -75,30 +75,30 @@ def is_answered(server: PlaygroundServer) -> bool:
 @pytest.mark.skipif(os.name != "posix", reason="raises a limit that only POSIX has")
 @pytest.mark.parametrize("data", [b"", b"GET / HT", b"POST /api HTTP/1.1\r\nHost: localhost\r\nA"], ids=repr)
 @pytest.mark.usefixtures("room")
-def test_hundreds_of_idle_connections_block_nothing(data: bytes, turns: list[int]) -> None:
-    with serving(connections=replace(PATIENT, idle_s=NEVER_S, request_s=NEVER_S)) as server:
-        with held(server, MANY) as made:
+def test_hundreds_of_idle_connections_block_nothing(data: bytes, wakeups: list[int]) -> None:
+    with running_server(connections=replace(PATIENT, idle_s=NEVER_S, request_s=NEVER_S)) as server:
+        with open_connections(server, MANY) as made:
             for connection in made[-PLAYGROUND.most // 2 :]:
                 connection.sendall(data)
             for _ in range(3):
                 assert is_answered(server)
-            assert len(server.open) <= PLAYGROUND.most
+            assert len(server.connections) <= PLAYGROUND.most
             # Every event wakes the server a few times, and nothing else wakes it, however long the test takes.
-            assert len(turns) < 20 * MANY
-        assert eventually(lambda: len(server.open) == 0)
+            assert len(wakeups) < 20 * MANY
+        assert wait_until(lambda: len(server.connections) == 0)
         assert is_answered(server)
 
 
 def test_the_connection_idle_longest_is_closed_first() -> None:
-    with serving(connections=replace(FEW, idle_s=NEVER_S)) as server, held(server, FEW.most) as made:
-        assert eventually(lambda: len(server.open) == FEW.most)
+    with running_server(connections=replace(FEW, idle_s=NEVER_S)) as server, open_connections(server, FEW.most) as made:
+        assert wait_until(lambda: len(server.connections) == FEW.most)
         # Every connection but the second has had an answer since.
         for connection in (made[0], *made[2:]):
             connection.sendall(
                 b"GET /none HTTP/1.1\r\nHost: localhost\r\n\r\n" if connection is made[3] else index(b"")
             )
             assert connection.recv(1 << 16)
-        with connected(server) as another:
+        with connect(server) as another:
             another.sendall(index(b"Connection: close\r\n"))
             assert statuses(read_to_end(another)) == [200]
         # The fourth connection was rejected and is to be closed, so it gives way to connections that may be
@@ -113,9 +113,9 @@ def index(headers: bytes) -> bytes:
 
 
 def test_an_idle_connection_is_closed_after_a_while() -> None:
-    with serving(connections=replace(PATIENT, idle_s=0.05)) as server, connected(server) as connection:
+    with running_server(connections=replace(PATIENT, idle_s=0.05)) as server, connect(server) as connection:
         assert read_to_end(connection) == b""
-        assert eventually(lambda: len(server.open) == 0)
+        assert wait_until(lambda: len(server.connections) == 0)
 
 
 @pytest.mark.parametrize(
@@ -124,13 +124,13 @@ def test_an_idle_connection_is_closed_after_a_while() -> None:
     ids=repr,
 )
 def test_a_request_that_is_not_completed_in_time_is_rejected(begun: bytes) -> None:
-    with serving(connections=replace(PATIENT, request_s=0.05)) as server, connected(server) as connection:
+    with running_server(connections=replace(PATIENT, request_s=0.05)) as server, connect(server) as connection:
         connection.sendall(begun)
         assert statuses(read_to_end(connection)) == [408]
 
 
 def test_a_slow_body_has_no_more_time_than_the_whole_request() -> None:
-    with serving(connections=replace(PATIENT, request_s=0.5)) as server, connected(server) as connection:
+    with running_server(connections=replace(PATIENT, request_s=0.5)) as server, connect(server) as connection:
         head = request(server, " " * 1_000_000).partition(b"\r\n\r\n")[0]
         connection.sendall(head + b"\r\n\r\n")
         connection.settimeout(0.02)
@@ -147,29 +147,29 @@ def test_a_slow_body_has_no_more_time_than_the_whole_request() -> None:
 
 
 def test_a_client_that_does_not_read_its_answer_is_disconnected() -> None:
-    with serving(connections=replace(PATIENT, write_s=0.05)) as server:
+    with running_server(connections=replace(PATIENT, write_s=0.05)) as server:
         server.page.files["main.js"] = b"a" * (64 << 20)
-        with connected(server) as connection:
-            assert eventually(lambda: len(server.open) == 1)
+        with connect(server) as connection:
+            assert wait_until(lambda: len(server.connections) == 1)
             connection.sendall(b"GET /main.js HTTP/1.1\r\nHost: localhost\r\n\r\n")
-            assert eventually(lambda: len(server.open) == 0)
+            assert wait_until(lambda: len(server.connections) == 0)
 
 
 def test_too_many_bytes_after_a_request_end_the_connection() -> None:
-    with serving() as server, connected(server) as connection:
+    with running_server() as server, connect(server) as connection:
         connection.sendall(request(server, json.dumps({"text": SLOW})))
         with pytest.raises(OSError, match=r"(?i)reset|pipe|abort"):
             for _ in range(100):
                 connection.sendall(b"\r\n" * (1 << 20))
-        assert eventually(lambda: not server.children._running)
+        assert wait_until(lambda: not server.children._running)
 
 
 def test_a_new_connection_is_rejected_while_all_others_wait(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(children, "MOST_AT_ONCE", FEW.most)
-    with serving(connections=FEW) as server:
-        with held(server, FEW.most, request(server, json.dumps({"text": SLOW}))):
-            assert eventually(lambda: len(server.children._running) == FEW.most)
-            with connected(server) as another:
+    with running_server(connections=FEW) as server:
+        with open_connections(server, FEW.most, request(server, json.dumps({"text": SLOW}))):
+            assert wait_until(lambda: len(server.children._running) == FEW.most)
+            with connect(server) as another:
                 assert statuses(read_to_end(another)) == [503]
         assert is_answered(server)
 
@@ -194,14 +194,14 @@ class Full:
 
 def test_without_descriptors_the_server_retries_after_a_pause(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("tltlc.interfaces.playground.server._AGAIN_S", NEVER_S)
-    with serving() as server, held(server, 3) as made:
-        assert eventually(lambda: len(server.open) == 3)
+    with running_server() as server, open_connections(server, 3) as made:
+        assert wait_until(lambda: len(server.connections) == 3)
         full = Full(server._listener)
         server._loop.call_soon_threadsafe(setattr, server, "_listener", full)
-        with connected(server) as waiting:
+        with connect(server) as waiting:
             # At each attempt one of the three idle connections gives way; after that, the server only waits.
             assert [read_to_end(connection) for connection in made] == [b""] * 3
-            assert eventually(lambda: server._again is not None)
+            assert wait_until(lambda: server._again is not None)
             full.is_full = False
             assert full.looks == 4
             server._loop.call_soon_threadsafe(server._look)
@@ -245,7 +245,7 @@ def test_a_server_with_few_descriptors_answers_beside_idle_connections() -> None
 
         Other.token = token  # type: ignore[attr-defined]
         other: Any = Other()
-        with held(other, MANY):
+        with open_connections(other, MANY):
             for _ in range(3):
                 assert is_answered(other)
             woken, errors = running.communicate("\n")

@@ -15,7 +15,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.interfaces.playground.raw import statuses
-from tltlc.interfaces.playground.connections import Connection, Open, Response
+from tltlc.interfaces.playground.connections import Connection, OpenConnections, Response
 from tltlc.interfaces.playground.protocol import Question, RequestError, question
 from tltlc.interfaces.playground.request_head import Head, RefusedError, read_head
 from tltlc.io.limits import PLAYGROUND, REQUEST_HEAD, REQUEST_LINE
@@ -155,10 +155,10 @@ class Wire:
     close = abort
 
 
-async def answered(pieces: list[bytes]) -> bytes:
+async def answers_to(pieces: list[bytes]) -> bytes:
     """Return the bytes sent in answer to these pieces, after which the connection ends."""
     wire = Wire()
-    connections = Open(PLAYGROUND)
+    connections = OpenConnections(PLAYGROUND)
     connection = Connection(Echo(), connections)
     connection.connection_made(cast("Any", wire))
     for piece in pieces:
@@ -179,7 +179,7 @@ def loop() -> Iterator[asyncio.AbstractEventLoop]:
     made.close()
 
 
-def undated(answers: bytes) -> list[bytes]:
+def without_dates(answers: bytes) -> list[bytes]:
     return [line for line in answers.split(b"\r\n") if not line.startswith(b"Date: ")]
 
 
@@ -189,20 +189,20 @@ def test_answers_do_not_depend_on_the_pieces(loop: asyncio.AbstractEventLoop, da
     for size in sizes:
         pieces.append(rest[:size])
         rest = rest[size:]
-    whole = loop.run_until_complete(answered([data]))
-    cut = loop.run_until_complete(answered([*pieces, rest]))
+    whole = loop.run_until_complete(answers_to([data]))
+    cut = loop.run_until_complete(answers_to([*pieces, rest]))
     codes = statuses(whole)
     # Whether `100 Continue` is sent depends on whether the body has already arrived.
     assert [code for code in statuses(cut) if code != 100] == [code for code in codes if code != 100]
     if b"100-continue" not in data:
-        assert undated(whole) == undated(cut)
+        assert without_dates(whole) == without_dates(cut)
     # Nothing is answered after a rejection.
     assert all(status < 400 for status in codes[:-1])
 
 
 @given(st.lists(st.one_of(st.just(RIGHT), st.builds(post, st.binary(max_size=20))), max_size=6))
 def test_all_valid_requests_are_answered(loop: asyncio.AbstractEventLoop, requests: list[bytes]) -> None:
-    sent = loop.run_until_complete(answered([b"".join(requests) + LAST + RIGHT]))
+    sent = loop.run_until_complete(answers_to([b"".join(requests) + LAST + RIGHT]))
     assert statuses(sent) == [200] * (len(requests) + 1)
 
 

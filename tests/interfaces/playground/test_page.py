@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from tests.interfaces.playground.test_server import SLOW, serving
+from tests.interfaces.playground.test_server import SLOW, running_server
 from tests.runtime.regression.page import chromium
 from tltlc.interfaces.playground.browser import redirect_file
 from tltlc.interfaces.playground.page_config import examples
@@ -43,16 +43,16 @@ def browser() -> Iterator[Browser]:
 
 @pytest.fixture(scope="module")
 def address() -> Iterator[str]:
-    with serving() as server:
+    with running_server() as server:
         yield server.address
 
 
 @pytest.fixture
 def page(browser: Browser, address: str) -> Iterator[Page]:
-    yield from opened(browser, address)
+    yield from open_page(browser, address)
 
 
-def opened(
+def open_page(
     browser: Browser, address: str, wrong: list[str] | None = None, link: str = "", **context: Any
 ) -> Iterator[Page]:
     """A page that logs no error and sends requests only to its own server; errors are appended to
@@ -86,7 +86,7 @@ def write(page: Page, text: str) -> None:
     page.get_by_label("Specification").fill(text)
 
 
-def kept_address(page: Page, before: str = "") -> str:
+def wait_for_address(page: Page, before: str = "") -> str:
     """Wait until the page has written a new text into its address, and return the address."""
     page.wait_for_url(lambda url: "#1." in url and url != before)
     return page.url
@@ -196,7 +196,7 @@ def test_a_long_text_is_underlined_but_not_coloured(page: Page) -> None:
     expect(page.locator("#backdrop .word").first).to_have_text("signal")
 
 
-def test_a_trace_is_clicked_through_to_acceptance(page: Page) -> None:
+def test_a_trace_is_built_by_clicks_until_it_is_accepted(page: Page) -> None:
     write(page, FIXED)
     summary(page, "^It compiles$")
     expect(page.locator("#english h2")).to_have_text("plan")
@@ -279,7 +279,7 @@ def test_the_table_can_be_used_by_keyboard(page: Page) -> None:
     expect(page.locator("#moment")).to_contain_text("against exclusive")
 
 
-def test_buttons_step_to_both_ends_by_keyboard(page: Page) -> None:
+def test_buttons_move_to_both_ends_of_a_trace_by_keyboard(page: Page) -> None:
     page.get_by_role("button", name="Show a success").click()
     expect(page.locator("#steps .verdict")).to_have_count(3)
     back, forth = (page.get_by_role("button", name=name) for name in ("Step back", "Step on"))
@@ -304,14 +304,14 @@ def test_a_link_restores_everything(page: Page, browser: Browser, address: str) 
     summary(page, "text is in it")
     link = page.url.removeprefix(address.partition("#")[0])
     assert "token" not in link
-    for other_page in opened(browser, address, link=link):
+    for other_page in open_page(browser, address, link=link):
         expect(other_page.locator("#steps .verdict")).to_have_text(["violated"])
         expect(other_page.locator("#english h2")).to_have_text("other")
         expect(other_page.get_by_label("Specification")).to_have_value(FIXED + "spec other = F a & G !b // ≤ 🎮\n")
 
 
 def test_a_broken_link_shows_an_example(browser: Browser, address: str) -> None:
-    for page in opened(browser, address, link="#1.nonsense"):
+    for page in open_page(browser, address, link="#1.nonsense"):
         expect(page.locator("#english h2")).to_have_text("escape")
 
 
@@ -321,7 +321,7 @@ PACKED = """async (value) => (await import("./share.js")).packed(value)"""
 def test_a_link_with_invalid_values_is_opened(page: Page, browser: Browser, address: str) -> None:
     letters = [["a", 3, {"b": 1}], None, {"0": "a"}, "a", [["a"]], *([["b"]] * 1200)]
     link = page.evaluate(PACKED, {"text": FIXED, "spec": {"x": 1}, "mode": [], "letters": letters, "current": -7.5})
-    for other_page in opened(browser, address, link=link):
+    for other_page in open_page(browser, address, link=link):
         expect(other_page.locator("#steps tbody tr")).to_have_count(1000)
         expect(other_page.locator("#steps tr.current .verdict")).to_have_text("pending")
         expect(other_page.get_by_role("button", name="Add step")).to_be_disabled()
@@ -330,7 +330,7 @@ def test_a_link_with_invalid_values_is_opened(page: Page, browser: Browser, addr
 def test_a_link_that_unpacks_to_too_much_is_ignored(page: Page, browser: Browser, address: str) -> None:
     link = page.evaluate(PACKED, {"text": " " * 20_000_000})
     assert len(link) < 50_000
-    for other_page in opened(browser, address, link=link):
+    for other_page in open_page(browser, address, link=link):
         expect(other_page.locator("#english h2")).to_have_text("escape")
 
 
@@ -355,7 +355,7 @@ def test_a_text_too_long_for_a_link_is_reported(page: Page) -> None:
 
 
 def test_a_stopped_server_is_reported(browser: Browser) -> None:
-    with serving() as server:
+    with running_server() as server:
         context = browser.new_context()
         context.set_default_timeout(chromium.HANG_MS)
         page = context.new_page()
@@ -369,11 +369,11 @@ def test_a_stopped_server_is_reported(browser: Browser) -> None:
 
 
 def test_the_token_leaves_the_address_and_is_kept_for_reloads_and_tabs(browser: Browser, address: str) -> None:
-    for page in opened(browser, address):
-        before = kept_address(page)
+    for page in open_page(browser, address):
+        before = wait_for_address(page)
         write(page, BROKEN)
         summary(page, "^1 error")
-        assert "token" not in kept_address(page, before)
+        assert "token" not in wait_for_address(page, before)
         page.reload()
         summary(page, "^1 error")
         page.get_by_role("button", name="Copy link").click()
@@ -437,7 +437,7 @@ def test_a_link_with_a_wrong_token_does_not_replace_the_right_one(browser: Brows
 
 
 def test_a_tab_uses_the_token_given_to_another_tab(browser: Browser) -> None:
-    with serving() as server:
+    with running_server() as server:
         context = browser.new_context()
         context.set_default_timeout(chromium.HANG_MS)
         page, other = context.new_page(), context.new_page()
@@ -452,7 +452,7 @@ def test_a_tab_uses_the_token_given_to_another_tab(browser: Browser) -> None:
 
 
 def test_a_restarted_server_is_used_with_its_new_token(browser: Browser) -> None:
-    with serving() as server:
+    with running_server() as server:
         context = browser.new_context()
         page = context.new_page()
         page.goto(server.address)
@@ -486,7 +486,7 @@ ATTACK = """async (address) => {
 
 def test_a_page_of_another_server_gets_no_answer(browser: Browser) -> None:
     """The page belongs to another local server, which the browser treats as the same site."""
-    with serving() as server, serving() as other:
+    with running_server() as server, running_server() as other:
         context = browser.new_context(bypass_csp=True)
         page = context.new_page()
         page.goto(other.address)
@@ -501,7 +501,7 @@ def test_a_page_of_another_server_gets_no_answer(browser: Browser) -> None:
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_light_and_dark_schemes_can_be_switched(browser: Browser, address: str, scheme: Any) -> None:
     lightness = "() => getComputedStyle(document.body).backgroundColor.match(/\\d+/g).map(Number)[0]"
-    for page in opened(browser, address, color_scheme=scheme):
+    for page in open_page(browser, address, color_scheme=scheme):
         assert (page.evaluate(lightness) > 128) == (scheme == "light")
         page.get_by_role("button", name="Dark or light").click()
         assert (page.evaluate(lightness) > 128) == (scheme == "dark")
@@ -512,7 +512,7 @@ def test_light_and_dark_schemes_can_be_switched(browser: Browser, address: str, 
 
 @pytest.mark.parametrize("width", [360, 1280])
 def test_nothing_is_wider_than_the_screen(browser: Browser, address: str, width: int) -> None:
-    for page in opened(browser, address, viewport={"width": width, "height": 800}):
+    for page in open_page(browser, address, viewport={"width": width, "height": 800}):
         page.get_by_role("radio", name="signals").check()
         page.get_by_role("button", name="Add step").click()
         expect(page.locator("#steps .verdict")).to_have_count(1)
@@ -544,10 +544,10 @@ def test_the_menu_names_the_open_example(page: Page) -> None:
 
 
 def test_the_picture_uses_words_or_symbols(page: Page) -> None:
-    before = kept_address(page)
+    before = wait_for_address(page)
     write(page, FIXED)
     summary(page, "^It compiles$")
-    kept_address(page, before)
+    wait_for_address(page, before)
     trap = page.locator("#picture .state.violated .label")
     expect(trap).to_have_text("The spec is violated.")
     expect(page.locator("#state .formula")).to_have_count(0)
@@ -590,7 +590,7 @@ def test_the_site_compiles_in_the_browser(browser: Browser, tmp_path: Path) -> N
     with ThreadingHTTPServer(("127.0.0.1", 0), partial(Quiet, directory=str(tmp_path))) as server:
         Thread(target=server.serve_forever, daemon=True).start()
         wrong: list[str] = []
-        for page in opened(browser, f"http://127.0.0.1:{server.server_address[1]}/", wrong):
+        for page in open_page(browser, f"http://127.0.0.1:{server.server_address[1]}/", wrong):
             write(page, BROKEN)
             summary(page, "^1 error")
             # A compilation that takes too long is abandoned for the next text.

@@ -86,11 +86,11 @@ def overlap(one: Area, other: Area) -> bool:
 def check_places(svg: str) -> None:
     root = ElementTree.fromstring(svg)
     width, height = float(root.get("width", "")), float(root.get("height", ""))
-    placed = areas(svg)
-    for label, (left, top, right, bottom) in placed:
+    places = areas(svg)
+    for label, (left, top, right, bottom) in places:
         assert 0 <= left <= right <= width, label
         assert 0 <= top < bottom <= height, label
-    for (one, here), (other, there) in combinations(placed, 2):
+    for (one, here), (other, there) in combinations(places, 2):
         assert not overlap(here, there), (one, other)
 
 
@@ -235,22 +235,22 @@ def test_edges_cross_no_state_and_no_text(graph: tuple[int, list[Ends]], sizes: 
         state: StateBox(60.0 + 10 * state, 40.0 + 5 * state, 9.0 * state, 8.0, 30.0 * state, below=state in traps)
         for state in range(size)
     }
-    placed = layout(boxes, texts, (7.0, 9.0))
+    places = layout(boxes, texts, (7.0, 9.0))
     taken: dict[object, Area] = {}
-    for state, (x, y) in placed.middles.items():
+    for state, (x, y) in places.middles.items():
         box = boxes[state]
         half = max(box.width, box.span) / 2
         top, bottom = y - box.height / 2, y + box.height / 2
         taken[state] = x - half, top - box.over, x + half, bottom + box.under
-        assert taken[state][0] >= 7 - 1e-6 and taken[state][2] <= placed.width + 1e-6
-        assert taken[state][1] >= 9 - 1e-6 and taken[state][3] <= placed.height + 1e-6
-    for ends, (x, y) in placed.texts.items():
+        assert taken[state][0] >= 7 - 1e-6 and taken[state][2] <= places.width + 1e-6
+        assert taken[state][1] >= 9 - 1e-6 and taken[state][3] <= places.height + 1e-6
+    for ends, (x, y) in places.texts.items():
         width, height = texts[ends]
         taken[ends] = x - width / 2, y - height / 2, x + width / 2, y + height / 2
     for one, other in combinations(taken.values(), 2):
         assert not overlap(inner(one), inner(other))
-    assert set(placed.ways) == {(a, b) for a, b in texts if a != b}
-    for ends, way in placed.ways.items():
+    assert set(places.ways) == {(a, b) for a, b in texts if a != b}
+    for ends, way in places.ways.items():
         for x, y in points(way):
             # An edge overlaps its own two states.
             for owner, area in taken.items():

@@ -10,8 +10,8 @@ from threading import Event
 
 import pytest
 
-from tests.interfaces.playground.raw import connected, read_to_end, refused, statuses
-from tests.interfaces.playground.test_server import JSON, ask, request, serving
+from tests.interfaces.playground.raw import connect, read_to_end, statuses, statuses_until_closed
+from tests.interfaces.playground.test_server import JSON, ask, request, running_server
 from tests.waiting import HANG_S, printed
 from tltlc.interfaces.playground.connections import Connection
 from tltlc.interfaces.playground.page_config import start
@@ -25,13 +25,13 @@ GET = b"GET / HTTP/1.1\r\n" + HOST
 
 @pytest.fixture(scope="module")
 def server() -> Iterator[PlaygroundServer]:
-    with serving() as running:
+    with running_server() as running:
         yield running
         assert json.loads(ask(running, "POST", "/api", "{}", JSON)[2]) == start()
 
 
 @pytest.fixture(autouse=True)
-def lives_on_in_silence(server: PlaygroundServer, capfd: pytest.CaptureFixture[str]) -> Iterator[None]:
+def is_alive_and_silent(server: PlaygroundServer, capfd: pytest.CaptureFixture[str]) -> Iterator[None]:
     yield
     assert ask(server, "GET", "/")[0] == 200
     assert capfd.readouterr().err == ""
@@ -79,7 +79,7 @@ LINES = [
 
 @pytest.mark.parametrize(("line", "status"), LINES, ids=lambda value: repr(value)[:40])
 def test_invalid_request_lines_are_rejected(server: PlaygroundServer, line: bytes, status: int) -> None:
-    assert refused(server, line) == [status]
+    assert statuses_until_closed(server, line) == [status]
 
 
 HEADERS = [
@@ -118,7 +118,7 @@ HEADERS = [
 @pytest.mark.parametrize(("header", "status"), HEADERS, ids=lambda value: repr(value)[:40])
 def test_invalid_headers_are_rejected(server: PlaygroundServer, header: bytes, status: int) -> None:
     # The bytes after the header are not read as a request.
-    assert refused(server, GET + header + b"\r\n" + GET + b"\r\n") == [status]
+    assert statuses_until_closed(server, GET + header + b"\r\n" + GET + b"\r\n") == [status]
 
 
 def test_blanks_around_the_value_of_a_header_are_removed() -> None:
@@ -147,8 +147,8 @@ def test_a_long_invalid_header_is_rejected_in_linear_time(header: bytes) -> None
 
 
 def test_endless_heads_are_rejected(server: PlaygroundServer) -> None:
-    assert refused(server, GET + b"A: " + b"b" * (REQUEST_HEAD.size + 2)) == [431]
-    assert refused(server, GET + b"A:\n" * 200) == [431]
+    assert statuses_until_closed(server, GET + b"A: " + b"b" * (REQUEST_HEAD.size + 2)) == [431]
+    assert statuses_until_closed(server, GET + b"A:\n" * 200) == [431]
 
 
 @pytest.mark.parametrize("path", ["/main.js", "/main%2Ejs", "/%6dain.js", "/main.js?a=%zz"])
@@ -173,18 +173,18 @@ def test_unknown_paths_are_not_found(server: PlaygroundServer, path: str) -> Non
     ],
 )
 def test_invalid_bodies_are_rejected(server: PlaygroundServer, headers: list[bytes], body: bytes, status: int) -> None:
-    assert refused(server, post(server, *headers, body=body)) == [status]
+    assert statuses_until_closed(server, post(server, *headers, body=body)) == [status]
 
 
 def test_a_rejection_arrives_although_a_large_body_follows(server: PlaygroundServer) -> None:
     body = b"a" * (8 << 20)
-    with connected(server) as connection:
+    with connect(server) as connection:
         connection.sendall(post(server, b"Content-Length: %d" % len(body), body=body))
         assert statuses(read_to_end(connection)) == [413]
 
 
 def test_a_body_that_ends_early_is_rejected(server: PlaygroundServer) -> None:
-    with connected(server) as connection:
+    with connect(server) as connection:
         connection.sendall(post(server, b"Content-Length: 3"))
         connection.shutdown(socket.SHUT_WR)
         assert statuses(read_to_end(connection)) == [400]
@@ -193,7 +193,7 @@ def test_a_body_that_ends_early_is_rejected(server: PlaygroundServer) -> None:
 @pytest.mark.parametrize("version", [b"1.1", b"1.0"])
 def test_a_client_that_closes_its_sending_side_gets_its_answer(version: bytes, monkeypatch: pytest.MonkeyPatch) -> None:
     is_ended = Event()
-    with serving() as server, connected(server) as connection:
+    with running_server() as server, connect(server) as connection:
         answer = server.children.answer
         ended = Connection.eof_received
 
@@ -219,7 +219,7 @@ def test_a_client_that_closes_its_sending_side_gets_its_answer(version: bytes, m
 def test_a_client_that_closes_its_sending_side_gets_all_answers_in_order(server: PlaygroundServer) -> None:
     requests = request(server, "{}") + GET + b"\r\n" + request(server, '{"text": ""}')
     for data, expected in ((requests * 2, [200] * 6), (requests + b"GET /", [200, 200, 200, 400]), (b"", [])):
-        with connected(server) as connection:
+        with connect(server) as connection:
             connection.sendall(data)
             connection.shutdown(socket.SHUT_WR)
             assert [status for status in statuses(read_to_end(connection)) if status != 100] == expected
@@ -228,28 +228,30 @@ def test_a_client_that_closes_its_sending_side_gets_all_answers_in_order(server:
 def test_pipelined_requests_are_answered_in_order(server: PlaygroundServer) -> None:
     requests = request(server, "{}") + GET + b"\r\n" + request(server, '{"text": ""}')
     last = GET + b"Connection: close\r\n\r\n"
-    assert refused(server, requests + b"\r\n" + requests + last) == [200] * 7
-    assert refused(server, requests + b"nonsense\r\n\r\n" + requests) == [200, 200, 200, 400]
+    assert statuses_until_closed(server, requests + b"\r\n" + requests + last) == [200] * 7
+    assert statuses_until_closed(server, requests + b"nonsense\r\n\r\n" + requests) == [200, 200, 200, 400]
 
 
 def test_requests_may_arrive_byte_by_byte(server: PlaygroundServer) -> None:
-    with connected(server) as connection:
+    with connect(server) as connection:
         for byte in request(server, "{}") + GET.replace(b"\r\n", b"\n") + b"Connection: close\n\n":
             connection.sendall(bytes([byte]))
         assert statuses(read_to_end(connection)) == [200, 200]
 
 
 def test_a_body_is_sent_after_100_continue(server: PlaygroundServer) -> None:
-    with connected(server) as connection:
+    with connect(server) as connection:
         connection.sendall(post(server, b"Content-Length: 2", b"Expect: 100-continue", b"Connection: close", body=b""))
         assert connection.recv(1000) == b"HTTP/1.1 100 Continue\r\n\r\n"
         connection.sendall(b"{}")
         assert statuses(read_to_end(connection)) == [200]
     # A request that is rejected gets no `100 Continue`.
-    assert refused(server, post(server, b"Content-Length: 99999999", b"Expect: 100-continue", body=b"")) == [413]
+    assert statuses_until_closed(
+        server, post(server, b"Content-Length: 99999999", b"Expect: 100-continue", body=b"")
+    ) == [413]
 
 
 def test_a_client_of_http_1_0_is_answered_once(server: PlaygroundServer) -> None:
-    assert refused(server, b"GET / HTTP/1.0\r\n" + HOST + b"\r\n") == [200]
-    assert refused(server, b"GET / HTTP/1.0\r\n\r\n") == [403]
-    assert refused(server, b"HEAD /none HTTP/1.0\r\n" + HOST + b"\r\n")[:1] == [404]
+    assert statuses_until_closed(server, b"GET / HTTP/1.0\r\n" + HOST + b"\r\n") == [200]
+    assert statuses_until_closed(server, b"GET / HTTP/1.0\r\n\r\n") == [403]
+    assert statuses_until_closed(server, b"HEAD /none HTTP/1.0\r\n" + HOST + b"\r\n")[:1] == [404]

@@ -27,7 +27,7 @@ needs_signals = pytest.mark.skipif(sys.platform == "win32", reason="needs a sign
 
 
 @contextmanager
-def served(
+def serve(
     *options: str, program: tuple[str, ...] = ("-m", "tltlc"), folder: Path | None = None, **environment: str
 ) -> Iterator[tuple[subprocess.Popen[str], int]]:
     """Start ``tltlc serve``, and yield the process and its port."""
@@ -59,7 +59,7 @@ def rest_of_errors(running: subprocess.Popen[str]) -> str:
 
 @needs_signals
 def test_the_command_serves_until_it_is_interrupted() -> None:
-    with served() as (running, port):
+    with serve() as (running, port):
         connection = http.client.HTTPConnection("127.0.0.1", port, timeout=HANG_S)
         connection.request("GET", "/")
         assert connection.getresponse().status == 200
@@ -69,9 +69,9 @@ def test_the_command_serves_until_it_is_interrupted() -> None:
         assert running.wait(HANG_S) == 130
 
 
-def messages_after_the_address(*options: str, folder: Path) -> str:
+def messages_after_address(*options: str, folder: Path) -> str:
     """Return what `tltlc serve` writes to standard error until it answers, without the first line."""
-    with served(*options, folder=folder) as (running, port):
+    with serve(*options, folder=folder) as (running, port):
         connection = http.client.HTTPConnection("127.0.0.1", port, timeout=HANG_S)
         connection.request("GET", "/")
         connection.getresponse().read()
@@ -85,14 +85,14 @@ def test_an_ignored_project_file_is_named(tmp_path: Path) -> None:
     below = tmp_path / "levels" / "first"
     below.mkdir(parents=True)
     (tmp_path / "tltl.toml").write_text("")
-    assert messages_after_the_address(folder=below) == (
+    assert messages_after_address(folder=below) == (
         f"{tmp_path / 'tltl.toml'} is ignored, because it is above this folder; "
         f"to use it, start `tltlc serve` in {tmp_path}\n"
     )
     # The nearest project file applies here, so there is no message.
     (below / "tltl.toml").write_text("")
     for folder in (below, tmp_path):
-        assert messages_after_the_address(folder=folder) == ""
+        assert messages_after_address(folder=folder) == ""
 
 
 ELSEWHERE = """
@@ -117,7 +117,7 @@ main()
 @needs_signals
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_a_signal_received_by_another_thread_ends_the_server(number: signal.Signals) -> None:
-    with served(str(number.value), program=("-c", ELSEWHERE)) as (running, _):
+    with serve(str(number.value), program=("-c", ELSEWHERE)) as (running, _):
         assert running.wait(HANG_S) == 128 + number
 
 
@@ -138,7 +138,7 @@ def test_the_browser_gets_the_address_in_a_private_file(tmp_path: Path, number: 
     """Every user can see the arguments of a process. This browser runs in the foreground, and gets
     an answer."""
     (tmp_path / "browser.py").write_text(BROWSER)
-    with served("--open", BROWSER=f"{sys.executable} {tmp_path / 'browser.py'} %s") as (running, port):
+    with serve("--open", BROWSER=f"{sys.executable} {tmp_path / 'browser.py'} %s") as (running, port):
         assert running.stderr is not None
         seen = json.loads(running.stderr.readline())
         base, _, token = seen["address"].partition("#token=")
@@ -161,14 +161,14 @@ def test_the_file_contains_the_exact_address() -> None:
 @needs_signals
 def test_without_a_temporary_file_the_page_is_served(tmp_path: Path) -> None:
     code = "import tempfile; tempfile.tempdir = 'none/there'\nfrom tltlc.interfaces.cli.main import main; main()"
-    with served("--open", program=("-c", code)) as (running, _):
+    with serve("--open", program=("-c", code)) as (running, _):
         assert running.stderr is not None
         assert running.stderr.readline() == "no temporary file can be written: open the address yourself\n"
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="elsewhere the system itself opens pages")
 def test_without_a_browser_the_page_is_served(tmp_path: Path) -> None:
-    with served("--open", BROWSER="", PATH=str(tmp_path), DISPLAY="") as (running, _):
+    with serve("--open", BROWSER="", PATH=str(tmp_path), DISPLAY="") as (running, _):
         assert running.stderr is not None
         assert running.stderr.readline() == "no browser was found: open the address yourself\n"
 

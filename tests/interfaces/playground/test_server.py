@@ -42,7 +42,7 @@ PATIENT = replace(PLAYGROUND, idle_s=HANG_S, request_s=HANG_S, write_s=HANG_S, l
 
 
 @contextmanager
-def serving(limit_s: float = HANG_S, connections: Connections = PATIENT) -> Iterator[PlaygroundServer]:
+def running_server(limit_s: float = HANG_S, connections: Connections = PATIENT) -> Iterator[PlaygroundServer]:
     """A running server, which by default has no short time limits."""
     with PlaygroundServer(0, limit_s, connections) as server:
         thread = Thread(target=server.serve_forever)
@@ -56,7 +56,7 @@ def serving(limit_s: float = HANG_S, connections: Connections = PATIENT) -> Iter
 
 @pytest.fixture(scope="module")
 def server() -> Iterator[PlaygroundServer]:
-    with serving() as running:
+    with running_server() as running:
         yield running
 
 
@@ -169,7 +169,7 @@ def test_a_link_from_another_site_opens_the_page(server: PlaygroundServer) -> No
     assert ask(server, "GET", "/main.js", None, link)[0] == 403
 
 
-def test_the_page_is_answered_under_each_name_of_the_host(server: PlaygroundServer) -> None:
+def test_the_page_is_served_under_each_name_of_the_host(server: PlaygroundServer) -> None:
     for host in (f"127.0.0.1:{server.server_address[1]}", "localhost:9000"):
         own = {"Host": host, "Origin": f"http://{host}", "Sec-Fetch-Site": "same-origin"}
         assert ask(server, "POST", "/api", "{}", {**JSON, **own})[0] == 200
@@ -200,33 +200,33 @@ def test_a_client_that_disconnects_causes_no_error(server: PlaygroundServer, cap
 def test_a_large_text_reaches_a_child_that_reads_slowly(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(children, "_LOOK_S", 0.001)
     text = f"// {'far more than a pipe holds ' * 10_000}\nsignal a: bool\nspec x = F a"
-    with serving() as server:
+    with running_server() as server:
         status, _, answer = ask(server, "POST", "/api", json.dumps({"text": text}), JSON)
     assert (status, json.loads(answer)["diagnostics"]) == (200, [])
 
 
 def test_the_text_of_a_client_that_disconnected_is_abandoned() -> None:
-    with serving() as server:
+    with running_server() as server:
         # There are more requests than children at once, so the waiting ones must be abandoned too.
         waiting = [
             socket.create_connection(("127.0.0.1", server.server_address[1])) for _ in range(children.MOST_AT_ONCE + 2)
         ]
         for connection in waiting:
             connection.sendall(slow_request(server))
-        assert eventually(lambda: len(server.children._running) == children.MOST_AT_ONCE)
+        assert wait_until(lambda: len(server.children._running) == children.MOST_AT_ONCE)
         for connection in waiting:
             connection.close()
-        assert eventually(lambda: not server.children._running)
+        assert wait_until(lambda: not server.children._running)
         assert json.loads(ask(server, "POST", "/api", "{}", JSON)[2]) == start()
 
 
 def test_running_children_end_with_the_server() -> None:
     with (
-        serving() as server,
+        running_server() as server,
         socket.create_connection(("127.0.0.1", server.server_address[1])) as connection,
     ):
         connection.sendall(slow_request(server))
-        assert eventually(lambda: bool(server.children._running))
+        assert wait_until(lambda: bool(server.children._running))
         (child,) = server.children._running
         server.server_close()
         assert child.wait(timeout=HANG_S)
@@ -244,13 +244,13 @@ def request(server: PlaygroundServer, body: str) -> bytes:
     return "\r\n".join([*head, "", body]).encode()
 
 
-def eventually(happens: Callable[[], bool]) -> bool:
+def wait_until(happens: Callable[[], bool]) -> bool:
     """Wait until the condition is true."""
     return until(happens, "the server")
 
 
 def test_the_port_can_be_reused_at_once() -> None:
-    with serving() as server:
+    with running_server() as server:
         port = server.server_address[1]
         connection = http.client.HTTPConnection("127.0.0.1", port, timeout=HANG_S)
         connection.request("GET", "/")
@@ -273,7 +273,7 @@ def test_localhost_is_accepted_as_host(server: PlaygroundServer) -> None:
 
 
 def test_a_slow_compilation_is_abandoned_and_the_next_text_answered() -> None:
-    with serving(limit_s=2.0) as server:
+    with running_server(limit_s=2.0) as server:
         (diagnostic,) = json.loads(ask(server, "POST", "/api", json.dumps({"text": SLOW}), JSON)[2])["diagnostics"]
         assert (diagnostic["code"], diagnostic["title"]) == ("TLT0775", "this takes longer than 2 s, and was given up")
         server.children._limit_s = HANG_S
@@ -286,7 +286,7 @@ def test_a_child_that_hangs_is_killed(monkeypatch: pytest.MonkeyPatch, tmp_path:
         command = ["sh", "-c", f"echo $$ > {tmp_path}/pid; exec sleep 60"]
         return subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
 
-    monkeypatch.setattr(children, "_started", hanging)
+    monkeypatch.setattr(children, "_start_child", hanging)
     answering = children.Children(limit_s=0.3)
     pid = answering._ready.pid if answering._ready else 0
     answer = answering.answer(b"{}")
@@ -316,10 +316,10 @@ def program(code: str) -> list[str]:
     return [sys.executable, "-c", f"import sys; sys.path[:] = {sys.path!r}\n{code}"]
 
 
-def replaced_by(code: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def replace_program(code: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Replace the program of the children."""
     pipe = subprocess.PIPE
-    monkeypatch.setattr(children, "_started", lambda: subprocess.Popen(program(code), stdin=pipe, stdout=pipe))
+    monkeypatch.setattr(children, "_start_child", lambda: subprocess.Popen(program(code), stdin=pipe, stdout=pipe))
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="elsewhere the system holds no process to its memory")
@@ -335,13 +335,13 @@ def test_the_memory_of_a_child_is_limited(monkeypatch: pytest.MonkeyPatch) -> No
     )
     memory, work = PLAYGROUND_CHILD.memory, PLAYGROUND_CHILD.work_s
     assert limits.stdout.split() == [str(limit) for limit in (memory, memory, work, work)]
-    replaced_by(
+    replace_program(
         "from tltlc.interfaces.playground import child, protocol\n"
         "protocol.view = lambda *_: bytearray(child.PLAYGROUND_CHILD.memory)\n"
         "child.main()",
         monkeypatch,
     )
-    with serving() as server:
+    with running_server() as server:
         (diagnostic,) = json.loads(ask(server, "POST", "/api", '{"text": ""}', JSON)[2])["diagnostics"]
         assert (diagnostic["code"], diagnostic["title"]) == (
             "TLT0775",
@@ -364,7 +364,7 @@ if os.name == "posix":
 
 @pytest.mark.parametrize(("code", "title"), ENDS.items(), ids=str)
 def test_the_failure_of_a_child_is_reported(code: str, title: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    replaced_by(
+    replace_program(
         "from tltlc.interfaces.playground import child, protocol\n"
         f"def fail(_): {code}\nprotocol.answer = fail\nchild.main()",
         monkeypatch,
@@ -381,7 +381,7 @@ def test_the_failure_of_a_child_is_reported(code: str, title: str, monkeypatch: 
 
 
 def test_a_child_that_died_while_idle_is_replaced() -> None:
-    with serving() as server:
+    with running_server() as server:
         ready = server.children._ready
         assert ready is not None
         ready.kill()
@@ -401,7 +401,7 @@ def test_pending_requests_are_abandoned_when_the_server_ends() -> None:
 
     asking = Thread(target=wait_for_answer)
     asking.start()
-    assert eventually(lambda: bool(answering._running))
+    assert wait_until(lambda: bool(answering._running))
     answering.close()
     asking.join()
     assert outcomes == ["abandoned"]
@@ -428,8 +428,8 @@ def test_an_existing_lower_limit_is_kept() -> None:
     ids=["told", "without end"],
 )
 def test_an_answer_that_is_too_large_is_rejected(code: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    replaced_by(code, monkeypatch)
-    with serving() as server:
+    replace_program(code, monkeypatch)
+    with running_server() as server:
         (diagnostic,) = json.loads(ask(server, "POST", "/api", '{"text": ""}', JSON)[2])["diagnostics"]
         assert (diagnostic["code"], diagnostic["title"]) == (
             "TLT0775",
@@ -438,9 +438,9 @@ def test_an_answer_that_is_too_large_is_rejected(code: str, monkeypatch: pytest.
 
 
 def test_the_next_request_retries_after_a_failed_start(monkeypatch: pytest.MonkeyPatch) -> None:
-    with serving() as server:
+    with running_server() as server:
         with monkeypatch.context() as failing:
-            failing.setattr(children, "_started", fails)
+            failing.setattr(children, "_start_child", fails)
             # One process is running already.
             assert [ask(server, "POST", "/api", "{}", JSON)[0] for _ in range(3)] == [200, 503, 503]
         assert ask(server, "POST", "/api", "{}", JSON)[0] == 200

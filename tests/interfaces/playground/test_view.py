@@ -46,7 +46,7 @@ def test_warnings_findings_and_failed_tests_are_reported() -> None:
     assert document["spec"]["name"] == "x"
 
 
-def edited(text: str, suggestion: dict[str, Any]) -> str:
+def text_after(text: str, suggestion: dict[str, Any]) -> str:
     """Return the text after the edits of a suggestion, as the page applies them."""
     units = text.encode("utf-16-le")
     for edit in reversed(suggestion["edits"]):
@@ -65,7 +65,7 @@ def test_suggestions_equal_the_fixes_of_the_linter() -> None:
     while suggestions := [
         suggestion for diagnostic in view(text)["diagnostics"] for suggestion in diagnostic["ways_out"]
     ]:
-        text = edited(text, suggestions[0])
+        text = text_after(text, suggestions[0])
     assert text == fix(source).source.text
 
 
@@ -83,9 +83,9 @@ def test_suggestions_equal_the_fixes_of_the_linter() -> None:
         ("spec x { kepe alive }", "Write `keep`", "spec x { keep alive }"),
     ],
 )
-def test_suggestions_for_errors(text: str, title: str | None, after: str | None) -> None:
+def test_a_suggestion_mends_its_error(text: str, title: str | None, after: str | None) -> None:
     suggestions = [suggestion for diagnostic in view(text)["diagnostics"] for suggestion in diagnostic["ways_out"]]
-    assert [(suggestion["title"], edited(text, suggestion)) for suggestion in suggestions] == (
+    assert [(suggestion["title"], text_after(text, suggestion)) for suggestion in suggestions] == (
         [(title, after)] if title else []
     )
 

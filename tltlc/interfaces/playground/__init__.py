@@ -1,6 +1,6 @@
 """A page that shows what a spec means while you type it.
 
-It runs from ``tltlc serve`` or fully in the browser.
+The compiler runs on the server of ``tltlc serve``, or in the browser.
 """
 
 from tltlc.interfaces.playground.page_data import view as view

@@ -1,9 +1,7 @@
-"""Open an address in a browser without passing it as an argument.
+"""Open an address in a browser without passing the address as an argument of a process.
 
-Every user of the machine can see the arguments of a process.
-
-The browser opens a temporary file instead, which only its owner can read, and which redirects to
-the address.
+Every user of the machine can see the arguments of a process. So the browser opens a temporary file
+that only its owner can read, and the file redirects to the address.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
-"""The process that answers one JSON request, from its standard input to its standard output.
+"""The process that reads one JSON request from standard input, and answers on standard output.
 
-A compilation cannot be interrupted from within, so it runs in a process that can be ended from
-outside.
+Nothing inside a process can interrupt a compilation, so it runs in a process that the server can
+end.
 """
 
 from __future__ import annotations
@@ -28,12 +28,12 @@ def main() -> None:
     try:
         _answer_request()
     except MemoryError:
-        # Python's own exit status for a MemoryError could mean anything.
+        # Python would exit with 1, which does not tell a MemoryError from other exceptions.
         sys.exit(NO_MEMORY)
 
 
 def _answer_request() -> None:
-    from tltlc.interfaces.playground.protocol import RequestError, answer, gave_up_on_size
+    from tltlc.interfaces.playground.protocol import RequestError, answer, size_error_answer
 
     limit_resources()
     request = sys.stdin.buffer.read()
@@ -45,7 +45,7 @@ def _answer_request() -> None:
             response = answer(request.decode("utf-8")).encode("utf-8")
     except (RequestError, UnicodeDecodeError):
         sys.exit(NO_REQUEST)
-    sys.stdout.buffer.write(response if len(response) <= ANSWER.size else gave_up_on_size().encode("utf-8"))
+    sys.stdout.buffer.write(response if len(response) <= ANSWER.size else size_error_answer().encode("utf-8"))
 
 
 def limit_resources() -> None:

@@ -15,16 +15,18 @@ from time import monotonic
 from typing import Final
 
 from tltlc.interfaces.playground.child import NO_MEMORY, NO_REQUEST
-from tltlc.interfaces.playground.protocol import TOO_LARGE, gave_up, gave_up_on_size
+from tltlc.interfaces.playground.protocol import TOO_LARGE, error_answer, size_error_answer
 from tltlc.io.limits import ANSWER
 
 LIMIT_S: Final = 10.0
+"""Seconds that a child may take for an answer."""
 MOST_AT_ONCE: Final = 4
-_LOOK_S: Final = 0.1
+"""The most requests that are answered at the same time."""
+_CHECK_S: Final = 0.1
 """Seconds between two checks whether the client still waits."""
 
-_REPORT: Final = "try again; if it ends again, report it with the text"
-_KILLED: Final = "try again; the system does this if memory is short, and then a smaller spec may help"
+_REPORT_HELP: Final = "try again; if it ends again, report it with the text"
+_KILLED_HELP: Final = "try again; the system does this if memory is short, and then a smaller spec may help"
 
 
 class AbandonedError(Exception):
@@ -32,21 +34,21 @@ class AbandonedError(Exception):
 
 
 class Children:
-    """Answers requests, at most :data:`MOST_AT_ONCE` at a time.
+    """Answers requests, at most :data:`MOST_AT_ONCE` at a time, each for at most ``limit_s`` seconds.
 
-    Keeps one child loaded in advance.
+    One child is always loaded in advance.
     """
 
     def __init__(self, limit_s: float = LIMIT_S) -> None:
         self._limit_s = limit_s
-        self._room = BoundedSemaphore(MOST_AT_ONCE)
+        self._slots = BoundedSemaphore(MOST_AT_ONCE)
         self._lock = Lock()
-        self._ready: subprocess.Popen[bytes] | None = _started()
+        self._ready: subprocess.Popen[bytes] | None = _start_child()
         self._running: set[subprocess.Popen[bytes]] = set()
         self._closed = False
 
     def answer(self, request: bytes, is_abandoned: Callable[[], bool] = lambda: False) -> str | None:
-        """Return a child's answer to a request, or None if it is not a request.
+        """Return a child's answer to a request, or None if the bytes are not a request.
 
         The answer is that of :func:`tltlc.interfaces.playground.protocol.answer`.
 
@@ -55,30 +57,30 @@ class Children:
         """
         if not request:
             return None
-        while not self._room.acquire(timeout=_LOOK_S):
+        while not self._slots.acquire(timeout=_CHECK_S):
             _check(is_abandoned)
         try:
-            child = self._taken()
+            child = self._take_child()
             try:
                 response = _answer(child, request, self._limit_s, is_abandoned)
             finally:
-                self._put_back(child)
+                self._replace_child(child)
         except subprocess.TimeoutExpired:
-            return gave_up(f"this takes longer than {self._limit_s:g} s, and was given up")
+            return error_answer(f"this takes longer than {self._limit_s:g} s, and was given up")
         finally:
-            self._room.release()
+            self._slots.release()
         if child.returncode == NO_REQUEST:
             return None
         if len(response) > ANSWER.size:
-            return gave_up_on_size()
+            return size_error_answer()
         if child.returncode or not response:
-            # `close` kills the children that are working.
+            # If `close` killed the child, the request is abandoned.
             _check(lambda: self._closed)
-            return _failed(child.returncode)
+            return _failure_answer(child.returncode)
         return response.decode("utf-8")
 
     def close(self) -> None:
-        """End all children, waiting or working; the requests of the latter are abandoned."""
+        """End all children, and abandon the requests that are being answered."""
         with self._lock:
             self._closed = True
             for child in self._running:
@@ -87,20 +89,20 @@ class Children:
                 _end(self._ready)
                 self._ready = None
 
-    def _taken(self) -> subprocess.Popen[bytes]:
+    def _take_child(self) -> subprocess.Popen[bytes]:
         with self._lock:
             if self._closed:
                 raise AbandonedError
             ready, self._ready = self._ready, None
             if ready is not None and ready.poll() is not None:
-                # It ended while it waited for a request.
+                # The child ended while it waited for a request.
                 _end(ready)
                 ready = None
-            child = ready or _started()
+            child = ready or _start_child()
             self._running.add(child)
             return child
 
-    def _put_back(self, child: subprocess.Popen[bytes]) -> None:
+    def _replace_child(self, child: subprocess.Popen[bytes]) -> None:
         """End a child, and prepare another one."""
         _end(child)
         with self._lock:
@@ -108,13 +110,13 @@ class Children:
             if not self._closed and self._ready is None:
                 # If the system has no room for another process now, the next request tries again.
                 with suppress(OSError):
-                    self._ready = _started()
+                    self._ready = _start_child()
 
 
 def _answer(child: subprocess.Popen[bytes], request: bytes, limit_s: float, is_abandoned: Callable[[], bool]) -> bytes:
     """Return the answer of a child, at most one byte more than the limit for an answer.
 
-    Raises AbandonedError, and TimeoutExpired after ``limit_s`` seconds.
+    Raises AbandonedError if the client no longer waits, TimeoutExpired after ``limit_s`` seconds.
     """
     end = monotonic() + limit_s
     responses: list[bytes] = []
@@ -123,9 +125,9 @@ def _answer(child: subprocess.Popen[bytes], request: bytes, limit_s: float, is_a
     try:
         while talk.is_alive():
             _check(is_abandoned)
-            if (left := end - monotonic()) <= 0:
+            if (remaining_s := end - monotonic()) <= 0:
                 raise subprocess.TimeoutExpired(child.args, limit_s)
-            talk.join(min(_LOOK_S, left))
+            talk.join(min(_CHECK_S, remaining_s))
     finally:
         if talk.is_alive():
             child.kill()
@@ -148,18 +150,15 @@ def _exchange(child: subprocess.Popen[bytes], request: bytes) -> bytes:
     return response
 
 
-def _failed(status: int) -> str:
-    """Return the answer for a child that ended without one.
-
-    It names a cause only if that is known.
-    """
+def _failure_answer(status: int) -> str:
+    """Return the answer for a child that ended with this status and gave no answer itself."""
     if status == NO_MEMORY:
-        return gave_up(TOO_LARGE)
+        return error_answer(TOO_LARGE)
     if status >= 0:
-        return gave_up(f"the compiler's process ended with exit status {status}", _REPORT)
+        return error_answer(f"the compiler's process ended with exit status {status}", _REPORT_HELP)
     title = f"the signal {_signal_name(-status)} ended the compiler's process"
     is_killed = -status == getattr(signal, "SIGKILL", None)
-    return gave_up(title, _KILLED if is_killed else _REPORT)
+    return error_answer(title, _KILLED_HELP if is_killed else _REPORT_HELP)
 
 
 def _signal_name(number: int) -> str:
@@ -174,7 +173,7 @@ def _check(is_abandoned: Callable[[], bool]) -> None:
         raise AbandonedError
 
 
-def _started() -> subprocess.Popen[bytes]:
+def _start_child() -> subprocess.Popen[bytes]:
     # Use the same module search path as this process, so that modules never come from the folder of the specs.
     program = f"import sys; sys.path[:] = {sys.path!r}; from tltlc.interfaces.playground.child import main; main()"
     return subprocess.Popen(

@@ -1,11 +1,11 @@
 """The connections of a small HTTP server: their number, their time limits and their states.
 
-One thread serves all of them and sleeps until something happens. A :class:`Site` decides what is
-answered.
+One thread serves all connections and sleeps until something happens. A :class:`Site` makes the
+answers.
 
 If a client stops sending, it may still wait for its answer, or it may have hung up; the system
-reports both in the same way. The server tells them apart with interim answers: a waiting client
-ignores them, and a closed connection rejects them.
+reports both in the same way. The server tells them apart with interim answers (RFC 9110, 15.2): a
+waiting client ignores them, and a closed connection rejects them.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ _MOST_HEAD: Final = 2 * REQUEST_HEAD.size + REQUEST_LINE.size + 2
 
 _INTERIM: Final = b"HTTP/1.1 100 Continue\r\n\r\n"
 _INTERIM_S: Final = 0.2
-"""Seconds between two interim answers to a client that sends no more."""
+"""Seconds between two interim answers to a client that has stopped sending."""
 
 
 @record
@@ -43,10 +43,10 @@ class Response:
 
 
 class Site(Protocol):
-    """What a server answers."""
+    """Makes the answers of a server."""
 
     def check(self, head: Head) -> None:
-        """Raise RefusedError if a request must be refused whatever its body."""
+        """Raise RefusedError if a request must be refused, whatever its body is."""
 
     async def answer(self, head: Head, body: bytes, hung_up: Event) -> Response | None:
         """Return the answer to a request that passed :meth:`check`.
@@ -58,10 +58,10 @@ class Site(Protocol):
         """Return the response for a refused request."""
 
 
-class Doing(Enum):
+class State(Enum):
     """The state of a connection.
 
-    Its value is the order in which connections are closed to make room.
+    To make room, connections with the least value are closed first.
     """
 
     LEAVING = 0
@@ -72,7 +72,7 @@ class Doing(Enum):
     ANSWERING = 4
 
 
-class Open:
+class OpenConnections:
     """The open connections."""
 
     def __init__(self, limits: Connections) -> None:
@@ -95,14 +95,14 @@ class Open:
     def make_room(self) -> bool:
         """Close the least important connection, the oldest of its kind.
 
-        Return whether one could be closed. Connections that wait for an answer, or send a body
-        after a good head, stay open. A client that sends no more may have hung up, so its
-        connection may be closed.
+        Return whether a connection could be closed. Connections that wait for an answer, or send a
+        body after a valid head, stay open. If a client has stopped sending, it may have hung up, so
+        its connection may be closed.
         """
         candidates = [connection for connection in self._all if connection.gives_way]
         if not candidates:
             return False
-        min(candidates, key=lambda connection: (connection.doing.value, connection.since)).abort()
+        min(candidates, key=lambda connection: (connection.state.value, connection.since)).abort()
         return True
 
     def remove(self, connection: Connection) -> None:
@@ -128,26 +128,26 @@ def report_failure(task: asyncio.Task[Any]) -> None:
 class Connection(asyncio.Protocol):
     """One connection: reads a request, writes the answer, and then reads the next request."""
 
-    def __init__(self, site: Site, connections: Open) -> None:
-        self.doing = Doing.IDLE
+    def __init__(self, site: Site, connections: OpenConnections) -> None:
+        self.state = State.IDLE
         self.since = 0.0
         self._site = site
-        self._open = connections
+        self._connections = connections
         self._buffer = bytearray()
         self._head: Head | None = None
         self._hung_up = Event()
         self._timer: asyncio.TimerHandle | None = None
         self._task: asyncio.Task[None] | None = None
         self._closes = False
-        self._is_old = False
-        self._has_ended = False
-        """Whether the client sends no more."""
+        self._is_http_1_0 = False
+        self._client_has_ended = False
+        """Whether the client has stopped sending."""
 
     @property
     def gives_way(self) -> bool:
         """Whether this connection may be closed to make room for a new one."""
-        is_sending = self.doing is Doing.READING and self._head is not None
-        is_waiting = self.doing is Doing.ANSWERING and not self._has_ended
+        is_sending = self.state is State.READING and self._head is not None
+        is_waiting = self.state is State.ANSWERING and not self._client_has_ended
         return not is_sending and not is_waiting
 
     # --- callbacks of asyncio -----------------------------------------------------------------
@@ -155,41 +155,41 @@ class Connection(asyncio.Protocol):
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
         """Start the connection; refuse it if there is no room."""
         self._transport = cast("asyncio.Transport", transport)
-        # So asyncio calls `resume_writing` once everything is sent.
+        # With this limit, asyncio calls `resume_writing` once everything is sent.
         self._transport.set_write_buffer_limits(high=0)
-        self._now(Doing.IDLE)
-        if not self._open.add(self):
+        self._enter(State.IDLE)
+        if not self._connections.add(self):
             self._refuse(HTTPStatus.SERVICE_UNAVAILABLE)
             self._close()
 
     def data_received(self, data: bytes) -> None:
         """Take received data; ignore it after the last answer."""
-        if self.doing is Doing.LEAVING:
+        if self.state is State.LEAVING:
             return
         self._buffer += data
-        if self.doing in (Doing.IDLE, Doing.READING):
+        if self.state in (State.IDLE, State.READING):
             self._advance()
         elif len(self._buffer) > _MOST_BYTES:
             self.abort()
 
     def eof_received(self) -> bool:
-        """Handle a client that sends no more.
+        """Handle a client that has stopped sending.
 
         Return whether the connection stays open for pending answers.
         """
-        self._has_ended = True
-        if self.doing is Doing.WRITING:
+        self._client_has_ended = True
+        if self.state is State.WRITING:
             return True
-        if self.doing is Doing.ANSWERING:
-            self._look_for_a_reader()
+        if self.state is State.ANSWERING:
+            self._probe_client()
             return True
         self._end()
         return False
 
     def resume_writing(self) -> None:
         """Continue once everything is sent."""
-        if self.doing is Doing.WRITING:
-            self._sent()
+        if self.state is State.WRITING:
+            self._on_sent()
 
     def connection_lost(self, exc: Exception | None) -> None:
         """Clean up after either side has closed the connection."""
@@ -200,7 +200,7 @@ class Connection(asyncio.Protocol):
     def abort(self) -> None:
         """Close the connection at once."""
         self._hung_up.set()
-        self._open.remove(self)
+        self._connections.remove(self)
         if self._timer is not None:
             self._timer.cancel()
         self._transport.abort()
@@ -208,7 +208,7 @@ class Connection(asyncio.Protocol):
     def _close(self) -> None:
         """Close the connection after the written data is sent."""
         self._hung_up.set()
-        self._now(Doing.LEAVING)
+        self._enter(State.LEAVING)
         self._transport.close()
 
     def _end(self) -> None:
@@ -216,37 +216,37 @@ class Connection(asyncio.Protocol):
 
         Refuse an incomplete request, which can never be completed.
         """
-        if self.doing is Doing.READING:
+        if self.state is State.READING:
             self._refuse(HTTPStatus.BAD_REQUEST)
         self._close()
 
-    def _look_for_a_reader(self) -> None:
+    def _probe_client(self) -> None:
         """Send interim answers until the answer is ready.
 
-        If the client is gone, sending the next one fails.
+        If the client has hung up, sending one fails, and asyncio closes the connection.
         """
-        if self.doing is not Doing.ANSWERING or self._is_old:
+        if self.state is not State.ANSWERING or self._is_http_1_0:
             return
         self._transport.write(_INTERIM)
-        self._timer = asyncio.get_running_loop().call_later(_INTERIM_S, self._look_for_a_reader)
+        self._timer = asyncio.get_running_loop().call_later(_INTERIM_S, self._probe_client)
 
-    def _now(self, doing: Doing) -> None:
+    def _enter(self, state: State) -> None:
         """Change the state, and start the timer for its time limit."""
-        limits = self._open.limits
+        limits = self._connections.limits
         seconds = {
-            Doing.IDLE: limits.idle_s,
-            Doing.READING: limits.request_s,
-            Doing.WRITING: limits.write_s,
-            Doing.LEAVING: limits.linger_s,
-        }.get(doing)
+            State.IDLE: limits.idle_s,
+            State.READING: limits.request_s,
+            State.WRITING: limits.write_s,
+            State.LEAVING: limits.linger_s,
+        }.get(state)
         loop = asyncio.get_running_loop()
-        self.doing, self.since = doing, loop.time()
+        self.state, self.since = state, loop.time()
         if self._timer is not None:
             self._timer.cancel()
-        self._timer = None if seconds is None else loop.call_later(seconds, self._late)
+        self._timer = None if seconds is None else loop.call_later(seconds, self._on_timeout)
 
-    def _late(self) -> None:
-        if self.doing is Doing.READING:
+    def _on_timeout(self) -> None:
+        if self.state is State.READING:
             self._refuse(HTTPStatus.REQUEST_TIMEOUT)
         else:
             self.abort()
@@ -255,8 +255,8 @@ class Connection(asyncio.Protocol):
         """Read as much of a request as has arrived."""
         if not self._buffer:
             return
-        if self.doing is Doing.IDLE:
-            self._now(Doing.READING)
+        if self.state is State.IDLE:
+            self._enter(State.READING)
         try:
             if self._head is None and not self._read_head():
                 return
@@ -269,10 +269,10 @@ class Connection(asyncio.Protocol):
             return
         head, body, self._head = self._head, bytes(self._buffer[:length]), None
         del self._buffer[:length]
-        self._is_old = head.is_old
-        self._now(Doing.ANSWERING)
-        if self._has_ended:
-            self._look_for_a_reader()
+        self._is_http_1_0 = head.is_http_1_0
+        self._enter(State.ANSWERING)
+        if self._client_has_ended:
+            self._probe_client()
         self._task = asyncio.get_running_loop().create_task(self._answer(head, body))
         self._task.add_done_callback(report_failure)
 
@@ -284,7 +284,7 @@ class Connection(asyncio.Protocol):
         self._head, end = head, _ = result
         self._site.check(head)
         del self._buffer[:end]
-        if head.waits and not self._buffer:
+        if head.expects_continue and not self._buffer:
             self._transport.write(_INTERIM)
         return True
 
@@ -299,11 +299,11 @@ class Connection(asyncio.Protocol):
             raise
         if response is None or self._hung_up.is_set():
             return
-        self._closes = not head.keeps
+        self._closes = not head.keeps_alive
         self._send(response, with_body=head.method != "HEAD")
 
     def _refuse(self, status: HTTPStatus, head: Head | None = None) -> None:
-        """Refuse a request and close the connection: it is uncertain where the next one starts."""
+        """Refuse a request and close the connection, because the start of the next request is unknown."""
         self._closes = True
         self._buffer.clear()
         if not self._hung_up.is_set():
@@ -318,28 +318,28 @@ class Connection(asyncio.Protocol):
         }
         first = f"HTTP/1.1 {response.status.value} {response.status.phrase}"
         head = "\r\n".join([first, *(f"{name}: {value}" for name, value in headers.items()), "", ""])
-        self._now(Doing.WRITING)
+        self._enter(State.WRITING)
         self._transport.write(head.encode("latin-1") + (response.body if with_body else b""))
         if self._transport.get_write_buffer_size() == 0:
-            self._sent()
+            self._on_sent()
 
-    def _sent(self) -> None:
-        """Read the next request, or let the client hang up.
+    def _on_sent(self) -> None:
+        """Read the next request, or wait for the client to hang up.
 
-        If the server closed first, the answer could be cut off.
+        If the server closed the connection first, the answer could be cut off.
         """
         if self._closes:
             self._leave()
         else:
-            self._now(Doing.IDLE)
+            self._enter(State.IDLE)
             self._advance()
-            if self._has_ended and self.doing in (Doing.IDLE, Doing.READING):
+            if self._client_has_ended and self.state in (State.IDLE, State.READING):
                 self._end()
 
     def _leave(self) -> None:
-        if self._has_ended:
+        if self._client_has_ended:
             self._close()
             return
-        self._now(Doing.LEAVING)
+        self._enter(State.LEAVING)
         if self._transport.can_write_eof():
             self._transport.write_eof()

@@ -1,4 +1,4 @@
-"""Paths of Bézier curves that are extended piece by piece."""
+"""Build paths of Bézier curves, piece by piece."""
 
 from __future__ import annotations
 
@@ -13,26 +13,26 @@ _SHORT: Final = 0.05
 """A length that is invisible and has no reliable direction."""
 
 
-def straight(curve: Curve, end: Point) -> Curve:
+def add_line(curve: Curve, end: Point) -> Curve:
     """Extend a curve by a straight line, unless that would be too short to see."""
     return (*curve, curve[-1], end, end) if dist(curve[-1], end) > _SHORT else curve
 
 
-def bent(curve: Curve, end: Point) -> Curve:
-    """Extend a curve to another level; it leaves and arrives horizontally."""
+def add_bend(curve: Curve, end: Point) -> Curve:
+    """Extend a curve to a point at another height; it starts and ends horizontally."""
     x, y = curve[-1]
     half = (end[0] - x) / 2
     return (*curve, (x + half, y), (end[0] - half, end[1]), end)
 
 
-def fallen(curve: Curve, end: Point) -> Curve:
-    """Extend a curve to a place below; it leaves and arrives vertically."""
+def add_drop(curve: Curve, end: Point) -> Curve:
+    """Extend a curve to a point below; it starts and ends vertically."""
     x, y = curve[-1]
     half = (end[1] - y) / 2
     return (*curve, (x, y + half), (end[0], end[1] - half), end)
 
 
-def drawn(curve: Curve) -> str:
+def svg_path(curve: Curve) -> str:
     """Return the curve as an SVG path, with an arrow at its end."""
     start, *rest = curve
     pieces = "".join(

@@ -1,4 +1,4 @@
-"""Fixes of errors that the page offers; each one is tried first."""
+"""Fixes of errors that the page offers, after each has been tried."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from tltlc.tools.lint import fixes
 from tltlc.tools.lint.fixes import OfferedFix
 
 _LONGEST: Final = 20_000
-"""In longer texts, trying each fix would take too long."""
+"""Characters; in longer texts, trying each fix would take too long."""
 
 
 def of_errors(source: SourceFile, diagnostics: Iterable[Diagnostic], libraries: tuple[Path, ...]) -> list[OfferedFix]:
-    """Return the fixes for errors of a text; ``libraries`` are its import folders.
+    """Return the fixes for errors of a text that :func:`tltlc.tools.lint.fixes.of_errors` has tried.
 
-    Long texts get none.
+    ``libraries`` are the folders of imports. Texts over 20,000 characters get no fixes.
     """
     if len(source.text) > _LONGEST:
         return []

@@ -1,9 +1,9 @@
 """Place the states of a small automaton and the texts of its edges without overlaps.
 
-Columns of states alternate with columns of texts. An edge passes each column on a level of its own,
-and its text stands above that level, so the edge crosses no state and no text. Traps stand in a row
-below; edges drop down to them from their states, or in a lane beside the lower states of the
-column.
+Columns of states alternate with columns of texts. An edge passes each column at a height of its
+own, its level, and its text stands above that level, so the edge crosses no state and no text.
+Traps stand in a row below. Edges drop to them straight from their states, or in a lane beside the
+lower states of the column. All lengths are in pixels of the SVG; y points down.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ from math import inf
 from typing import Final
 
 from tltlc.core.record import record
-from tltlc.interfaces.playground.curves import Curve, Point, bent, fallen, straight
-from tltlc.interfaces.playground.ordering import Ends, Node, chain, columns_of, mean, neighbours, ordered
+from tltlc.interfaces.playground.curves import Curve, Point, add_bend, add_drop, add_line
+from tltlc.interfaces.playground.ordering import Ends, Node, chain, columns_of, mean, neighbours, order_columns
 
 _SWEEPS: Final = 12
 _GAP, _NARROW_GAP = 30.0, 12.0
@@ -23,6 +23,7 @@ _GAP, _NARROW_GAP = 30.0, 12.0
 _LEAST_BEND, _MOST_BEND = 36.0, 110.0
 """Least and greatest distance between two columns, where edges change their levels."""
 _LANE: Final = 20.0
+"""Width of the lane in which edges drop past the lower states of a column."""
 
 Size = tuple[float, float]
 """Width and height."""
@@ -32,8 +33,8 @@ Size = tuple[float, float]
 class StateBox:
     """A box to place: a state, with the texts over and under it.
 
-    ``over`` and ``under`` are the heights of those texts, ``span`` is the width of everything, and
-    ``below`` puts the box into the row below.
+    ``over`` and ``under`` are the heights of those texts, ``span`` is the width of the widest of
+    them, and ``below`` puts the box into the row below.
     """
 
     width: float
@@ -50,17 +51,17 @@ class Layout:
 
     middles: Mapping[int, Point]
     texts: Mapping[Ends, Point]
-    ways: Mapping[Ends, Curve]
+    curves: Mapping[Ends, Curve]
     width: float
     height: float
 
 
 def layout(boxes: Mapping[int, StateBox], texts: Mapping[Ends, Size], corner: Point = (0.0, 0.0)) -> Layout:
-    """Lay out boxes and edges from a corner on.
+    """Lay out boxes and edges; ``corner`` is the left upper corner of the picture.
 
     Box 0 is the first state, and ``texts`` has the text size of each edge. Loops and the texts of
-    edges to the row below get no places, because they stand over and under the boxes. Boxes in the
-    row below have no edges to others.
+    edges to the row below get no places, because they stand over and under the boxes. No edge may
+    lead from the row below to another box.
     """
     return _Places(boxes, texts, corner).layout()
 
@@ -70,13 +71,13 @@ class _Places:
 
     def __init__(self, boxes: Mapping[int, StateBox], texts: Mapping[Ends, Size], corner: Point) -> None:
         self.boxes, self.texts = boxes, texts
-        above = [state for state in boxes if not boxes[state].below]
-        inside = [(a, b) for a, b in texts if a != b and not boxes[a].below and not boxes[b].below]
-        self.falls = [(a, b) for a, b in texts if not boxes[a].below and boxes[b].below]
-        self.column = {state: 2 * number for state, number in columns_of(above, inside).items()}
-        self.chains = {ends: chain(ends, self.column) for ends in inside}
-        self.columns = ordered(self.column, list(self.chains.values()))
-        self.in_lanes = {a for a, _ in self.falls if not self._is_lowest(a)}
+        upper_states = [state for state in boxes if not boxes[state].below]
+        inner_edges = [(a, b) for a, b in texts if a != b and not boxes[a].below and not boxes[b].below]
+        self.drops = [(a, b) for a, b in texts if not boxes[a].below and boxes[b].below]
+        self.column = {state: 2 * number for state, number in columns_of(upper_states, inner_edges).items()}
+        self.chains = {ends: chain(ends, self.column) for ends in inner_edges}
+        self.columns = order_columns(self.column, list(self.chains.values()))
+        self.in_lanes = {a for a, _ in self.drops if not self._is_lowest(a)}
         self.lanes = {self.column[state] for state in self.in_lanes}
         self.levels = self._levels(corner[1])
         self.bottom = max(level + self._reach(node)[1] for node, level in self.levels.items())
@@ -88,11 +89,11 @@ class _Places:
         """Return the complete layout."""
         middles = {state: self._middle(state) for state in self.column} | self.row
         texts = {ends: self._text(ends, nodes[1]) for ends, nodes in self.chains.items()}
-        ways = {ends: self._way(ends) for ends in self.chains} | self._falls()
+        curves = {ends: self._curve(ends) for ends in self.chains} | self._drops()
         below = [(place, self.boxes[state]) for state, place in self.row.items()]
         width = max([self.spans[-1][1], *(x + _span(box) / 2 for (x, _), box in below)])
         height = max([self.bottom, *(y + box.height / 2 + box.under for (_, y), box in below)])
-        return Layout(middles, texts, ways, width, height)
+        return Layout(middles, texts, curves, width, height)
 
     def _is_lowest(self, state: int) -> bool:
         return [node for node in self.columns[self.column[state]] if len(node) == 1][-1] == (state,)
@@ -113,25 +114,28 @@ class _Places:
             self._spread(nodes, dict.fromkeys(nodes, 0.0), levels)
         for sweep in range(_SWEEPS):
             for nodes in self.columns if sweep % 2 else reversed(self.columns):
-                wanted = {node: mean([levels[other] for other in beside.get(node, ())], levels[node]) for node in nodes}
-                self._spread(nodes, wanted, levels)
+                ideal_levels = {
+                    node: mean([levels[next_node] for next_node in beside.get(node, ())], levels[node])
+                    for node in nodes
+                }
+                self._spread(nodes, ideal_levels, levels)
         for nodes in sorted(self.chains.values(), key=len, reverse=True):
             self._straighten(nodes[1:-1], levels)
         shift = top - min(level - self._reach(node)[0] for node, level in levels.items())
         return {node: level + shift for node, level in levels.items()}
 
-    def _spread(self, nodes: Sequence[Node], wanted: Mapping[Node, float], levels: dict[Node, float]) -> None:
-        """Place the nodes of a column near their wanted levels, in order and with gaps.
+    def _spread(self, nodes: Sequence[Node], ideal_levels: Mapping[Node, float], levels: dict[Node, float]) -> None:
+        """Place the nodes of a column near their ideal levels, in order and with gaps.
 
-        The mean of the levels is the mean of the wanted levels.
+        The mean of the levels is the mean of the ideal levels.
         """
         last: Node = ()
         for node in nodes:
-            levels[node] = wanted[node]
+            levels[node] = ideal_levels[node]
             if last:
-                levels[node] = max(wanted[node], levels[last] + self._apart(last, node))
+                levels[node] = max(ideal_levels[node], levels[last] + self._apart(last, node))
             last = node
-        shift = mean([wanted[node] - levels[node] for node in nodes], 0.0)
+        shift = mean([ideal_levels[node] - levels[node] for node in nodes], 0.0)
         for node in nodes:
             levels[node] += shift
 
@@ -140,19 +144,19 @@ class _Places:
         gap = _GAP if len(upper) == 1 or len(lower) == 1 else _NARROW_GAP
         return self._reach(upper)[1] + gap + self._reach(lower)[0]
 
-    def _straighten(self, way: Sequence[Node], levels: dict[Node, float]) -> None:
+    def _straighten(self, nodes: Sequence[Node], levels: dict[Node, float]) -> None:
         """Bring as many nodes of an edge as possible to one level, then repeat with the rest."""
-        while way:
-            low, high = self._room(way[0], levels)
+        while nodes:
+            low, high = self._room(nodes[0], levels)
             number = 1
-            for node in way[1:]:
+            for node in nodes[1:]:
                 top, bottom = self._room(node, levels)
                 if max(low, top) > min(high, bottom):
                     break
                 low, high, number = max(low, top), min(high, bottom), number + 1
-            level = min(max(mean([levels[node] for node in way[:number]], 0.0), low), high)
-            levels.update(dict.fromkeys(way[:number], level))
-            way = way[number:]
+            level = min(max(mean([levels[node] for node in nodes[:number]], 0.0), low), high)
+            levels.update(dict.fromkeys(nodes[:number], level))
+            nodes = nodes[number:]
 
     def _room(self, node: Node, levels: Mapping[Node, float]) -> tuple[float, float]:
         """Return the least and greatest level of a node between its neighbours in the column."""
@@ -166,9 +170,9 @@ class _Places:
         """Return the left and right end of each column."""
         rises = [0.0] * len(self.columns)
         for nodes in self.chains.values():
-            for one, other in pairwise(nodes):
-                number = min(self._number(one), self._number(other))
-                rises[number] = max(rises[number], abs(self.levels[one] - self.levels[other]))
+            for node, next_node in pairwise(nodes):
+                number = min(self._number(node), self._number(next_node))
+                rises[number] = max(rises[number], abs(self.levels[node] - self.levels[next_node]))
         spans = []
         for number, nodes in enumerate(self.columns):
             right = left + max(map(self._width, nodes))
@@ -213,57 +217,57 @@ class _Places:
                 ports[ends, state] = x + box.width / 2 * (1 if is_right else -1), y + box.height * share
         return ports
 
-    def _way(self, ends: Ends) -> Curve:
-        """Return the curve from state to state: straight through columns, and bent between them."""
+    def _curve(self, ends: Ends) -> Curve:
+        """Return the curve of an edge: straight through columns, and bent between them."""
         nodes = self.chains[ends]
-        is_forth = self.column[ends[0]] < self.column[ends[1]]
+        goes_right = self.column[ends[0]] < self.column[ends[1]]
         start, end = self.ports[ends, ends[0]], self.ports[ends, ends[1]]
         levels = [start[1], *(self.levels[node] for node in nodes[1:-1]), end[1]]
         curve: Curve = (start,)
         for number, (node, level) in enumerate(zip(nodes, levels, strict=True)):
-            enter, leave = self.spans[self._number(node)][:: 1 if is_forth else -1]
+            enter, leave = self.spans[self._number(node)][:: 1 if goes_right else -1]
             if number:
-                curve = bent(curve, (enter, level))
-            curve = straight(curve, end if number == len(nodes) - 1 else (leave, level))
+                curve = add_bend(curve, (enter, level))
+            curve = add_line(curve, end if number == len(nodes) - 1 else (leave, level))
         return curve
 
-    def _falls(self) -> dict[Ends, Curve]:
+    def _drops(self) -> dict[Ends, Curve]:
         """Return the curves of edges to the row below; they arrive side by side."""
-        foot = {a: self._foot(a) for a, _ in self.falls}
+        paths_down = {a: self._path_down(a) for a, _ in self.drops}
         curves = {}
         for target, (x, y) in self.row.items():
             box = self.boxes[target]
-            sources = sorted((a for a, b in self.falls if b == target), key=lambda a: (foot[a][-1][0], a))
+            sources = sorted((a for a, b in self.drops if b == target), key=lambda a: (paths_down[a][-1][0], a))
             for index, a in enumerate(sources):
                 share = (index + 1) / (len(sources) + 1) - 0.5
                 port = x + box.width * share, y - box.height / 2
                 # The texts of other boxes in the row may reach as far up as those of this one.
-                curves[a, target] = straight(fallen(foot[a], (port[0], port[1] - box.over)), port)
+                curves[a, target] = add_line(add_drop(paths_down[a], (port[0], port[1] - box.over)), port)
         return curves
 
-    def _foot(self, state: int) -> Curve:
+    def _path_down(self, state: int) -> Curve:
         """Return the curve from a state down to the lowest level."""
         (x, y), box = self._middle(state), self.boxes[state]
         curve: Curve = ((x, y + box.height / 2),)
         if state in self.in_lanes:
             under = y + box.height / 2 + box.under
             lane = self.spans[self.column[state]][1] - _LANE / 2
-            curve = fallen(straight(curve, (x, under)), (lane, under + _GAP - 8))
-        return straight(curve, (curve[-1][0], self.bottom))
+            curve = add_drop(add_line(curve, (x, under)), (lane, under + _GAP - 8))
+        return add_line(curve, (curve[-1][0], self.bottom))
 
     def _row_below(self, left: float) -> dict[int, Point]:
         """Return places in the row below, each under the middle of the states that lead there."""
-        wanted = {
-            state: mean([self._foot(a)[-1][0] for a, b in self.falls if b == state], 0.0)
+        ideal_levels = {
+            state: mean([self._path_down(a)[-1][0] for a, b in self.drops if b == state], 0.0)
             for state, box in self.boxes.items()
             if box.below
         }
         places: dict[int, Point] = {}
-        reach = max((abs(self._foot(a)[-1][0] - wanted[b]) for a, b in self.falls), default=0.0)
+        reach = max((abs(self._path_down(a)[-1][0] - ideal_levels[b]) for a, b in self.drops), default=0.0)
         top = self.bottom + min(max(reach / 8, 2 * _GAP), _MOST_BEND)
-        for state in sorted(wanted, key=lambda state: (wanted[state], state)):
+        for state in sorted(ideal_levels, key=lambda state: (ideal_levels[state], state)):
             box = self.boxes[state]
-            x = max(wanted[state], left + _span(box) / 2)
+            x = max(ideal_levels[state], left + _span(box) / 2)
             places[state] = x, top + box.over + box.height / 2
             left = x + _span(box) / 2 + 2 * _GAP
         return places

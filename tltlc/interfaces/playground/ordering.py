@@ -15,20 +15,20 @@ from typing import Final
 _SWEEPS: Final = 12
 
 Ends = tuple[int, int]
-"""The source and the target of an edge."""
+"""The numbers of the source and the target of an edge."""
 Node = tuple[int, ...]
 """A state number in a tuple, or ``(source, target, column)`` where an edge passes a column."""
 
 
 def columns_of(states: Sequence[int], edges: Iterable[Ends]) -> dict[int, int]:
-    """Return the column of each state: the longest path to it along edges that close no cycle."""
+    """Return the column of each state: the length of the longest path to it along edges that close no cycle."""
     after: dict[int, list[int]] = {state: [] for state in states}
     for a, b in edges:
         after[a].append(b)
-    finished, ways = _without_cycles(after)
+    finished, forward = _postorder_and_forward_edges(after)
     column = dict.fromkeys(states, 0)
     for state in reversed(finished):
-        for target in ways[state]:
+        for target in forward[state]:
             column[target] = max(column[target], column[state] + 1)
     return column
 
@@ -37,11 +37,11 @@ def chain(ends: Ends, column: Mapping[int, int]) -> list[Node]:
     """Return an edge as nodes, one for each column from source to target."""
     source, target = ends
     a, b = column[source], column[target]
-    way = range(a + 1, b) if a < b else range(a - 1, b, -1)
-    return [(source,), *((source, target, number) for number in way), (target,)]
+    between = range(a + 1, b) if a < b else range(a - 1, b, -1)
+    return [(source,), *((source, target, number) for number in between), (target,)]
 
 
-def ordered(column: Mapping[int, int], chains: Iterable[Sequence[Node]]) -> list[list[Node]]:
+def order_columns(column: Mapping[int, int], chains: Iterable[Sequence[Node]]) -> list[list[Node]]:
     """Return the nodes of each column from top to bottom, ordered so that few edges cross."""
     columns: list[list[Node]] = [[] for _ in range(max(column.values()) + 1)]
     for state, number in column.items():
@@ -55,8 +55,10 @@ def ordered(column: Mapping[int, int], chains: Iterable[Sequence[Node]]) -> list
     for sweep in range(_SWEEPS):
         place = {node: float(index) for nodes in columns for index, node in enumerate(nodes)}
         for nodes in columns if sweep % 2 else reversed(columns):
-            wanted = {node: mean([place[other] for other in beside.get(node, ())], place[node]) for node in nodes}
-            nodes.sort(key=lambda node, wanted=wanted: wanted[node])  # type: ignore[misc]
+            mean_place = {
+                node: mean([place[neighbour] for neighbour in beside.get(node, ())], place[node]) for node in nodes
+            }
+            nodes.sort(key=lambda node, mean_place=mean_place: mean_place[node])  # type: ignore[misc]
             place.update({node: float(index) for index, node in enumerate(nodes)})
         crossings = _crossings(columns, links)
         if crossings < least:
@@ -67,9 +69,9 @@ def ordered(column: Mapping[int, int], chains: Iterable[Sequence[Node]]) -> list
 def neighbours(links: Iterable[tuple[Node, Node]]) -> dict[Node, list[Node]]:
     """Return the nodes that each node is linked with."""
     beside: dict[Node, list[Node]] = {}
-    for one, other in links:
-        beside.setdefault(one, []).append(other)
-        beside.setdefault(other, []).append(one)
+    for node, neighbour in links:
+        beside.setdefault(node, []).append(neighbour)
+        beside.setdefault(neighbour, []).append(node)
     return beside
 
 
@@ -78,12 +80,12 @@ def mean(values: Sequence[float], default: float) -> float:
     return sum(values) / len(values) if values else default
 
 
-def _without_cycles(after: Mapping[int, Sequence[int]]) -> tuple[list[int], dict[int, list[int]]]:
+def _postorder_and_forward_edges(after: Mapping[int, Sequence[int]]) -> tuple[list[int], dict[int, list[int]]]:
     """Return the states in depth-first postorder, and the edges that close no cycle."""
     finished: list[int] = []
     entered: set[int] = set()
     open_: set[int] = set()
-    ways: dict[int, list[int]] = {state: [] for state in after}
+    forward: dict[int, list[int]] = {state: [] for state in after}
     for root in after:
         stack = [] if root in entered else [(root, iter(after[root]))]
         while stack:
@@ -97,10 +99,10 @@ def _without_cycles(after: Mapping[int, Sequence[int]]) -> tuple[list[int], dict
                 finished.append(state)
                 continue
             if target not in open_:
-                ways[state].append(target)
+                forward[state].append(target)
             if target not in entered:
                 stack.append((target, iter(after[target])))
-    return finished, ways
+    return finished, forward
 
 
 def _crossings(columns: Sequence[Sequence[Node]], links: Iterable[tuple[Node, Node]]) -> int:

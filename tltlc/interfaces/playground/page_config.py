@@ -1,4 +1,4 @@
-"""The data that the page needs at its start: examples, and the words of the language."""
+"""The data that the page needs when it is loaded: examples, and the words of the language."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ EXAMPLES: Final = Path(__file__).with_name("examples")
 
 
 def start() -> dict[str, Any]:
-    """Return the examples, and the words and units to colour."""
+    """Return what the request ``{}`` asks for: ``examples``, and ``words`` and ``units`` to colour."""
     tables = load()
     # A soft keyword is a name in most places, so it keeps the colour of a name.
     words = sorted(word for word in tables.words if word.isascii() and word not in tables.soft)

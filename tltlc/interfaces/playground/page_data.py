@@ -1,4 +1,4 @@
-"""Everything that the page shows about a text, as JSON values."""
+"""Compute everything that the page shows about a text, as JSON values."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tltlc.diagnostics.diagnostic import Diagnostic, Fix, Label, TltlError
 from tltlc.diagnostics.shortening import shorten
 from tltlc.interfaces.playground.fixes import of_errors
 from tltlc.interfaces.playground.picture import picture
-from tltlc.interfaces.playground.trace import Letter, idle, rows, shortest
+from tltlc.interfaces.playground.trace import Letter, idle_step, rows, shortest_traces
 from tltlc.interfaces.playground.values import signal_values
 from tltlc.io.project import project_for
 from tltlc.io.spec_file import STDIN
@@ -53,7 +53,7 @@ def view(text: str, spec: str = "", letters: Iterable[Letter] = (), notation: No
       picture of its automaton (:func:`tltlc.interfaces.playground.picture.picture`), the trace step
       by step (:func:`tltlc.interfaces.playground.trace.rows`), and some traces to start with.
 
-    Never raises because of the contents of a text, but sets no time limit.
+    The contents of a text never raise an error. There is no time limit: the caller sets one.
     """
     source = SourceFile(NAME, text)
     page: dict[str, Any] = {"diagnostics": [], "more": 0, "specs": [], "tests": [], "spec": None}
@@ -63,12 +63,15 @@ def view(text: str, spec: str = "", letters: Iterable[Letter] = (), notation: No
         libraries = project.libraries
         compiled = view_of(source, CompileOptions(library_dirs=libraries, state_budget=STATE_BUDGET))
     except TltlError as error:
-        offers = of_errors(source, error.diagnostics, libraries)
-        return {**page, **_messages(error.diagnostics, source, offers)}
-    remarks = findings(compiled, project.lint)
+        offered_fixes = of_errors(source, error.diagnostics, libraries)
+        return {**page, **_messages(error.diagnostics, source, offered_fixes)}
+    lint_findings = findings(compiled, project.lint)
     results = run_tests(compiled.program, (spec_view.fspa for spec_view in compiled.specs))
-    messages = [*(finding.diagnostic for finding in remarks), *(result.failure for result in results if result.failure)]
-    page.update(_messages(messages, source, list(fixes_of_findings(remarks[:MOST_MESSAGES], compiled.module))))
+    messages = [
+        *(finding.diagnostic for finding in lint_findings),
+        *(result.failure for result in results if result.failure),
+    ]
+    page.update(_messages(messages, source, list(fixes_of_findings(lint_findings[:MOST_MESSAGES], compiled.module))))
     page["specs"] = [spec_view.spec.name for spec_view in compiled.specs]
     page["tests"] = [
         {"title": result.test.title, "spec": result.test.spec, "passed": result.passed} for result in results
@@ -79,14 +82,16 @@ def view(text: str, spec: str = "", letters: Iterable[Letter] = (), notation: No
     return page
 
 
-def _messages(messages: Sequence[Diagnostic], source: SourceFile, offers: Sequence[OfferedFix]) -> dict[str, Any]:
-    shown = [diagnostic(message, source, offers) for message in messages[:MOST_MESSAGES]]
+def _messages(
+    messages: Sequence[Diagnostic], source: SourceFile, offered_fixes: Sequence[OfferedFix]
+) -> dict[str, Any]:
+    shown = [diagnostic(message, source, offered_fixes) for message in messages[:MOST_MESSAGES]]
     return {"diagnostics": shown, "more": len(messages) - len(shown)}
 
 
 def _spec(fspa: Fspa, source_explanation: Explanation, letters: Iterable[Letter], notation: Notation) -> dict[str, Any]:
     explanation = json_values(source_explanation)
-    drawn, note = picture(fspa, notation)
+    svg, note = picture(fspa, notation)
     leads = {row["id"]: row["leads"] for row in explanation["states"]}
     return {
         "name": fspa.name,
@@ -108,16 +113,16 @@ def _spec(fspa: Fspa, source_explanation: Explanation, letters: Iterable[Letter]
             }
             for state in fspa.states
         ],
-        "picture": drawn,
+        "picture": svg,
         "note": note,
         "rows": rows(fspa, letters),
-        "idle": idle(fspa),
-        **shortest(fspa),
+        "idle": idle_step(fspa),
+        **shortest_traces(fspa),
     }
 
 
 def diagnostic(
-    message: Diagnostic, source: SourceFile | None = None, offers: Iterable[OfferedFix] = ()
+    message: Diagnostic, source: SourceFile | None = None, offered_fixes: Iterable[OfferedFix] = ()
 ) -> dict[str, Any]:
     """Return a message as the page expects it.
 
@@ -131,7 +136,9 @@ def diagnostic(
         "title": short.title,
         "help": short.help,
         "labels": [_label(label, source) for label in short.labels],
-        "ways_out": [_way_out(offer.fix, source) for offer in offers if source and offer.diagnostic is message],
+        "ways_out": [
+            _fix_values(offer.fix, source) for offer in offered_fixes if source and offer.diagnostic is message
+        ],
     }
 
 
@@ -143,20 +150,24 @@ def _label(label: Label, source: SourceFile | None) -> dict[str, Any]:
         "file": None if here else label.source.name,
         "line": line,
         "column": column,
-        "start": _units(text, label.span.start) if here else None,
-        "end": _units(text, label.span.end) if here else None,
+        "start": _utf16_offset(text, label.span.start) if here else None,
+        "end": _utf16_offset(text, label.span.end) if here else None,
         "message": label.message,
     }
 
 
-def _way_out(fix: Fix, source: SourceFile) -> dict[str, Any]:
+def _fix_values(fix: Fix, source: SourceFile) -> dict[str, Any]:
     edits = [
-        {"start": _units(source.text, edit.span.start), "end": _units(source.text, edit.span.end), "text": edit.text}
+        {
+            "start": _utf16_offset(source.text, edit.span.start),
+            "end": _utf16_offset(source.text, edit.span.end),
+            "text": edit.text,
+        }
         for edit in sorted(fix.edits, key=lambda edit: edit.span.start)
     ]
     return {"title": fix.title, "edits": edits}
 
 
-def _units(text: str, offset: int) -> int:
+def _utf16_offset(text: str, offset: int) -> int:
     """Convert an offset in characters to UTF-16 units."""
     return len(text[:offset].encode("utf-16-le", "surrogatepass")) // 2

@@ -12,15 +12,15 @@ from tltlc.backends.drawing.folding import Drawing, text_range
 from tltlc.backends.drawing.picture_content import folded_drawing, notes
 from tltlc.backends.drawing.texts import escape_invisible, guards_by_arrow, wrap_text
 from tltlc.diagnostics.formats.text import columns
-from tltlc.interfaces.playground.curves import Point, bent, drawn
+from tltlc.interfaces.playground.curves import Point, add_bend, svg_path
 from tltlc.interfaces.playground.layout import Size, StateBox, layout
 from tltlc.interfaces.playground.ordering import Ends
 
 MOST_STATES: Final = 40
 MOST_EDGES: Final = 120
-"""Beyond these numbers, nothing can be read."""
+"""Pictures with more states or edges cannot be read, so they are not drawn."""
 
-# Widths of characters and heights of lines, for monospaced fonts.
+# Widths of characters and heights of lines in pixels, for monospaced fonts.
 _LABEL_CHARACTER, _LABEL_LINE = 7.3, 17.0
 _GUARD_CHARACTER, _GUARD_LINE = 6.7, 14.0
 _LABEL, _GUARD, _WIDE_GUARD = 26, 22, 30
@@ -34,9 +34,9 @@ _START: Final = 26.0
 
 
 def picture(fspa: Fspa, notation: Notation = "english") -> tuple[str | None, str]:
-    """Return the picture, and notes about it and what it leaves out.
+    """Return the picture as SVG, and notes about the picture and what it leaves out.
 
-    If the automaton is too large, return only a note.
+    If the automaton has too many states or edges, return None and a note.
 
     States are groups with the class ``state`` and the class of their verdict; ``data-states`` has
     the numbers of the states that they stand for. Edges are groups with the class ``edge``,
@@ -62,27 +62,27 @@ class _Picture:
         self.labels = {state: _label_lines(fspa, run, notation) for state, run in self.runs.items()}
         self.boxes = {state: self._box(state) for state in self.runs}
         sizes = {ends: _size(lines) for ends, lines in self.lines.items()}
-        self.placed = layout(self.boxes, sizes, (_MARGIN + _START, _MARGIN))
+        self.places = layout(self.boxes, sizes, (_MARGIN + _START, _MARGIN))
 
     def svg(self) -> str:
         """Return the picture."""
-        width, height = self.placed.width + _MARGIN, self.placed.height + _MARGIN
-        left, y = self._frame(0)[0], self.placed.middles[0][1]
+        width, height = self.places.width + _MARGIN, self.places.height + _MARGIN
+        left, y = self._frame(0)[0], self.places.middles[0][1]
         start = f'<circle cx="{left - _START:.1f}" cy="{y:.1f}" r="3.5"/>'
-        start += drawn(bent(((left - _START, y),), (left, y)))
+        start += svg_path(add_bend(((left - _START, y),), (left, y)))
         edges = (self._edge(ends) for ends in self.guards)
         states = (self._state(state) for state in self.drawing.states)
         return (
             f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width:.0f} {height:.0f}"'
             f' width="{width:.0f}" height="{height:.0f}" role="group"'
-            f' aria-label="The automaton of {_escaped(self.fspa.name)}">'
+            f' aria-label="The automaton of {_escape(self.fspa.name)}">'
             f'<g class="start">{start}</g>{"".join(edges)}{"".join(states)}</svg>'
         )
 
     def _lines(self, ends: Ends) -> list[str]:
         """Return the text of an edge in lines; texts over and under a state may be wider."""
         is_wide = ends[0] == ends[1] or ends[1] == self.trap
-        return _shortened(self.guards[ends], _WIDE_GUARD if is_wide else _GUARD)
+        return _shorten(self.guards[ends], _WIDE_GUARD if is_wide else _GUARD)
 
     def _box(self, state: int) -> StateBox:
         lines = self.labels[state]
@@ -97,7 +97,7 @@ class _Picture:
 
     def _frame(self, state: int) -> tuple[float, float, float, float]:
         """Return the left, top, right and bottom of a state."""
-        (x, y), box = self.placed.middles[state], self.boxes[state]
+        (x, y), box = self.places.middles[state], self.boxes[state]
         return x - box.width / 2, y - box.height / 2, x + box.width / 2, y + box.height / 2
 
     def _state(self, state: State) -> str:
@@ -106,7 +106,7 @@ class _Picture:
         number = text_range(str(run[0].id), str(run[-1].id))
         distance = text_range(*("∞" if end.distance is None else str(end.distance) for end in (run[0], run[-1])))
         classes = f"state {state.verdict}{' accepting' if state.accepting else ''}{' folded' if len(run) > 1 else ''}"
-        title = _escaped(f"State {number}, {state.verdict}: {label_text(self.fspa, run[0].id)}")
+        title = _escape(f"State {number}, {state.verdict}: {label_text(self.fspa, run[0].id)}")
         frame = _rectangle("frame", left, top, right, bottom, 9)
         frame += _rectangle("ring", left + 4, top + 4, right - 4, bottom - 4, 6) if state.accepting else ""
         lines = self.labels[state.id]
@@ -125,7 +125,7 @@ class _Picture:
         kind = ""
         if source.id != target.id and source.distance is not None:
             kind = " failing" if target.distance is None else " nearer" if target.distance < source.distance else ""
-        title = _escaped(f"From {source.id} to {target.id}: {'; '.join(self.titles[ends])}")
+        title = _escape(f"From {source.id} to {target.id}: {'; '.join(self.titles[ends])}")
         return (
             f'<g class="edge{kind}" data-source="{ends[0]}" data-target="{ends[1]}" role="img">'
             f"<title>{title}</title>{self._arrow(ends)}</g>"
@@ -140,14 +140,14 @@ class _Picture:
         if ends[0] == ends[1]:
             foot, out = (bottom, 1) if ends[0] == self.trap else (top, -1)
             turn = foot + 30 * out
-            loop = drawn(((x - 14, foot), (x - 26, turn), (x + 26, turn), (x + 14, foot)))
+            loop = svg_path(((x - 14, foot), (x - 26, turn), (x + 26, turn), (x + 14, foot)))
             return loop + _text(lines, (x, foot + (_LOOP + height / 2) * out), _GUARD_LINE, "guard")
-        way = self.placed.ways[ends]
+        curve = self.places.curves[ends]
         if ends[1] != self.trap:
-            return drawn(way) + _text(lines, self.placed.texts[ends], _GUARD_LINE, "guard")
+            return svg_path(curve) + _text(lines, self.places.texts[ends], _GUARD_LINE, "guard")
         # The arrow passes behind its text.
-        behind = _rectangle("behind", x - width / 2, bottom + 5, x + width / 2, bottom + 7 + height, 0)
-        return drawn(way) + behind + _text(lines, (x, bottom + 6 + height / 2), _GUARD_LINE, "guard")
+        background = _rectangle("behind", x - width / 2, bottom + 5, x + width / 2, bottom + 7 + height, 0)
+        return svg_path(curve) + background + _text(lines, (x, bottom + 6 + height / 2), _GUARD_LINE, "guard")
 
 
 def _trap(drawing: Drawing) -> int | None:
@@ -160,11 +160,11 @@ def _trap(drawing: Drawing) -> int | None:
 def _label_lines(fspa: Fspa, run: Sequence[State], notation: Notation) -> list[str]:
     first, last = (label_text(fspa, end.id, notation) for end in (run[0], run[-1]))
     if len(run) == 1:
-        return _shortened([first], _LABEL)
-    return [f"{len(run)} more like these", *_shortened([text_range(first, last)], _LABEL)]
+        return _shorten([first], _LABEL)
+    return [f"{len(run)} more like these", *_shorten([text_range(first, last)], _LABEL)]
 
 
-def _shortened(texts: Sequence[str], width: int) -> list[str]:
+def _shorten(texts: Sequence[str], width: int) -> list[str]:
     """Wrap texts to lines of about that width; an ellipsis replaces what does not fit."""
     lines = [line for text in texts for line in wrap_text(text, width, _MOST_LINES)]
     if len(lines) > _MOST_LINES:
@@ -187,11 +187,9 @@ def _rectangle(kind: str, left: float, top: float, right: float, bottom: float, 
 
 def _text(lines: Sequence[str], middle: Point, height: float, kind: str) -> str:
     x, first = middle[0], middle[1] - (len(lines) - 1) * height / 2 + 4
-    spans = (
-        f'<tspan x="{x:.1f}" y="{first + i * height:.1f}">{_escaped(line)}</tspan>' for i, line in enumerate(lines)
-    )
+    spans = (f'<tspan x="{x:.1f}" y="{first + i * height:.1f}">{_escape(line)}</tspan>' for i, line in enumerate(lines))
     return f'<text class="{kind}" text-anchor="middle">{"".join(spans)}</text>'
 
 
-def _escaped(text: str) -> str:
+def _escape(text: str) -> str:
     return escape(escape_invisible(text))

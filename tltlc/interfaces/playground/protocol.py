@@ -1,6 +1,6 @@
 """The requests of the page and their answers, as JSON.
 
-The server and the browser-only site share them.
+They are the same with the server and in the browser without one.
 """
 
 from __future__ import annotations
@@ -49,10 +49,10 @@ def answer(request: str) -> str:
     try:
         return _json(view(parsed.text, parsed.spec, parsed.letters, parsed.notation))
     except (MemoryError, RecursionError):
-        return gave_up(TOO_LARGE)
+        return error_answer(TOO_LARGE)
     except Exception:
         # A traceback does not help the user, who can go on typing.
-        return gave_up("a bug in tltlc stopped this", "please report it, with the text")
+        return error_answer("a bug in tltlc stopped this", "please report it, with the text")
 
 
 def question(request: str) -> Question | None:
@@ -80,15 +80,15 @@ def question(request: str) -> Question | None:
     return Question(parsed["text"], spec, tuple(letters), notation)
 
 
-def gave_up(why: str, way_out: str = "make the spec smaller: bounds and large conjunctions cost most") -> str:
-    """Return the answer if a text cannot be analysed: TLT0775, with the reason."""
-    message = Diagnostic("TLT0775", why, help=way_out)
+def error_answer(title: str, help_: str = "make the spec smaller: bounds and large conjunctions cost most") -> str:
+    """Return the answer for a text that cannot be analysed: TLT0775, with this title and help."""
+    message = Diagnostic("TLT0775", title, help=help_)
     return _json({"diagnostics": [diagnostic(message)], "more": 0, "specs": [], "tests": [], "spec": None})
 
 
-def gave_up_on_size() -> str:
-    """Return the answer that replaces one larger than :data:`tltlc.io.limits.ANSWER`."""
-    return gave_up(f"the answer is larger than {ANSWER.size >> 20} MiB, and was given up")
+def size_error_answer() -> str:
+    """Return the answer in place of an answer that is larger than :data:`tltlc.io.limits.ANSWER`."""
+    return error_answer(f"the answer is larger than {ANSWER.size >> 20} MiB, and was given up")
 
 
 def _is_letter(letter: Any) -> bool:

@@ -1,7 +1,7 @@
 """Parse the head of an HTTP/1.1 request (RFC 9112) without any input or output.
 
-It accepts less than the standard allows: no transfer codings, no continued header lines, no second
-``Host``. It refuses everything ambiguous.
+The parser accepts less than the standard allows: no transfer codings, no continued header lines,
+no second ``Host``. It refuses everything ambiguous.
 """
 
 from __future__ import annotations
@@ -24,10 +24,7 @@ _END: Final = re.compile(rb"\n\r?\n")
 _BAD_ESCAPE: Final = re.compile(r"%(?![0-9A-Fa-f]{2})")
 _MOST_DIGITS: Final = 18
 _REPEATED: Final = {"accept", "accept-encoding", "accept-language", "cache-control", "connection", "via"}
-"""Headers that may be repeated.
-
-They are lists, and only whether the connection stays open depends on them.
-"""
+"""Headers that may be repeated: they are lists, and at most ``connection`` is used here."""
 
 
 class RefusedError(Exception):
@@ -44,27 +41,27 @@ class Head:
 
     ``path`` is the path of the target, unescaped and without query. ``headers`` have names in lower
     case. ``length`` is the length of the body in bytes; None if the request does not give it.
-    ``keeps`` is whether another request may follow. ``is_old`` is whether the client speaks
-    HTTP/1.0, which has no interim answers.
+    ``keeps_alive`` is whether another request may follow. ``is_http_1_0`` is whether the client
+    speaks HTTP/1.0, which has no interim answers.
     """
 
     method: str
     path: str
     headers: Mapping[str, str]
     length: int | None
-    keeps: bool
-    is_old: bool
+    keeps_alive: bool
+    is_http_1_0: bool
 
     @property
-    def waits(self) -> bool:
+    def expects_continue(self) -> bool:
         """Whether the client sends the body only after the server has agreed."""
         return "expect" in self.headers
 
 
 def read_head(data: bytes) -> tuple[Head, int] | None:
-    """Parse the head at the start of some bytes.
+    """Parse the head of the request at the start of ``data``.
 
-    Return it and the offset after it, or None if it is incomplete. Raises RefusedError as early as
+    Return the head and the offset after it, or None if the head is incomplete. Raises RefusedError as early as
     possible: 400 if the bytes are not HTTP, 414 and 431 if something is too long, 417 for an
     unknown expectation, 501 for transfer codings, 505 for another version.
     """
@@ -77,7 +74,7 @@ def read_head(data: bytes) -> tuple[Head, int] | None:
         raise RefusedError(HTTPStatus.REQUEST_URI_TOO_LONG)
     if line_end < 0:
         return None
-    method, path, is_old = _first_line(data[start:line_end].removesuffix(b"\r"))
+    method, path, is_http_1_0 = _first_line(data[start:line_end].removesuffix(b"\r"))
     end = _END.search(data, line_end)
     text = data[line_end + 1 : end.start() if end else len(data)]
     if len(text) > REQUEST_HEAD.size or text.count(b"\n") >= (REQUEST_HEAD.values or 0):
@@ -85,7 +82,7 @@ def read_head(data: bytes) -> tuple[Head, int] | None:
     if end is None:
         return None
     headers = _headers(text)
-    return _head(method, path, headers, is_old), end.end()
+    return _head(method, path, headers, is_http_1_0), end.end()
 
 
 def _first_line(line: bytes) -> tuple[str, str, bool]:
@@ -99,10 +96,10 @@ def _first_line(line: bytes) -> tuple[str, str, bool]:
     # The other forms of a target are for proxies.
     if not target.startswith("/") and target != "*":
         raise RefusedError(HTTPStatus.BAD_REQUEST)
-    return match[1].decode("ascii"), _unescaped(target), match[4] == b"0"
+    return match[1].decode("ascii"), _unescape(target), match[4] == b"0"
 
 
-def _unescaped(path: str) -> str:
+def _unescape(path: str) -> str:
     if _BAD_ESCAPE.search(path):
         raise RefusedError(HTTPStatus.BAD_REQUEST)
     try:
@@ -132,25 +129,25 @@ def _header(line: bytes) -> tuple[str, str]:
     return name.decode("ascii").lower(), value.strip(b" \t").decode("latin-1")
 
 
-def _head(method: str, path: str, headers: Mapping[str, str], is_old: bool) -> Head:
-    if not is_old and "host" not in headers:
+def _head(method: str, path: str, headers: Mapping[str, str], is_http_1_0: bool) -> Head:
+    if not is_http_1_0 and "host" not in headers:
         raise RefusedError(HTTPStatus.BAD_REQUEST)
     if "transfer-encoding" in headers:
-        both = "content-length" in headers
-        raise RefusedError(HTTPStatus.BAD_REQUEST if both else HTTPStatus.NOT_IMPLEMENTED)
+        has_length = "content-length" in headers
+        raise RefusedError(HTTPStatus.BAD_REQUEST if has_length else HTTPStatus.NOT_IMPLEMENTED)
     if headers.get("expect", "100-continue").lower() != "100-continue":
         raise RefusedError(HTTPStatus.EXPECTATION_FAILED)
     closes = "close" in (word.strip() for word in headers.get("connection", "").lower().split(","))
     length = _length(headers.get("content-length"))
-    return Head(method, path, headers, length, keeps=not (is_old or closes), is_old=is_old)
+    return Head(method, path, headers, length, keeps_alive=not (is_http_1_0 or closes), is_http_1_0=is_http_1_0)
 
 
-def _length(written: str | None) -> int | None:
-    if written is None:
+def _length(text: str | None) -> int | None:
+    if text is None:
         return None
-    if not (written.isascii() and written.isdecimal()):
+    if not (text.isascii() and text.isdecimal()):
         raise RefusedError(HTTPStatus.BAD_REQUEST)
-    digits = written.lstrip("0")
+    digits = text.lstrip("0")
     if len(digits) > _MOST_DIGITS:
         raise RefusedError(HTTPStatus.REQUEST_ENTITY_TOO_LARGE)
     return int(digits or "0")

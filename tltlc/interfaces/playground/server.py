@@ -1,4 +1,4 @@
-"""Serve the page on this machine: its files, and answers to its requests."""
+"""Serve the playground on this machine: the files of the page, and the answers to its requests."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from typing import Final
 from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.interfaces.playground.children import LIMIT_S, MOST_AT_ONCE, AbandonedError, Children
-from tltlc.interfaces.playground.connections import Connection, Open, Response, report_failure
+from tltlc.interfaces.playground.connections import Connection, OpenConnections, Response, report_failure
 from tltlc.interfaces.playground.request_head import Head, RefusedError
 from tltlc.interfaces.playground.site import page_files
 from tltlc.io.files import reason
@@ -35,10 +35,10 @@ _API: Final = "/api"
 _METHODS: Final = {"GET", "HEAD", "POST"}
 _KNOWN_METHODS: Final = _METHODS | {"OPTIONS", "PUT", "DELETE", "PATCH", "TRACE", "CONNECT"}
 _AGAIN_S: Final = 1.0
-"""Seconds after which a server without free descriptors looks for new connections again."""
+"""Seconds after which a server that lacked file descriptors accepts connections again."""
 
 _OTHER_DESCRIPTORS: Final = 16 + 6 * MOST_AT_ONCE
-"""How many descriptors the process itself and the pipes to its children need at most."""
+"""The most file descriptors that the process itself and the pipes to its children need."""
 
 _POLICY: Final = "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; img-src 'self' data:"
 _HEADERS: Final = {
@@ -62,7 +62,7 @@ class PageHandler:
 
     def check(self, head: Head) -> None:
         """Raise RefusedError if a request is not from the page, or asks for something unknown."""
-        if not _is_own(head):
+        if not _is_from_page(head):
             raise RefusedError(HTTPStatus.FORBIDDEN)
         if head.method not in _KNOWN_METHODS:
             raise RefusedError(HTTPStatus.NOT_IMPLEMENTED)
@@ -77,7 +77,7 @@ class PageHandler:
             raise RefusedError(HTTPStatus.BAD_REQUEST)
 
     async def answer(self, head: Head, body: bytes, hung_up: Event) -> Response | None:
-        """Return a file of the page, or the answer to a question; None if the page has hung up."""
+        """Return a file of the page, or the answer to its request; None if the page has hung up."""
         if head.path != _API:
             name = _file_name(head.path)
             kind = "text/javascript" if name.endswith(".js") else mimetypes.guess_type(name)[0] or "text/plain"
@@ -109,7 +109,7 @@ class PageHandler:
             raise RefusedError(HTTPStatus.FORBIDDEN)
         if head.method != "POST":
             raise RefusedError(HTTPStatus.METHOD_NOT_ALLOWED)
-        # For this content type, pages from elsewhere need a CORS preflight, which this server refuses.
+        # For this content type, other pages need a CORS preflight, which this server refuses.
         if head.headers.get("content-type", "").partition(";")[0].strip().lower() != "application/json":
             raise RefusedError(HTTPStatus.UNSUPPORTED_MEDIA_TYPE)
         if head.length is None:
@@ -126,7 +126,7 @@ def _file_name(path: str) -> str:
     return "index.html" if path == "/" else path.removeprefix("/")
 
 
-def _is_own(head: Head) -> bool:
+def _is_from_page(head: Head) -> bool:
     """Whether a request is meant for this server, and does not come from a foreign page."""
     host = head.headers.get("host", "").lower()
     name, colon, port = host.partition(":")
@@ -176,9 +176,9 @@ class PlaygroundServer:
         self.token = secrets.token_urlsafe(24)
         self.children = Children(limit_s)
         self.page = PageHandler(self.children, self.token)
-        self.open = Open(_within_descriptors(connections))
+        self.connections = OpenConnections(_within_descriptors(connections))
         self._loop = asyncio.SelectorEventLoop()
-        self._again: asyncio.TimerHandle | None = None
+        self._retry_timer: asyncio.TimerHandle | None = None
         self._accepted: set[asyncio.Task[object]] = set()
         self._thread: Thread | None = None
         self._stopped = Event()
@@ -194,10 +194,10 @@ class PlaygroundServer:
         self._thread = current_thread()
         try:
             self._stopped.clear()
-            self._loop.call_soon(self._look)
+            self._loop.call_soon(self._watch_listener)
             if os.name == "nt":
                 self._loop.call_soon(self._wake)
-            with self._woken_by_signals():
+            with self._signals_wake_loop():
                 try:
                     self._loop.run_forever()
                 finally:
@@ -233,11 +233,11 @@ class PlaygroundServer:
 
     # --- new connections ----------------------------------------------------------------------
 
-    def _look(self) -> None:
+    def _watch_listener(self) -> None:
         """Start looking for new connections."""
-        if self._again is not None:
-            self._again.cancel()
-            self._again = None
+        if self._retry_timer is not None:
+            self._retry_timer.cancel()
+            self._retry_timer = None
         self._loop.add_reader(self._listener, self._accept)
 
     def _accept(self) -> None:
@@ -246,38 +246,39 @@ class PlaygroundServer:
         except (BlockingIOError, InterruptedError, ConnectionAbortedError):
             return
         except OSError:
-            self._wait()
+            self._pause_accepting()
             return
         client.setblocking(False)
-        connecting = self._loop.connect_accepted_socket(lambda: Connection(self.page, self.open), client)
+        connecting = self._loop.connect_accepted_socket(lambda: Connection(self.page, self.connections), client)
         task: asyncio.Task[object] = self._loop.create_task(connecting)
         self._accepted.add(task)
         task.add_done_callback(self._accepted.discard)
         task.add_done_callback(report_failure)
 
-    def _wait(self) -> None:
-        """Wait for free descriptors: until a connection has been closed, or else for a while."""
+    def _pause_accepting(self) -> None:
+        """Stop accepting until a connection has been closed to free a descriptor, or else for a while."""
         self._loop.remove_reader(self._listener)
-        if self.open.make_room():
+        if self.connections.make_room():
             # The connection is closed before this callback runs.
-            self._loop.call_soon(self._look)
+            self._loop.call_soon(self._watch_listener)
         else:
-            self._again = self._loop.call_later(_AGAIN_S, self._look)
+            self._retry_timer = self._loop.call_later(_AGAIN_S, self._watch_listener)
 
     async def _end_all(self) -> None:
-        """Close all connections, and cancel the tasks that work for them."""
-        self.open.close()
+        """Close all connections, and cancel the tasks that answer their requests."""
+        self.connections.close()
         tasks = asyncio.all_tasks() - {asyncio.current_task()}
         for task in tasks:
             task.cancel()
         await asyncio.gather(asyncio.sleep(0), *tasks, return_exceptions=True)
 
     @contextmanager
-    def _woken_by_signals(self) -> Iterator[None]:
-        """Within, each signal ends the wait of the loop.
+    def _signals_wake_loop(self) -> Iterator[None]:
+        """Let each signal end the wait of the loop, within the context.
 
-        Python runs the handler of a signal between two steps of the main thread.  A signal that another thread gets,
-        or that comes just before the wait begins, would not be handled until a request comes.
+        Python runs the handler of a signal between two steps of the main thread. A signal that
+        another thread gets, or that comes just before the wait begins, would not be handled until a
+        request comes.
         """
         if current_thread() is not main_thread():
             yield
@@ -287,7 +288,7 @@ class PlaygroundServer:
             for end in (reader, writer):
                 end.setblocking(False)
             self._loop.add_reader(reader, _read_all, reader)
-            # An interrupt between the two calls leaves no descriptor that is closed below.
+            # If an interrupt comes between the two calls, no descriptor stays set that is closed below.
             before = signal.set_wakeup_fd(-1)
             try:
                 signal.set_wakeup_fd(writer.fileno(), warn_on_full_buffer=False)

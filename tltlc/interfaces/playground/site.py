@@ -1,4 +1,4 @@
-"""The files of the page: those that the server sends, and those of a static site."""
+"""The files that the server sends, and the files of a static site with the compiler in it."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ PYODIDE: Final = ("pyodide.mjs", "pyodide.asm.mjs", "pyodide.asm.wasm", "python_
 
 _BY_SERVER: Final = 'data-compiler="server"'
 _BY_BROWSER: Final = 'data-compiler="browser"'
-_LEFT_OUT: Final = (
+_EXCLUDED: Final = (
     *(f"interfaces/{name}" for name in ("cli", "lsp")),
     *(f"tools/{name}" for name in ("conformance", "hoa", "mine", "diff", "fmt")),
     *("backends/templates", "stdlib"),
@@ -52,13 +52,13 @@ def site_files(pyodide: Path) -> dict[str, bytes]:
 
 
 def _archive() -> bytes:
-    """Pack the compiler and its libraries; equal contents give equal bytes."""
+    """Return a zip file of the compiler and its libraries; equal contents give equal bytes."""
     library = standard_library()
-    packed = {path.relative_to(PACKAGE.parent): path for path in PACKAGE.rglob("*") if _is_needed(path)}
-    packed.update({Path("tltlc/stdlib", path.name): path for path in library.glob("*.tltl")})
+    files = {path.relative_to(PACKAGE.parent): path for path in PACKAGE.rglob("*") if _is_needed(path)}
+    files.update({Path("tltlc/stdlib", path.name): path for path in library.glob("*.tltl")})
     memory = io.BytesIO()
     with ZipFile(memory, "w") as archive:
-        for name, path in sorted(packed.items()):
+        for name, path in sorted(files.items()):
             entry = ZipInfo(name.as_posix())
             entry.compress_type = ZIP_DEFLATED
             archive.writestr(entry, path.read_bytes())
@@ -67,4 +67,4 @@ def _archive() -> bytes:
 
 def _is_needed(path: Path) -> bool:
     relative = path.relative_to(PACKAGE).as_posix()
-    return path.suffix in _ENDINGS and path.is_file() and not any(relative.startswith(f"{part}/") for part in _LEFT_OUT)
+    return path.suffix in _ENDINGS and path.is_file() and not any(relative.startswith(f"{part}/") for part in _EXCLUDED)

@@ -27,7 +27,7 @@ _LONGEST: Final = 200
 def rows(fspa: Fspa, letters: Iterable[Letter]) -> list[dict[str, Any]]:
     """Return the monitor's output for each step.
 
-    The first step that it refuses has an ``error`` and is the last one. A letter names the atoms
+    If the monitor refuses a step, its row has an ``error``, and is the last row. A letter names the atoms
     that hold, and unknown names are ignored; or it gives the values of the signals. In a row,
     ``from`` is the state before the step, ``values`` are the values of the atoms in order, and
     ``signals`` is a sample of signal values for the letter, or None if none was found.
@@ -64,10 +64,10 @@ def rows(fspa: Fspa, letters: Iterable[Letter]) -> list[dict[str, Any]]:
     return result
 
 
-def idle(fspa: Fspa) -> dict[str, Any]:
-    """Return a step for a new row in which nothing happens.
+def idle_step(fspa: Fspa) -> dict[str, Any]:
+    """Return the letter of a new row: a step in which nothing happens, if there is one.
 
-    It stays in the first state if possible, and few atoms hold.
+    The step stays in the first state if possible, and few atoms hold.
     """
 
     def cost(prime: tuple[tuple[int, bool], ...]) -> int:
@@ -81,12 +81,15 @@ def idle(fspa: Fspa) -> dict[str, Any]:
         sample = finder.sample_for_literals(prime)
         if isinstance(sample, dict):
             letter = finder.letter_of(sample)
-            return {"atoms": _in_order(fspa, letter), "signals": sample}
+            return {"atoms": _atom_names(fspa, letter), "signals": sample}
     return {"atoms": [fspa.atoms[atom].name for atom, polarity in primes[0] if polarity], "signals": None}
 
 
-def shortest(fspa: Fspa) -> dict[str, Any]:
-    """Return shortest traces that succeed and that fail, or None: ``{"succeed": …, "fail": …}``."""
+def shortest_traces(fspa: Fspa) -> dict[str, Any]:
+    """Return a shortest trace that succeeds and one that fails: ``{"succeed": …, "fail": …}``.
+
+    A trace is None if there is none, or if the search for it takes too many steps.
+    """
     moves = Moves(fspa)
     try:
         witnesses = accepting_trace(moves, _MOST_WORK), rejecting_trace(moves, _MOST_WORK)
@@ -102,8 +105,8 @@ def _letters(fspa: Fspa, witness: Witness | None) -> list[dict[str, Any]] | None
 
 
 def _letter(fspa: Fspa, move: SampledEdge) -> dict[str, Any]:
-    return {"atoms": _in_order(fspa, move.letter), "signals": dict(move.sample)}
+    return {"atoms": _atom_names(fspa, move.letter), "signals": dict(move.sample)}
 
 
-def _in_order(fspa: Fspa, letter: frozenset[str]) -> list[str]:
+def _atom_names(fspa: Fspa, letter: frozenset[str]) -> list[str]:
     return [atom.name for atom in fspa.atoms if atom.name in letter]

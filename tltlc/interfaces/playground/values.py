@@ -9,7 +9,7 @@ from tltlc.resolve.spec import Signal
 
 UNITS: Final = {"length": "m", "time": "s", "speed": "m/s", "angle": "rad"}
 _OPEN: Final = 100.0
-"""The reach of a slider for an open range, in SI units, if no param has the same type."""
+"""The greatest value of a slider for an open range, in SI units, if no param has the same type."""
 
 
 def signal_values(fspa: Fspa) -> list[dict[str, Any]]:

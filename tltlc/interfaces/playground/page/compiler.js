@@ -1,5 +1,6 @@
-// Whoever compiles: the server that the page comes from, or Python in a worker of the browser.
-// Both answer `ask({text, spec, letters})` with what tltlc.interfaces.playground.view returns, and `ask({})` with how to start.
+// The compiler behind the page: the server that sent the page, or Python in a worker of the browser.
+// Both answer `ask({text, spec, letters, notation})` with what tltlc.interfaces.playground.view returns, and `ask({})`
+// with the examples and the words of the language.
 
 import { keepToken, refuseToken, token } from "./token.js";
 
@@ -20,7 +21,7 @@ function byServer() {
   let running = null;
   return {
     async ask(request) {
-      // Only the last request matters.
+      // A new request replaces the previous one.
       running?.abort();
       const { signal } = (running = new AbortController());
       let used;
@@ -43,7 +44,7 @@ function post(request, used, signal) {
     body: JSON.stringify(request),
     signal,
   }).catch((error) => {
-    // Browsers have no word for it that would help.
+    // The browser's own message for a server that does not answer would not help.
     throw error instanceof TypeError ? new Error("the server is gone; start `tltlc serve` again") : error;
   });
 }
@@ -76,7 +77,7 @@ function inBrowser() {
       running = reply(worker, LIMIT_MS);
       return JSON.parse(await running.answer);
     } catch (error) {
-      // What a worker is at cannot be interrupted but by its end.
+      // The only way to interrupt a worker is to end it.
       stop();
       const title = GIVEN_UP[error.message];
       if (!title) throw error;
@@ -88,7 +89,8 @@ function inBrowser() {
   return {
     ask(request) {
       const mine = ++last;
-      // Nobody waits for an earlier text any more; to start a worker anew takes some seconds, too.
+      // The answer to the previous request is no longer needed. But a new worker takes seconds to start, so wait a little
+      // before ending the present one.
       if (running) setTimeout(running.giveUp, running.since + PATIENCE_MS - performance.now());
       const asked = busy.then(() => {
         if (mine !== last) throw new DOMException("a later request has come", "AbortError");
@@ -112,7 +114,7 @@ function givenUp(title) {
   return { code: "TLT0775", severity: "error", title, help, labels: [], ways_out: [] };
 }
 
-/** The next message of a worker: a promise, when it was begun, and how to end it. */
+/** Wait for the next message of a worker: `answer` is its promise, `since` when the wait began, `giveUp()` ends it. */
 function reply(worker, limit) {
   let giveUp;
   const answer = new Promise((resolve, reject) => {

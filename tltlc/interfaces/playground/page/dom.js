@@ -1,6 +1,6 @@
-// Elements, made in one call.
+// Make elements of the page.
 
-/** An element: `attributes` by name, functions as listeners; `children` are nodes or texts. */
+/** Make an element. Attributes that are functions become listeners; `children` are nodes or texts. */
 export function element(tag, attributes = {}, ...children) {
   const made = document.createElement(tag);
   for (const [name, value] of Object.entries(attributes)) {
@@ -14,12 +14,12 @@ export function element(tag, attributes = {}, ...children) {
 
 export const byId = (id) => document.getElementById(id);
 
-/** A text whose parts in backquotes are code. */
+/** Return the nodes of a text; its parts in backquotes become code elements. */
 export function prose(text) {
   return text.split("`").map((part, index) => (index % 2 ? element("code", {}, part) : part));
 }
 
-/** A number for people: three digits behind the point at most. */
+/** Return a number as text, with at most three decimals. */
 export function shown(number) {
   return String(Math.round(number * 1000) / 1000 + 0);
 }

@@ -1,9 +1,9 @@
-// The text: coloured, with line numbers, and what messages speak of underlined.
+// The text editor: colours, line numbers, and underlines at the places of messages.
 
 import { byId, element, prose } from "./dom.js";
 
 const TOKEN = /\/\/\/[^\n]*|\/\/[^\n]*|"[^"\n]*"?|\d+(?:\.\d+)?|[A-Za-z_][A-Za-z0-9_]*|\s+|[^\s]/g;
-/** Characters of a text; a longer one would take too long to be coloured at each keystroke. */
+/** Characters; colouring a longer text would take too long at each keystroke. */
 const MOST_COLOURED = 50_000;
 const BEFORE_BOUND = new Set(["eventually", "always", "next"]);
 
@@ -11,13 +11,13 @@ let words = new Set();
 let units = new Set();
 let marks = [];
 
-/** Colours and line numbers from now on; `typed` is called after each change. */
+/** Start the editor; `typed` is called after each change of the text. */
 export function begin(start, typed) {
   words = new Set(start.words);
   units = new Set(start.units);
   byId("text").readOnly = false;
   byId("text").addEventListener("input", () => {
-    // Places of messages are those of the text before.
+    // The messages belong to the text before the change, so their places may be wrong now.
     byId("messages").inert = true;
     marks = [];
     paint();
@@ -35,7 +35,7 @@ export function setText(value) {
   paint();
 }
 
-/** Show the messages of an answer, in the text and below it. */
+/** Show diagnostics: underlined in the text, and as a list below it. */
 export function show(diagnostics) {
   const length = text().length;
   marks = diagnostics.flatMap(({ severity, labels }) =>
@@ -77,7 +77,7 @@ function message({ code, severity, title, help, labels, ways_out: ways }) {
   );
 }
 
-/** Edit the text as if somebody typed it, so that it can be undone. */
+/** Apply the edits of a fix as if the user typed them, so that they can be undone. */
 function mend(edits) {
   const area = byId("text");
   area.focus();
@@ -114,7 +114,7 @@ function paint() {
   byId("gutter").textContent = Array.from(value.split("\n"), (_, index) => index + 1).join("\n");
 }
 
-/** The marks as stretches that do not meet, in order; where some do, the first one counts. */
+/** Return the marks as ranges that do not overlap, in order. Where marks overlap, the first one is used. */
 function stretches() {
   const cuts = [...new Set(marks.flatMap(({ start, end }) => [start, end]))].sort((a, b) => a - b);
   return cuts.slice(1).flatMap((end, index) => {

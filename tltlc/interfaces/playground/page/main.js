@@ -1,4 +1,4 @@
-// The page: one state, which everything on it shows.
+// The page: `page` holds its state, and everything on the page is drawn from it.
 
 import { compiler } from "./compiler.js";
 import { byId } from "./dom.js";
@@ -11,7 +11,7 @@ import * as trace from "./trace.js";
 const TYPING_MS = 250;
 const MOST_STEPS = 1000;
 const LONG_LINK = 4000;
-/** Characters; browsers take two million at most. */
+/** Characters; browsers allow at most two million. */
 const MOST_IN_LINK = 500_000;
 
 const asking = compiler();
@@ -48,13 +48,13 @@ async function begin() {
   if (!(await restore())) example(0);
 }
 
-/** The address has another fragment: a token, with which what failed is asked again, or a text. */
+/** The fragment of the address has changed: to a token, with which to repeat the failed request, or to another text. */
 function moved() {
   if (takeToken()) begun ? later(0) : location.reload();
   else if (begun && location.hash !== written) restore();
 }
 
-/** Ask in a while, unless something else changes before; an answer that is still to come is out of date. */
+/** Send a request after a delay; a later call replaces it. Answers to earlier requests are ignored from now on. */
 function later(milliseconds) {
   clearTimeout(timer);
   asked += 1;
@@ -75,7 +75,7 @@ async function ask() {
   }
 }
 
-/** Take an answer into the page. */
+/** Show an answer. */
 function take({ diagnostics, more, specs, tests, spec }) {
   editor.show(diagnostics);
   say(summary(diagnostics, more, specs, tests));
@@ -97,7 +97,7 @@ function take({ diagnostics, more, specs, tests, spec }) {
   remember();
 }
 
-/** Whether letters lacked values that this spec needs; they have them now. */
+/** Give each letter the signals of this spec that it lacks; return whether any lacked one. */
 function complete({ signals, idle }) {
   if (page.mode !== "signals") return false;
   let changed = false;
@@ -112,7 +112,7 @@ function complete({ signals, idle }) {
   return changed;
 }
 
-/** Letters of one mode follow those of the other. */
+/** Update the letters of the other mode, atoms or signals, from the answer. */
 function follow({ atoms, rows }) {
   rows.forEach((row, index) => {
     const letter = page.letters[index];
@@ -127,7 +127,7 @@ function render() {
   for (const input of document.getElementsByName("mode")) input.checked = input.value === mode;
   for (const input of document.getElementsByName("notation")) input.checked = input.value === notation;
   trace.show({ spec, letters, mode, current, rows });
-  // A button that is disabled loses the focus, and who walks by keyboard the place.
+  // `disabled` would take the focus away from a button, and a keyboard user would lose the place.
   byId("back").setAttribute("aria-disabled", current <= 0);
   byId("forth").setAttribute("aria-disabled", current >= letters.length - 1);
   if (!spec) return;
@@ -139,8 +139,8 @@ function render() {
 
 function summary(diagnostics, more, specs, tests) {
   const count = (severity, word) => {
-    const found = diagnostics.filter((each) => each.severity === severity).length;
-    return found ? [`${found} ${word}${found === 1 ? "" : "s"}`] : [];
+    const number = diagnostics.filter((diagnostic) => diagnostic.severity === severity).length;
+    return number ? [`${number} ${word}${number === 1 ? "" : "s"}`] : [];
   };
   const said = [...count("error", "error"), ...count("warning", "warning"), ...count("note", "note")];
   if (more) said.push(`${more} more messages`);
@@ -161,7 +161,7 @@ function example(index) {
   later(0);
 }
 
-/** Say which example the text is, if it is one. */
+/** Show in the menu which example the text is, if it is one. */
 function named() {
   const open = begun.examples.findIndex((example) => example.text === editor.text());
   byId("examples").value = open < 0 ? "" : open;
@@ -172,7 +172,7 @@ function pickSpec(name) {
   later(0);
 }
 
-/** Show what remains in a state; a second click, and the current one is shown again. */
+/** Show what remains in a state; after a second click, show the current state again. */
 function pick(state) {
   page.picked = page.picked === state ? null : state;
   render();
@@ -225,19 +225,19 @@ function choose(mode) {
   later(0);
 }
 
-/** Write the picture in words or in symbols, from now on. */
+/** Write the picture in words or in symbols. */
 function write(notation) {
   page.notation = kept("notation", notation);
   later(0);
 }
 
-/** Keep the fragment of the address up to date, in a while: browsers allow few changes of it a second. */
+/** Update the fragment of the address after a delay: browsers allow few changes of it per second. */
 function remember() {
   clearTimeout(remembering);
   remembering = setTimeout(keep, 300);
 }
 
-/** Put all of this into the fragment, so that a reload or a copy of the address brings it back; whether it fits. */
+/** Store the state in the fragment, for reloads and copied links. Return whether it fits; if not, clear the fragment. */
 async function keep() {
   clearTimeout(remembering);
   const letters = page.letters.map((letter) => letter[page.mode]);
@@ -248,7 +248,7 @@ async function keep() {
   return fits;
 }
 
-/** Take what a link has, which anybody may have written. */
+/** Restore the state from the fragment. Anybody may have written it, so every value is checked. */
 async function restore() {
   const found = await unpacked(location.hash);
   if (typeof found?.text !== "string") return false;
@@ -291,7 +291,7 @@ function theme() {
   });
 }
 
-/** What the reader chose before, or chooses now. */
+/** Store a choice of the user, if `value` is given; return the stored choice. */
 function kept(name, value) {
   // Storage may be forbidden.
   try {

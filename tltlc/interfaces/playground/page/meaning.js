@@ -1,11 +1,11 @@
-// What a spec asks for, in words, and its automaton as a picture.
+// Show what a spec asks for in words, and its automaton as a picture.
 
 import { byId, element } from "./dom.js";
 
 let svg = null;
 let drawn = "";
 
-/** Show a spec; `pick` is called with the number of a state that is clicked. */
+/** Show a spec. `choose` is called with the name of another spec, `pick` with the number of a clicked state. */
 export function show(spec, specs, choose, pick) {
   for (const id of ["meaning", "automaton"]) byId(id).hidden = false;
   byId("specs").replaceChildren(
@@ -17,7 +17,7 @@ export function show(spec, specs, choose, pick) {
   draw(spec, pick);
 }
 
-/** Whether what is shown is that of an earlier text; a trace of that one cannot go on. */
+/** Mark what is shown as that of an earlier text, or as current. A trace of an earlier text cannot be continued. */
 export function stale(is) {
   byId("trace").inert = is;
   for (const id of ["meaning", "automaton", "trace"]) byId(id).classList.toggle("stale", is);
@@ -77,12 +77,12 @@ function draw({ picture, note, name }, pick) {
       act();
     });
   }
-  // It shrinks to fit, but not so far that nothing can be read.
+  // The picture shrinks to fit, but stays readable.
   svg.style.minWidth = `${0.65 * svg.width.baseVal.value}px`;
   byId("picture").replaceChildren(svg);
 }
 
-/** Light the current state and the edge that led there, and outline the one that was clicked. */
+/** Highlight the current state and the edge that led to it, and outline the clicked state. */
 export function light(current, edge, picked) {
   if (!svg) return;
   const groupOf = (state) => [...svg.querySelectorAll(".state")].find((group) => group.dataset.states.split(" ").includes(String(state)));
@@ -98,7 +98,7 @@ export function light(current, edge, picked) {
   }
 }
 
-/** Say what remains in a state, in words, and as a formula too where the picture is in symbols. */
+/** Show what remains in a state in words; if the picture is in symbols, also as a formula. */
 export function tell(state, notation) {
   if (!state) {
     byId("state").replaceChildren(element("p", { class: "quiet" }, "Click a state to see what remains there."));

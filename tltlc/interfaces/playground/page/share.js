@@ -1,9 +1,9 @@
-// Links that carry everything: JSON, deflated, in the fragment, which no browser sends to any server.
+// Links that contain the state of the page: deflated JSON in the fragment, which browsers do not send to servers.
 
 const MARK = "#1.";
 const MOST_CHARACTERS = 10_000_000;
 
-/** The fragment for a value of JSON. */
+/** Return the fragment for a JSON value. */
 export async function packed(value) {
   const stream = new Blob([JSON.stringify(value)]).stream().pipeThrough(new CompressionStream("deflate-raw"));
   const bytes = new Uint8Array(await new Response(stream).arrayBuffer());
@@ -12,7 +12,7 @@ export async function packed(value) {
   return MARK + btoa(text).replaceAll("+", "-").replaceAll("/", "_").replaceAll("=", "");
 }
 
-/** The value in a fragment, or null where there is none, or none that can be read. */
+/** Return the value in a fragment; null if there is none, or if it cannot be read. */
 export async function unpacked(fragment) {
   if (!fragment.startsWith(MARK)) return null;
   try {
@@ -31,7 +31,7 @@ async function read(stream) {
     const { done, value } = await reader.read();
     if (done) return text;
     text += value;
-    // A short link can unpack to more than there is room for.
+    // A short link can unpack to more than the memory holds.
     if (text.length > MOST_CHARACTERS) throw new Error("too long");
   }
 }

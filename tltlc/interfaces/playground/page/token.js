@@ -1,26 +1,26 @@
-// The token that the server asks for: it comes in the fragment of the address, and is kept for reloads and other tabs.
-// It is kept only after the server has accepted it, so that a link with a wrong one takes nothing away.
+// The token that the server requires. It comes in the fragment of the address, and is stored for reloads and other tabs.
+// It is stored only after the server has accepted it, so that a link with a wrong token does not replace a right one.
 
 const MARK = "#token=";
 const NAME = "token";
-/** That of the address, until the server accepts or refuses it. */
+/** The token from the address, until the server accepts or refuses it. */
 let offered = "";
-/** The last one that the server has accepted. */
+/** The last token that the server has accepted. */
 let accepted = "";
 
-/** Look for a token in the address; whether there is one. */
+/** Take a token from the address; return whether there is one. */
 export function takeToken() {
   if (!location.hash.startsWith(MARK)) return false;
   offered = location.hash.slice(MARK.length);
   return true;
 }
 
-/** The token to try, or nothing where there is none. */
+/** Return the token to send; empty if there is none. */
 export function token() {
   return offered || accepted || stored();
 }
 
-/** The server has accepted a token: keep it, and take it out of the address, where a copied link would give it away. */
+/** Store a token that the server has accepted. Remove it from the address, because a copied link would reveal it. */
 export function keepToken(used) {
   accepted = used;
   if (used !== offered) return;
@@ -29,11 +29,11 @@ export function keepToken(used) {
     localStorage.setItem(NAME, used);
     clearAddress(used);
   } catch {
-    // Storage may be forbidden; then the address keeps the token until something else stands there.
+    // Storage may be forbidden. Then the token stays in the address until the address changes.
   }
 }
 
-/** The server has refused a token: forget it; whether there is another one to try. */
+/** Forget a token that the server has refused; return whether there is another one to try. */
 export function refuseToken(used) {
   if (used === offered) {
     offered = "";

@@ -1,4 +1,4 @@
-// The table of a trace: a row per step, a column per atom to toggle or per signal to set, and what became of it.
+// The table of a trace: one row per step, with a control for each atom or signal, and the monitor's output.
 
 import { byId, element, prose, shown } from "./dom.js";
 
@@ -7,12 +7,12 @@ const MOST_NAMES = 4;
 let built = "";
 let handlers = {};
 
-/** `changed()` after a letter has changed, `go(index)` to make a step the current one, `remove(index)`. */
+/** Set the handlers: `changed()` is called after a letter has changed, `go(index)` to select a step, `remove(index)`. */
 export function begin(given) {
   handlers = given;
 }
 
-/** Show the steps; the table is made anew only where it must be, so that a slider that is being moved stays. */
+/** Show the steps. Rebuild the table only if its shape changes, so that a slider keeps the focus while it is moved. */
 export function show({ spec, letters, mode, current, rows }) {
   byId("trace").hidden = !spec;
   if (!spec) return;
@@ -107,14 +107,14 @@ function fill(row, letter, said, mode, columns) {
   row.querySelector(".reward").textContent = known ? shown(said.reward) : "";
 }
 
-/** What the letters say that this spec knows nothing of. */
+/** Return the names in the letters that this spec does not have. */
 function strangers(spec, letters, mode) {
   const known = new Set(spec[mode].map(({ name }) => name));
   const said = letters.flatMap((letter) => (mode === "atoms" ? letter.atoms : Object.keys(letter.signals ?? {})));
   return [...new Set(said)].filter((name) => !known.has(name));
 }
 
-/** Say so where the trace is one of an earlier text. */
+/** Warn if the trace was made for an earlier text. */
 function warn(names, mode) {
   const place = byId("strange");
   place.hidden = !names.length;

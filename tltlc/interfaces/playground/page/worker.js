@@ -1,4 +1,4 @@
-// Python with the compiler, beside the page: it answers one request after the other.
+// A worker that runs the compiler in Python, with Pyodide. It answers one request after another.
 
 import { loadPyodide } from "./pyodide/pyodide.mjs";
 
@@ -23,7 +23,7 @@ self.onmessage = ({ data }) => {
   try {
     self.postMessage({ answer: answer(data) });
   } catch (error) {
-    // A browser's stack ends earlier than Python knows; Firefox calls that an InternalError.
+    // The browser's stack may overflow before Python's recursion limit. Firefox then throws an InternalError.
     const isDeep = ["RangeError", "InternalError"].includes(error.name);
     self.postMessage({ error: isDeep ? "deep" : String(error.message ?? error) });
   }
