@@ -13,13 +13,13 @@ import pytest
 from tests.docs.blocks import DOCS, ROOT, blocks
 from tests.docs.test_pages import PAGES
 from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.interfaces.cli.command_line import OF_THE_RUNTIME, cli
+from tltlc.interfaces.cli.command_line import RUNTIME_COMMANDS, cli
 
 # The page of TLT0700 shows wrong usage on purpose.
 CODES = (ROOT / "tltlc" / "diagnostics" / "pages").glob("*.md")
 PAGES_OF_CODES = sorted(path for path in CODES if path.stem != "TLT0700")
 CONTEXT = click.Context(cli, info_name="tltlc", **cli.context_settings)
-NAMES = {*cli.list_commands(CONTEXT), *OF_THE_RUNTIME}
+NAMES = {*cli.list_commands(CONTEXT), *RUNTIME_COMMANDS}
 NO_OPTIONS = re.compile(r"""\$\(.*|'[^']*'|"[^"]*\"""")
 """Quoted values, and calls of other programs."""
 

@@ -12,7 +12,7 @@ import pytest
 
 from tests.docs.blocks import DOCS, blocks
 from tests.docs.sessions import Shell, run_page
-from tests.interfaces.cli.test_readme import said
+from tests.interfaces.cli.test_readme import texts_and_colours
 
 PAGE = DOCS / "tutorial.md"
 LEVEL = "## Played in a level\n"
@@ -33,7 +33,7 @@ def test_the_tutorial_runs(tmp_path: Path) -> None:
     spec = next(block.text for block in page_blocks if block.kind == "tltl")
     assert (shell.folder / "first_level.tltl").read_text(encoding="utf-8") == spec
     pictures = shell.folder / "first_level.svg", DOCS / "images" / "leave_with_key.svg"
-    assert len({tuple(said(picture.read_text(encoding="utf-8"))) for picture in pictures}) == 1
+    assert len({tuple(texts_and_colours(picture.read_text(encoding="utf-8"))) for picture in pictures}) == 1
     program, printed = next((block, after) for block, after in pairwise(page_blocks) if block.kind == "python")
     (shell.folder / "build" / "game.py").write_text(program.text)
     assert shell.run("python build/game.py") == printed.text

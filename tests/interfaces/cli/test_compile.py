@@ -144,14 +144,14 @@ def test_two_files_with_specs_of_the_same_name_are_rejected(tltlc, inside: Path)
 
 
 @pytest.mark.parametrize(
-    ("said", "meant"),
+    ("name", "suggestion"),
     [("C#", "csharp"), ("cpp", "c"), ("js", "javascript"), ("godot", "gdscript"), ("pyton", "python")],
 )
-def test_other_names_of_a_target_get_a_suggestion(said: str, meant: str, tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
-    outcome = tltlc("compile", "hide.tltl", "-t", said)
+def test_other_names_of_a_target_get_a_suggestion(name: str, suggestion: str, tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
+    outcome = tltlc("compile", "hide.tltl", "-t", name)
     assert (outcome.status, outcome.err) == (
         2,
-        f"error[TLT0710]: there is no target `{said}`\n  help: did you mean `{meant}`?\n",
+        f"error[TLT0710]: there is no target `{name}`\n  help: did you mean `{suggestion}`?\n",
     )
 
 

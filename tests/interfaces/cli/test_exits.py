@@ -196,7 +196,7 @@ def test_the_summary_counts_files_with_errors(tltlc, inside: Path) -> None:  # t
 
 
 @pytest.mark.parametrize(
-    ("type_", "text", "said"),
+    ("type_", "text", "message"),
     [
         (click.FLOAT, "1,5", "`1,5` is no number; write 1.5"),
         (click.FloatRange(min=0.0), "fast", "`fast` is no number"),
@@ -204,13 +204,13 @@ def test_the_summary_counts_files_with_errors(tltlc, inside: Path) -> None:  # t
     ],
 )
 def test_an_invalid_number_is_reported(
-    type_: click.ParamType, text: str, said: str, capsys: pytest.CaptureFixture[str]
+    type_: click.ParamType, text: str, message: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     command = click.Command("wait", params=[click.Option(["--for"], type=type_)])
     with pytest.raises(click.UsageError) as error:
         command.main(["--for", text], standalone_mode=False)
     assert exits.report(error.value) == exits.USAGE
-    assert capsys.readouterr().err.startswith(f"error[TLT0700]: invalid value for '--for': {said}\n")
+    assert capsys.readouterr().err.startswith(f"error[TLT0700]: invalid value for '--for': {message}\n")
 
 
 def test_a_path_that_the_system_rejects_is_not_reported_as_a_bug(capsys: pytest.CaptureFixture[str]) -> None:

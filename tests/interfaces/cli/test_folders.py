@@ -12,7 +12,7 @@ import pytest
 from tests import pipes
 from tests.interfaces.cli.conftest import HIDE, Outcome
 from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.interfaces.cli.folders import below
+from tltlc.interfaces.cli.folders import files_below
 from tltlc.pipeline import load
 
 Command = Callable[..., Outcome]
@@ -179,4 +179,4 @@ def test_a_folder_that_cannot_be_read_is_an_error(tmp_path: Path, monkeypatch: p
 
     monkeypatch.setattr(os, "scandir", refused)
     with pytest.raises(TltlError, match=r"TLT0001: cannot read `.*inside`: permission denied"):
-        below(tmp_path)
+        files_below(tmp_path)

@@ -28,7 +28,7 @@ EACH = settings(
 
 
 @st.composite
-def mutated(draw: st.DrawFn) -> str:
+def mutated_examples(draw: st.DrawFn) -> str:
     """An example with a few pieces removed, doubled or replaced."""
     text = draw(st.sampled_from(SPECS))
     for _ in range(draw(st.integers(1, 4))):
@@ -61,7 +61,7 @@ def test_words_in_any_order_end_with_a_status(text: str, tmp_path: Path) -> None
     check(text.encode(), tmp_path)
 
 
-@given(text=mutated())
+@given(text=mutated_examples())
 @EACH
 def test_mutated_examples_end_with_a_status(text: str, tmp_path: Path) -> None:
     check(text.encode("utf-8", "surrogatepass"), tmp_path)

@@ -90,7 +90,7 @@ def test_params_apply_to_sources_and_artefacts(tltlc, inside: Path) -> None:  # 
 
 
 @pytest.mark.parametrize(
-    ("command", "meant"),
+    ("command", "suggestion"),
     [
         (("explain", "dash"), "levels/deep/dash.tltl:dash"),
         (("render", "hide"), "hide.tltl"),
@@ -102,7 +102,7 @@ def test_params_apply_to_sources_and_artefacts(tltlc, inside: Path) -> None:  # 
     ],
 )
 def test_a_spec_name_in_place_of_a_file_gets_a_suggestion(  # type: ignore[no-untyped-def]
-    command: tuple[str, ...], meant: str | None, tltlc, inside: Path
+    command: tuple[str, ...], suggestion: str | None, tltlc, inside: Path
 ) -> None:
     for name, text in {
         "levels/deep/dash.tltl": "// not spec spoken_of\nsignal loud: bool\nspec dash = F loud\nspec\n",
@@ -114,8 +114,8 @@ def test_a_spec_name_in_place_of_a_file_gets_a_suggestion(  # type: ignore[no-un
         Path(name).write_text(text)
     outcome = tltlc(*command)
     assert outcome.status == 3
-    assert ("did you mean" in outcome.err) == (meant is not None)
-    assert meant is None or f"\n  help: did you mean `{meant}`?\n" in outcome.err
+    assert ("did you mean" in outcome.err) == (suggestion is not None)
+    assert suggestion is None or f"\n  help: did you mean `{suggestion}`?\n" in outcome.err
 
 
 def test_the_search_for_a_spec_stops_after_some_folders(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]

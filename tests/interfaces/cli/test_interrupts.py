@@ -26,24 +26,24 @@ except BaseException:
 """
 
 
-def _started(folder: Path, script: str) -> subprocess.Popen[str]:
-    script = f"from tltlc.interfaces.cli.interrupts import signals_end\n{script}"
+def _start(folder: Path, script: str) -> subprocess.Popen[str]:
+    script = f"from tltlc.interfaces.cli.interrupts import end_on_signals\n{script}"
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(folder), str(ROOT)])}
     return subprocess.Popen([sys.executable, "-c", script], env=environment, stdout=-1, stderr=-1, text=True)
 
 
 def _run(folder: Path, script: str) -> subprocess.CompletedProcess[str]:
     """Run a process that is interrupted by itself at most."""
-    with _started(folder, script) as running:
+    with _start(folder, script) as running:
         out, err = running.communicate(timeout=HANG_S)
     return subprocess.CompletedProcess(running.args, running.returncode, out, err)
 
 
-def _ended(folder: Path, script: str, expected_line: str) -> tuple[int, str, str]:
+def _interrupt_at_line(folder: Path, script: str, expected_line: str) -> tuple[int, str, str]:
     """Interrupt a process as soon as it prints ``expected_line``; return its status, output and
     messages."""
     (folder / "slow.py").write_text(_SLOW, encoding="utf-8")
-    with _started(folder, script) as running:
+    with _start(folder, script) as running:
         assert running.stdout is not None
         assert running.stdout.readline() == expected_line
         running.send_signal(signal.SIGINT)
@@ -52,8 +52,8 @@ def _ended(folder: Path, script: str, expected_line: str) -> tuple[int, str, str
 
 
 def test_an_import_finishes_before_its_interrupt(tmp_path: Path) -> None:
-    script = "import time\nwith signals_end():\n    import slow\n    print('imported')\n    time.sleep(60)"
-    status, out, err = _ended(tmp_path, script, "imports\n")
+    script = "import time\nwith end_on_signals():\n    import slow\n    print('imported')\n    time.sleep(60)"
+    status, out, err = _interrupt_at_line(tmp_path, script, "imports\n")
     assert (status, err) == (130, "")
     # On a slow machine, the interrupt may arrive right after the import.
     assert out in ("", "imported\n")
@@ -61,8 +61,8 @@ def test_an_import_finishes_before_its_interrupt(tmp_path: Path) -> None:
 
 def test_an_interrupt_ends_an_endless_import(tmp_path: Path) -> None:
     (tmp_path / "endless.py").write_text("import slow, time\nwhile True:\n    time.sleep(0.01)\n", encoding="utf-8")
-    script = "with signals_end():\n    print('begins', flush=True)\n    import endless"
-    status, _, err = _ended(tmp_path, script, "begins\n")
+    script = "with end_on_signals():\n    print('begins', flush=True)\n    import endless"
+    status, _, err = _interrupt_at_line(tmp_path, script, "begins\n")
     assert (status, err) == (130, "")
 
 
@@ -70,17 +70,17 @@ def test_an_interrupt_at_exit_changes_nothing(tmp_path: Path) -> None:
     script = (
         "import atexit, sys, time\n"
         "atexit.register(lambda: (print('ends', flush=True), time.sleep(0.5)))\n"
-        "with signals_end():\n    sys.exit(1)"
+        "with end_on_signals():\n    sys.exit(1)"
     )
-    assert _ended(tmp_path, script, "ends\n") == (1, "", "")
+    assert _interrupt_at_line(tmp_path, script, "ends\n") == (1, "", "")
 
 
 def test_an_ignored_signal_stays_ignored(tmp_path: Path) -> None:
     script = (
         "import signal, time\nsignal.signal(signal.SIGINT, signal.SIG_IGN)\n"
-        "with signals_end():\n    print('works', flush=True)\n    time.sleep(0.5)\n    print('over')"
+        "with end_on_signals():\n    print('works', flush=True)\n    time.sleep(0.5)\n    print('over')"
     )
-    assert _ended(tmp_path, script, "works\n") == (0, "over\n", "")
+    assert _interrupt_at_line(tmp_path, script, "works\n") == (0, "over\n", "")
 
 
 def test_an_error_after_an_interrupt_is_not_reported_as_a_bug(tmp_path: Path) -> None:
@@ -94,7 +94,7 @@ def test_an_error_after_an_interrupt_is_not_reported_as_a_bug(tmp_path: Path) ->
         "import sys; sys.argv = ['tltlc', 'check']\n"
         "main.main()"
     )
-    assert _ended(tmp_path, script, "works\n") == (130, "", "")
+    assert _interrupt_at_line(tmp_path, script, "works\n") == (130, "", "")
 
 
 @pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP"])
@@ -123,14 +123,16 @@ for name in ("SIGINT", "SIGTERM", "SIGHUP"):
 
 
 def test_a_child_process_has_the_default_handlers(tmp_path: Path) -> None:
-    start = f"with signals_end():\n    import subprocess, sys\n    subprocess.run([sys.executable, '-c', {HANDLERS!r}])"
+    start = (
+        f"with end_on_signals():\n    import subprocess, sys\n    subprocess.run([sys.executable, '-c', {HANDLERS!r}])"
+    )
     # For SIGINT this is Python's own handler.
     assert _run(tmp_path, start).stdout.split() == ["default_int_handler", "default", "default"]
 
 
 def test_a_forked_process_handles_sigint_and_has_the_other_defaults(tmp_path: Path) -> None:
     fork = (
-        "import os\nwith signals_end():\n    child = os.fork()\n    if not child:\n"
+        "import os\nwith end_on_signals():\n    child = os.fork()\n    if not child:\n"
         f"        exec({HANDLERS!r})\n        os._exit(0)\n    os.waitpid(child, 0)"
     )
     assert _run(tmp_path, fork).stdout.split() == ["interrupt", "default", "default"]

@@ -27,7 +27,7 @@ def test_the_shipped_files_have_no_findings(folder: str, tltlc: Command) -> None
     assert outcome.err.endswith("files: nothing to report\n")
 
 
-def test_exit_statuses(tltlc: Command, inside: Path) -> None:
+def test_errors_and_warnings_exit_with_1_and_notes_with_0(tltlc: Command, inside: Path) -> None:
     texts = {"clean": "signal a: bool\nspec s = F a\n", "warned": UNUSED, "noted": NOTED, "broken": "spec s = F a\n"}
     for name, text in texts.items():
         Path(f"{name}.tltl").write_text(text)
@@ -127,7 +127,7 @@ def test_uses_in_files_of_the_same_run_count(tltlc: Command, inside: Path) -> No
     assert (Path("here/level.tltl").read_text(), Path("there/user.tltl").read_text()) == (text, user)
 
 
-def test_output_formats(tltlc: Command, inside: Path) -> None:
+def test_findings_are_printed_in_each_format(tltlc: Command, inside: Path) -> None:
     Path("s.tltl").write_text(UNUSED)
     assert [
         diagnostic["code"] for diagnostic in json.loads(tltlc("lint", "--format", "json", "s.tltl").out)["diagnostics"]

@@ -19,7 +19,7 @@ HEAVY = {
 }  # fmt: skip
 
 
-def loaded(*arguments: str | Path, folder: Path) -> set[str]:
+def loaded_modules(*arguments: str | Path, folder: Path) -> set[str]:
     """Return the modules that are loaded at the end of a command."""
     program = (
         "import sys, atexit\n"
@@ -56,31 +56,33 @@ def loaded(*arguments: str | Path, folder: Path) -> set[str]:
     ids=lambda arguments: arguments[0],
 )
 def test_no_heavy_module_is_imported(arguments: tuple[str | Path, ...], tmp_path: Path) -> None:
-    loaded("check", EXAMPLE, folder=tmp_path)
+    loaded_modules("check", EXAMPLE, folder=tmp_path)
     # The target `dot` is a default target, and it uses graphviz.
     written = {"graphviz"} if arguments[0] == "compile" else set()
-    assert not loaded(*arguments, folder=tmp_path) & HEAVY - written
+    assert not loaded_modules(*arguments, folder=tmp_path) & HEAVY - written
 
 
 def test_only_infinite_specs_load_the_modules_for_them(tmp_path: Path) -> None:
-    def rabin(*arguments: str | Path) -> set[str]:
-        return {name for name in loaded(*arguments, folder=tmp_path) if name.startswith("tltlc.automaton.infinite")}
+    def infinite_modules(*arguments: str | Path) -> set[str]:
+        return {
+            name for name in loaded_modules(*arguments, folder=tmp_path) if name.startswith("tltlc.automaton.infinite")
+        }
 
-    assert not rabin("compile", EXAMPLE, "-t", "json,python,dot")
-    assert not rabin("compile", "cover_and_hide.fspa.json", "-t", "mermaid")
-    assert not rabin("explain", EXAMPLE)
+    assert not infinite_modules("compile", EXAMPLE, "-t", "json,python,dot")
+    assert not infinite_modules("compile", "cover_and_hide.fspa.json", "-t", "mermaid")
+    assert not infinite_modules("explain", EXAMPLE)
     # Strongly connected components are computed for any graph.
-    assert rabin("witness", EXAMPLE) == {"tltlc.automaton.infinite", "tltlc.automaton.infinite.graphs"}
+    assert infinite_modules("witness", EXAMPLE) == {"tltlc.automaton.infinite", "tltlc.automaton.infinite.graphs"}
     endless = tmp_path / "again.tltl"
     endless.write_text("signal a: bool\nspec again { semantics infinite  require G F a }\n", encoding="utf-8")
-    assert "tltlc.automaton.infinite.construct" in rabin("compile", endless, "-t", "json")
+    assert "tltlc.automaton.infinite.construct" in infinite_modules("compile", endless, "-t", "json")
     # An artefact is checked; nothing is constructed.
-    assert "tltlc.automaton.infinite.cycles" in rabin("compile", "again.fspa.json", "-t", "mermaid")
-    assert "tltlc.automaton.infinite.construct" not in rabin("compile", "again.fspa.json", "-t", "mermaid")
+    assert "tltlc.automaton.infinite.cycles" in infinite_modules("compile", "again.fspa.json", "-t", "mermaid")
+    assert "tltlc.automaton.infinite.construct" not in infinite_modules("compile", "again.fspa.json", "-t", "mermaid")
 
 
 def test_help_loads_no_command_and_no_compiler(tmp_path: Path) -> None:
-    modules = {name for name in loaded("--help", folder=tmp_path) if name.startswith("tltlc")}
+    modules = {name for name in loaded_modules("--help", folder=tmp_path) if name.startswith("tltlc")}
     line = {
         "tltlc",
         "tltlc.interfaces.cli",

@@ -10,7 +10,7 @@ import click
 import pytest
 
 from tests.interfaces.cli.conftest import EXAMPLE
-from tltlc.interfaces.cli.command_line import BUILT_IN, OF_THE_RUNTIME, cli
+from tltlc.interfaces.cli.command_line import BUILT_IN, RUNTIME_COMMANDS, cli
 from tltlc.interfaces.cli.paths import OutputPath
 
 READ: Final = {"library", "pyodide", "resume", "config", "demonstrations", "policy", "suite", "baseline", "libraries"}
@@ -19,7 +19,7 @@ READ: Final = {"library", "pyodide", "resume", "config", "demonstrations", "poli
 
 def commands() -> Iterator[tuple[str, click.Command]]:
     context = click.Context(cli)
-    for name in (*BUILT_IN, *OF_THE_RUNTIME):
+    for name in (*BUILT_IN, *RUNTIME_COMMANDS):
         try:
             command = cli.get_command(context, name)
         except Exception:

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from tests.interfaces.cli.conftest import ROOT
-from tltlc.interfaces.cli.command_line import OF_THE_RUNTIME
+from tltlc.interfaces.cli.command_line import RUNTIME_COMMANDS
 
 if sys.version_info >= (3, 11):
     import tomllib as tomli
@@ -48,7 +48,7 @@ def test_help_imports_no_plugin(process, installed: str) -> None:  # type: ignor
 def test_built_in_plugins_are_known_and_need_an_extra() -> None:
     project = tomli.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     groups = project["entry-points"]
-    assert groups["tltlc.commands"].keys() == OF_THE_RUNTIME.keys()
+    assert groups["tltlc.commands"].keys() == RUNTIME_COMMANDS.keys()
     own = [entry for name, group in groups.items() if name.startswith("tltlc.") for entry in group.values()]
     assert all(entry.endswith((" [game]", " [rl]")) for entry in own)
 
@@ -85,7 +85,7 @@ LEVELS = """import click
 @click.command()
 @click.option("--map")
 def command(levels, inputs, settings, report, map):
-    print(levels, [each.name for each in inputs], settings.params, report.format, map)
+    print(levels, [spec_input.name for spec_input in inputs], settings.params, report.format, map)
 """
 
 

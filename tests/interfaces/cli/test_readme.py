@@ -45,10 +45,10 @@ def test_the_readme_names_every_command() -> None:
 
 def test_the_picture_of_the_readme_is_current(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
     drawn = tltlc("render", ROOT / "examples" / "cover_and_hide.tltl", "-t", "svg").out
-    assert said((ROOT / "docs/images/cover_and_hide.svg").read_text()) == said(drawn)
+    assert texts_and_colours((ROOT / "docs/images/cover_and_hide.svg").read_text()) == texts_and_colours(drawn)
 
 
-def said(picture: str) -> list[tuple[str, ...]]:
+def texts_and_colours(picture: str) -> list[tuple[str, ...]]:
     """The texts and titles of an SVG with their colours. Positions are left out, because they
     depend on the machine's fonts."""
     return [

@@ -22,13 +22,13 @@ def text(diagnostics: list[Diagnostic], format_: str = "text") -> str:
 
 
 def test_text_shows_the_first_of_many_and_counts_the_rest() -> None:
-    shown = text(
+    output = text(
         [*diagnostics_of("TLT0802", 4000), *diagnostics_of("TLT0803", 1), *diagnostics_of("TLT0802", 21, "b.toml")]
     )
-    assert shown.count("error[TLT0802]: no key") == 40
-    assert "no key 19\n" in shown and "no key 20\n" not in shown
-    assert "error[TLT0803]: no key 0" in shown
-    assert shown.endswith(
+    assert output.count("error[TLT0802]: no key") == 40
+    assert "no key 19\n" in output and "no key 20\n" not in output
+    assert "error[TLT0803]: no key 0" in output
+    assert output.endswith(
         "\nerror[TLT0802]: 3,980 more like the 20 above in a.toml\n"
         "\nerror[TLT0802]: 1 more like the 20 above in b.toml\n"
     )

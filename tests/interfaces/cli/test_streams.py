@@ -17,7 +17,7 @@ import pytest
 
 from tests.interfaces.cli.conftest import ROOT
 from tests.waiting import HANG_S
-from tltlc.interfaces.cli.command_line import BUILT_IN, OF_THE_RUNTIME, cli
+from tltlc.interfaces.cli.command_line import BUILT_IN, RUNTIME_COMMANDS, cli
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="needs descriptors that a shell closes")
 
@@ -86,12 +86,12 @@ def _cases(table: dict[str, list[tuple[str, ...]]]) -> list[tuple[str, ...]]:
 
 
 def test_the_tables_list_every_command() -> None:
-    known = cli.commands.keys() | set(BUILT_IN) | set(OF_THE_RUNTIME)
+    known = cli.commands.keys() | set(BUILT_IN) | set(RUNTIME_COMMANDS)
     assert known == {*QUICK, *OF_GAMES, *LASTING} - {""}
 
 
 @dataclass(frozen=True)
-class Ended:
+class Run:
     status: int
     out: bytes
     err: bytes
@@ -117,16 +117,16 @@ def _inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(name="recorded", scope="module")
-def _recorded(inputs: Path) -> Path:
+def _inputs_with_recording(inputs: Path) -> Path:
     """The inputs, and a recording of an episode."""
     if find_spec("pybullet") is None or find_spec("torch") is None:
         pytest.skip("needs the extra rl")
-    ended = _run(inputs, ("demonstrate", "cover_and_hide", "-o", "demo"), "")
-    assert ended.status == 0, ended.err
+    run_copy = _run(inputs, ("demonstrate", "cover_and_hide", "-o", "demo"), "")
+    assert run_copy.status == 0, run_copy.err
     return inputs
 
 
-def _run(folder: Path, arguments: tuple[str, ...], closed: str) -> Ended:
+def _run(folder: Path, arguments: tuple[str, ...], closed: str) -> Run:
     """Run a command line in a folder, with streams closed by a redirection in shell syntax."""
     stdin = "" if "<" in closed else "</dev/null"
     completed = subprocess.run(
@@ -138,7 +138,7 @@ def _run(folder: Path, arguments: tuple[str, ...], closed: str) -> Ended:
         check=False,
     )
     paths = [path for path in folder.rglob("*") if path.is_file()]
-    return Ended(
+    return Run(
         completed.returncode,
         completed.stdout,
         completed.stderr,
@@ -151,32 +151,32 @@ def _check(
 ) -> None:
     """Compare a run with open streams to runs with closed streams."""
 
-    def ended(closed: str) -> Ended:
+    def run_copy(closed: str) -> Run:
         shutil.rmtree(folder, ignore_errors=True)
         shutil.copytree(inputs, folder)
         return _run(folder, arguments, closed)
 
-    usual = ended("")
-    assert usual.status != 70 and b"Traceback" not in usual.err
+    open_run = run_copy("")
+    assert open_run.status != 70 and b"Traceback" not in open_run.err
     reads = "-" in arguments
     for closed in streams:
-        ended_run = ended(closed)
-        messages = ended_run.err.decode()
-        expected_status = usual.status
+        run = run_copy(closed)
+        messages = run.err.decode()
+        expected_status = open_run.status
         if "<" in closed and reads:
             expected_status = 3
             assert "2>" in closed or "cannot read standard input: it is closed" in messages
-        elif ">&-" in closed.replace("2>&-", "") and usual.out:
+        elif ">&-" in closed.replace("2>&-", "") and open_run.out:
             expected_status = 3
             assert "2>" in closed or "cannot write to standard output: it is closed" in messages
         elif same_bytes and "2>" not in closed:
-            assert ended_run.err == usual.err, closed
-        assert ended_run.status == expected_status, (closed, messages)
-        assert ended_run.files.keys() == usual.files.keys(), closed
-        assert not same_bytes or ended_run.files == usual.files, closed
-        assert b"Traceback" not in ended_run.err and b"bug in tltlc" not in ended_run.err, closed
-        if expected_status == usual.status and ended_run.out:
-            assert not same_bytes or ended_run.out == usual.out, closed
+            assert run.err == open_run.err, closed
+        assert run.status == expected_status, (closed, messages)
+        assert run.files.keys() == open_run.files.keys(), closed
+        assert not same_bytes or run.files == open_run.files, closed
+        assert b"Traceback" not in run.err and b"bug in tltlc" not in run.err, closed
+        if expected_status == open_run.status and run.out:
+            assert not same_bytes or run.out == open_run.out, closed
 
 
 @pytest.mark.parametrize("arguments", _cases(QUICK), ids=" ".join)

@@ -20,7 +20,7 @@ LIBRARY = "signal seen: bool\nlet hidden = !seen\n"
 SPECS = "import lib\nspec calm = G hidden\nspec found = F seen\n"
 
 
-class Watching:
+class WatchProcess:
     """A running command; its messages are read from one wait for changes to the next."""
 
     def __init__(self, *arguments: str) -> None:
@@ -42,9 +42,9 @@ class Watching:
             lines.append(line)
         return "".join(lines[:-1])
 
-    def wait_for_messages(self, wanted: str) -> None:
+    def wait_for_messages(self, text: str) -> None:
         """Read until a message contains a text; the first of two edits may be reported alone."""
-        while wanted not in self.next_messages():
+        while text not in self.next_messages():
             pass
 
     def end(self) -> int:
@@ -63,10 +63,10 @@ pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="needs a signal 
 
 
 @pytest.fixture
-def watching(inside: Path) -> Iterator[Watching]:
+def watching(inside: Path) -> Iterator[WatchProcess]:
     (inside / "lib.tltl").write_text(LIBRARY)
     (inside / "specs.tltl").write_text(SPECS)
-    running = Watching("specs.tltl", "-o", "out", "-t", "json,lua")
+    running = WatchProcess("specs.tltl", "-o", "out", "-t", "json,lua")
     yield running
     if running.process.returncode is None:
         running.end()
@@ -79,7 +79,7 @@ def _replace(path: Path, text: str) -> None:
     new.replace(path)
 
 
-def test_only_changed_files_are_written(watching: Watching, inside: Path) -> None:
+def test_only_changed_files_are_written(watching: WatchProcess, inside: Path) -> None:
     first = watching.next_messages()
     assert [line.split()[0] for line in first.splitlines()] == ["wrote"] * 4
     times = {path: path.stat().st_mtime_ns for path in (inside / "out").iterdir()}
@@ -96,7 +96,7 @@ def test_only_changed_files_are_written(watching: Watching, inside: Path) -> Non
     assert watching.end() == 130
 
 
-def test_compiling_resumes_after_errors_are_fixed(watching: Watching, inside: Path) -> None:
+def test_compiling_resumes_after_errors_are_fixed(watching: WatchProcess, inside: Path) -> None:
     watching.next_messages()
     (inside / "lib.tltl").unlink()
     assert "error[TLT0010]" in watching.next_messages()
@@ -115,7 +115,7 @@ def test_compiling_resumes_after_errors_are_fixed(watching: Watching, inside: Pa
 def test_compiling_resumes_after_a_name_conflict_is_fixed(inside: Path) -> None:
     for name in "ab":
         (inside / f"{name}.tltl").write_text(f"signal seen: bool\nspec {name} = F seen\n")
-    running = Watching("a.tltl", "b.tltl", "-o", "out", "-t", "json")
+    running = WatchProcess("a.tltl", "b.tltl", "-o", "out", "-t", "json")
     try:
         running.next_messages()
         _replace(inside / "b.tltl", "signal seen: bool\nspec a = F seen\n")
@@ -131,7 +131,7 @@ def test_compiling_resumes_after_a_name_conflict_is_fixed(inside: Path) -> None:
 
 
 def test_a_new_file_in_a_folder_is_compiled(inside: Path) -> None:
-    running = Watching(".", "-o", "out", "-t", "json")
+    running = WatchProcess(".", "-o", "out", "-t", "json")
     try:
         assert running.next_messages() == "wrote out/hide.fspa.json\n"
         _replace(inside / "new.tltl", "signal seen: bool\nspec found = F seen\n")

@@ -22,7 +22,7 @@ TEST = 'test "seen" for found { step seen  expect satisfied }\n'
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="needs a signal that reaches one process alone")
 
 
-class Watching:
+class WatchProcess:
     """A running command; its messages are read from one wait for changes to the next."""
 
     def __init__(self, *arguments: str) -> None:
@@ -74,14 +74,14 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 @pytest.fixture
-def watching(folder: Path) -> Iterator[Watching]:
-    running = Watching()
+def watching(folder: Path) -> Iterator[WatchProcess]:
+    running = WatchProcess()
     yield running
     if running.process.returncode is None:
         running.end()
 
 
-def test_each_change_is_checked_linted_and_tested(watching: Watching, folder: Path) -> None:
+def test_each_change_is_checked_linted_and_tested(watching: WatchProcess, folder: Path) -> None:
     assert watching.next_messages()[1:] == ["2 files: nothing to report, 1 test passed"]
 
     replace(folder / "found.tltl", SPEC + TEST.replace("satisfied", "pending"))
@@ -108,7 +108,7 @@ def test_each_change_is_checked_linted_and_tested(watching: Watching, folder: Pa
     assert watching.end() == 130
 
 
-def test_new_files_and_empty_folders_are_noticed(watching: Watching, folder: Path) -> None:
+def test_new_files_and_empty_folders_are_noticed(watching: WatchProcess, folder: Path) -> None:
     watching.next_messages()
     (folder / "deep").mkdir()
     replace(folder / "deep" / "new.tltl", "signal a: bool\nspec x { limit 9 steps  reach a }\n")
@@ -124,7 +124,7 @@ def test_new_files_and_empty_folders_are_noticed(watching: Watching, folder: Pat
     assert watching.end() == 130
 
 
-def test_deleted_renamed_and_replaced_files_are_noticed(watching: Watching, folder: Path) -> None:
+def test_deleted_renamed_and_replaced_files_are_noticed(watching: WatchProcess, folder: Path) -> None:
     watching.next_messages()
     (folder / "lib.tltl").unlink()
     messages = watching.next_messages()
@@ -142,7 +142,7 @@ def test_deleted_renamed_and_replaced_files_are_noticed(watching: Watching, fold
     assert watching.end() == 130
 
 
-def test_a_new_project_file_applies(watching: Watching, folder: Path) -> None:
+def test_a_new_project_file_applies(watching: WatchProcess, folder: Path) -> None:
     watching.next_messages()
     replace(folder / "found.tltl", SPEC + "entity nobody\n")
     assert watching.next_messages()[-1] == "2 files: 1 warning"
@@ -153,7 +153,7 @@ def test_a_new_project_file_applies(watching: Watching, folder: Path) -> None:
 
 def test_a_folder_that_disappears_and_returns_is_noticed(folder: Path) -> None:
     (folder / "deep").mkdir()
-    running = Watching("deep", "found.tltl", "found.tltl")
+    running = WatchProcess("deep", "found.tltl", "found.tltl")
     try:
         messages = running.next_messages()
         assert "error[TLT0722]: there is no .tltl file in `deep`" in messages
@@ -172,7 +172,7 @@ def test_a_deleted_current_folder_ends_the_command(folder: Path, monkeypatch: py
     (folder / "here").mkdir()
     replace(folder / "here" / "a.tltl", "signal a: bool\n")
     monkeypatch.chdir(folder / "here")
-    running = Watching()
+    running = WatchProcess()
     running.next_messages()
     monkeypatch.chdir(folder)
     (folder / "here" / "a.tltl").unlink()
@@ -184,7 +184,7 @@ def test_a_deleted_current_folder_ends_the_command(folder: Path, monkeypatch: py
 
 
 def test_a_closed_pipe_ends_the_command(folder: Path) -> None:
-    running = Watching()
+    running = WatchProcess()
     running.next_messages()
     assert running.process.stderr is not None
     running.process.stderr.close()
@@ -206,7 +206,7 @@ def test_levels_of_the_project_apply_beside_errors(folder: Path) -> None:
     jumpy = "signal x in [0, 9]\npredicate p in [-1, 1] = when x < 5: x / 9 - 1 otherwise: 1\n"
     replace(folder / "lib.tltl", f"{jumpy}predicate q in [-1, 1] = x\nsignal seen: bool\n")
     replace(folder / "tltl.toml", '[lint]\nallow = ["TLT0402"]\n')
-    running = Watching("lib.tltl")
+    running = WatchProcess("lib.tltl")
     try:
         messages = "\n".join(running.next_messages())
     finally:

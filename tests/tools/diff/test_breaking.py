@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from tests.interfaces.cli.conftest import EXAMPLE, ROOT, Outcome, tltlc  # noqa: F401
-from tests.interfaces.cli.test_loading import HEAVY, loaded
+from tests.interfaces.cli.test_loading import HEAVY, loaded_modules
 
 Run = Callable[..., Outcome]
 
@@ -511,6 +511,6 @@ def test_wrong_usage_is_rejected(
 def test_no_heavy_module_is_imported(tmp_path: Path) -> None:
     (tmp_path / "old").mkdir()
     shutil.copy(EXAMPLE, tmp_path / "old")
-    loaded("check", EXAMPLE, folder=tmp_path)
-    assert not loaded("diff", EXAMPLE, EXAMPLE, folder=tmp_path) & HEAVY
-    assert not loaded("breaking", EXAMPLE, "--against", "old", folder=tmp_path) & HEAVY
+    loaded_modules("check", EXAMPLE, folder=tmp_path)
+    assert not loaded_modules("diff", EXAMPLE, EXAMPLE, folder=tmp_path) & HEAVY
+    assert not loaded_modules("breaking", EXAMPLE, "--against", "old", folder=tmp_path) & HEAVY

@@ -147,9 +147,9 @@ def test_a_file_in_a_read_only_folder_is_not_written(tltlc, inside: Path) -> Non
 
 
 def test_formatting_does_not_import_the_compiler(inside: Path) -> None:
-    from tests.interfaces.cli.test_loading import HEAVY, loaded
+    from tests.interfaces.cli.test_loading import HEAVY, loaded_modules
 
-    modules = loaded("fmt", "hide.tltl", folder=inside)
+    modules = loaded_modules("fmt", "hide.tltl", folder=inside)
     assert not modules & {*HEAVY, "tltlc.pipeline", "tltlc.automaton", "tltlc.resolve"}
 
 

@@ -1,1 +1,1 @@
-"""The command line: the only place that prints."""
+"""The command line. Only code here, and in the commands of plugins, prints."""

@@ -47,10 +47,10 @@ BUILT_IN: Final = {
 BOUNDED: Final = frozenset(BUILT_IN) - {"compile", "mine", "monitor", "watch", "lsp", "serve", "new", "completion"}
 """Commands that run entirely within the limits of processor time and memory.
 
-Others limit only parts of their work.
+The other commands limit only parts of their work.
 """
 
-OF_THE_RUNTIME: Final = {
+RUNTIME_COMMANDS: Final = {
     "demonstrate": "Have the scripted expert play a level, and record it.",
     "play": "Play a level with the keyboard, and record it.",
     "record": "Record demonstrations that meet a spec, for an agent to imitate.",
@@ -62,7 +62,7 @@ OF_THE_RUNTIME: Final = {
     "baseline": "Record the figures that a suite is judged against.",
     "table1": "Train and play what the paper's Table I is of, and print ours beside it.",
 }
-"""Commands that ship with tltlc but need an extra.
+"""Commands of the runtime, with what they do; they ship with tltlc but need an extra.
 
 They are entry points, like the commands of plugins.
 """
@@ -78,12 +78,12 @@ class CommandLine(click.Group):
 
     def main(self, args: Sequence[str] | None = None, *_: Any, **extra: Any) -> NoReturn:
         """Run the command and exit. Messages go to standard error; a traceback never appears."""
-        exits.heard.clear()
+        exits.received_signals.clear()
         for stream in (sys.stdout, sys.stderr):
             if hasattr(stream, "reconfigure"):
                 # A terminal that cannot show ∧ gets an escape sequence instead of a crash.
                 stream.reconfigure(errors="backslashreplace")
-        # `obj` tells whether the arguments are those of the process, which then runs nothing but this command.
+        # `obj` is whether the arguments are those of the process; then the process runs only this command.
         extra.update(obj=args is None, prog_name="tltlc", complete_var=COMPLETE_VARIABLE, standalone_mode=False)
         try:
             status = super().main(None if args is None else list(args), **extra) or 0
@@ -102,7 +102,7 @@ class CommandLine(click.Group):
             click.echo(ctx.get_help(), err=True)
             raise exits.StopQuietlyError(exits.USAGE)
         if any(text.startswith("-:") for text in args):
-            # It names a spec of standard input; click would parse it as short options.
+            # Such an argument names a spec of standard input; click would parse it as short options.
             from tltlc.io.spec_file import STDIN_NAME
 
             args = [f"{STDIN_NAME}{text[1:]}" if text.startswith("-:") else text for text in args]
@@ -128,7 +128,7 @@ class CommandLine(click.Group):
         except BrokenPipeError:
             raise exits.StopQuietlyError(exits.CLOSED_PIPE) from None
         except KeyboardInterrupt:
-            raise exits.StopQuietlyError(exits.interrupted()) from None
+            raise exits.StopQuietlyError(exits.interrupted_status()) from None
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Return the names of all commands; commands of other distributions come last."""
@@ -167,7 +167,9 @@ class CommandLine(click.Group):
         rows = list(BUILT_IN.items())
         for plugin in sorted(plugins.find(ENTRY_POINTS), key=lambda plugin: plugin.name):
             if plugin.name not in BUILT_IN:
-                summary = OF_THE_RUNTIME.get(plugin.name, f"A command of {plugin.module}, from {plugin.distribution}.")
+                summary = RUNTIME_COMMANDS.get(
+                    plugin.name, f"A command of {plugin.module}, from {plugin.distribution}."
+                )
                 extra = f" (needs the extra {', '.join(plugin.extras)})" if plugin.extras else ""
                 rows.append((plugin.name, f"{summary[:-1]}{extra}."))
         with formatter.section("Commands"):
@@ -190,8 +192,8 @@ def _completion_error(error: Exception | OutOfTimeError) -> Exception | OutOfTim
     return error
 
 
-def _version(ctx: click.Context, _: click.Parameter, wanted: bool) -> None:
-    if wanted and not ctx.resilient_parsing:
+def _version(ctx: click.Context, _: click.Parameter, is_given: bool) -> None:
+    if is_given and not ctx.resilient_parsing:
         from tltlc import __version__
 
         click.echo(f"tltlc {__version__}")

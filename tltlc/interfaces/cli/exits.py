@@ -1,4 +1,4 @@
-"""Exit statuses, and the final handling of every exception."""
+"""Exit statuses, and the messages for exceptions that end a command."""
 
 from __future__ import annotations
 
@@ -41,37 +41,37 @@ _STATUS_OF_CODE: Final = {
     "TLT0800": USAGE,
     "TLT0815": USAGE,
 }
-"""Codes whose exit status is not that of an error in a source text."""
+"""Exit statuses of diagnostic codes; errors with other codes have the status FINDINGS."""
 
 _COMPONENTS: Final = {"graphviz", "pygraphviz", "sympy", "networkx", "rich", "tomli"}
 """Packages that tltlc depends on but that a partial installation may lack."""
 
 
-heard: Final[list[int]] = []
+received_signals: Final[list[int]] = []
 """Numbers of the signals that ended the work of this process, in order of arrival."""
 
-_NO_OUTPUT: Final = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EBADF}
-"""Errors that a write to standard output may raise.
+_OUTPUT_ERRORS: Final = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EBADF}
+"""Errors of the system that a write to standard output may raise.
 
-Files that a command names have their own messages.
+Writes to files have messages of their own.
 """
 
-_NO_LOOK: Final = {errno.ENAMETOOLONG, errno.EACCES, errno.EPERM, errno.ELOOP}
+_PATH_ERRORS: Final = {errno.ENAMETOOLONG, errno.EACCES, errno.EPERM, errno.ELOOP}
 """Errors that the system may raise when we only check whether a path exists."""
 
-_NO_ROOM: Final = {
+_RESOURCE_MESSAGES: Final = {
     errno.EMFILE: "this process may open no more files",
     errno.ENFILE: "the system can open no more files",
     errno.EAGAIN: "the system can start no more processes",
     errno.ENOMEM: "there is not enough memory",
 }
-"""Message for each error that the system raises for lack of a resource."""
+"""The message for each error that the system raises if a resource is used up."""
 
-_NO_NUMBER: Final = re.compile(r"'([^']*)' is not a valid (float|integer)(?: range)?")
+_INVALID_NUMBER: Final = re.compile(r"'([^']*)' is not a valid (float|integer)(?: range)?")
 
 
 class StopQuietlyError(Exception):
-    """End the command with a status and no message, because no one can read one."""
+    """End the command with a status and without a message."""
 
     def __init__(self, status: int) -> None:
         super().__init__(status)
@@ -84,31 +84,32 @@ def status_of(diagnostics: Iterable[Diagnostic]) -> int:
     return max((_STATUS_OF_CODE.get(code, FINDINGS) for code in errors), default=CLEAN)
 
 
-def interrupted() -> int:
-    """Return the exit status after a signal: 128 plus its number.
+def interrupted_status() -> int:
+    """Return the exit status after a signal: 128 plus the number of the first received signal.
 
-    Without a recorded signal, it is the status of Ctrl-C.
+    Without a received signal, return the status of Ctrl-C.
     """
-    return 128 + heard[0] if heard else INTERRUPTED
+    return 128 + received_signals[0] if received_signals else INTERRUPTED
 
 
 def missing_component(wanted_by: str, module: str, requirement: str) -> TltlError:
     """Return error TLT0730 for a component that is not installed.
 
-    Its help says how to install it; extras of tltlc itself are installed from its clone.
+    ``wanted_by`` names what needs the component. ``requirement`` is what pip installs; extras of
+    tltlc itself are installed from its clone.
     """
     title = f"{wanted_by} needs `{module}`, which is not installed"
-    own = requirement.startswith("tltlc[")
-    own_help = f"in the clone of tltlc: pip install -c constraints.txt '{requirement.replace('tltlc', '.')}'"
-    return TltlError([Diagnostic("TLT0730", title, help=own_help if own else f"pip install '{requirement}'")])
+    is_extra = requirement.startswith("tltlc[")
+    extra_help = f"in the clone of tltlc: pip install -c constraints.txt '{requirement.replace('tltlc', '.')}'"
+    return TltlError([Diagnostic("TLT0730", title, help=extra_help if is_extra else f"pip install '{requirement}'")])
 
 
 def report(error: Exception | OutOfTimeError) -> int:
     """Report an error on standard error and return the exit status."""
-    if spent := exhaustion_error(error):
+    if limit_error := exhaustion_error(error):
         # The traceback would keep the memory of the interrupted work alive.
         error.__traceback__ = error.__context__ = error.__cause__ = None
-        error = spent
+        error = limit_error
     if isinstance(error, BrokenPipeError):
         error = StopQuietlyError(CLOSED_PIPE)
     if isinstance(error, StopQuietlyError):
@@ -118,19 +119,19 @@ def report(error: Exception | OutOfTimeError) -> int:
     if isinstance(error, click.exceptions.Exit):
         return error.exit_code
     if isinstance(error, click.Abort):
-        return interrupted()
+        return interrupted_status()
     if isinstance(error, click.ClickException):
-        error = TltlError([_usage(error)])
+        error = TltlError([_usage_diagnostic(error)])
     if isinstance(error, ModuleNotFoundError) and (component := (error.name or "").partition(".")[0]) in _COMPONENTS:
         error = missing_component("this command", component, component)
-    if isinstance(error, OSError) and error.filename is None and error.errno in _NO_OUTPUT:
+    if isinstance(error, OSError) and error.filename is None and error.errno in _OUTPUT_ERRORS:
         _discard_output()
-        error = _no_output(error)
-    if not isinstance(error, TltlError) and (lacking := _lacking(error)) is not None:
+        error = _output_error(error)
+    if not isinstance(error, TltlError) and (missing := _missing_resource(error)) is not None:
         help_ = "`ulimit -a` shows your limits: raise the one that is too small, or close other programs"
-        error = TltlError([Diagnostic("TLT0768", lacking, help=help_)])
-    if isinstance(error, OSError) and error.filename is not None and error.errno in _NO_LOOK:
-        error = _refused_path(error)
+        error = TltlError([Diagnostic("TLT0768", missing, help=help_)])
+    if isinstance(error, OSError) and error.filename is not None and error.errno in _PATH_ERRORS:
+        error = _path_error(error)
     if isinstance(error, TltlError):
         from tltlc.interfaces.cli.report import show
 
@@ -138,7 +139,7 @@ def report(error: Exception | OutOfTimeError) -> int:
         with suppress(OSError):
             show(error.diagnostics, "text", sys.stderr)
         return status_of(error.diagnostics)
-    return interrupted() if is_interrupted(error) else _bug(error)
+    return interrupted_status() if is_interrupted(error) else _bug(error)
 
 
 def is_interrupted(error: BaseException | None) -> bool:
@@ -150,43 +151,43 @@ def is_interrupted(error: BaseException | None) -> bool:
     return False
 
 
-def _lacking(error: BaseException | None) -> str | None:
-    """Return the message for the resource that the system lacks.
+def _missing_resource(error: BaseException | None) -> str | None:
+    """Return the message for the resource that is used up.
 
-    Return None if no exception in the chain is about that.
+    Return None if no exception in the chain reports such a lack.
     """
     while error is not None:
         if isinstance(error, MemoryError):
-            return _NO_ROOM[errno.ENOMEM]
-        if isinstance(error, OSError) and error.errno in _NO_ROOM:
-            return _NO_ROOM[error.errno]
+            return _RESOURCE_MESSAGES[errno.ENOMEM]
+        if isinstance(error, OSError) and error.errno in _RESOURCE_MESSAGES:
+            return _RESOURCE_MESSAGES[error.errno]
         error = error.__cause__ or error.__context__
     return None
 
 
-def _usage(error: click.ClickException) -> Diagnostic:
+def _usage_diagnostic(error: click.ClickException) -> Diagnostic:
     """Return a click usage error as a diagnostic."""
     # click prints one choice per line.
     message = " ".join(error.format_message().rstrip(".").split())
     context = error.ctx if isinstance(error, click.UsageError) else None
     command = context.command_path if context else "tltlc"
-    message = _NO_NUMBER.sub(lambda match: _number_wanted(match[1], match[2]), message)
+    message = _INVALID_NUMBER.sub(lambda match: _number_message(match[1], match[2]), message)
     if message[1:2].islower():
         message = message[0].lower() + message[1:]
     return Diagnostic("TLT0700", message, help=f"`{command} --help` shows how to use it")
 
 
-def _number_wanted(text: str, kind: str) -> str:
+def _number_message(text: str, kind: str) -> str:
     """Reword click's message about an invalid number; suggest a decimal point for a comma."""
-    wanted = f"`{text}` is no {'whole ' if kind == 'integer' else ''}number"
-    pointed = text.replace(",", ".", 1)
-    return f"{wanted}; write {pointed}" if kind == "float" and re.fullmatch(r"-?\d+\.\d+", pointed) else wanted
+    message = f"`{text}` is no {'whole ' if kind == 'integer' else ''}number"
+    with_point = text.replace(",", ".", 1)
+    return f"{message}; write {with_point}" if kind == "float" and re.fullmatch(r"-?\d+\.\d+", with_point) else message
 
 
 def flush() -> None:
     """Flush standard output and drop what cannot be written.
 
-    Python's own flush would change the exit status.
+    Otherwise Python flushes at exit, and an error there changes the exit status.
     """
     try:
         sys.stdout.flush()
@@ -194,7 +195,7 @@ def flush() -> None:
         _discard_output()
 
 
-def _no_output(error: OSError) -> TltlError:
+def _output_error(error: OSError) -> TltlError:
     from tltlc.io.files import reason
 
     closed = error.errno == errno.EBADF
@@ -203,7 +204,7 @@ def _no_output(error: OSError) -> TltlError:
     return TltlError([Diagnostic("TLT0005", title, help=help_)])
 
 
-def _refused_path(error: OSError) -> TltlError:
+def _path_error(error: OSError) -> TltlError:
     from tltlc.io.files import reason
 
     title = f"cannot look at `{os.fsdecode(error.filename)}`: {reason(error)}"

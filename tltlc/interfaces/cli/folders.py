@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 def every_source(arguments: Iterable[str], report: Report) -> list[str]:
     """Return the files that the arguments name, each once, in order.
 
-    Report and skip folders without any.
+    Folders without source files are reported and skipped.
     """
     paths: dict[str, None] = {}
     for argument in arguments:
@@ -28,7 +28,7 @@ def every_source(arguments: Iterable[str], report: Report) -> list[str]:
     return list(paths)
 
 
-def in_folders(arguments: Iterable[str]) -> list[str]:
+def files_in_folders(arguments: Iterable[str]) -> list[str]:
     """Return the source files that are now in those arguments that are folders."""
     return [file for argument in arguments if _is_folder(argument) for file in _files_inside(argument)]
 
@@ -46,19 +46,18 @@ def sources(argument: str) -> list[str]:
     return files
 
 
-def below(folder: Path, endings: tuple[str, ...] = (".tltl",)) -> list[Path]:
+def files_below(folder: Path, endings: tuple[str, ...] = (".tltl",)) -> list[Path]:
     """Return the files with these endings in and below a folder, relative to it and sorted.
 
-    Skips hidden files, and pipes and devices, because reading one could block forever. Raises
-    TltlError with TLT0001 for a folder that cannot be read: without its files the result could be
-    wrong.
+    Hidden files are skipped. Pipes and devices are skipped too, because reading one could block
+    forever. Raises TltlError with TLT0001 for a folder that cannot be read.
     """
     paths: list[Path] = []
-    for place, folders, files in walk(folder, onerror=_unreadable):
+    for place, folders, files in walk(folder, onerror=_raise_unreadable):
         folders[:] = [name for name in folders if not name.startswith(".")]
         relative = Path(place).relative_to(folder)
-        wanted = [name for name in files if name.endswith(endings) and not name.startswith(".")]
-        paths += [relative / name for name in wanted if may_be_file(os.path.join(place, name))]  # noqa: PTH118
+        names = [name for name in files if name.endswith(endings) and not name.startswith(".")]
+        paths += [relative / name for name in names if may_be_file(os.path.join(place, name))]  # noqa: PTH118
     return sorted(paths)
 
 
@@ -70,12 +69,12 @@ def is_free(folder: Path) -> bool:
         return False
 
 
-def in_the_way(folder: Path, advice: str) -> TltlError:
+def occupied_folder_error(folder: Path, advice: str) -> TltlError:
     """Return TLT0722 for a folder that is not empty but that a command must create."""
     return TltlError([Diagnostic("TLT0722", f"`{folder}` is there already, and not empty", help=advice)])
 
 
-def leads_out(path: str, arguments: Iterable[str]) -> bool:
+def links_outside(path: str, arguments: Iterable[str]) -> bool:
     """Whether a file that was found in a folder is a link to a place outside the named folders."""
     arguments = tuple(arguments)
     folders = [os.path.realpath(argument) for argument in arguments if _is_folder(argument)]
@@ -83,14 +82,14 @@ def leads_out(path: str, arguments: Iterable[str]) -> bool:
     return path not in arguments and not any(Path(place).is_relative_to(folder) for folder in folders)
 
 
-def _unreadable(error: OSError) -> None:
+def _raise_unreadable(error: OSError) -> None:
     # A folder may be removed while we search.
     if not isinstance(error, FileNotFoundError):
         raise reading_error(str(error.filename), error)
 
 
 def _files_inside(folder: str) -> list[str]:
-    return [str(Path(folder, file)) for file in below(Path(folder))]
+    return [str(Path(folder, file)) for file in files_below(Path(folder))]
 
 
 def _is_folder(argument: str) -> bool:

@@ -1,6 +1,6 @@
 """Read and compile the argument of a command.
 
-It is ``SPEC.tltl``, ``SPEC.tltl:NAME``, an artefact, or ``-`` for standard input.
+An argument is ``SPEC.tltl``, ``SPEC.tltl:NAME``, an artefact, or ``-`` for standard input.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ class Input:
         """The specs and tests of a source; None for an artefact."""
         return self.session.program if self.session else None
 
-    def one(self) -> Fspa:
+    def only_automaton(self) -> Fspa:
         """Return the only automaton; raise TLT0721 if there are several or none."""
         if len(self.automata) == 1:
             return self.automata[0]
@@ -63,22 +63,22 @@ def open_input(argument: str, settings: CompileSettings, specs: Sequence[str] = 
     if path.endswith(".toml"):
         message = f"`{path}` is no spec; where it is a level, `tltlc check --level {path}` checks it"
         raise click.UsageError(message, click.get_current_context(silent=True))
-    wanted = (*specs, name) if name else tuple(specs)
+    spec_names = (*specs, name) if name else tuple(specs)
     check_libraries(settings.libraries)
     project = project_for(path)
     try:
         source, is_artefact = read(path)
     except TltlError as error:
-        from tltlc.interfaces.cli.spec_names import with_way_out
+        from tltlc.interfaces.cli.spec_names import with_suggestion
 
-        raise with_way_out(error, path) from None
+        raise with_suggestion(error, path) from None
     if source.text.startswith("HOA:") or path.endswith(".hoa"):
         raise TltlError([_hoa_diagnostic(source)])
     if is_artefact:
-        return _artefact(source, settings, wanted, project)
+        return _artefact_input(source, settings, spec_names, project)
     from tltlc.pipeline import Session
 
-    session = Session(source, compile_settings(settings, project, wanted))
+    session = Session(source, compile_settings(settings, project, spec_names))
     with project.apply_lint_levels():
         compiled = session.compiled()
     diagnostics = project.with_lint_levels(compiled.diagnostics)
@@ -94,10 +94,10 @@ def check_text(source: SourceFile) -> None:
     if source.text.startswith("HOA:"):
         raise TltlError([_hoa_diagnostic(source)])
     if source.text.lstrip().startswith("{") or source.name.endswith(ARTEFACT_ENDING):
-        raise TltlError([no_text(source.name)])
+        raise TltlError([artefact_error(source.name)])
 
 
-def no_text(artefact: str) -> Diagnostic:
+def artefact_error(artefact: str) -> Diagnostic:
     """Return the diagnostic for an artefact where a source text is required."""
     title = f"`{artefact}` is an artefact: it holds an automaton, and no source text"
     return Diagnostic("TLT0722", title, help="name the .tltl file that it was compiled from")
@@ -109,11 +109,13 @@ def _hoa_diagnostic(source: SourceFile) -> Diagnostic:
     return Diagnostic("TLT0652", title, help=help_)
 
 
-def _artefact(source: SourceFile, settings: CompileSettings, wanted: tuple[str, ...], project: Project) -> Input:
+def _artefact_input(
+    source: SourceFile, settings: CompileSettings, spec_names: tuple[str, ...], project: Project
+) -> Input:
     from tltlc.pipeline import read_artefact, unknown_spec, with_params
 
     fspa = read_artefact(source)
-    for name in wanted:
+    for name in spec_names:
         if name != fspa.name:
             raise TltlError([unknown_spec(name, [fspa.name], source.name)])
     return Input(source.name, (with_params(fspa, settings.params),), None, project, ())

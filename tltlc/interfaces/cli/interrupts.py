@@ -20,20 +20,20 @@ REQUESTS: Final = tuple(getattr(signal, name) for name in ("SIGTERM", "SIGHUP") 
 """The signals that other programs and closing terminals send to end a process."""
 
 _TEMPORARY: Final = "tltlc.io.temporary"
-"""The module whose functions must not be interrupted."""
+"""The module whose functions must not be interrupted, because files would be left behind."""
 
-_AGAIN_S: Final = 0.05
-"""Seconds between an interrupt in the middle of such code and the next attempt."""
+_RETRY_S: Final = 0.05
+"""Seconds between an interrupt in the middle of uninterruptible code and the next attempt."""
 
 _PATIENCE_S: Final = 1.0
-"""Seconds of importing after the first interrupt before the process ends without cleaning up."""
+"""Seconds that an import may take after an interrupt; then the process ends without cleaning up."""
 
-_came: Final[dict[int, float]] = {}
+_arrival_times: Final[dict[int, float]] = {}
 """Arrival times of interrupts that wait for an import to end, by signal number."""
 
 
 @contextmanager
-def signals_end() -> Iterator[None]:
+def end_on_signals() -> Iterator[None]:
     """Let SIGINT, SIGTERM and SIGHUP end the process with 128 plus the signal's number.
 
     They raise KeyboardInterrupt, so finished work is kept and temporary files are removed. A signal
@@ -47,7 +47,7 @@ def signals_end() -> Iterator[None]:
         _listen()
         yield
     except KeyboardInterrupt:
-        sys.exit(exits.interrupted())
+        sys.exit(exits.interrupted_status())
     finally:
         # During Python's shutdown a SIGINT would kill the process, or crash the threads of a library.
         signal.signal(signal.SIGINT, signal.SIG_IGN)
@@ -80,17 +80,17 @@ def interrupt(number: int, frame: FrameType | None) -> None:
     """
     if not _is_at_temporary_files(frame):
         if not _is_importing(frame):
-            _came.pop(number, None)
-            exits.heard.append(number)
+            _arrival_times.pop(number, None)
+            exits.received_signals.append(number)
             raise KeyboardInterrupt
-        if monotonic() - _came.setdefault(number, monotonic()) > _PATIENCE_S:
-            _end(128 + number)
-    again = Timer(_AGAIN_S, _send_again, (number,))
-    again.daemon = True
-    again.start()
+        if monotonic() - _arrival_times.setdefault(number, monotonic()) > _PATIENCE_S:
+            _end_process(128 + number)
+    timer = Timer(_RETRY_S, _send_again, (number,))
+    timer.daemon = True
+    timer.start()
 
 
-def _end(status: int) -> NoReturn:
+def _end_process(status: int) -> NoReturn:
     """Flush the standard streams and end the process at once."""
     for stream in (sys.stdout, sys.stderr):
         # The reader may be gone.

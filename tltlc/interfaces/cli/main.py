@@ -40,9 +40,9 @@ def _run_process() -> "NoReturn":
 
         open_missing_streams()
         from tltlc.interfaces.cli.command_line import cli
-        from tltlc.interfaces.cli.interrupts import signals_end
+        from tltlc.interfaces.cli.interrupts import end_on_signals
 
-        with signals_end():
+        with end_on_signals():
             cli.main()
     except KeyboardInterrupt:
         # It came before our handler was installed, or after it was removed.
@@ -57,4 +57,4 @@ def _interrupted() -> int:
     import sys
 
     exits = sys.modules.get("tltlc.interfaces.cli.exits")
-    return exits.interrupted() if exits else 130
+    return exits.interrupted_status() if exits else 130

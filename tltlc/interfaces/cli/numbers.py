@@ -27,8 +27,8 @@ class WholeRange(click.IntRange):
             self._fail(text, param, ctx)
         return number
 
-    def _fail(self, shown: str, param: click.Parameter | None, ctx: click.Context | None) -> NoReturn:
-        self.fail(f"`{shown}` is out of range: whole numbers go from -{LARGEST:,} to {LARGEST:,}", param, ctx)
+    def _fail(self, text: str, param: click.Parameter | None, ctx: click.Context | None) -> NoReturn:
+        self.fail(f"`{text}` is out of range: whole numbers go from -{LARGEST:,} to {LARGEST:,}", param, ctx)
 
 
 class FiniteRange(click.FloatRange):

@@ -33,7 +33,7 @@ target_option = click.option(
 def targets_of(lists: Iterable[str]) -> list[str]:
     """Return the names in comma-separated lists of targets.
 
-    Raise TltlError, TLT0710, for an unknown one.
+    Raise TltlError, TLT0710, for an unknown name.
     """
     from tltlc import backends
 
@@ -43,7 +43,7 @@ def targets_of(lists: Iterable[str]) -> list[str]:
     return targets
 
 
-def files_of(automata: Iterable[Fspa], asked: Sequence[str], project: Project, report: Report) -> Files:
+def files_of(automata: Iterable[Fspa], requested: Sequence[str], project: Project, report: Report) -> Files:
     """Generate the files of each automaton for the requested targets.
 
     If none are requested, use the targets of the project, or else the default targets. Raises
@@ -51,33 +51,33 @@ def files_of(automata: Iterable[Fspa], asked: Sequence[str], project: Project, r
     """
     from tltlc import backends
 
-    targets = dict.fromkeys(asked or project.targets or backends.DEFAULT_TARGETS)
+    targets = dict.fromkeys(requested or project.targets or backends.DEFAULT_TARGETS)
     options = backends.Options(notation=project.notation, report=lambda diagnostic: report.add((diagnostic,)))
     files: Files = {}
     for fspa in automata:
         writers: dict[str, str] = {}
         for target in targets:
             for name, content in backends.emit(target, fspa, options).items():
-                other = writers.setdefault(name, target)
-                if other != target:
+                earlier = writers.setdefault(name, target)
+                if earlier != target:
                     raise click.UsageError(
-                        f"`{other}` and `{target}` both write `{name}`: ask for one, with -t, and for the other with "
+                        f"`{earlier}` and `{target}` both write `{name}`: ask for one, with -t, and for the other with "
                         "an -o of its own"
                     )
                 files[name] = content
     return files
 
 
-def write_and_tell(folder: Path, files: Files, report: Report, advice: str = "name another folder with -o") -> None:
-    """Write all of the files or none, and report each one that changed.
+def write_and_report(folder: Path, files: Files, report: Report, advice: str = "name another folder with -o") -> None:
+    """Write all of the files or none, and report each file that changed.
 
     Raises TltlError: TLT0005 or TLT0700 with ``advice``, like :func:`tltlc.io.writing.write_files`.
     """
     from tltlc.io.writing import write_files
 
-    written = write_files(folder, files, advice)
-    for path in written:
+    changed_paths = write_files(folder, files, advice)
+    for path in changed_paths:
         report.say(f"wrote {path}")
-    unchanged = len(files) - len(written)
+    unchanged = len(files) - len(changed_paths)
     if unchanged:
         report.say(f"{unchanged} files have not changed" if unchanged > 1 else "1 file has not changed")

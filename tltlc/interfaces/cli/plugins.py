@@ -1,6 +1,6 @@
 """Find and load the entry points that extend the command line.
 
-They belong to other distributions, or to parts of tltlc that need an extra.
+These plugins belong to other distributions, or to parts of tltlc that need an extra.
 """
 
 from __future__ import annotations
@@ -34,16 +34,16 @@ def find(group: str) -> tuple[Plugin, ...]:
     If several distributions have the same name, only the first one on ``sys.path`` counts.
     """
     entries: dict[tuple[str, str], Plugin] = {}
-    first: dict[str, int] = {}
+    first_folders: dict[str, int] = {}
     for index, folder in enumerate(sys.path):
-        for plugin in _in_folder(group, folder):
-            if first.setdefault(plugin.distribution, index) == index:
+        for plugin in _plugins_in_folder(group, folder):
+            if first_folders.setdefault(plugin.distribution, index) == index:
                 entries.setdefault((plugin.distribution, plugin.name), plugin)
     return tuple(entries.values())
 
 
 def load(plugin: Plugin, wanted_by: str) -> Any:
-    """Import what an entry point names.
+    """Import the object that an entry point names.
 
     Raise TLT0730, with installation help, if a component is missing.
     """
@@ -58,7 +58,7 @@ def load(plugin: Plugin, wanted_by: str) -> Any:
         raise exits.missing_component(wanted_by, error.name or package, wanted) from error
 
 
-def of_levels(name: str, wanted_by: str) -> Any:
+def load_levels_plugin(name: str, wanted_by: str) -> Any:
     """Load the entry point of group ``tltlc.levels`` with this name.
 
     Raise TLT0730 if it is not installed.
@@ -69,16 +69,16 @@ def of_levels(name: str, wanted_by: str) -> Any:
     raise exits.missing_component(wanted_by, "tltl_runtime", "tltlc[game]")
 
 
-def _in_folder(group: str, folder: str) -> Iterator[Plugin]:
-    """Yield the entry points of distributions in a folder.
+def _plugins_in_folder(group: str, folder: str) -> Iterator[Plugin]:
+    """Yield the entry points of the distributions in a folder.
 
-    Using importlib.metadata would take 16 ms.
+    This reads the files itself, because importing importlib.metadata takes 16 ms.
     """
     try:
         names = os.listdir(folder or ".")  # noqa: PTH208 (no pathlib while only help is asked for)
     except OSError:
         if os.path.isfile(folder):  # noqa: PTH113
-            yield from _in_archive(group, folder)
+            yield from _plugins_in_archive(group, folder)
         return
     for name in sorted(names):
         if name.endswith((".dist-info", ".egg-info")):
@@ -88,10 +88,10 @@ def _in_folder(group: str, folder: str) -> Iterator[Plugin]:
             except (OSError, UnicodeDecodeError):
                 continue
             if f"[{group}]" in text:
-                yield from _in_text(group, text, name.rpartition(".")[0].partition("-")[0])
+                yield from _plugins_in_text(group, text, name.rpartition(".")[0].partition("-")[0])
 
 
-def _in_text(group: str, text: str, distribution: str) -> Iterator[Plugin]:
+def _plugins_in_text(group: str, text: str, distribution: str) -> Iterator[Plugin]:
     section = ""
     for line in map(str.strip, text.splitlines()):
         if line.startswith("["):
@@ -101,11 +101,11 @@ def _in_text(group: str, text: str, distribution: str) -> Iterator[Plugin]:
             yield Plugin(name, module, attribute, tuple(re.findall(r"[\w.-]+", extras or "")), distribution)
 
 
-def _in_archive(group: str, path: str) -> Iterator[Plugin]:
+def _plugins_in_archive(group: str, path: str) -> Iterator[Plugin]:
     """Yield the entry points in an archive, which only importlib.metadata can read."""
     from importlib.metadata import distributions
 
     for distribution in distributions(path=[path]):
         text = distribution.read_text("entry_points.txt")
         if text:
-            yield from _in_text(group, text, distribution.metadata["Name"])
+            yield from _plugins_in_text(group, text, distribution.metadata["Name"])

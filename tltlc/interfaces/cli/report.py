@@ -18,30 +18,30 @@ _MOST_ALIKE: Final = 20
 
 
 class Report:
-    """Collects the diagnostics of a command; as a context, ends it at the first TltlError.
+    """Collects the diagnostics of a command; as a context, it catches a TltlError and reports it.
 
-    Each diagnostic is reported once, even if two files import the file that it is about. The text
+    Each diagnostic is reported once, even if two files import the file with the error. The text
     format is shown at once, on standard error. Machine formats form one document per run, which is
     shown at the end: on standard output, or on standard error for commands that print results.
-    ``status`` is the exit status.
+    ``diagnostics`` has the diagnostics in order, and ``status`` is the exit status.
     """
 
     def __init__(self, format: str = "text", *, results: bool = False) -> None:  # noqa: A002
         self.format = format
-        self.found: dict[Diagnostic, None] = {}
+        self.diagnostics: dict[Diagnostic, None] = {}
         self.status = exits.CLEAN
         self._document = sys.stderr if results else sys.stdout
 
     def add(self, diagnostics: Iterable[Diagnostic]) -> None:
         """Show diagnostics that are new, or keep them for the final document."""
-        new = tuple(diagnostic for diagnostic in dict.fromkeys(diagnostics) if diagnostic not in self.found)
+        new = tuple(diagnostic for diagnostic in dict.fromkeys(diagnostics) if diagnostic not in self.diagnostics)
         if self.format == "text":
             # A full standard error must not change the exit status.
             with suppress(OSError):
-                if self.found and new:
+                if self.diagnostics and new:
                     print(file=sys.stderr)
                 show(new, "text", sys.stderr)
-        self.found.update(dict.fromkeys(new))
+        self.diagnostics.update(dict.fromkeys(new))
         self.status = max(self.status, exits.status_of(new))
 
     def say(self, text: str) -> None:
@@ -63,11 +63,11 @@ class Report:
         elif error is not None:
             return False
         if self.format != "text":
-            show(self.found, self.format, self._document)
+            show(self.diagnostics, self.format, self._document)
         return error is not None
 
 
-def counted(number: int, noun: str) -> str:
+def count_text(number: int, noun: str) -> str:
     """Return a number with its noun: ``1 file``, ``2 files``."""
     return f"{number} {noun}{'' if number == 1 else 's'}"
 
@@ -76,7 +76,7 @@ def tally(diagnostics: Iterable[Diagnostic]) -> str:
     """Count diagnostics by severity: ``1 error, 2 warnings``, or ``nothing to report``."""
     severities = [diagnostic.severity for diagnostic in diagnostics]
     counts = [(severities.count(severity), severity) for severity in ("error", "warning", "note")]
-    return ", ".join(counted(number, severity) for number, severity in counts if number) or "nothing to report"
+    return ", ".join(count_text(number, severity) for number, severity in counts if number) or "nothing to report"
 
 
 def show(diagnostics: Iterable[Diagnostic], format: str, stream: TextIO) -> None:  # noqa: A002
@@ -90,7 +90,7 @@ def show(diagnostics: Iterable[Diagnostic], format: str, stream: TextIO) -> None
     from tltlc.diagnostics.formats.text import replace_unprintable
     from tltlc.diagnostics.render import render
 
-    shown, left_out = _first(all_diagnostics) if format == "text" else (all_diagnostics, Counter[_Alike]())
+    shown, left_out = _first_of_each(all_diagnostics) if format == "text" else (all_diagnostics, Counter[_Alike]())
     text = render(shown, format, color=format == "text" and wants_colour(stream))
     stream.write(text if text.endswith("\n") or not text else text + "\n")
     for (severity, code, file), count in left_out.items():
@@ -103,8 +103,8 @@ _Alike = tuple[str, str, str]
 """Severity, code and file of a diagnostic; diagnostics that share them are counted together."""
 
 
-def _first(diagnostics: Iterable[Diagnostic]) -> tuple[tuple[Diagnostic, ...], Counter[_Alike]]:
-    """Return the first diagnostics of each code in each file, and how many of each are left out."""
+def _first_of_each(diagnostics: Iterable[Diagnostic]) -> tuple[tuple[Diagnostic, ...], Counter[_Alike]]:
+    """Return the first diagnostics of each code in each file, and how many are left out, by kind."""
     counts: Counter[_Alike] = Counter()
     shown = []
     for diagnostic in diagnostics:

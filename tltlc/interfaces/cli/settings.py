@@ -23,9 +23,10 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 @record
 class CompileSettings:
-    """Where and how to compile, from the command line.
+    """The options of the command line for compiling.
 
-    ``libraries`` come before those of the project file.
+    ``libraries`` are searched before the libraries of the project file. ``params`` overrides the
+    values of params, as written. If ``state_budget`` is None, the default applies.
     """
 
     libraries: tuple[Path, ...] = ()
@@ -46,7 +47,7 @@ def compile_options(command: Function) -> Function:
     def with_settings(
         *args: Any, library: tuple[Path, ...], param: tuple[str, ...], state_budget: int | None, **rest: Any
     ) -> Any:
-        params = assignments(param, "NAME=VALUE", "--param")
+        params = parse_assignments(param, "NAME=VALUE", "--param")
         return command(*args, settings=CompileSettings(library, params, state_budget), **rest)
 
     for option in reversed(
@@ -99,7 +100,7 @@ def compile_settings(settings: CompileSettings, project: Project, specs: tuple[s
     )
 
 
-def work_of(settings: CompileSettings) -> int:
+def search_steps(settings: CompileSettings) -> int:
     """Return the steps that a search may take, as many as for an automaton over infinite traces."""
     from tltlc.automaton.finite.build import DEFAULT_STATE_BUDGET
     from tltlc.automaton.work import STEPS_PER_STATE
@@ -115,13 +116,13 @@ def check_libraries(libraries: tuple[Path, ...]) -> None:
             raise TltlError([Diagnostic("TLT0001", title, help="name a folder that is there")])
 
 
-def assignments(written: tuple[str, ...], form: str, option: str) -> dict[str, str]:
+def parse_assignments(texts: tuple[str, ...], form: str, option: str) -> dict[str, str]:
     """Parse ``NAME=VALUE`` texts.
 
     Raise click.BadParameter for a wrong form or a name that is set twice.
     """
     values: dict[str, str] = {}
-    for text in written:
+    for text in texts:
         name, equals, value = map(str.strip, text.partition("="))
         if not equals or not name or not value:
             raise click.BadParameter(f"`{text}` is not of the form {form}", param_hint=option)

@@ -1,4 +1,4 @@
-"""Find the spec that was meant when its name was given in place of a file."""
+"""Suggest the file of a spec, if a command gets the spec's name in place of a file."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ from tltlc.io.spec_file import is_plain_name
 
 _MOST_FOLDERS: Final = 200
 _MOST_FILES: Final = 200
-_MOST_NAMED: Final = 3
+_MOST_SUGGESTIONS: Final = 3
 
 
-def with_way_out(error: TltlError, argument: str) -> TltlError:
+def with_suggestion(error: TltlError, argument: str) -> TltlError:
     """Suggest ``NAME.tltl`` or ``FILE:NAME`` in the error for an argument that is not a file."""
     if exists(argument):
         return error
     if is_file(f"{argument}.tltl"):
         suggestions = [f"{argument}.tltl"]
     elif is_plain_name(argument):
-        suggestions = [f"{path}:{argument}" for path in islice(_declaring(argument), _MOST_NAMED)]
+        suggestions = [f"{path}:{argument}" for path in islice(_files_declaring(argument), _MOST_SUGGESTIONS)]
     else:
         suggestions = []
     if not suggestions:
@@ -33,15 +33,15 @@ def with_way_out(error: TltlError, argument: str) -> TltlError:
     return TltlError([replace(diagnostic, help=help_) for diagnostic in error.diagnostics])
 
 
-def _declaring(name: str) -> Iterator[Path]:
+def _files_declaring(name: str) -> Iterator[Path]:
     """Yield files in and below the current folder that declare a spec of this name.
 
-    The search is limited.
+    Only the first 200 files in the first 200 folders are searched.
     """
     from tltlc.grammar.parser import parse
     from tltlc.grammar.tree import SpecDecl
 
-    for path in islice(_files(), _MOST_FILES):
+    for path in islice(_visible_sources(), _MOST_FILES):
         try:
             source = read_source(path)
         except TltlError:
@@ -54,7 +54,7 @@ def _declaring(name: str) -> Iterator[Path]:
                 yield path
 
 
-def _files() -> Iterator[Path]:
+def _visible_sources() -> Iterator[Path]:
     """Yield visible source files, those of the current folder first; skip pipes and devices."""
     for place, folders, files in islice(walk("."), _MOST_FOLDERS):
         folders[:] = sorted(name for name in folders if not name.startswith("."))

@@ -24,11 +24,11 @@ def open_missing_streams() -> None:
     If standard input is closed, ``sys.stdin`` stays None; :mod:`tltlc.io.spec_file` reports that on
     reading.
     """
-    opened = {number: _open(number, mode) for number, mode in enumerate(_MODES) if not _is_open(number)}
+    null_streams = {number: _open(number, mode) for number, mode in enumerate(_MODES) if not _is_open(number)}
     if sys.stdout is None:
-        sys.stdout = open(opened.get(1, 1), "w", encoding="utf-8", closefd=False)  # noqa: SIM115
+        sys.stdout = open(null_streams.get(1, 1), "w", encoding="utf-8", closefd=False)  # noqa: SIM115
     if sys.stderr is None:
-        sys.stderr = open(opened.get(2, 2), "w", encoding="utf-8", closefd=False)  # noqa: SIM115
+        sys.stderr = open(null_streams.get(2, 2), "w", encoding="utf-8", closefd=False)  # noqa: SIM115
 
 
 def _is_open(number: int) -> bool:

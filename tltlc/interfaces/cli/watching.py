@@ -15,26 +15,26 @@ from tltlc.io.resources import OutOfTimeError, resource_limits
 PAUSE_S: Final = 0.2
 """Seconds between two looks at the files.
 
-A change counts once the next look finds the same state.
+A change counts once the next look finds the files unchanged since.
 """
 
 _MOST_LOOKS: Final = 10
 """After this many looks, a change counts anyway: some programs never stop writing."""
 
 
-def repeat(work: Callable[[tuple[str, ...]], None], listed: Callable[[], Iterable[str]] = tuple) -> NoReturn:
+def repeat(work: Callable[[tuple[str, ...]], None], list_files: Callable[[], Iterable[str]] = tuple) -> NoReturn:
     """Run ``work`` at once, and again after each change, until something like Ctrl-C is raised.
 
     ``work`` receives the paths that changed; the first time, none. The watched files are those that
     the last run looked for or read through :mod:`tltlc.io.files`, whether they exist or not, and
-    those that ``listed`` returns now.
+    those that ``list_files`` returns now.
     """
     changed: tuple[str, ...] = ()
     while True:
-        known = frozenset(listed())
+        known = frozenset(list_files())
         with access_log() as before:
             _run_bounded(work, changed)
-        changed = _changes(before, known, listed)
+        changed = _changes(before, known, list_files)
 
 
 def _run_bounded(work: Callable[[tuple[str, ...]], None], changed: tuple[str, ...]) -> None:
@@ -50,7 +50,7 @@ def _run_bounded(work: Callable[[tuple[str, ...]], None], changed: tuple[str, ..
 
 
 def _changes(
-    before: Mapping[str, Stamp], known: frozenset[str], listed: Callable[[], Iterable[str]]
+    before: Mapping[str, Stamp], known: frozenset[str], list_files: Callable[[], Iterable[str]]
 ) -> tuple[str, ...]:
     """Wait until files change, then until they stay the same or for ``_MOST_LOOKS`` more looks.
 
@@ -62,21 +62,24 @@ def _changes(
     looks = 0
     while True:
         time.sleep(PAUSE_S)
-        begun = time.monotonic()
-        if begun >= due:
-            new = tuple(path for path in listed() if path not in known and path not in before)
+        look_start = time.monotonic()
+        if look_start >= due:
+            new = tuple(path for path in list_files() if path not in known and path not in before)
             # Searching a large folder takes at most a twentieth of the time.
-            due = begun + 20 * (time.monotonic() - begun)
-        last, changed = changed, {path: now for path, was in before.items() if (now := stamp(path)) != was}
+            due = look_start + 20 * (time.monotonic() - look_start)
+        previous, changed = (
+            changed,
+            {path: new_stamp for path, old_stamp in before.items() if (new_stamp := stamp(path)) != old_stamp},
+        )
         changed.update({path: stamp(path) for path in new})
         looks += bool(changed)
-        if changed and (changed == last or looks > _MOST_LOOKS):
+        if changed and (changed == previous or looks > _MOST_LOOKS):
             # The same file may appear under several paths; messages use the first one.
-            files = {_place(path): path for path in reversed(changed)}
+            files = {_real_path(path): path for path in reversed(changed)}
             return tuple(path for path in changed if path in files.values())
 
 
-def _place(path: str) -> str:
+def _real_path(path: str) -> str:
     """Return the real path; raise TLT0001 if the current folder was deleted."""
     try:
         return os.path.realpath(path)

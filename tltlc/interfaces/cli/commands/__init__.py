@@ -1,4 +1,4 @@
 """One module per command, loaded when its command is named.
 
-Each defines one click command, ``command``.
+Each module defines one click command, ``command``.
 """

@@ -1,4 +1,4 @@
-"""``tltlc breaking``: report changes since a revision, or against a folder, that others notice."""
+"""``tltlc breaking``: report changes since a revision, or from a folder, that games or baselines notice."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ import click
 
 from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.interfaces.cli.settings import CompileSettings, source_options, work_of
+from tltlc.interfaces.cli.settings import CompileSettings, search_steps, source_options
 from tltlc.io.spec_file import STDIN, split
 
 if TYPE_CHECKING:
     from tltlc.tools.diff.breaking import FileChange, Version
     from tltlc.tools.diff.revisions import EarlierTree
 
-_OF_SERVICES: Final = ("github", "sarif")
+_SERVICE_FORMATS: Final = ("github", "sarif")
 """Formats for services that only know the current files."""
 
 
@@ -56,23 +56,23 @@ def command(paths: tuple[str, ...], against: str, settings: CompileSettings, for
     diagnostics: list[Diagnostic] = []
     with Report(format) as report, earlier_files(against, paths) as old:
 
-        def shown(diagnostics: Iterable[Diagnostic], path: str) -> tuple[Diagnostic, ...]:
-            placed = (
+        def for_report(diagnostics: Iterable[Diagnostic], path: str) -> tuple[Diagnostic, ...]:
+            at_new_places = (
                 old.with_current_labels(diagnostics, path, old.old_path(path))
-                if format in _OF_SERVICES
+                if format in _SERVICE_FORMATS
                 else diagnostics
             )
-            return old.with_display_names(placed)
+            return old.with_display_names(at_new_places)
 
         changes: list[FileChange] = []
         for path in dict.fromkeys(path for argument in paths for path in _files(argument, old)):
             try:
                 changes.append(_change(path, old, settings))
             except TltlError as error:
-                report.add(shown(error.diagnostics, path))
-        for change in follow_moves(changes, work_of(settings)):
+                report.add(for_report(error.diagnostics, path))
+        for change in follow_moves(changes, search_steps(settings)):
             try:
-                file_diagnostics = shown(version_changes(change, work_of(settings)), change.path)
+                file_diagnostics = for_report(version_changes(change, search_steps(settings)), change.path)
             except TltlError as error:
                 report.add(error.diagnostics)
                 continue
@@ -93,14 +93,14 @@ def _files(argument: str, old: EarlierTree) -> list[str]:
 
     Raise TLT0722 if there are none.
     """
-    from tltlc.interfaces.cli.folders import below
+    from tltlc.interfaces.cli.folders import files_below
     from tltlc.tools.diff.revisions import SOURCE_ENDINGS
 
     folders = [folder for folder in (argument, old.old_path(argument)) if folder is not None and os.path.isdir(folder)]  # noqa: PTH112
     if not folders:
         return [argument]
     # The old folder may lie inside the new one.
-    candidates = {path for folder in folders for path in below(Path(folder), SOURCE_ENDINGS)}
+    candidates = {path for folder in folders for path in files_below(Path(folder), SOURCE_ENDINGS)}
     spec_files = [path for path in sorted(candidates) if not old.contains(Path(argument, path))]
     if not spec_files:
         title = f"there is no spec, library or artefact in `{argument}`"
@@ -125,9 +125,9 @@ def _version(path: str, settings: CompileSettings) -> Version:
     from tltlc.interfaces.cli.inputs import open_input
     from tltlc.tools.diff.versions import version_of_artefact, version_of_library, version_of_specs
 
-    opened = open_input(path, settings)
-    if opened.session is None:
-        return version_of_artefact(path, opened.automata)
-    if opened.session.program.specs:
-        return version_of_specs(opened.session.program, opened.automata)
-    return version_of_library(opened.session)
+    spec_input = open_input(path, settings)
+    if spec_input.session is None:
+        return version_of_artefact(path, spec_input.automata)
+    if spec_input.session.program.specs:
+        return version_of_specs(spec_input.session.program, spec_input.automata)
+    return version_of_library(spec_input.session)

@@ -1,6 +1,6 @@
-"""``tltlc check``: report everything that compiling would, without writing.
+"""``tltlc check``: report every error and warning of compiling, and write nothing.
 
-With a level, also report whether the specs fit it.
+With a level, also report whether the specs fit the level.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ class Check(click.Command):
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         """Parse like click, with the options for levels if one is named."""
         if not ctx.resilient_parsing and any(text.partition("=")[0] == "--level" for text in args):
-            ctx.meta[LEVELS] = plugins.of_levels("check", "`tltlc check --level`")
+            ctx.meta[LEVELS] = plugins.load_levels_plugin("check", "`tltlc check --level`")
         return super().parse_args(ctx, args)
 
     def get_params(self, ctx: click.Context) -> list[click.Parameter]:
@@ -78,7 +78,7 @@ def command(
     from tltlc.diagnostics.diagnostic import TltlError
     from tltlc.interfaces.cli.folders import every_source
     from tltlc.interfaces.cli.inputs import open_input
-    from tltlc.interfaces.cli.report import Report, counted, tally
+    from tltlc.interfaces.cli.report import Report, count_text, tally
     from tltlc.io.spec_file import split
 
     context = click.get_current_context()
@@ -88,17 +88,17 @@ def command(
         paths = every_source(specs, report)
         for spec in paths:
             try:
-                opened = open_input(spec, settings)
+                spec_input = open_input(spec, settings)
             except TltlError as error:
                 report.add(error.diagnostics)
                 continue
-            report.add(opened.diagnostics)
+            report.add(spec_input.diagnostics)
             if levels:
-                inputs.append(opened)
-            if spec in specs and not opened.diagnostics:
-                report.say(f"{opened.name}: {counted(len(opened.automata), 'spec')}, nothing to report")
+                inputs.append(spec_input)
+            if spec in specs and not spec_input.diagnostics:
+                report.say(f"{spec_input.name}: {count_text(len(spec_input.automata), 'spec')}, nothing to report")
         if len(paths) > 1 or not set(paths).issubset(specs):
-            report.say(f"{counted(len({split(path)[0] for path in paths}), 'file')}: {tally(report.found)}")
+            report.say(f"{count_text(len({split(path)[0] for path in paths}), 'file')}: {tally(report.diagnostics)}")
         if levels and (inputs or not specs):
             context.meta[LEVELS].callback(levels=levels, inputs=inputs, settings=settings, report=report, **options)
     return report.status

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import click
 
 from tltlc.interfaces.cli import exits
-from tltlc.interfaces.cli.outputs import files_of, output_option, target_option, targets_of, write_and_tell
+from tltlc.interfaces.cli.outputs import files_of, output_option, target_option, targets_of, write_and_report
 from tltlc.interfaces.cli.settings import CompileSettings, source_options
 
 if TYPE_CHECKING:
@@ -53,7 +53,7 @@ def command(
     Nothing is written unless everything could be, and files that would not change stay untouched.  Of a folder, as of
     . for the current one, every .tltl file in it and below is compiled.
     """
-    from tltlc.interfaces.cli.folders import every_source, in_folders
+    from tltlc.interfaces.cli.folders import every_source, files_in_folders
     from tltlc.interfaces.cli.report import Report
     from tltlc.io.resources import resource_limits
 
@@ -64,17 +64,17 @@ def command(
             targets = targets_of(target_lists)
             files: Files = {}
             sources: dict[str, str] = {}
-            for opened in _opened(every_source(specs, report), settings, names, report):
-                if not opened.automata and opened.name not in in_folders(specs):
-                    report.say(f"{opened.name}: there is no spec in it")
-                generated = files_of(opened.automata, targets, opened.project, report)
-                _check_apart(generated, opened.name, sources, is_waiting=bool(changed))
+            for spec_input in _valid_inputs(every_source(specs, report), settings, names, report):
+                if not spec_input.automata and spec_input.name not in files_in_folders(specs):
+                    report.say(f"{spec_input.name}: there is no spec in it")
+                generated = files_of(spec_input.automata, targets, spec_input.project, report)
+                _check_distinct(generated, spec_input.name, sources, is_waiting=bool(changed))
                 files |= generated
             if report.status == exits.CLEAN:
-                write_and_tell(folder, files, report)
+                write_and_report(folder, files, report)
         return report.status
 
-    def compile_and_tell(changed: tuple[str, ...]) -> None:
+    def compile_and_wait(changed: tuple[str, ...]) -> None:
         try:
             status = compile_once(changed)
         except click.UsageError as error:
@@ -94,36 +94,38 @@ def command(
 
         if any(split(spec)[0] == STDIN for spec in specs):
             raise click.UsageError("--watch takes files: standard input does not change")
-        repeat(compile_and_tell, lambda: in_folders(specs))
+        repeat(compile_and_wait, lambda: files_in_folders(specs))
     return compile_once()
 
 
-def _opened(specs: list[str], settings: CompileSettings, names: tuple[str, ...], report: Report) -> Iterator[Input]:
+def _valid_inputs(
+    specs: list[str], settings: CompileSettings, names: tuple[str, ...], report: Report
+) -> Iterator[Input]:
     """Yield the compiled arguments that have no errors; report the diagnostics of each."""
     from tltlc.diagnostics.diagnostic import TltlError
     from tltlc.interfaces.cli.inputs import open_input
 
     for spec in specs:
         try:
-            opened = open_input(spec, settings, names)
+            spec_input = open_input(spec, settings, names)
         except TltlError as error:
             report.add(error.diagnostics)
             continue
-        report.add(opened.diagnostics)
-        yield opened
+        report.add(spec_input.diagnostics)
+        yield spec_input
 
 
-def _check_apart(files: Files, source: str, sources: dict[str, str], *, is_waiting: bool) -> None:
+def _check_distinct(files: Files, source: str, sources: dict[str, str], *, is_waiting: bool) -> None:
     """Record in ``sources`` which source makes which file.
 
-    Raise TLT0700 if two sources make the same file. ``is_waiting`` is whether the command goes on
-    after the next change of a file.
+    Raise TLT0700 if two sources make the same file. ``is_waiting`` is whether the command waits for
+    changes of files, so that an edit can fix this.
     """
     from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
     for name in files:
         if name in sources:
-            apart = "" if is_waiting else ", or compile each file into a folder of its own, with -o"
+            alternative = "" if is_waiting else ", or compile each file into a folder of its own, with -o"
             title = f"`{sources[name]}` and `{source}` both make `{name}`"
-            raise TltlError([Diagnostic("TLT0700", title, help=f"rename one of the specs{apart}")])
+            raise TltlError([Diagnostic("TLT0700", title, help=f"rename one of the specs{alternative}")])
         sources[name] = source

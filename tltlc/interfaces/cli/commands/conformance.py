@@ -33,14 +33,14 @@ def command(folder: Path) -> int:
     DIR/README.md says how; DIR/index.json is for programs.  The files are the same at each run.  DIR must be new, empty
     or made by an earlier run.
     """
-    from tltlc.interfaces.cli.folders import in_the_way, is_free
+    from tltlc.interfaces.cli.folders import is_free, occupied_folder_error
     from tltlc.interfaces.cli.report import Report
     from tltlc.io.writing import write_files
     from tltlc.tools.conformance.corpus import CASES, files, is_corpus
 
     with Report() as report:
         if not is_free(folder) and not is_corpus(folder):
-            raise in_the_way(folder, "name another folder with -o, or an empty one")
+            raise occupied_folder_error(folder, "name another folder with -o, or an empty one")
         contents = files()
         write_files(folder, contents, over_inputs=True)
         report.say(f"wrote {len(CASES)} cases, {len(contents)} files, to {folder}: see {folder / 'README.md'}")

@@ -11,7 +11,7 @@ import click
 from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.interfaces.cli import exits
-from tltlc.interfaces.cli.settings import CompileSettings, compile_options, work_of
+from tltlc.interfaces.cli.settings import CompileSettings, compile_options, search_steps
 from tltlc.io.spec_file import STDIN, split
 
 if TYPE_CHECKING:
@@ -49,14 +49,14 @@ def command(a: str, b: str, by_name: bool, settings: CompileSettings, format: st
 
     difference: FileDiff | None = None
     with Report(results=True) as report:
-        ours, theirs, one_each = _opened(a, b, settings)
+        ours, theirs, one_each = _open_sides(a, b, settings)
         difference = diff_files(
-            (_shown(a, ours), ours.automata),
-            (_shown(b, theirs), theirs.automata),
+            (_side_name(a, ours), ours.automata),
+            (_side_name(b, theirs), theirs.automata),
             one_each=one_each,
             by_name=by_name,
-            work=work_of(settings),
-            declared=_declared(ours, theirs),
+            work=search_steps(settings),
+            declared=_exclusive_declarations(ours, theirs),
         )
         if format == "json":
             from tltlc.tools.diff.diff_json import document
@@ -69,23 +69,23 @@ def command(a: str, b: str, by_name: bool, settings: CompileSettings, format: st
     return report.status or (exits.CLEAN if difference and difference.is_same else exits.FINDINGS)
 
 
-def _opened(a: str, b: str, settings: CompileSettings) -> tuple[Input, Input, bool]:
+def _open_sides(a: str, b: str, settings: CompileSettings) -> tuple[Input, Input, bool]:
     """Open both files with the specs to compare.
 
-    The flag is whether to compare one spec of each, whatever their names.
+    The flag is True if each side is one spec, and both are to be compared whatever their names are.
     """
     (path_a, name_a), (path_b, name_b) = split(a), split(b)
     if path_a == path_b == STDIN:
         raise click.UsageError("A and B cannot both be standard input")
-    ours, theirs = _open(a, settings), _open(b, settings)
+    ours, theirs = _open_side(a, settings), _open_side(b, settings)
     if name_a is None and name_b is None:
         return ours, theirs, False
-    ours, theirs = _like(name_b, ours), _like(name_a, theirs)
-    ours.one(), theirs.one()
+    ours, theirs = _matching_spec(name_b, ours), _matching_spec(name_a, theirs)
+    ours.only_automaton(), theirs.only_automaton()
     return ours, theirs, True
 
 
-def _open(argument: str, settings: CompileSettings) -> Input:
+def _open_side(argument: str, settings: CompileSettings) -> Input:
     """Open one side; ``REV:FILE`` is the file at that revision.
 
     Other arguments are opened by :func:`~tltlc.interfaces.cli.inputs.open_input`.
@@ -108,10 +108,10 @@ def _open(argument: str, settings: CompileSettings) -> Input:
             raise TltlError([Diagnostic("TLT0751", f"there is no file `{file}` in `{revision}`", help=help_)])
         old_settings = replace(settings, libraries=old.old_libraries(settings.libraries))
         try:
-            opened = open_input(before if name is None else f"{before}:{name}", old_settings)
+            side = open_input(before if name is None else f"{before}:{name}", old_settings)
         except TltlError as error:
             raise TltlError(old.with_display_names(error.diagnostics)) from None
-        return replace(opened, name=path)
+        return replace(side, name=path)
 
 
 def _split_revision(path: str) -> tuple[str, str]:
@@ -125,7 +125,7 @@ def _split_revision(path: str) -> tuple[str, str]:
     return revision, file
 
 
-def _declared(a: Input, b: Input) -> DeclaredGroups:
+def _exclusive_declarations(a: Input, b: Input) -> DeclaredGroups:
     """Return the ``exclusive`` declarations of both files.
 
     An artefact has None, because it does not store them.
@@ -133,13 +133,13 @@ def _declared(a: Input, b: Input) -> DeclaredGroups:
     return (a.program.exclusive if a.program else None, b.program.exclusive if b.program else None)
 
 
-def _like(name: str | None, opened: Input) -> Input:
+def _matching_spec(name: str | None, side: Input) -> Input:
     """Reduce a file to the spec that has the name on the other side, if there is one."""
-    matches = tuple(fspa for fspa in opened.automata if fspa.name == name)
-    return replace(opened, automata=matches or opened.automata)
+    matches = tuple(fspa for fspa in side.automata if fspa.name == name)
+    return replace(side, automata=matches or side.automata)
 
 
-def _shown(argument: str, opened: Input) -> str:
+def _side_name(argument: str, side: Input) -> str:
     """Return the name of a side in the report."""
     name = split(argument)[1]
-    return opened.name if name is None else f"{opened.name}:{name}"
+    return side.name if name is None else f"{side.name}:{name}"

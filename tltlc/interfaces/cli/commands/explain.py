@@ -45,11 +45,11 @@ def command(what: str, format: str, settings: CompileSettings) -> int:  # noqa: 
     folder those of every .tltl file in it and below.
     """
     if (_CODE.match(what) or _CODE_LIKE.match(what)) and not Path(what).exists():
-        return _code(what)
-    return _specs(what, format, settings)
+        return _print_code_page(what)
+    return _explain_specs(what, format, settings)
 
 
-def _specs(argument: str, format: str, settings: CompileSettings) -> int:  # noqa: A002
+def _explain_specs(argument: str, format: str, settings: CompileSettings) -> int:  # noqa: A002
     from tltlc.diagnostics.diagnostic import TltlError
     from tltlc.interfaces.cli.folders import every_source
     from tltlc.interfaces.cli.inputs import open_input
@@ -60,18 +60,18 @@ def _specs(argument: str, format: str, settings: CompileSettings) -> int:  # noq
     with Report(results=True) as report:
         for path in every_source([argument], report):
             try:
-                opened = open_input(path, settings)
+                spec_input = open_input(path, settings)
             except TltlError as error:
                 report.add(error.diagnostics)
                 continue
-            report.add(opened.diagnostics)
-            explanations += map(explain, opened.automata)
+            report.add(spec_input.diagnostics)
+            explanations += map(explain, spec_input.automata)
         if explanations or not report.status:
-            _show(explanations, format)
+            _print_explanations(explanations, format)
     return report.status
 
 
-def _show(explanations: list[Explanation], format: str) -> None:  # noqa: A002
+def _print_explanations(explanations: list[Explanation], format: str) -> None:  # noqa: A002
     if format == "json":
         import json
 
@@ -90,27 +90,27 @@ def _show(explanations: list[Explanation], format: str) -> None:  # noqa: A002
     click.echo("\n".join(write(explanation) for explanation in explanations), nl=False)
 
 
-def _code(code: str) -> int:
+def _print_code_page(code: str) -> int:
     """Print the page of a code.
 
     For a prefix, list the codes that start with it, with their titles.
     """
     from tltlc.diagnostics import codes
 
-    wanted = re.sub(r"(?i)\A(?:tlt)?", "TLT", code.strip(), count=1)
-    if wanted not in codes.codes():
-        family = codes.codes_with_prefix(wanted)
+    full_code = re.sub(r"(?i)\A(?:tlt)?", "TLT", code.strip(), count=1)
+    if full_code not in codes.codes():
+        family = codes.codes_with_prefix(full_code)
         if not family:
-            *first, last = (f"`{nearest}`" for nearest in codes.nearest_codes(wanted))
-            listed = f"{', '.join(first)} or {last}"
+            *first, last = (f"`{nearest}`" for nearest in codes.nearest_codes(full_code))
+            candidates = f"{', '.join(first)} or {last}"
             raise click.UsageError(
-                f"there is no error code `{code}`: did you mean {listed}?", click.get_current_context()
+                f"there is no error code `{code}`: did you mean {candidates}?", click.get_current_context()
             )
         from tltlc.interfaces.cli.commands.list import show
 
         show([{"name": member, "doc": codes.title(member)} for member in family])
         return 0
-    text = codes.page(wanted)
+    text = codes.page(full_code)
     if sys.stdout.isatty():
         from rich.console import Console
         from rich.markdown import Markdown

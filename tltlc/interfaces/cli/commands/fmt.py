@@ -40,28 +40,28 @@ def command(paths: tuple[str, ...], check: bool, diff: bool, style: str | None) 
     """
     from tltlc.diagnostics.diagnostic import TltlError
     from tltlc.interfaces.cli import exits
-    from tltlc.interfaces.cli.folders import every_source, leads_out
-    from tltlc.interfaces.cli.report import Report, counted
+    from tltlc.interfaces.cli.folders import every_source, links_outside
+    from tltlc.interfaces.cli.report import Report, count_text
     from tltlc.io.project import project_for
 
-    changed = same = 0
+    changed = unchanged = 0
     with Report(results=True) as report:
         for path in every_source(paths or (".",), report):
             try:
-                wanted_style = style or project_for(path).formatting
-                if not check and not diff and leads_out(path, paths or (".",)):
+                file_style = style or project_for(path).formatting
+                if not check and not diff and links_outside(path, paths or (".",)):
                     report.say(f"{path} is left as it is: it is a link out of the folder")
                     continue
-                is_same = _format(path, wanted_style, report, check=check, diff=diff)
+                is_same = _format(path, file_style, report, check=check, diff=diff)
             except TltlError as error:
                 report.add(error.diagnostics)
                 continue
-            changed, same = changed + (not is_same), same + is_same
+            changed, unchanged = changed + (not is_same), unchanged + is_same
         if check:
-            report.say(f"{counted(changed, 'file')} would change, {same} would not")
+            report.say(f"{count_text(changed, 'file')} would change, {unchanged} would not")
             report.status = report.status or (exits.FINDINGS if changed else exits.CLEAN)
-        elif same and not diff and paths != ("-",):
-            report.say(f"{counted(same, 'file')} had this layout already")
+        elif unchanged and not diff and paths != ("-",):
+            report.say(f"{count_text(unchanged, 'file')} had this layout already")
     return report.status
 
 

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import click
 
 from tltlc.interfaces.cli.numbers import WholeRange
-from tltlc.interfaces.cli.outputs import files_of, output_option, target_option, targets_of, write_and_tell
-from tltlc.interfaces.cli.settings import CompileSettings, assignments, source_options
+from tltlc.interfaces.cli.outputs import files_of, output_option, target_option, targets_of, write_and_report
+from tltlc.interfaces.cli.settings import CompileSettings, parse_assignments, source_options
 
 if TYPE_CHECKING:
     from tltlc.resolve.spec import Judge
@@ -40,7 +40,7 @@ Examples:
 )
 @click.option(
     "--atom",
-    "given",
+    "atom_texts",
     metavar="AP=PREDICATE",
     multiple=True,
     help="The predicate of an atomic proposition that is not called like one, e.g. `p0=near(exit)` (repeatable).",
@@ -57,7 +57,7 @@ Examples:
 def command(
     file: str,
     predicates: str,
-    given: tuple[str, ...],
+    atom_texts: tuple[str, ...],
     name: str | None,
     level: str | None,
     limit: int | None,
@@ -83,7 +83,7 @@ def command(
     from tltlc.resolve.options import ResolveOptions
     from tltlc.tools.hoa.load import ImportOptions, load
 
-    atoms = assignments(given, "AP=PREDICATE", "--atom")
+    atoms = parse_assignments(atom_texts, "AP=PREDICATE", "--atom")
     with Report(format) as report:
         targets = targets_of(target_lists)
         check_libraries(settings.libraries)
@@ -100,5 +100,5 @@ def command(
         stop_at_errors(diagnostics)
         report.add(diagnostics)
         advice = "name another folder with -o, or another spec with --name"
-        write_and_tell(folder, files_of([fspa], targets, project, report), report, advice)
+        write_and_report(folder, files_of([fspa], targets, project, report), report, advice)
     return report.status

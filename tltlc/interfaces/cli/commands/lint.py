@@ -39,8 +39,8 @@ def command(paths: tuple[str, ...], fixing: bool, settings: CompileSettings, for
     is 1 where there is an error or a warning, and 0 where there are notes at most.
     """
     from tltlc.diagnostics.diagnostic import TltlError
-    from tltlc.interfaces.cli.folders import every_source, leads_out
-    from tltlc.interfaces.cli.report import Report, counted, tally
+    from tltlc.interfaces.cli.folders import every_source, links_outside
+    from tltlc.interfaces.cli.report import Report, count_text, tally
     from tltlc.tools.lint.importers import importer_names, names_used_elsewhere
     from tltlc.tools.lint.neighbours import neighbours
 
@@ -49,7 +49,7 @@ def command(paths: tuple[str, ...], fixing: bool, settings: CompileSettings, for
         neighbour_words = {path: importer_names(str(path), text) for path, text in neighbours(files).items()}
         for path in files:
             try:
-                can_fix = fixing and not leads_out(path, paths or (".",))
+                can_fix = fixing and not links_outside(path, paths or (".",))
                 if fixing and not can_fix:
                     report.say(f"{path} is left as it is: it is a link out of the folder")
                 diagnostics = _lint_file(
@@ -58,9 +58,9 @@ def command(paths: tuple[str, ...], fixing: bool, settings: CompileSettings, for
             except TltlError as error:
                 diagnostics = error.diagnostics
             report.add(diagnostics)
-        if len(files) > 1 or not report.found:
-            report.say(f"{counted(len(files), 'file')}: {tally(report.found)}")
-    return report.status or _status(report.found)
+        if len(files) > 1 or not report.diagnostics:
+            report.say(f"{count_text(len(files), 'file')}: {tally(report.diagnostics)}")
+    return report.status or _status(report.diagnostics)
 
 
 def _lint_file(

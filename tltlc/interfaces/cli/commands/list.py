@@ -16,7 +16,7 @@ Row = dict[str, str]
 LISTS = "tltlc.lists"
 """The entry-point group for lists that the compiler does not know itself.
 
-Each is a function that returns rows.
+Each entry is a function that returns rows.
 """
 
 

@@ -128,10 +128,10 @@ def command(
     with Report(format, results=True) as report:
         options = _compile_options(predicates, settings)
         library = None if predicates is None else _library(predicates)
-        imported = _import(library, predicates, output) if library and predicates and output else None
+        imported = _import_line(library, predicates, output) if library and predicates and output else None
         resolve = ResolveOptions(options.library_dirs, options.params)
         words, evidence, diagnostics = read_evidence(
-            _files(traces), _files(counterexamples), library, resolve, _every_second(report)
+            _read_traces(traces), _read_traces(counterexamples), library, resolve, _every_second(report)
         )
         if output is not None and not is_stdout(output):
             check_not_read(output)
@@ -140,13 +140,13 @@ def command(
         report.add(diagnostics)
         search = SpecSearch(evidence, MiningOptions(min_support, max_length))
         whole, interrupted = _run_search(search, seconds, report)
-        left_out = (*_unread(words), *search.omissions())
-        report.add(tuple(_beyond_the_limits(title, predicates) for title in left_out))
+        left_out = (*_unread_messages(words), *search.omissions())
+        report.add(tuple(_limit_warning(title, predicates) for title in left_out))
         proposals = confirm(search.ranking(), evidence, words, options, top)
         if not proposals:
-            report.add((_nothing(evidence, whole=whole),))
+            report.add((_no_proposal(evidence, whole=whole),))
         elif output is not None:
-            _write(output, proposals, evidence, search, words, imported, report)
+            _write_proposals(output, proposals, evidence, search, words, imported, report)
         if as_json:
             print(
                 json.dumps(
@@ -155,7 +155,7 @@ def command(
             )
         elif proposals and not is_stdout(output):
             print(proposals_text(proposals, evidence, search.bits))
-    return exits.interrupted() if interrupted else report.status
+    return exits.interrupted_status() if interrupted else report.status
 
 
 def _column_messages(words: MiningVocabulary, predicates: str | None) -> Iterator[str]:
@@ -173,7 +173,7 @@ def _column_messages(words: MiningVocabulary, predicates: str | None) -> Iterato
 # --- input ----------------------------------------------------------------------------------------
 
 
-def _files(arguments: Sequence[str]) -> list[TraceFile]:
+def _read_traces(arguments: Sequence[str]) -> list[TraceFile]:
     """Read the traces that the command line names; those of a folder in order of their names."""
     from tltlc.io.files import is_dir, read_bytes
     from tltlc.tools.mine.reading import TraceFile
@@ -194,9 +194,9 @@ def _files(arguments: Sequence[str]) -> list[TraceFile]:
 
 def _traces_in(folder: str) -> list[str]:
     """Return the traces in and below a folder; raise TLT0001 if there are none."""
-    from tltlc.interfaces.cli.folders import below
+    from tltlc.interfaces.cli.folders import files_below
 
-    paths = below(Path(folder), ENDINGS)
+    paths = files_below(Path(folder), ENDINGS)
     if not paths:
         title = f"the folder `{folder}` holds no trace"
         raise TltlError([Diagnostic("TLT0001", title, help=f"traces in it end in {' or '.join(ENDINGS)}")])
@@ -204,7 +204,7 @@ def _traces_in(folder: str) -> list[str]:
 
 
 def _library(predicates: str) -> SourceFile:
-    """Read the file; if the argument is the name of a library, return a text that imports it."""
+    """Read the file; if the argument is the name of a library, return a text that imports the library."""
     from tltlc.interfaces.cli.inputs import check_text
     from tltlc.io.files import is_file, read_source
 
@@ -235,15 +235,15 @@ def _run_search(search: SpecSearch, seconds: float | None, report: Report) -> tu
 
     Return whether the search completed, and whether Ctrl-C interrupted it.
     """
-    begun = monotonic()
+    start = monotonic()
     tell = _every_second(report)
     try:
         for stage in search.run():
             now = monotonic()
-            if seconds is not None and now - begun >= seconds:
+            if seconds is not None and now - start >= seconds:
                 report.say(f"time is up; candidates so far: {search.tried_count}")
                 return False, False
-            tell(f"{stage}; candidates so far: {search.tried_count}, in {now - begun:.0f} s")
+            tell(f"{stage}; candidates so far: {search.tried_count}, in {now - start:.0f} s")
     except KeyboardInterrupt:
         report.say(f"interrupted; candidates so far: {search.tried_count}")
         return False, True
@@ -263,7 +263,7 @@ def _every_second(report: Report) -> Callable[[str], None]:
     return tell
 
 
-def _unread(words: MiningVocabulary) -> Iterator[str]:
+def _unread_messages(words: MiningVocabulary) -> Iterator[str]:
     """Yield a message if there are more atoms than the limit allows to read."""
     from tltlc.io.limits import WORK
 
@@ -273,12 +273,12 @@ def _unread(words: MiningVocabulary) -> Iterator[str]:
         yield f"only the first {most:,} atoms are read{of_each}, and {words.unread_count:,} others are not"
 
 
-def _beyond_the_limits(title: str, predicates: str | None) -> Diagnostic:
+def _limit_warning(title: str, predicates: str | None) -> Diagnostic:
     help_ = "name fewer predicates in the library" if predicates else "record only the columns that matter"
     return Diagnostic("TLT0624", title, help=help_, severity="warning")
 
 
-def _nothing(evidence: Evidence, *, whole: bool) -> Diagnostic:
+def _no_proposal(evidence: Evidence, *, whole: bool) -> Diagnostic:
     if not whole:
         return Diagnostic("TLT0761", "no spec was found so far", help="give it more time, with --time")
     title = "there is no spec to propose: what the traces have in common, the counterexamples have, too"
@@ -291,7 +291,7 @@ def _nothing(evidence: Evidence, *, whole: bool) -> Diagnostic:
 # --- output ---------------------------------------------------------------------------------------
 
 
-def _write(
+def _write_proposals(
     path: Path,
     proposals: Sequence[Proposal],
     evidence: Evidence,
@@ -317,7 +317,7 @@ def _write(
         report.say(f"wrote {path}")
 
 
-def _import(library: SourceFile, predicates: str, path: Path) -> str:
+def _import_line(library: SourceFile, predicates: str, path: Path) -> str:
     """Return the line that imports a library by name or by path into the file at ``path``.
 
     Raises click.UsageError if no such line can be written.

@@ -50,35 +50,35 @@ def command(spec: str, trace: str, as_json: bool, settings: CompileSettings, for
 
     if split(spec)[0] == trace == STDIN:
         raise click.UsageError("SPEC and TRACE cannot both be standard input", click.get_current_context())
-    judged: TraceOutcome | None = None
+    result: TraceOutcome | None = None
     with Report(format, results=True) as report:
-        opened = open_input(spec, settings)
-        report.add(opened.diagnostics)
-        fspa = opened.one()
+        spec_input = open_input(spec, settings)
+        report.add(spec_input.diagnostics)
+        fspa = spec_input.only_automaton()
         monitor = Monitor(fspa)
-        with _opened(trace) as lines:
-            rows = run(monitor, read_trace(lines, _shown(trace), fspa.signals))
+        with _open_trace(trace) as lines:
+            rows = run(monitor, read_trace(lines, _trace_name(trace), fspa.signals))
             show = _show_json if as_json else _show_csv
-            judged = outcome(show(fspa, _with_notices(rows, monitor.notices, report)))
-        (_end_json if as_json else _end_csv)(judged)
-    return report.status or (exits.CLEAN if judged and judged.accepted else exits.FINDINGS)
+            result = outcome(show(fspa, _with_notices(rows, monitor.notices, report)))
+        (_end_json if as_json else _end_csv)(result)
+    return report.status or (exits.CLEAN if result and result.accepted else exits.FINDINGS)
 
 
 @contextmanager
-def _opened(trace: str) -> Iterator[Stream]:
+def _open_trace(trace: str) -> Iterator[Stream]:
     """Open a trace to read it line by line; raise TLT0001 now, or later while it is read."""
     if trace == STDIN:
-        yield _Trace(standard_input(), STDIN_NAME)
+        yield _TraceFile(standard_input(), STDIN_NAME)
         return
     try:
         file = Path(trace).open("rb")  # noqa: SIM115 (closed below; only the opening may fail with TLT0001)
     except (OSError, ValueError) as error:
         raise input_error(trace, error) from None
     with file:
-        yield _Trace(file, trace)
+        yield _TraceFile(file, trace)
 
 
-class _Trace:
+class _TraceFile:
     """A file that raises TLT0001 if reading fails."""
 
     def __init__(self, file: BinaryIO, name: str) -> None:
@@ -92,7 +92,7 @@ class _Trace:
             raise input_error(self._name, error) from None
 
 
-def _shown(trace: str) -> str:
+def _trace_name(trace: str) -> str:
     return STDIN_NAME if trace == STDIN else trace
 
 
@@ -115,9 +115,9 @@ def _show_csv(fspa: Fspa, rows: Iterator[RunStep]) -> Iterator[RunStep]:
         yield row
 
 
-def _end_csv(judged: TraceOutcome) -> None:
-    accepted = "accepted" if judged.accepted else "not accepted"
-    print(f"{accepted}: {judged.verdict} after {judged.steps} step{'' if judged.steps == 1 else 's'}")
+def _end_csv(result: TraceOutcome) -> None:
+    accepted = "accepted" if result.accepted else "not accepted"
+    print(f"{accepted}: {result.verdict} after {result.steps} step{'' if result.steps == 1 else 's'}")
 
 
 def _show_json(fspa: Fspa, rows: Iterator[RunStep]) -> Iterator[RunStep]:
@@ -127,7 +127,7 @@ def _show_json(fspa: Fspa, rows: Iterator[RunStep]) -> Iterator[RunStep]:
     try:
         for row in rows:
             step = row.step
-            shown = {
+            row_values = {
                 "step": row.number,
                 "state": step.state,
                 "label": step.label,
@@ -138,7 +138,7 @@ def _show_json(fspa: Fspa, rows: Iterator[RunStep]) -> Iterator[RunStep]:
                 "reward": step.reward,
                 "atoms": dict(zip(names, row.values, strict=True)),
             }
-            sys.stdout.write(between + json.dumps(shown))
+            sys.stdout.write(between + json.dumps(row_values))
             sys.stdout.flush()
             between = ",\n"
             yield row
@@ -148,12 +148,12 @@ def _show_json(fspa: Fspa, rows: Iterator[RunStep]) -> Iterator[RunStep]:
         raise
 
 
-def _end_json(judged: TraceOutcome) -> None:
+def _end_json(result: TraceOutcome) -> None:
     end = {
-        "accepted": judged.accepted,
-        "verdict": judged.verdict,
-        "steps": judged.steps,
-        "progress": judged.progress,
-        "reward": judged.total_reward,
+        "accepted": result.accepted,
+        "verdict": result.verdict,
+        "steps": result.steps,
+        "progress": result.progress,
+        "reward": result.total_reward,
     }
     print("\n], " + json.dumps(end)[1:])

@@ -33,20 +33,20 @@ def command(folder: Path, level: str | None) -> int:
 
     With --level, create it with a level to be changed instead.
     """
-    from tltlc.interfaces.cli.folders import in_the_way, is_free
+    from tltlc.interfaces.cli.folders import is_free, occupied_folder_error
     from tltlc.interfaces.cli.report import Report
     from tltlc.io.writing import write_files
 
     with Report() as report:
         if not is_free(folder):
-            raise in_the_way(folder, "choose another name, or an empty folder")
-        files, next_ = _FILES, f"test {shlex.quote(str(folder))}"
+            raise occupied_folder_error(folder, "choose another name, or an empty folder")
+        files, next_command = _FILES, f"test {shlex.quote(str(folder))}"
         if level is not None:
-            files = plugins.of_levels("new", "`tltlc new --level`")(level)
-            next_ = f"check --level {shlex.quote(str(folder / next(iter(files))))}"
+            files = plugins.load_levels_plugin("new", "`tltlc new --level`")(level)
+            next_command = f"check --level {shlex.quote(str(folder / next(iter(files))))}"
         for path in write_files(folder, files, advice="choose another place, e.g. `tltlc new my_game`"):
             report.say(f"wrote {path}")
-        report.say(f"Next: tltlc {next_}")
+        report.say(f"Next: tltlc {next_command}")
     return report.status
 
 

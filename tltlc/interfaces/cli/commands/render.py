@@ -72,17 +72,17 @@ def command(
     from tltlc.io.writing import write_file
 
     path = None if is_stdout(path) else path
-    kind = target or _kind(path)
+    kind = target or _target_of(path)
     if path is None and kind == "png" and sys.stdout.isatty():
         raise click.UsageError("a PNG is nothing for a terminal: name a file with -o")
     with Report(format, results=path is None) as report:
-        opened = open_input(spec, settings)
-        report.add(opened.diagnostics)
+        spec_input = open_input(spec, settings)
+        report.add(spec_input.diagnostics)
         options = backends.Options(
-            notation=notation or opened.project.notation,
+            notation=notation or spec_input.project.notation,
             report=lambda diagnostic: report.add((diagnostic,)),
         )
-        for name, content in backends.emit(kind, opened.one(), options).items():
+        for name, content in backends.emit(kind, spec_input.only_automaton(), options).items():
             if path is not None:
                 if kind != "dot" and name.endswith(".dot"):
                     path = path.with_suffix(".dot")  # the layout took too long, and this is the graph itself
@@ -93,7 +93,7 @@ def command(
     return report.status
 
 
-def _kind(path: Path | None) -> str:
+def _target_of(path: Path | None) -> str:
     if path is None:
         return "svg"
     kind = _TARGET_OF_ENDING.get(path.suffix.lower())

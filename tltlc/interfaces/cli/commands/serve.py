@@ -26,7 +26,7 @@ in the current folder and below, and the libraries of tltlc.
 """
 )
 @click.option("--port", metavar="N", type=WholeRange(0, 65535), default=8765, help="Serve there (default: 8765).")
-@click.option("--open", "opening", is_flag=True, help="Open the page in a browser.")
+@click.option("--open", "open_browser", is_flag=True, help="Open the page in a browser.")
 @click.option(
     "--static",
     "folder",
@@ -41,7 +41,7 @@ in the current folder and below, and the libraries of tltlc.
     default=Path("node_modules/pyodide"),
     help="The npm package that --static puts in (default: node_modules/pyodide).",
 )
-def command(port: int, opening: bool, folder: Path | None, pyodide: Path) -> int:
+def command(port: int, open_browser: bool, folder: Path | None, pyodide: Path) -> int:
     """Show a page on which to try specs: errors as one types, the automaton, traces to click through.
 
     It stays until Ctrl-C, and is seen from this machine alone.
@@ -50,15 +50,15 @@ def command(port: int, opening: bool, folder: Path | None, pyodide: Path) -> int
 
     with Report() as report:
         if folder is not None:
-            if opening:
+            if open_browser:
                 raise click.UsageError("--static writes files, which need a server to be opened: leave out --open")
-            _write(folder, pyodide)
+            _write_site(folder, pyodide)
         else:
-            _serve(port, opening)
+            _serve(port, open_browser)
     return report.status
 
 
-def _write(folder: Path, pyodide: Path) -> None:
+def _write_site(folder: Path, pyodide: Path) -> None:
     from tltlc.interfaces.playground.site import site_files
     from tltlc.io.writing import write_files
 
@@ -68,18 +68,18 @@ def _write(folder: Path, pyodide: Path) -> None:
     print(f"wrote {len(files)} files, {size:.0f} MB, into {folder}; any web server can show them", file=sys.stderr)
 
 
-def _serve(port: int, opening: bool) -> None:
+def _serve(port: int, open_browser: bool) -> None:
     from tltlc.interfaces.playground.server import PlaygroundServer
 
     with PlaygroundServer(port) as server, ExitStack() as stack:
         print(f"the playground is at {server.address} until Ctrl-C", file=sys.stderr, flush=True)
         _report_ignored_project()
-        if opening:
-            _open(server.address, stack)
+        if open_browser:
+            _open_browser(server.address, stack)
         try:
             server.serve_forever()
         except KeyboardInterrupt:
-            raise exits.StopQuietlyError(exits.interrupted()) from None
+            raise exits.StopQuietlyError(exits.interrupted_status()) from None
 
 
 def _report_ignored_project() -> None:
@@ -99,7 +99,7 @@ def _report_ignored_project() -> None:
         print(f"{file} is ignored, because it is above this folder; {hint}", file=sys.stderr, flush=True)
 
 
-def _open(address: str, stack: ExitStack) -> None:
+def _open_browser(address: str, stack: ExitStack) -> None:
     """Open an address in a browser, through a file that exists until ``stack`` closes."""
     from threading import Thread
 

@@ -34,40 +34,40 @@ def command(paths: tuple[str, ...], settings: CompileSettings, format: str) -> i
     from tltlc.interfaces.cli.folders import sources
     from tltlc.interfaces.cli.report import Report
 
-    passed = failed = unread = 0
+    passed = failed = unreadable = 0
     with Report(format, results=True) as report:
         for argument in paths or (".",):
-            before = passed + failed + unread
+            before = passed + failed + unreadable
             for path in sources(argument):
                 try:
                     results = _run(path, settings, report.add)
                 except TltlError as error:
                     report.add(error.diagnostics)
-                    unread += 1
+                    unreadable += 1
                     continue
                 for result in results:
                     verdict = "passed" if result.passed else "FAILED"
                     print(f"{verdict}  {_place(result)}  {result.test.title}", flush=True)
                     passed, failed = passed + result.passed, failed + (not result.passed)
                     report.add([result.failure] if result.failure else [])
-            if passed + failed + unread == before:
+            if passed + failed + unreadable == before:
                 report.say(f"{argument}: no test block; the form is {DECLARATIONS['test']}")
-        print(f"{passed} passed, {failed} failed{_unread(unread)}")
+        print(f"{passed} passed, {failed} failed{_unread_text(unreadable)}")
     return report.status
 
 
 def _run(path: str, settings: CompileSettings, add: Callable[[Iterable[Diagnostic]], None]) -> tuple[TestResult, ...]:
-    from tltlc.interfaces.cli.inputs import no_text, open_input
+    from tltlc.interfaces.cli.inputs import artefact_error, open_input
     from tltlc.monitor.spec_tests import run_tests
 
-    opened = open_input(path, settings)
-    add(opened.diagnostics)
-    if opened.program is None:
-        raise TltlError([no_text(opened.name)])
-    return run_tests(opened.program, opened.automata)
+    spec_input = open_input(path, settings)
+    add(spec_input.diagnostics)
+    if spec_input.program is None:
+        raise TltlError([artefact_error(spec_input.name)])
+    return run_tests(spec_input.program, spec_input.automata)
 
 
-def _unread(files: int) -> str:
+def _unread_text(files: int) -> str:
     """Return the text that counts the files with errors, whose tests did not run."""
     return f", {files} {'file' if files == 1 else 'files'} with errors" if files else ""
 

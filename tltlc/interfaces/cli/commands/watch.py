@@ -36,7 +36,7 @@ def command(paths: tuple[str, ...], settings: CompileSettings) -> int:
 
     Changes of what they import count, and files that are new in a folder.  `tltlc compile --watch` writes files, too.
     """
-    from tltlc.interfaces.cli.folders import in_folders
+    from tltlc.interfaces.cli.folders import files_in_folders
     from tltlc.interfaces.cli.watching import repeat
     from tltlc.io.spec_file import STDIN
 
@@ -45,23 +45,23 @@ def command(paths: tuple[str, ...], settings: CompileSettings) -> int:
         raise click.UsageError("`tltlc watch` takes files and folders: standard input does not change")
     check_libraries(settings.libraries)
 
-    def look(changed: tuple[str, ...]) -> None:
+    def run_once(changed: tuple[str, ...]) -> None:
         if sys.stderr.isatty() and os.environ.get("TERM") != "dumb":
             sys.stderr.write(_CLEAR)
         elif changed:
             print(file=sys.stderr)
         change = f" changed: {', '.join(changed)}" if changed else ""
         print(f"{time.strftime('%H:%M:%S')}{change}", file=sys.stderr, flush=True)
-        _look(arguments, settings)
+        _check_files(arguments, settings)
         print("waiting for changes, until Ctrl-C", file=sys.stderr, flush=True)
 
-    repeat(look, lambda: in_folders(arguments))
+    repeat(run_once, lambda: files_in_folders(arguments))
 
 
-def _look(arguments: tuple[str, ...], settings: CompileSettings) -> None:
+def _check_files(arguments: tuple[str, ...], settings: CompileSettings) -> None:
     """Check, lint and test the files; report everything, and a summary."""
     from tltlc.interfaces.cli.folders import every_source
-    from tltlc.interfaces.cli.report import Report, counted, tally
+    from tltlc.interfaces.cli.report import Report, count_text, tally
     from tltlc.io.files import log_lookup
     from tltlc.tools.lint.importers import importer_names, names_used_elsewhere
     from tltlc.tools.lint.neighbours import neighbours
@@ -76,20 +76,20 @@ def _look(arguments: tuple[str, ...], settings: CompileSettings) -> None:
     failures: list[Diagnostic] = []
     for path in paths:
         try:
-            findings, results = _file(path, names_used_elsewhere(path, neighbour_words), settings)
+            findings, results = _check_file(path, names_used_elsewhere(path, neighbour_words), settings)
         except TltlError as error:
             report.add(error.diagnostics)
             continue
         failed = [result.failure for result in results if result.failure]
         report.add([*(finding.diagnostic for finding in findings), *failed])
         passed, failures = passed + len(results) - len(failed), failures + failed
-    summary = [tally(diagnostic for diagnostic in report.found if diagnostic not in failures)]
-    summary += [f"{counted(passed, 'test')} passed"] if passed else []
-    summary += [f"{counted(len(failures), 'test')} FAILED"] if failures else []
-    report.say(f"{counted(len(paths), 'file')}: {', '.join(summary)}")
+    summary = [tally(diagnostic for diagnostic in report.diagnostics if diagnostic not in failures)]
+    summary += [f"{count_text(passed, 'test')} passed"] if passed else []
+    summary += [f"{count_text(len(failures), 'test')} FAILED"] if failures else []
+    report.say(f"{count_text(len(paths), 'file')}: {', '.join(summary)}")
 
 
-def _file(
+def _check_file(
     path: str, elsewhere: Container[str], settings: CompileSettings
 ) -> tuple[tuple[LintFinding, ...], tuple[TestResult, ...]]:
     """Compile a file once, lint it, and run its tests; return the findings and the test results."""

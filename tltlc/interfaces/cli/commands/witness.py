@@ -9,7 +9,7 @@ import click
 
 from tltlc.interfaces.cli.paths import OutputPath
 from tltlc.interfaces.cli.report import Report
-from tltlc.interfaces.cli.settings import CompileSettings, source_options, work_of
+from tltlc.interfaces.cli.settings import CompileSettings, search_steps, source_options
 
 if TYPE_CHECKING:
     from tltlc.automaton.fspa import Fspa
@@ -57,18 +57,18 @@ def command(
     if not (accepting or rejecting or cover):
         accepting = rejecting = True
     with Report(format, results=True) as report:
-        opened = open_input(spec, settings)
-        report.add(opened.diagnostics)
+        spec_input = open_input(spec, settings)
+        report.add(spec_input.diagnostics)
         files: dict[str, str | bytes] = {}
-        for fspa in opened.automata:
+        for fspa in spec_input.automata:
             traces = _traces(Moves(fspa), accepting, rejecting, cover, settings, report)
-            files.update(_written(fspa, traces, kind, report))
+            files.update(_trace_texts(fspa, traces, kind, report))
         if folder is not None:
-            written = write_files(folder, files)
-            for path in written:
+            changed_paths = write_files(folder, files)
+            for path in changed_paths:
                 report.say(f"wrote {path}")
-            if len(written) < len(files):
-                report.say(f"unchanged: {len(files) - len(written)}")
+            if len(changed_paths) < len(files):
+                report.say(f"unchanged: {len(files) - len(changed_paths)}")
             return report.status
         if kind == "csv" and len(files) > 1:
             hint = "write them to a folder with -o, or ask for one, by SPEC:NAME with --accepting or --rejecting"
@@ -81,42 +81,41 @@ def _traces(
     moves: Moves, accepting: bool, rejecting: bool, cover: bool, settings: CompileSettings, report: Report
 ) -> list[Witness]:
     """Find the requested traces; report those that do not exist or cannot be found."""
-    from tltlc.tools.witness import captions as remarks
-    from tltlc.tools.witness import cover as covering
-    from tltlc.tools.witness import traces
+    from tltlc.tools.witness import captions, traces
+    from tltlc.tools.witness import cover as edge_cover
 
     fspa = moves.fspa
-    work = work_of(settings)
+    work = search_steps(settings)
     witnesses: list[Witness] = []
-    with remarks.reporting_out_of_work(fspa):
-        for wanted, search, outcome in (
+    with captions.reporting_out_of_work(fspa):
+        for is_requested, search, outcome in (
             (accepting, traces.accepting_trace, "accepted"),
             (rejecting, traces.rejecting_trace, "rejected"),
         ):
-            trace = search(moves, work) if wanted else None
+            trace = search(moves, work) if is_requested else None
             if trace is not None:
                 witnesses.append(trace)
-            elif wanted:
-                report.add([remarks.no_trace_warning(moves, outcome)])
+            elif is_requested:
+                report.add([captions.no_trace_warning(moves, outcome)])
     if cover:
-        all_edges = covering.cover(moves)
+        all_edges = edge_cover.cover(moves)
         witnesses += all_edges.traces
-        report.add(remarks.untaken_warnings(fspa, all_edges.untaken))
+        report.add(captions.untaken_warnings(fspa, all_edges.untaken))
     return witnesses
 
 
-def _written(fspa: Fspa, traces: list[Witness], kind: Literal["test", "csv"], report: Report) -> dict[str, str]:
+def _trace_texts(fspa: Fspa, traces: list[Witness], kind: Literal["test", "csv"], report: Report) -> dict[str, str]:
     """Return the texts of the traces by file name."""
     from tltlc.monitor import Monitor
-    from tltlc.tools.witness import captions as remarks
-    from tltlc.tools.witness import text as written
+    from tltlc.tools.witness import captions
+    from tltlc.tools.witness import text as trace_text
     from tltlc.tools.witness.blocks import BlockWriter
 
     if traces and not fspa.atoms:
-        report.add([remarks.no_atoms_error(fspa)])
+        report.add([captions.no_atoms_error(fspa)])
         return {}
     if traces and kind == "csv" and not fspa.signals:
-        report.add([remarks.no_signals_error(fspa)])
+        report.add([captions.no_signals_error(fspa)])
         return {}
     covers = sum(trace.kind == "cover" for trace in traces)
     texts: dict[str, str] = {}
@@ -125,10 +124,10 @@ def _written(fspa: Fspa, traces: list[Witness], kind: Literal["test", "csv"], re
         number += trace.kind == "cover"
         suffix = f"cover_{number}" if trace.kind == "cover" else trace.kind
         if kind == "csv":
-            texts[f"{fspa.name}_{suffix}.csv"] = written.as_csv(fspa, trace, monitor)
+            texts[f"{fspa.name}_{suffix}.csv"] = trace_text.as_csv(fspa, trace, monitor)
             if trace.cycle is not None:
-                report.say(f"{fspa.name}, {trace.kind}: {written.cycle_text(trace)}")
+                report.say(f"{fspa.name}, {trace.kind}: {trace_text.cycle_text(trace)}")
         else:
-            title = remarks.title(fspa, trace, number, covers)
-            texts[f"{fspa.name}_{suffix}.txt"] = written.as_test(fspa, trace, title, blocks)
+            title = captions.title(fspa, trace, number, covers)
+            texts[f"{fspa.name}_{suffix}.txt"] = trace_text.as_test(fspa, trace, title, blocks)
     return texts
