@@ -1,7 +1,7 @@
-"""Compile source text to automata: parse, resolve, build, in this order.
+"""Compile a source text to automata in three stages: parse, resolve, build.
 
 A :class:`Session` runs the stages for one text. A stage runs to its end and reports all its
-diagnostics. To get automata, the next stage starts only if there are no errors.
+diagnostics. To build automata, each stage must end without errors.
 """
 
 from __future__ import annotations
@@ -63,10 +63,10 @@ class Session:
     """One source text with the results of each stage of the compiler.
 
     A stage runs when its result is first needed, and only once. ``module``, ``syntax_errors``,
-    ``resolution`` and ``source_diagnostics`` never raise an error because of the text: what is wrong
-    is reported and left out. All others require a text without errors up to their stage. Without
-    ``proofs``, the session skips the proofs that predicates stay in their ranges, which take longer
-    than everything else.
+    ``resolution`` and ``source_diagnostics`` never raise an error because of the text: they report
+    what is wrong and leave it out. The other properties require a text without errors up to their
+    stage. Without ``proofs``, the session skips the proofs that predicates stay in their ranges,
+    which take longer than everything else.
 
     >>> session = Session(SourceFile("hide.tltl", "signal seen: bool  spec hide = G !seen"))
     >>> [spec.name for spec in session.specs], [len(fspa.states) for fspa in session.automata]
@@ -90,7 +90,7 @@ class Session:
 
     @cached_property
     def resolution(self) -> Resolution:
-        """The names, specs and tests of the declarations that can be read. Reads the imported files."""
+        """The names, specs and tests of the declarations that can be read; the imported files are read."""
         options = self.options
         return resolution(self.module, ResolveOptions(options.library_dirs, options.params, self._proofs))
 
@@ -256,7 +256,7 @@ def load(path: str | os.PathLike[str]) -> Fspa:
 
 @resource_limits()
 def read_artefact(source: SourceFile) -> Fspa:
-    """Return the automaton in the text of an artefact. Errors are as for :func:`load`."""
+    """Return the automaton in the text of an artefact. Errors: as for :func:`load`."""
     from tltlc.artefact.decode import read
 
     return read(source.text, source.name)
@@ -266,7 +266,8 @@ def read_artefact(source: SourceFile) -> Fspa:
 def decode_artefact(document: object, name: str) -> Fspa:
     """Return the automaton in the parsed JSON of an artefact, which messages call ``name``.
 
-    ``document`` is what :func:`tltlc.io.json_text.loads` returns. Errors are TLT0006 and TLT0601 to TLT0604.
+    ``document`` is what :func:`tltlc.io.json_text.loads` returns.
+    Errors: TLT0006, and TLT0601 to TLT0604.
     """
     from tltlc.artefact.decode import decode
 

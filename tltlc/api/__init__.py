@@ -1,16 +1,17 @@
-"""What programs that build on the compiler use of it, such as the runtime.
+"""The names that programs built on the compiler may import, such as the runtime.
 
-Import names from here, and nothing else from inside ``tltlc``: modules move, these names stay. The
-classes are listed below. Functions are grouped in modules:
+Import names from here, and from nowhere else inside ``tltlc``: modules move, these names stay. This
+package has the classes and functions that most programs need. Eight modules have the others; each
+answers one question:
 
-- ``cli``: options, reports and exit codes of commands
-- ``compiler``: compile specs, read artefacts, write pictures and monitors
-- ``expressions``: arithmetic over signals and params
-- ``fileio``: read and write files, with diagnostics for what goes wrong, and the limits of their sizes
-- ``monitors``: rewards, the tables of Algorithm 1, and the checks of samples
-- ``ranges``: the values that an expression can take
-- ``specs``: types of signals, and the standard library
-- ``syntax``: the syntax tree of a ``.tltl`` file
+- ``cli``: how does a command take options, show diagnostics and choose its exit status?
+- ``compiler``: how do I get an automaton, and a monitor or picture of it?
+- ``expressions``: what does an atom compute, and what is its value?
+- ``fileio``: how do I read and write files so that every failure is a diagnostic?
+- ``monitors``: what are the values of the atoms, the progress and the reward of a step?
+- ``ranges``: which values can an expression take?
+- ``specs``: what types do signals have, and where is the standard library?
+- ``syntax``: what does a ``.tltl`` file declare?
 
 Importing this package loads nothing else. Each name is loaded on first use.
 """

@@ -1,4 +1,9 @@
-"""Arithmetic over signals and params."""
+"""What does an atom compute, and what is its value?
+
+The expression of an atom is a tree of ``Const``, ``SignalValue``, ``ParamValue``, ``Op`` and
+``When``. ``evaluate`` computes its value, ``nodes`` yields its nodes, and ``to_json`` writes it as
+in artefacts.
+"""
 
 from tltlc.expression.evaluate import MULTIPLIED_EXPONENTS, evaluate
 from tltlc.expression.json import to_json

@@ -1,4 +1,9 @@
-"""Read and write files, with diagnostics for what goes wrong, and the limits of their sizes."""
+"""How do I read and write files so that every failure is a diagnostic?
+
+Readers raise ``TltlError`` for files that are missing, too large or malformed; ``limits`` has the
+greatest sizes. Writers replace a file as a whole or not at all. ``try_lock`` and
+``temporary_folder`` leave nothing behind when the process is killed.
+"""
 
 from tltlc.io import limits
 from tltlc.io.archive import Archive, unpack

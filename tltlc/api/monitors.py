@@ -1,4 +1,9 @@
-"""Rewards, the tables of Algorithm 1, and the checks of samples."""
+"""What are the values of the atoms, the progress and the reward of a step?
+
+``Samples`` checks samples of signals and computes the atoms, ``robustness`` is that of a guard, and
+``tables`` has the lookup tables from which Algorithm 1 computes progress. The reward modes are
+``MODES``. ``tltlc.api.Monitor`` does all of this for one automaton, step by step.
+"""
 
 from tltlc.monitor.arguments import automaton_argument, reward_options_argument
 from tltlc.monitor.guards import bounding_literal, robustness

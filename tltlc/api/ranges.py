@@ -1,4 +1,8 @@
-"""The values that an expression can take."""
+"""Which values can an expression take, if its signals and params stay in their ranges?
+
+``cases`` splits an expression at its ``when``, and ``bound`` returns an ``Interval`` that contains
+every value of a case on a region.
+"""
 
 from tltlc.resolve.range_proof.cases import TooManyCasesError, cases
 from tltlc.resolve.range_proof.interval import Interval, UndefinedError

@@ -1,4 +1,8 @@
-"""Types of signals, and the standard library."""
+"""What types do signals have, and where is the standard library?
+
+``TYPES`` has the dimension of each type; ``full_name`` writes a signal or predicate with its
+arguments, as in artefacts.
+"""
 
 from tltlc.core.names import full_name
 from tltlc.resolve.imports import standard_library

@@ -1,4 +1,8 @@
-"""The syntax tree of a ``.tltl`` file."""
+"""What does a ``.tltl`` file declare?
+
+``parse`` returns the declarations of a source text, without resolving names. ``expressions`` and
+``parts`` yield the expressions inside a declaration.
+"""
 
 from tltlc.grammar.parser import parse
 from tltlc.grammar.tree import (
