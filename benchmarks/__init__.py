@@ -1,1 +1,1 @@
-"""Comparisons with peers, each a ratio measured in one run: ``python -m benchmarks`` (or ``make bench``)."""
+"""Compare tltlc with peers, by ratios that are measured in one run: ``python -m benchmarks`` (or ``make bench``)."""

@@ -1,6 +1,6 @@
-"""One command for every figure: measure what is missing, then render the report.
+"""Measure the figures that are missing, then write the report.
 
-``python -m benchmarks`` resumes where an earlier run stopped; ``--fresh`` begins anew.
+``python -m benchmarks`` resumes where an earlier run stopped; ``--fresh`` discards earlier results.
 """
 
 from __future__ import annotations
@@ -55,13 +55,13 @@ SECTIONS = {
 
 
 def main() -> None:
-    """Parse the options and run the sections."""
+    """Parse the options, measure the sections, and write the report after each measurement."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
     parser.add_argument("--fresh", action="store_true", help="discard earlier results, of that section with --only")
     parser.add_argument("--only", choices=sorted(SECTIONS), help="measure one section")
     parser.add_argument("--timeout", type=float, default=20.0, metavar="SECONDS", help="for a peer on one formula")
     options = parser.parse_args()
-    # Whoever asks it to end asks the training that it has started, too.
+    # End by an exception, so that a training that was started is ended, too.
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(128 + signal.SIGTERM))
     store = Store()
     if options.fresh:
@@ -70,7 +70,7 @@ def main() -> None:
             if options.only in (None, module.SECTION):
                 module.discard()
     if options.only is None or not store.section("machine"):
-        # What one section adds later, perhaps without the peers, must not describe how the others were measured.
+        # A run of one section, perhaps without the peers, must not change how the other sections were measured.
         store.put("machine", "facts", facts())
         store.put("machine", "options", {"peer_timeout_s": options.timeout})
 

@@ -1,8 +1,9 @@
-"""Automaton steps per second: N automata at once as torch tensors beside the monitor that takes one sample at a time.
+"""Measure automaton steps per second: many automata at once as torch tensors, and the monitor for one sample.
 
-Each of N environments takes the recorded trace of a spec from another sample on, so that they are in different
-states; the signals are given as one tensor.  A step is what training needs of it: atoms, transition, progress,
-reward, end.  Before anything is timed, some of the environments are checked to be equal to scalar monitors.
+Each of N environments starts the recorded trace of a spec at another sample, so that their automata
+are in different states; the signals are one tensor. A step computes what training needs: atoms,
+transition, progress, reward, end. Before anything is timed, some of the environments are compared
+with scalar monitors.
 
 ``python -m benchmarks.batch SPEC`` measures one spec in a process of its own, on one core.
 """
@@ -35,12 +36,12 @@ TIMEOUT_S = 600.0
 
 
 def measure(store: Store, _: float, say: Callable[[str], None]) -> None:
-    """Measure each spec that the store does not have yet, or that failed."""
-    measure_missing(store, SECTION, PAPER_SPECS, _measured, say)
+    """Measure each spec without a record in the store, or with a failed one."""
+    measure_missing(store, SECTION, PAPER_SPECS, _measure_in_process, say)
 
 
-def compared(name: str) -> Record:
-    """Steps per second of CPU time of both monitors and their ratio; with a GPU, milliseconds a call there too."""
+def compare_monitors(name: str) -> Record:
+    """Return steps per second of CPU time of both monitors, and their ratio; with a GPU, also milliseconds a call."""
     import torch
 
     from tltl_runtime.spec.batch import BatchMonitor
@@ -50,24 +51,24 @@ def compared(name: str) -> Record:
     torch.set_num_threads(1)
     fspa = next(fspa for fspa in compile_file(source(name)) if fspa.name == name)
     samples = trace(name)
-    _check(fspa, samples)
+    _check_equal(fspa, samples)
     batch, scalar = BatchMonitor(fspa, COUNT), Monitor(fspa)
     inputs = _inputs(samples, batch.signal_names, COUNT, INPUTS)
 
-    def together() -> int:
+    def step_batch() -> int:
         for signals in inputs:
             batch.step(signals)
         return COUNT * INPUTS
 
-    def one_by_one() -> int:
+    def step_scalar() -> int:
         scalar.reset()
         for sample in samples:
             scalar.step(sample)
         return len(samples)
 
-    for work in (together, one_by_one):
+    for work in (step_batch, step_scalar):
         work()
-    rates = [(_rate(together), _rate(one_by_one)) for _ in range(ROUNDS)]
+    rates = [(_rate(step_batch), _rate(step_scalar)) for _ in range(ROUNDS)]
     return {
         "count": COUNT,
         "rounds": ROUNDS,
@@ -79,16 +80,21 @@ def compared(name: str) -> Record:
     }
 
 
-def _measured(name: str) -> Record:
+def _measure_in_process(name: str) -> Record:
     if find_spec("torch") is None:
         return {"left_out": "torch is not installed (the extra `rl`)"}
-    made = run([sys.executable, "-m", "benchmarks.batch", name], TIMEOUT_S, cwd=ROOT)
-    record: Record = json.loads(made.output) if made.status == 0 else {"failed": f"exit status {made.status}"}
+    process_run = run([sys.executable, "-m", "benchmarks.batch", name], TIMEOUT_S, cwd=ROOT)
+    record: Record = (
+        json.loads(process_run.output) if process_run.status == 0 else {"failed": f"exit status {process_run.status}"}
+    )
     return record
 
 
 def _inputs(samples: list[dict[str, float]], names: tuple[str, ...], count: int, steps: int) -> list[Any]:
-    """Tensors [count, signals]: at step t environment n takes sample ``7 n + t`` of the trace, around its end."""
+    """Return a tensor (count, signals) for each step.
+
+    At step t, environment n takes sample ``7 n + t`` of the trace, modulo its length.
+    """
     import torch
 
     rows = torch.tensor([[sample[name] for name in names] for sample in samples], dtype=torch.float64)
@@ -96,37 +102,39 @@ def _inputs(samples: list[dict[str, float]], names: tuple[str, ...], count: int,
     return [rows[(start + step) % len(rows)] for step in range(steps)]
 
 
-def _check(fspa: Fspa, samples: list[dict[str, float]]) -> None:
-    """Both monitors over the whole trace, each environment from a sample of its own on."""
+def _check_equal(fspa: Fspa, samples: list[dict[str, float]]) -> None:
+    """Raise AssertionError if the monitors differ anywhere on the trace; each environment starts at its own sample."""
     from tltl_runtime.spec.batch import BatchMonitor
     from tltlc.monitor import Monitor
 
     batch, monitors = BatchMonitor(fspa, CHECKED), [Monitor(fspa) for _ in range(CHECKED)]
     for signals in _inputs(samples, batch.signal_names, CHECKED, len(samples)):
-        found = batch.step(signals)
+        batch_step = batch.step(signals)
         rows = [dict(zip(batch.signal_names, row, strict=True)) for row in signals.tolist()]
         for index, (monitor, row) in enumerate(zip(monitors, rows, strict=True)):
             step = monitor.step(row)
-            same = (int(found.state[index]), bool(found.done[index])) == (step.state, step.done)
+            is_same = (int(batch_step.state[index]), bool(batch_step.done[index])) == (step.state, step.done)
             numbers = (
-                (found.reward, step.reward),
-                (found.progress, step.progress),
-                (found.robustness, step.robustness),
+                (batch_step.reward, step.reward),
+                (batch_step.progress, step.progress),
+                (batch_step.robustness, step.robustness),
             )
-            if not same or any(not math.isclose(float(ours[index]), other, abs_tol=1e-12) for ours, other in numbers):
+            if not is_same or any(
+                not math.isclose(float(ours[index]), theirs, abs_tol=1e-12) for ours, theirs in numbers
+            ):
                 raise AssertionError(f"monitors disagree at {row}")
 
 
 def _rate(work: Callable[[], int]) -> float:
-    """Steps per second of CPU time."""
-    started, steps = time.process_time(), 0
-    while time.process_time() - started < ROUND_S:
+    """Return steps per second of CPU time."""
+    start, steps = time.process_time(), 0
+    while time.process_time() - start < ROUND_S:
         steps += work()
-    return steps / (time.process_time() - started)
+    return steps / (time.process_time() - start)
 
 
 def _on_gpu(fspa: Fspa, samples: list[dict[str, float]]) -> Record:
-    """Milliseconds of wall time of a call for a million environments, its end waited for; nothing without a GPU."""
+    """Return milliseconds of wall time per call for a million environments, until it ends; nothing without a GPU."""
     import torch
 
     from tltl_runtime.spec.batch import BatchMonitor
@@ -141,14 +149,14 @@ def _on_gpu(fspa: Fspa, samples: list[dict[str, float]]) -> Record:
     times = []
     for round_ in range(ROUNDS + 1):
         torch.cuda.synchronize()
-        started = time.perf_counter()
+        start = time.perf_counter()
         for signals in inputs:
             batch.step(signals)
         torch.cuda.synchronize()
         if round_:
-            times.append((time.perf_counter() - started) * 1e3 / INPUTS)
+            times.append((time.perf_counter() - start) * 1e3 / INPUTS)
     return {"gpu": torch.cuda.get_device_name(), "gpu_count": GPU_COUNT, "gpu_ms": quartiles(times)}
 
 
 if __name__ == "__main__":
-    print(json.dumps(compared(sys.argv[1])))
+    print(json.dumps(compare_monitors(sys.argv[1])))

@@ -1,9 +1,10 @@
-"""What ``tltlc regress`` says of edits that were made at random, beside what is true of them.
+"""Compare the verdicts of ``tltlc regress`` on random edits of levels with the truth about these edits.
 
-Each edit changes an asset of a shipped level.  What nobody can reach any more is known by an over-approximation of
-reach, and the scripted expert plays the level before and after.  Then the level's policy plays, and is judged.
+Each edit changes an asset of a shipped level. An over-approximation of reach finds what nobody can
+reach any more, and the scripted expert plays the level before and after the edit. Then the level's
+policy plays, and ``tltlc regress`` judges it.
 
-``python -m benchmarks.edits --quick`` tries all of this on two edits with a few episodes, and keeps nothing.
+``python -m benchmarks.edits --quick`` tries all of this on two edits with a few episodes, and stores nothing.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from typing import TYPE_CHECKING, Final
 
 from benchmarks import edits_report
 from benchmarks.edits_report import EXPERT
-from benchmarks.random_edits import WANTED, Asset, Edit, Wanted, random_edits
+from benchmarks.random_edits import EDIT_REQUESTS, Asset, Edit, EditRequest, random_edits
 from benchmarks.store import Record, Store, measure_missing, source_digest
 
 if TYPE_CHECKING:
@@ -39,14 +40,14 @@ FOLDER = Path(__file__).with_name(".edits")
 BASE: Final = "v0"
 
 ENOUGH_FAILURES: Final = 5
-"""After so many failures in a row the expert stops: each may take it minutes, and more would tell no more."""
+"""The expert stops after this many failures in a row: each may take minutes, and more would show nothing new."""
 
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """What is measured: edits of ``wanted`` kinds, so many episodes of the expert, and of a policy at the most."""
+    """What is measured: the requested edits, the episodes of the expert, and the most episodes of a policy."""
 
-    wanted: Sequence[Wanted] = WANTED
+    requests: Sequence[EditRequest] = EDIT_REQUESTS
     seed: int = 15
     expert_episodes: int = 25
     episodes: int = 300
@@ -55,64 +56,73 @@ class Plan:
 
 FULL = Plan()
 QUICK = Plan(
-    wanted=(Wanted("navigation", "corridor", "words"), Wanted("navigation", "corridor", "shut")),
+    requests=(EditRequest("navigation", "corridor", "words"), EditRequest("navigation", "corridor", "shut")),
     expert_episodes=1,
     episodes=25,
 )
 
 
 def measure(store: Store, _: float, say: Callable[[str], None], plan: Plan = FULL, folder: Path = FOLDER) -> None:
-    """Play what the store does not have yet; what was played so far stays in ``folder``."""
+    """Play and judge what has no record in the store; ``folder`` keeps the episodes of interrupted runs."""
     missing = [name for name in NEEDED if find_spec(name) is None]
     if missing:
         say(f"{SECTION} left out: {', '.join(missing)} not installed (the extra `rl`, Python 3.10 or 3.11)")
         return
     from tltl_runtime.regression.suite.suite import read_suite
 
-    # What was played by other code is not taken again.
+    # Episodes that were played by other code are not reused.
     folder /= source_digest(*SOURCES)
-    edits = random_edits(plan.seed, _assets({each.asset for each in plan.wanted}), _loads, plan.wanted)
-    suite = read_suite(_written(edits, plan, folder))
+    edits = random_edits(plan.seed, _assets({request.asset for request in plan.requests}), _loads, plan.requests)
+    suite = read_suite(_write_suite(edits, plan, folder))
     levels = {f"{EXPERT}{edit.level}": edit.level for edit in edits}
-    measure_missing(store, SECTION, levels, lambda name: expert(levels[name], BASE, plan), say, done="ways")
+    measure_missing(store, SECTION, levels, lambda name: expert(levels[name], BASE, plan), say, field="ways")
     cases = {edit_name(edit): (edit, case) for edit, case in zip(edits, suite.cases, strict=True)}
 
     def record(name: str) -> Record:
         edit, case = cases[name]
-        told = {"level": edit.level, "asset": edit.asset, "kind": edit.kind, "doc": edit.doc}
-        return {**told, **truth(case, store.section(SECTION)[f"{EXPERT}{edit.level}"], plan), **judged(suite, case)}
+        description = {"level": edit.level, "asset": edit.asset, "kind": edit.kind, "doc": edit.doc}
+        return {
+            **description,
+            **truth(case, store.section(SECTION)[f"{EXPERT}{edit.level}"], plan),
+            **judge_edit(suite, case),
+        }
 
-    measure_missing(store, SECTION, cases, record, say, done="verdict")
+    measure_missing(store, SECTION, cases, record, say, field="verdict")
 
 
 def discard(folder: Path = FOLDER) -> None:
-    """Forget what was played so far."""
+    """Delete the stored episodes."""
     shutil.rmtree(folder, ignore_errors=True)
 
 
 def edit_name(edit: Edit) -> str:
-    """As it stands in the results."""
+    """Return the name of an edit in the results."""
     return f"{edit.number:02d} {edit.level} {edit.asset} {edit.kind}"
 
 
 def truth(case: Case, before: Record, plan: Plan) -> Record:
-    """What is true of an edited level, whoever plays: what nobody reaches, and how it goes for the expert.
+    """Return the truth about an edited level: what nobody can reach, and how the expert's episodes differ.
 
-    ``infeasible``: nobody can do what the spec asks; ``in part``: not in all episodes, since chance decides what is
-    asked; ``unchanged``: the expert's episodes are those of ``before``, step by step; else ``changed``.
+    ``infeasible``: nobody can meet the spec; ``in part``: nobody can in some of the episodes, since
+    chance decides what the spec asks; ``unchanged``: the expert's episodes are those of ``before``,
+    step by step; otherwise ``changed``.
     """
     now = expert(case.level, case.variant, plan)
-    same = sum(new == old for new, old in zip(now["ways"], before["ways"], strict=False))
+    unchanged_count = sum(new == old for new, old in zip(now["ways"], before["ways"], strict=False))
     if now["far"]:
-        found = "infeasible" if now["undoable"] else "in part"
+        kind_of_truth = "infeasible" if now["undoable"] else "in part"
     else:
-        found = "unchanged" if same == len(now["ways"]) else "changed"
-    figures = {"episodes": len(now["ways"]), "successes": now["successes"], "same": same}
-    return {"truth": found, "far": now["far"], "expert": figures}
+        kind_of_truth = "unchanged" if unchanged_count == len(now["ways"]) else "changed"
+    figures = {"episodes": len(now["ways"]), "successes": now["successes"], "same": unchanged_count}
+    return {"truth": kind_of_truth, "far": now["far"], "expert": figures}
 
 
 def expert(level: str, variant: str, plan: Plan) -> Record:
-    """How the careful expert's episodes go, of the seeds from 0 on; what nobody reaches, and whether that is needed."""
+    """Play episodes of the careful expert with seeds from 0, and find what nobody can reach.
+
+    The record has the titles of what is ``far``, whether the spec needs any of it (``undoable``),
+    the number of successes, and a digest of each episode (``ways``).
+    """
     from tltl_runtime.stealth.capabilities.feasible import check_reach
     from tltl_runtime.stealth.capabilities.reach import reachable
     from tltl_runtime.stealth.capabilities.spec_places import SpecPlaces
@@ -124,11 +134,11 @@ def expert(level: str, variant: str, plan: Plan) -> Record:
     try:
         player = Expert(env)
         fspa = env.get_wrapper_attr("task").fspa
-        far = check_reach(player.level, reachable(player.level), fspa, SpecPlaces(None))
+        unreachable = check_reach(player.level, reachable(player.level), fspa, SpecPlaces(None))
         ways, successes, failures = [], 0, 0
         for seed in range(plan.expert_episodes):
             play_episode(env, player, seed)
-            ways.append(way_digest(env.episode))
+            ways.append(episode_digest(env.episode))
             successes += env.episode.success
             failures = 0 if env.episode.success else failures + 1
             if failures == ENOUGH_FAILURES:
@@ -136,41 +146,41 @@ def expert(level: str, variant: str, plan: Plan) -> Record:
     finally:
         env.close()
     return {
-        "far": [each.title for each in far],
-        "undoable": any(each.severity == "error" for each in far),
+        "far": [warning.title for warning in unreachable],
+        "undoable": any(warning.severity == "error" for warning in unreachable),
         "successes": successes,
         "ways": ways,
     }
 
 
-def way_digest(episode: Episode) -> str:
-    """Twelve hexadecimal digits that stand for what was done in an episode, and for how the automaton went."""
+def episode_digest(episode: Episode) -> str:
+    """Return a hash, as 12 hexadecimal digits, of the actions and automaton states of an episode."""
     return hashlib.sha256(episode.actions.tobytes() + episode.states.tobytes()).hexdigest()[:12]
 
 
-def judged(suite: Suite, case: Case) -> Record:
-    """The verdict of ``tltlc regress`` on a case, and what it rests upon."""
+def judge_edit(suite: Suite, case: Case) -> Record:
+    """Return the verdict of ``tltlc regress`` on a case, with the figures behind it."""
     from tltl_runtime.regression.verdict.suite_run import regress
 
     reference = _reference(suite, case)
-    (done,) = regress(suite, [case], (reference,), suite.path.parent / "run", 1, lambda *_: None)
-    now, before = done.report.figures, done.report.baseline
+    (result,) = regress(suite, [case], (reference,), suite.path.parent / "run", 1, lambda *_: None)
+    now, before = result.report.figures, result.report.baseline
     if now is None or before is None:
-        return {"failed": "; ".join(done.report.reasons)}
-    pairs = zip(done.report.accounts, reference.accounts, strict=False)
+        return {"failed": "; ".join(result.report.reasons)}
+    pairs = zip(result.report.accounts, reference.accounts, strict=False)
     return {
-        "verdict": done.report.verdict,
-        "certain": done.report.certain,
+        "verdict": result.report.verdict,
+        "certain": result.report.certain,
         "episodes": now.episodes,
-        "same": sum(_played(new) == _played(old) for new, old in pairs),
+        "same": sum(_episode_key(new) == _episode_key(old) for new, old in pairs),
         "now": _rates(now),
         "before": _rates(before),
         "source": source_digest(*SOURCES),
     }
 
 
-def _played(account: ExplainedEpisode) -> tuple[object, ...]:
-    """What shows that two episodes were alike."""
+def _episode_key(account: ExplainedEpisode) -> tuple[object, ...]:
+    """Return a key that is equal for episodes that went alike."""
     return account.summary.steps, account.summary.reward, account.way
 
 
@@ -179,20 +189,20 @@ def _rates(figures: Figures) -> dict[str, float]:
 
 
 def _reference(suite: Suite, case: Case) -> Reference:
-    """What the level's policy did before the edit, played once."""
+    """Return the baseline of the level's policy before the edit; it is played once and stored."""
     from tltl_runtime.regression.verdict.baseline import read_baseline, write_baseline
     from tltl_runtime.regression.verdict.baseline_run import record_baseline
     from tltlc.core.record import replace
 
     path = suite.path.with_name(f"{case.level}.baseline.json")
-    kept = read_baseline(path) if path.exists() else ()
-    (made,) = record_baseline(replace(suite, cases=(case,)), 1, lambda *_: None, kept)
-    write_baseline(path, (made.reference,))
-    return made.reference
+    earlier = read_baseline(path) if path.exists() else ()
+    (recorded,) = record_baseline(replace(suite, cases=(case,)), 1, lambda *_: None, earlier)
+    write_baseline(path, (recorded.reference,))
+    return recorded.reference
 
 
-def _written(edits: Sequence[Edit], plan: Plan, folder: Path) -> Path:
-    """Write the edits, and a suite with a case for each of them; its path."""
+def _write_suite(edits: Sequence[Edit], plan: Plan, folder: Path) -> Path:
+    """Write the edits, and a suite with a case for each edit; return the path of the suite."""
     folder.mkdir(parents=True, exist_ok=True)
     lines = [f"seed = {plan.suite_seed}", f"episodes = {plan.episodes}"]
     for edit in edits:
@@ -218,8 +228,8 @@ def _loads(level: str, overlay: str) -> bool:
     from tltl_runtime.stealth.levels.file import load_level
     from tltlc.diagnostics.diagnostic import TltlError
 
-    with tempfile.TemporaryDirectory() as place:
-        path = Path(place) / "overlay.toml"
+    with tempfile.TemporaryDirectory() as temporary:
+        path = Path(temporary) / "overlay.toml"
         path.write_text(overlay, encoding="utf-8")
         try:
             load_level(level, f"{BASE}+{path}")
@@ -229,12 +239,12 @@ def _loads(level: str, overlay: str) -> bool:
 
 
 def main() -> None:
-    """Try the section on two edits."""
+    """Measure two edits, and print the section."""
     if sys.argv[1:] != ["--quick"]:
         sys.exit("usage: python -m benchmarks.edits --quick")
-    with tempfile.TemporaryDirectory() as place:
-        store = Store(Path(place) / "results.json")
-        measure(store, 0.0, _say, QUICK, Path(place) / "edits")
+    with tempfile.TemporaryDirectory() as temporary:
+        store = Store(Path(temporary) / "results.json")
+        measure(store, 0.0, _say, QUICK, Path(temporary) / "edits")
         print(edits_report.section(store.section(SECTION)))
 
 

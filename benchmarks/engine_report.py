@@ -1,4 +1,4 @@
-"""What is told of monitors in the languages of engines."""
+"""The section of RESULTS.md on monitors in the languages of game engines."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ FACTOR: Final = 0.9
 
 
 def goals(store: Store) -> Iterable[Sequence[str]]:
-    """A row of the table of goals."""
+    """Yield the row of the table of goals, if anything was measured."""
     ratios = {
         name: record["generated_to_by_hand"][1]
         for name, record in store.section(engine_speed.SECTION).items()
@@ -32,37 +32,37 @@ def goals(store: Store) -> Iterable[Sequence[str]]:
 
 
 def section(store: Store) -> str:
-    """The section on monitors in the languages of engines."""
+    """Return the section on monitors in the languages of engines; empty without measurements."""
     records = store.section(engine_speed.SECTION)
     languages = {engine.name: engine.title for engine in engines()}
     speeds = [(_title(name, title, records), *_speeds(name, records)) for name, title in languages.items()]
     if all(cell == "–" for _, *cells in speeds for cell in cells):
         return ""
     python = store.section(monitors.SECTION)
-    speeds += [(f"Python, {who}", *_python(who, python)) for who in ("generated", "RTAMT", "Reelay")]
+    speeds += [(f"Python, {author}", *_python(author, python)) for author in ("generated", "RTAMT", "Reelay")]
     sizes = [row for name, title in languages.items() for row in _sizes(name, title, records)]
     return f"""
 ## Monitors for engines, steps per second
 
-`python -m benchmarks --only {engine_speed.SECTION}`: the monitors that `tltlc compile -t` writes for engines, beside
-ones written by hand in the same language (`benchmarks/handwritten/LANGUAGE`), as a good programmer would write them for
-the same interface: every field of a step, and a refusal of signals that are missing or not finite, or of exclusive
-atoms that hold at once. Those compute only the predicates that their state needs, and tell of no clamped values.
-One driver steps both over the recorded trace of the spec, {monitors.ROUNDS} rounds one after the other; C, C++, C# and
-Rust are compiled with optimisation, and no compiler sees the trace. Both were checked to be equal in each field of each
-step before. A cell has millions of steps per second of the generated one (CPU time), and in brackets the median of the
-ratios of both, generated over written by hand. GDScript is that of Godot 3, as Godot 4 does not run here; its monitor
+`python -m benchmarks --only {engine_speed.SECTION}` compares the monitors that `tltlc compile -t` writes for engines
+with handwritten ones in the same language (`benchmarks/handwritten/LANGUAGE`). A good programmer would write those
+for the same interface: they compute every field of a step, and refuse signals that are missing or not finite, and
+exclusive atoms that hold at once. They compute only the predicates that their state needs, and give no notices of
+clamped values. One driver steps both over the recorded trace of the spec, in {monitors.ROUNDS} rounds. C, C++, C# and
+Rust are compiled with optimisation, and no compiler sees the trace. Before that, each field of each step was
+compared. A cell has the millions of steps per second of the generated monitor (CPU time), and in brackets the median
+of the ratios, generated to handwritten. GDScript is that of Godot 3, because Godot 4 does not run here; the monitor
 for Godot 4 differs in a few lines.
 
 {table(("language", *PAPER_SPECS), speeds)}
 
-Python's figures are those of the section above. RTAMT and Reelay know less, as is said there. They are not measured in
-C++: RTAMT's package has no library of it, and Reelay's sources build only where CMake can fetch Boost from GitHub.
+Python's figures are those of the section above. RTAMT and Reelay compute less, as explained there. They are not
+measured in C++: RTAMT's package has no C++ library, and Reelay's sources build only if CMake can download Boost.
 
 Sizes in KB, for {", ".join(PAPER_SPECS)}: the generated file, with the program at its end that reads a trace; the
-same without lines that hold a comment alone; and what the compiler makes of what a game uses of it, that is begin, step
-and the message of what is wrong, beside the same of the one written by hand: code and constants of an object file in C,
-C++ and Rust, a library in C#, stripped bytecode, program included, in Lua.
+same without lines that contain only a comment; and the compiled size of what a game uses (begin, step and the message
+for an invalid sample), generated and handwritten. The compiled size is that of code and constants of an object file in
+C, C++ and Rust, of a library in C#, and of stripped bytecode, with the program, in Lua.
 
 {table(("language", "file", "without comments", "compiled by", "generated", "by hand"), sizes)}
 {_left_out(records)}
@@ -70,7 +70,7 @@ C++ and Rust, a library in C#, stripped bytecode, program included, in Lua.
 
 
 def _title(name: str, title: str, records: Mapping[str, Record]) -> str:
-    versions = {record["version"] for record in _of(name, records) if "version" in record}
+    versions = {record["version"] for record in _records_of(name, records) if "version" in record}
     return " ".join([title, *sorted(versions)])
 
 
@@ -79,31 +79,31 @@ def _speeds(name: str, records: Mapping[str, Record]) -> list[str]:
         f"{_millions(record['steps_per_s']['generated'])} ({record['generated_to_by_hand'][1]:.2f})"
         if "steps_per_s" in record
         else "–"
-        for record in _of(name, records)
+        for record in _records_of(name, records)
     ]
 
 
-def _python(who: str, records: Mapping[str, Record]) -> list[str]:
+def _python(author: str, records: Mapping[str, Record]) -> list[str]:
     cells = []
     for spec in PAPER_SPECS:
         record = records.get(spec, {})
-        rate = record.get("steps_per_s", {}).get(who)
-        ratio = f" ({record['generated_to_hand_written'][1]:.2f})" if who == "generated" and rate else ""
+        rate = record.get("steps_per_s", {}).get(author)
+        ratio = f" ({record['generated_to_hand_written'][1]:.2f})" if author == "generated" and rate else ""
         cells.append("–" if rate is None else f"{_millions(rate)}{ratio}")
     return cells
 
 
 def _sizes(name: str, title: str, records: Mapping[str, Record]) -> list[tuple[str, ...]]:
-    """A row for each kind of compiled output, or one where there is none."""
-    made = [record for record in _of(name, records) if "bytes" in record]
-    if len(made) < len(PAPER_SPECS):
+    """Return a row for each kind of compiled output, or one row if nothing is compiled."""
+    measured = [record for record in _records_of(name, records) if "bytes" in record]
+    if len(measured) < len(PAPER_SPECS):
         return []
-    file = [_kilobytes(made, "bytes", kind) for kind in ("file", "without comments")]
-    kinds = made[0]["compiled"].get("generated", {})
+    file = [_kilobytes(measured, "bytes", kind) for kind in ("file", "without comments")]
+    kinds = measured[0]["compiled"].get("generated", {})
     if not kinds:
         return [(title, *file, "–", "–", "–")]
     return [
-        (title, *file, kind, *(_kilobytes(made, "compiled", who, kind) for who in ("generated", "by_hand")))
+        (title, *file, kind, *(_kilobytes(measured, "compiled", author, kind) for author in ("generated", "by_hand")))
         for kind in kinds
     ]
 
@@ -111,10 +111,10 @@ def _sizes(name: str, title: str, records: Mapping[str, Record]) -> list[tuple[s
 def _kilobytes(records: Iterable[Record], *path: str) -> str:
     sizes: list[float] = []
     for record in records:
-        found: Any = record
+        value: Any = record
         for key in path:
-            found = found[key]
-        sizes.append(found / 1000)
+            value = value[key]
+        sizes.append(value / 1000)
     return " / ".join(f"{size:.1f}" for size in sizes)
 
 
@@ -126,7 +126,7 @@ def _left_out(records: Mapping[str, Record]) -> str:
     return "\n" + " ".join(texts) if texts else ""
 
 
-def _of(name: str, records: Mapping[str, Record]) -> list[Record]:
+def _records_of(name: str, records: Mapping[str, Record]) -> list[Record]:
     return [records.get(f"{name} {spec}", {}) for spec in PAPER_SPECS]
 
 

@@ -1,7 +1,7 @@
-"""Steps per second of monitors in the languages of engines, generated and written by hand, and what they weigh.
+"""Measure the speed and size of monitors in the languages of engines, generated and written by hand.
 
-For each language a driver steps both monitors over the recorded trace of each of the paper's specs.  Before anything is
-timed they are checked to agree in every field of each step.
+For each language, a driver steps both monitors over the recorded trace of each of the paper's specs.
+Before anything is timed, all fields of all their steps are compared.
 """
 
 from __future__ import annotations
@@ -24,87 +24,87 @@ SECTION = "engines"
 TIMEOUT_S: Final = 600.0
 
 _TOLERANCE: Final = 1e-12
-_WHO: Final = ("generated", "by_hand")
+_AUTHORS: Final = ("generated", "by_hand")
 
 Rows = dict[str, list[tuple[str, ...]]]
 
 
 def measure(store: Store, _: float, say: Callable[[str], None]) -> None:
-    """Measure each language on each spec, unless the store has that already or there is no compiler."""
-    found = engines()
-    named = {f"{engine.name} {spec}": (engine, spec) for engine in found for spec in PAPER_SPECS}
-    measure_missing(store, SECTION, named, lambda name: _measured(*named[name]), say)
+    """Measure each language on each spec that has no record in the store."""
+    all_engines = engines()
+    tasks = {f"{engine.name} {spec}": (engine, spec) for engine in all_engines for spec in PAPER_SPECS}
+    measure_missing(store, SECTION, tasks, lambda name: _measure_engine(*tasks[name]), say)
 
 
-def _measured(engine: Engine, spec: str) -> Record:
+def _measure_engine(engine: Engine, spec: str) -> Record:
     reason = engine.missing()
     if reason is not None:
         return {"left_out": reason}
     with tempfile.TemporaryDirectory() as folder:
         task = generate(engine, spec, Path(folder))
         samples = trace(spec)
-        written = write_trace(task, samples, task.folder / "trace.txt")
+        trace_path = write_trace(task, samples, task.folder / "trace.txt")
         command = engine.build(task)
-        rows = stepped(task, command, [written])
+        rows = monitor_rows(task, command, [trace_path])
         difference = disagreement(rows["generated"], rows["by_hand"])
         if difference is not None:
             return {"failed": difference}
-        said = _said(task, (*command, "time", str(ROUNDS), str(ROUND_S), written.name))
-        rounds = [json.loads(line) for line in said.splitlines() if line.startswith("{")]
+        output = _output_of(task, (*command, "time", str(ROUNDS), str(ROUND_S), trace_path.name))
+        rounds = [json.loads(line) for line in output.splitlines() if line.startswith("{")]
         return {
             "version": _version(engine),
             "samples": len(samples),
             "rounds": len(rounds),
-            "steps_per_s": {who: round(median([each[who] for each in rounds])) for who in _WHO},
-            "generated_to_by_hand": quartiles([each["generated"] / each["by_hand"] for each in rounds]),
+            "steps_per_s": {author: round(median([rates[author] for rates in rounds])) for author in _AUTHORS},
+            "generated_to_by_hand": quartiles([rates["generated"] / rates["by_hand"] for rates in rounds]),
             "bytes": _bytes(engine, task),
             "compiled": engine.compiled(task),
         }
 
 
-def stepped(task: Task, command: Sequence[str], traces: Sequence[Path]) -> Rows:
-    """What both monitors of a driver say of each step of some traces, in the columns of ``OUTPUT_FIELDS``."""
-    rows: Rows = {who: [] for who in _WHO}
-    for line in _said(task, (*command, "rows", *(path.name for path in traces))).splitlines():
-        who, *cells = line.split("\t")
-        if who in rows and len(cells) == len(OUTPUT_FIELDS):
-            rows[who].append(tuple(cells))
+def monitor_rows(task: Task, command: Sequence[str], traces: Sequence[Path]) -> Rows:
+    """Return the rows of both monitors of a driver for each step of some traces, in the order of ``OUTPUT_FIELDS``."""
+    rows: Rows = {author: [] for author in _AUTHORS}
+    for line in _output_of(task, (*command, "rows", *(path.name for path in traces))).splitlines():
+        author, *cells = line.split("\t")
+        if author in rows and len(cells) == len(OUTPUT_FIELDS):
+            rows[author].append(tuple(cells))
     return rows
 
 
-def disagreement(found: Sequence[Sequence[str]], expected: Sequence[Sequence[str]]) -> str | None:
-    """The first field of the first step in which two monitors differ, in words; numbers may be off by rounding."""
-    if not expected or len(found) != len(expected):
-        return f"{len(found)} steps, not {len(expected)}"
-    for step, (row, right) in enumerate(zip(found, expected, strict=True), start=1):
-        for field, cell, wanted in zip(OUTPUT_FIELDS, row, right, strict=True):
-            if cell != wanted and not _near(cell, wanted):
-                return f"step {step}: {field} is {cell!r}, not {wanted!r}"
+def disagreement(actual: Sequence[Sequence[str]], expected: Sequence[Sequence[str]]) -> str | None:
+    """Return the first difference of two monitors as text, or None; numbers may differ by 1e-12."""
+    if not expected or len(actual) != len(expected):
+        return f"{len(actual)} steps, not {len(expected)}"
+    for step, (row, right) in enumerate(zip(actual, expected, strict=True), start=1):
+        for field, cell, right_cell in zip(OUTPUT_FIELDS, row, right, strict=True):
+            if cell != right_cell and not _is_near(cell, right_cell):
+                return f"step {step}: {field} is {cell!r}, not {right_cell!r}"
     return None
 
 
-def _near(cell: str, wanted: str) -> bool:
+def _is_near(cell: str, right_cell: str) -> bool:
     try:
-        return abs(float(cell) - float(wanted)) <= _TOLERANCE
+        return abs(float(cell) - float(right_cell)) <= _TOLERANCE
     except ValueError:
         return False
 
 
-def _said(task: Task, command: Sequence[str]) -> str:
-    done = subprocess.run(command, cwd=task.folder, capture_output=True, text=True, timeout=TIMEOUT_S)
-    assert done.returncode == 0, f"{' '.join(command)}\n{done.stdout}{done.stderr}"
-    return done.stdout
+def _output_of(task: Task, command: Sequence[str]) -> str:
+    completed = subprocess.run(command, cwd=task.folder, capture_output=True, text=True, timeout=TIMEOUT_S)
+    assert completed.returncode == 0, f"{' '.join(command)}\n{completed.stdout}{completed.stderr}"
+    return completed.stdout
 
 
 def _version(engine: Engine) -> str:
-    """The first number with dots in what the compiler says of itself."""
-    done = subprocess.run(engine.version, capture_output=True, text=True)
-    said = re.search(r"\d+(\.\d+)+", done.stdout + done.stderr)
-    return said[0] if said else "unknown"
+    """Return the version of a compiler: the first number with dots that it prints."""
+    completed = subprocess.run(engine.version, capture_output=True, text=True)
+    output = re.search(r"\d+(\.\d+)+", completed.stdout + completed.stderr)
+    return output[0] if output else "unknown"
 
 
 def _bytes(engine: Engine, task: Task) -> Mapping[str, int]:
-    """The generated file, as it is and without comments."""
+    """Return the bytes of the generated files, as they are and without comments."""
     texts = [(task.folder / name.format(name=task.name)).read_text(encoding="utf-8") for name in engine.sources]
     return {
         "file": sum(len(text.encode()) for text in texts),

@@ -1,6 +1,7 @@
-"""How often the scripted expert finishes each level, when it keeps out of sight and when it minds no enemies.
+"""Measure how often the scripted expert finishes each level, if it avoids enemies and if it ignores them.
 
-A level is one of stealth where the second fails.  Episodes are told apart by the barrier that opened by chance.
+A level needs stealth if the expert that ignores enemies fails. Episodes are grouped by the barrier
+that opened by chance.
 
 ``python -m benchmarks.expert LEVEL VARIANT careful|careless [EPISODES]`` plays one variant in a process of its own.
 """
@@ -23,21 +24,24 @@ if TYPE_CHECKING:
     from tltl_runtime.stealth.level import Level
 
 SECTION = "expert"
-CARES = ("careful", "careless")
+KINDS_OF_CARE = ("careful", "careless")
 EPISODES = {"v0": 100}
-OTHERS = 50
+OTHER_EPISODES = 50
 TIMEOUT_S = 3600.0
 Z = 1.959964
-"""Of a two-sided interval of 95 %."""
+"""The quantile of the normal distribution for a two-sided interval of 95 %."""
 
 
 def measure(store: Store, _: float, say: Callable[[str], None]) -> None:
-    """Play what the store does not have yet, or what failed."""
+    """Play each case without a record in the store, or with a failed one."""
     measure_each(store, SECTION, _cases, TIMEOUT_S, say)
 
 
-def played(level: str, variant: str, care: str, episodes: int) -> Record:
-    """Episodes of the seeds from 0 on: outcomes by the barrier that opened by chance, ``""`` where there is none."""
+def play_episodes(level: str, variant: str, care: str, episodes: int) -> Record:
+    """Play episodes with seeds from 0; return their figures by the barrier that opened by chance.
+
+    The barrier is ``""`` if none opens by chance. ``cpu_s`` is the CPU time per episode.
+    """
     from tltl_runtime.stealth.env import make_env
     from tltl_runtime.stealth.expert.expert import Expert, play_episode
     from tltl_runtime.stealth.recording import RecordEpisode
@@ -45,23 +49,23 @@ def played(level: str, variant: str, care: str, episodes: int) -> Record:
 
     env = RecordEpisode(make_env(level, variant))
     expert = Expert(env, careful=care == "careful")
-    began = time.process_time()
+    start_s = time.process_time()
     by_barrier: dict[str, list[tuple[EpisodeSummary, bool]]] = {}
     for seed in range(episodes):
         play_episode(env, expert, seed)
         episode = env.episode
-        barrier = _chance(expert.level, opened_barriers(episode))
+        barrier = _chance_barrier(expert.level, opened_barriers(episode))
         by_barrier.setdefault(barrier, []).append((summary_of(episode), was_chased(episode)))
     env.close()
     return {
         "barriers": {name: _summary(episodes) for name, episodes in sorted(by_barrier.items())},
-        "cpu_s": round((time.process_time() - began) / episodes, 2),
+        "cpu_s": round((time.process_time() - start_s) / episodes, 2),
         "source": source_digest("tltlc", "runtime"),
     }
 
 
 def wilson(successes: int, episodes: int) -> tuple[float, float]:
-    """The interval of 95 % for a rate, as E. B. Wilson gave it in 1927."""
+    """Return the Wilson interval of a rate at 95 % (E. B. Wilson, JASA 22, 1927)."""
     rate, square = successes / episodes, Z * Z / episodes
     middle = (rate + square / 2) / (1 + square)
     half = Z * math.sqrt(rate * (1 - rate) / episodes + square / (4 * episodes)) / (1 + square)
@@ -69,22 +73,22 @@ def wilson(successes: int, episodes: int) -> tuple[float, float]:
 
 
 def _cases() -> Iterator[Sequence[str]]:
-    """Each variant with each kind of care that makes a difference there."""
+    """Yield each variant with each kind of care; without enemies, there is only one kind."""
     from tltl_runtime.stealth.levels.file import load_level
 
     for level, variant in variants_of_all():
-        for care in CARES if load_level(level, variant).enemies else CARES[:1]:
+        for care in KINDS_OF_CARE if load_level(level, variant).enemies else KINDS_OF_CARE[:1]:
             yield level, variant, care
 
 
-def _chance(level: Level, opened: Collection[str]) -> str:
-    """The barrier that an unlocking by chance has opened."""
-    chosen = (name for unlock in level.unlocks for name in unlock.barriers)
-    return next((name for name in chosen if name in opened), "")
+def _chance_barrier(level: Level, opened: Collection[str]) -> str:
+    """Return the barrier that opened by chance; empty if there is none."""
+    random_barriers = (name for unlock in level.unlocks for name in unlock.barriers)
+    return next((name for name in random_barriers if name in opened), "")
 
 
 def _summary(episodes: Sequence[tuple[EpisodeSummary, bool]]) -> Record:
-    """The figures of episodes; the second value says whether an enemy chased the player."""
+    """Return the figures of episodes, each with whether an enemy chased the player."""
     return {
         "episodes": len(episodes),
         "successes": sum(episode.success for episode, _ in episodes),
@@ -100,6 +104,6 @@ def _mean(values: Iterable[float]) -> float:
 
 
 if __name__ == "__main__":
-    asked, in_variant, with_care, *times = sys.argv[1:]
-    count = int(times[0]) if times else EPISODES.get(in_variant, OTHERS)
-    print(json.dumps(played(asked, in_variant, with_care, count)))
+    level_name, variant_name, care, *count_words = sys.argv[1:]
+    count = int(count_words[0]) if count_words else EPISODES.get(variant_name, OTHER_EPISODES)
+    print(json.dumps(play_episodes(level_name, variant_name, care, count)))

@@ -1,4 +1,4 @@
-"""The expert's part of RESULTS.md."""
+"""The section of RESULTS.md on the scripted expert."""
 
 from __future__ import annotations
 
@@ -13,9 +13,13 @@ CARELESS_RATE = 0.2
 
 
 def goals(store: Store) -> Iterable[Sequence[str]]:
-    """Rows of the table of goals, for what was played."""
+    """Yield the rows of the table of goals for what was measured."""
     records = store.section(expert.SECTION)
-    careful = {name: _rate(record) for name, record in records.items() if name.endswith(" v0 careful") and _is(record)}
+    careful = {
+        name: _rate(record)
+        for name, record in records.items()
+        if name.endswith(" v0 careful") and _has_episodes(record)
+    }
     if careful:
         yield (
             "the careful expert finishes each v0 level in at least 95 % of its episodes",
@@ -25,24 +29,24 @@ def goals(store: Store) -> Iterable[Sequence[str]]:
     careless = {
         f"{name.split()[0]}{f', {barrier}' if barrier else ''}": part["successes"] / part["episodes"]
         for name, record in records.items()
-        if name.endswith(" v0 careless") and _is(record)
+        if name.endswith(" v0 careless") and _has_episodes(record)
         for barrier, part in record["barriers"].items()
         if part["chased"] > 0.5
     }
     if careless:
         yield (
-            "where guards are, who minds none of them fails in most v0 episodes",
+            "where there are guards, an expert that ignores them fails in most v0 episodes",
             ", ".join(f"{name} {rate:.0%}" for name, rate in careless.items()),
             met_or_missed(max(careless.values()) < CARELESS_RATE),
         )
 
 
 def section(records: dict[str, Record]) -> str:
-    """The section on the scripted expert."""
+    """Return the section on the scripted expert; empty without measurements."""
     body = [
         (f"{level} {variant}", care, barrier or "–", part["episodes"], *_figures(part), f"{record['cpu_s']:.1f}")
         for name, record in records.items()
-        if _is(record)
+        if _has_episodes(record)
         for level, variant, care in [name.split()]
         for barrier, part in record["barriers"].items()
     ]
@@ -63,15 +67,16 @@ def section(records: dict[str, Record]) -> str:
     return f"""
 ## The scripted expert
 
-Who plays is `tltlc demonstrate`'s player, once careful and once minding no enemies; seeds from 0 on. *Opened*: the
-barrier that chance has opened. *Success*: the rate with its Wilson interval. *Progress*, *reward* (of an episode) and
-*decisions* are means, *chased* the share of episodes in which an enemy gave chase, *s* the CPU time an episode takes.
+The player is that of `tltlc demonstrate`, once careful and once ignoring enemies, with seeds from 0. *Opened*: the
+barrier that opened by chance. *Success*: the rate, with its Wilson interval. *Progress*, *reward* (of an episode) and
+*decisions* are means. *Chased* is the share of episodes in which an enemy chased the player, and *s* the CPU time of an
+episode.
 
 {table(header, body)}
 """
 
 
-def _is(record: Record) -> bool:
+def _has_episodes(record: Record) -> bool:
     return "barriers" in record
 
 

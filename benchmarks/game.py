@@ -1,8 +1,8 @@
-"""Decisions per second of the game, beside the physics alone; two worker processes beside one; the semantic map.
+"""Measure the time of a decision in the game and in bare physics, worker processes, and the semantic map.
 
-*Bare* is Bullet with the bodies of the level and nothing else: the player's velocity is set, and nine physics steps are
-made at once, which is what each decision cannot do without.  *env* adds all that the game does and the
-observation, *with spec* the automaton and its reward as well, and the resets of the episodes that it ends.
+*Bare* is Bullet with only the bodies of the level: it sets the player's velocity and makes nine
+physics steps, which every decision needs. *env* adds the rest of the game and the observation.
+*with spec* also adds the automaton, its reward, and the resets after the episodes that it ends.
 
 ``python -m benchmarks.game LEVEL VARIANT`` measures one variant in a process of its own, and
 ``python -m benchmarks.game workers COUNT`` the worker processes.
@@ -35,49 +35,49 @@ ROUNDS = 9
 TIMEOUT_S = 900.0
 
 COUNTS = (32, 128)
-"""Environments that workers share out.  A reset costs as much as ten decisions, and all wait for it: fewer, longer."""
+"""Numbers of environments, shared by the workers. All wait for a reset, which takes as long as ten decisions."""
 WORKERS_LEVEL = "cover_and_hide"
 WORKERS_STEPS = 60
 WORKERS_ROUNDS = 9
 MOST_TRIES = 60
 PROBE_S = 0.3
 IDLE_CORES = 1.8
-"""Fewer are not two free cores."""
+"""A round counts if at least this many cores were idle."""
 
 
 def measure(store: Store, _: float, say: Callable[[str], None]) -> None:
-    """Measure each variant that the store does not have yet, or that failed, then the workers."""
+    """Measure each variant without a record in the store, or with a failed one, then the workers."""
     measure_each(
         store, SECTION, lambda: [*variants_of_all(), *((WORKERS, str(count)) for count in COUNTS)], TIMEOUT_S, say
     )
 
 
-def compared(level: str, variant: str) -> Record:
-    """CPU time of a decision in microseconds, bare, in the environment and with its spec, and the ratios."""
+def compare_speeds(level: str, variant: str) -> Record:
+    """Return the CPU time of a decision in microseconds: bare, in the environment, with its spec; and ratios."""
     import numpy as np
 
     from tltl_runtime.stealth.env import GameEnv, make_env
 
-    chosen = [np.array(action) for action in islice(actions(np.random.default_rng(1)), DECISIONS)]
-    env, judged = GameEnv(level, variant), make_env(level, variant)
-    bare = _bare(env, chosen)
+    chosen_actions = [np.array(action) for action in islice(actions(np.random.default_rng(1)), DECISIONS)]
+    env, env_with_spec = GameEnv(level, variant), make_env(level, variant)
+    bare = _bare_physics(env, chosen_actions)
     seeds = iter(range(10_000))
 
     def with_observations() -> None:
-        for action in chosen:
+        for action in chosen_actions:
             env.step(action)
 
     def with_spec() -> None:
-        for action in chosen:
-            *_, terminated, truncated, _ = judged.step(action)
+        for action in chosen_actions:
+            *_, terminated, truncated, _ = env_with_spec.step(action)
             if terminated or truncated:
-                judged.reset(seed=next(seeds))
+                env_with_spec.reset(seed=next(seeds))
 
-    judged.reset(seed=next(seeds))
+    env_with_spec.reset(seed=next(seeds))
     times = []
     for round_ in range(ROUNDS + 1):
         env.reset(seed=round_)
-        row = [_us(work) for work in (bare, with_observations, with_spec)]
+        row = [_microseconds(work) for work in (bare, with_observations, with_spec)]
         if round_:
             times.append(row)
     return {
@@ -87,13 +87,13 @@ def compared(level: str, variant: str) -> Record:
         "spec_us": median([row[2] for row in times]),
         "bare_to_env": quartiles([row[0] / row[1] for row in times]),
         "bare_to_spec": quartiles([row[0] / row[2] for row in times]),
-        "map_us": _map_us(env),
+        "map_us": _map_microseconds(env),
         "source": source_digest("tltlc", "runtime"),
     }
 
 
-def _bare(env: GameEnv, chosen: Sequence[Any]) -> Callable[[], None]:
-    """The physics of a decision for each action, in a world like that of ``env``."""
+def _bare_physics(env: GameEnv, chosen_actions: Sequence[Any]) -> Callable[[], None]:
+    """Return a function that makes the physics of a decision for each action, in a world like that of ``env``."""
     import pybullet
 
     from tltl_runtime.stealth.world.physics import World
@@ -107,60 +107,64 @@ def _bare(env: GameEnv, chosen: Sequence[Any]) -> Callable[[], None]:
                 pybullet.stepSimulation(physicsClientId=client)
 
     world = Bare(env.level)
-    velocities = [(*control(world.kind, world.player, action.tolist(), False).velocity, -1.0) for action in chosen]
+    velocities = [
+        (*control(world.kind, world.player, action.tolist(), False).velocity, -1.0) for action in chosen_actions
+    ]
     return world.run
 
 
-def _us(work: Callable[[], None]) -> float:
-    """CPU time per decision, in microseconds."""
-    began = time.process_time()
+def _microseconds(work: Callable[[], None]) -> float:
+    """Return the CPU time per decision, in microseconds."""
+    start = time.process_time()
     work()
-    return (time.process_time() - began) * 1e6 / DECISIONS
+    return (time.process_time() - start) * 1e6 / DECISIONS
 
 
-def _map_us(env: GameEnv) -> tuple[float, float]:
-    """Microseconds of a look at the semantic map where the game stands, and with the layers made of it."""
+def _map_microseconds(env: GameEnv) -> tuple[float, float]:
+    """Return the microseconds to compute the semantic map at the present state, without and with its layers."""
     from tltl_runtime.stealth.observation.semantic_map import SemanticMap
 
     semantic_map, game = SemanticMap(env.level), env.game
-    given = (game.world.player.position, False, game.world.mover_boxes(), game.enemies.positions)
+    arguments = (game.world.player.position, False, game.world.mover_boxes(), game.enemies.positions)
 
     def look() -> None:
         for _ in range(DECISIONS):
-            semantic_map.look(*given)
+            semantic_map.look(*arguments)
 
     def look_and_layer() -> None:
         for _ in range(DECISIONS):
-            semantic_map.one_hot(semantic_map.look(*given))
+            semantic_map.one_hot(semantic_map.look(*arguments))
 
-    return median([_us(look) for _ in range(ROUNDS)]), median([_us(look_and_layer) for _ in range(ROUNDS)])
+    return median([_microseconds(look) for _ in range(ROUNDS)]), median(
+        [_microseconds(look_and_layer) for _ in range(ROUNDS)]
+    )
 
 
-def two_beside_one(count: int) -> Record:
-    """Decisions per second of wall time of one and of two worker processes with ``count`` environments, in turns.
+def compare_worker_counts(count: int) -> Record:
+    """Measure decisions per second of wall time with one and with two worker processes, in turns.
 
-    A round counts only where two cores were idle before and after it.  Without any, ``idle_cores`` says how
-    many were.
+    ``count`` is the number of environments. A round counts only if two cores were idle before and
+    after it. ``idle_cores`` is the median number of idle cores.
     """
     from tltl_runtime.vector import make_vec
 
-    one, two = (make_vec(WORKERS_LEVEL, "v0", count, workers) for workers in (1, 2))
+    single, double = (make_vec(WORKERS_LEVEL, "v0", count, workers) for workers in (1, 2))
     rates: list[tuple[float, float]] = []
     idle = []
-    for env in (one, two):
+    for env in (single, double):
         env.reset(seed=1)
         env.action_space.seed(1)
         _rate(env)
     for _ in range(MOST_TRIES):
         before = _idle_cores()
-        found = (_rate(one), _rate(two))
+        pair = (_rate(single), _rate(double))
         idle.append(min(before, _idle_cores()))
         if idle[-1] >= IDLE_CORES:
-            rates.append(found)
+            rates.append(pair)
         if len(rates) == WORKERS_ROUNDS:
             break
-    one.close()
-    two.close()
+    single.close()
+    double.close()
     record: Record = {"tries": len(idle), "rounds": len(rates), "idle_cores": median(idle), "count": count}
     if rates:
         record["decisions_per_s"] = [round(median([rate[side] for rate in rates])) for side in (0, 1)]
@@ -170,17 +174,17 @@ def two_beside_one(count: int) -> Record:
 
 
 def _rate(env: WorkerVectorEnv) -> float:
-    """Decisions per second of wall time."""
-    began = time.perf_counter()
+    """Return decisions per second of wall time."""
+    start = time.perf_counter()
     for step in range(WORKERS_STEPS):
         if step % 6 == 0:
-            chosen = env.action_space.sample()
-        env.step(chosen)
-    return WORKERS_STEPS * env.num_envs / (time.perf_counter() - began)
+            chosen_actions = env.action_space.sample()
+        env.step(chosen_actions)
+    return WORKERS_STEPS * env.num_envs / (time.perf_counter() - start)
 
 
 def _idle_cores() -> float:
-    """How many cores of the machine nobody used for a moment; as many as there are where it does not tell."""
+    """Return how many cores were idle during a short pause; all cores if the system does not tell."""
     before = _idle_ticks()
     time.sleep(PROBE_S)
     after = _idle_ticks()
@@ -198,4 +202,6 @@ def _idle_ticks() -> int | None:
 
 
 if __name__ == "__main__":
-    print(json.dumps(two_beside_one(int(sys.argv[2])) if sys.argv[1] == WORKERS else compared(*sys.argv[1:])))
+    print(
+        json.dumps(compare_worker_counts(int(sys.argv[2])) if sys.argv[1] == WORKERS else compare_speeds(*sys.argv[1:]))
+    )

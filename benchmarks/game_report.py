@@ -1,4 +1,4 @@
-"""The game's part of RESULTS.md: goals and tables of speed and safety."""
+"""The sections of RESULTS.md on the speed and safety of the game, and their goals."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ SAFE_STEPS = 1_000_000
 
 
 def goals(store: Store) -> Iterable[Sequence[str]]:
-    """Rows of the table of goals, for what was measured."""
-    speed = _variants(store.section(game.SECTION), "bare_to_env")
+    """Yield the rows of the table of goals for what was measured."""
+    speed = _records_with(store.section(game.SECTION), "bare_to_env")
     if speed:
         ratios = {name: record["bare_to_env"][1] for name, record in speed.items()}
         low = [f"{name} {ratio:.2f}" for name, ratio in ratios.items() if ratio < ENV_FACTOR]
@@ -38,10 +38,10 @@ def goals(store: Store) -> Iterable[Sequence[str]]:
         else:
             idle, tries = workers["idle_cores"], workers["tries"]
             yield goal, f"not measured: {idle:.1f} cores were idle, at the median of {tries} tries", "–"
-    tried = store.section(safety.SECTION)
-    if tried:
-        steps = sum(record.get("steps", 0) for record in tried.values())
-        failed = [f"{name}: {record['failed']}" for name, record in tried.items() if "failed" in record]
+    safety_records = store.section(safety.SECTION)
+    if safety_records:
+        steps = sum(record.get("steps", 0) for record in safety_records.values())
+        failed = [f"{name}: {record['failed']}" for name, record in safety_records.items() if "failed" in record]
         yield (
             "a million random steps over the nine variants without a violation",
             f"{steps:,} steps" + (f"; {'; '.join(failed)}" if failed else ""),
@@ -49,10 +49,10 @@ def goals(store: Store) -> Iterable[Sequence[str]]:
         )
 
 
-def speed(records: dict[str, Record]) -> str:
-    """The section on decisions per second."""
-    found = _variants(records, "bare_to_env")
-    if not found:
+def speed_section(records: dict[str, Record]) -> str:
+    """Return the section on decisions per second; empty without measurements."""
+    measured = _records_with(records, "bare_to_env")
+    if not measured:
         return ""
     body = [
         (
@@ -62,49 +62,50 @@ def speed(records: dict[str, Record]) -> str:
             spread(record["bare_to_spec"], 2),
             f"{record['map_us'][0]:.1f}, {record['map_us'][1]:.1f}",
         )
-        for name, record in found.items()
+        for name, record in measured.items()
     ]
     header = ("variant", "bare µs", "env µs", "with spec µs", "bare / env", "bare / with spec", "map µs")
     return f"""
 ## The game, microseconds a decision
 
-CPU time of one process, a random action held for {HELD} decisions on average; bare, env and with spec in turns in each
-of {game.ROUNDS} rounds of {game.DECISIONS} decisions. *Bare*: Bullet with the bodies of the level, the player's
-velocity set and nine physics steps made. *Env*: all of the game, and the observation. *With spec*: the automaton and
-its reward too, and the resets of the episodes that it ends. *Map*: a look at the semantic map, and one with its
-layers made.
+CPU time of one process. A random action is held for {HELD} decisions on average; bare, env and with spec run in turns
+in each of {game.ROUNDS} rounds of {game.DECISIONS} decisions. *Bare*: Bullet with the bodies of the level; a decision
+sets the player's velocity and makes nine physics steps. *Env*: the whole game, and the observation. *With spec*: also
+the automaton, its reward, and the resets after the episodes that it ends. *Map*: the time to compute the semantic
+map, without and with its layers.
 
 {table(header, body)}
-{"".join(map(_two_beside_one, _workers(records)))}"""
+{"".join(map(_workers_text, _workers(records)))}"""
 
 
-def safe(records: dict[str, Record]) -> str:
-    """The section on safety."""
-    found = _variants(records, "steps")
-    if not found:
+def safety_section(records: dict[str, Record]) -> str:
+    """Return the section on safety; empty without measurements."""
+    measured = _records_with(records, "steps")
+    if not measured:
         return ""
     body = [
         (name, *(f"{record[key]:,}" for key in ("steps", "episodes", "checks")), f"{record['deepest_m']:.3f}")
-        for name, record in found.items()
+        for name, record in measured.items()
     ]
     return f"""
 ## Random steps without a violation
 
-Held random actions, half of the episodes from the start of the level and half from anywhere on its floors. After each
-step: numbers finite, player and enemies inside the bounds, the observation in its space, no body more than
-{safety.DEEPEST} m inside a box (the player's radius is 0.3 m). *Checks*: all walls by rays and all collision filters,
-at each reset and each end of an episode. *Deepest*: how far the player's body ever reached into a box.
+The player holds random actions. Half of the episodes begin at the start of the level, half anywhere on its floors.
+After each step, these checks are made: numbers are finite, player and enemies are inside the bounds, the observation is
+in its space, and no body is more than {safety.DEEPEST} m inside a box (the player's radius is 0.3 m). *Checks*: all
+walls by rays and all collision filters, at each reset and each end of an episode. *Deepest*: how far the player's body
+ever reached into a box.
 
 {table(("variant", "steps", "episodes", "checks", "deepest m"), body)}
 """
 
 
 def _workers(records: dict[str, Record]) -> list[Record]:
-    """The records of worker processes."""
+    """Return the records of worker processes."""
     return [record for name, record in records.items() if name.startswith(game.WORKERS) and "count" in record]
 
 
-def _two_beside_one(record: Record) -> str:
+def _workers_text(record: Record) -> str:
     if "two_to_one" not in record:
         return ""
     one, two = record["decisions_per_s"]
@@ -115,5 +116,5 @@ one worker process, {two:,} with two; ratio {ratio} over {record["rounds"]} roun
 """
 
 
-def _variants(records: dict[str, Record], key: str) -> dict[str, Record]:
+def _records_with(records: dict[str, Record], key: str) -> dict[str, Record]:
     return {name: record for name, record in records.items() if key in record}

@@ -1,4 +1,4 @@
-"""Rabin automata of formulas over infinite traces: their sizes beside recorded ones of peers, and times."""
+"""Measure Rabin automata of formulas over infinite traces, and compare their sizes with recorded sizes of peers."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from tltlc.automaton.work import DEFAULT_WORK, Work
 
 SECTION = "infinite"
 TABLE: Final = Path(__file__).with_name("infinite.tsv")
-"""Formulas with the states that peers need, as recorded; a cell is empty where a peer was not asked."""
+"""Formulas with the recorded numbers of states of peers; a cell is empty if a peer was not run."""
 
 CORPORA: Final[Mapping[str, str]] = {
     "families": "families of our own, all states",
@@ -31,46 +31,48 @@ PEERS: Final[Mapping[str, str]] = {
     "rabinizer31_states": "Rabinizer 3.1, Rabin on transitions",
 }
 COLUMNS: Final = ("states", "without", "ms")
-"""What a record holds for each formula of its corpus, in the order of the table."""
+"""The lists in a record, each with a value for each formula of its corpus, in the order of the table."""
 _TRIAL: Final = 4448
-"""States on Owl's corpus that a trial of this construction needed."""
+"""The number of states on Owl's corpus in a trial of this construction."""
 _MEDIAN_MS: Final = 10.0
 _SLOWEST_S: Final = 10.0
 
 
 def measure(store: Store, _: float, say: Callable[[str], None]) -> None:
-    """Make the automata of the formulas whose records are not of this code."""
+    """Build the automata of each corpus whose record is not of this code."""
     code = {"source": source_digest("tltlc")}
-    measure_missing(store, SECTION, CORPORA, lambda name: {**_measured(name), **code}, say, done="ms", like=code)
+    measure_missing(
+        store, SECTION, CORPORA, lambda name: {**_measure_corpus(name), **code}, say, field="ms", current=code
+    )
 
 
-def _measured(corpus: str) -> Record:
+def _measure_corpus(corpus: str) -> Record:
     measured = [_automaton_figures(row["formula"]) for row in _table_rows(corpus)]
     return {column: [figures[column] for figures in measured] for column in COLUMNS}
 
 
 def _table_rows(corpus: str) -> list[dict[str, str]]:
-    """The rows of a corpus in the table of the peers' states."""
+    """Return the rows of a corpus in the table of peers."""
     with TABLE.open(encoding="utf-8", newline="") as file:
         return [row for row in csv.DictReader(file, delimiter="\t") if row["corpus"] == corpus]
 
 
 def _automaton_figures(text: str) -> dict[str, Any]:
-    """The states of the automaton of a formula, all and without traps, and the CPU time in milliseconds."""
+    """Return the number of states of a formula's automaton, with and without traps, and CPU milliseconds."""
     formula = read_formula(text)
     with recursion_room():
-        begun = time.process_time()
+        start = time.process_time()
         automaton = rabin(formula)
-        spent = time.process_time() - begun
+        spent_s = time.process_time() - start
     analysis = analysis_of_rabin(automaton, Work(DEFAULT_WORK))
     traps = sum(analysis.verdict(state) == "violated" for state in range(len(automaton.steps)))
-    # Of an automaton that has no other state the trap counts.
+    # If the automaton has only a trap, the trap counts.
     without = max(1, len(automaton.steps) - traps)
-    return {"states": len(automaton.steps), "without": without, "ms": round(1e3 * spent, 3)}
+    return {"states": len(automaton.steps), "without": without, "ms": round(1e3 * spent_s, 3)}
 
 
 def _rows(corpus: str, record: Record) -> list[dict[str, Any]]:
-    """For each formula of a corpus our figures and those of the peers that were asked.
+    """Return for each formula of a corpus our figures, and the figures of the peers that were run.
 
     Raises:
         ValueError: the table has other formulas than those that were measured.
@@ -88,44 +90,50 @@ def _rows(corpus: str, record: Record) -> list[dict[str, Any]]:
 
 
 def goals(records: Mapping[str, Record]) -> Iterable[Sequence[str]]:
-    """Rows of the table of goals, once both corpora were measured."""
+    """Yield the rows of the table of goals, once both corpora were measured."""
     rows = {name: _rows(name, records.get(name, {})) for name in CORPORA}
     if not all(rows.values()):
         return
     totals = {name: _totals(name, rows[name]) for name in CORPORA}
-    less = all(ours < theirs for peers in totals.values() for ours, theirs, *_ in peers.values())
-    said = "; ".join(
+    is_fewest = all(ours < theirs for peers in totals.values() for ours, theirs, *_ in peers.values())
+    figure = "; ".join(
         f"{ours} against {theirs} ({PEERS[peer].partition(',')[0]})"
         for peers in totals.values()
         for peer, (ours, theirs, *_) in peers.items()
     )
-    yield "over infinite traces fewer states in all than Spot, Owl and Rabinizer", said, met_or_missed(less)
+    yield "over infinite traces fewer states in all than Spot, Owl and Rabinizer", figure, met_or_missed(is_fewest)
     ours = sum(row["without"] for row in rows["owl"])
     yield f"no more than {_TRIAL} states on Owl's corpus", str(ours), met_or_missed(ours <= _TRIAL)
     times = [row["ms"] for name in CORPORA for row in rows[name]]
-    said = f"median {median(times):.1f} ms, slowest {max(times) / 1e3:.1f} s"
+    figure = f"median {median(times):.1f} ms, slowest {max(times) / 1e3:.1f} s"
     met = median(times) < _MEDIAN_MS and max(times) < 1e3 * _SLOWEST_S
     yield (
         f"a Rabin automaton in {_MEDIAN_MS:.0f} ms (median), and none in more than {_SLOWEST_S:.0f} s",
-        said,
+        figure,
         met_or_missed(met),
     )
 
 
 def section(records: Mapping[str, Record]) -> str:
-    """The section on infinite traces."""
+    """Return the section on infinite traces; empty without measurements."""
     body = []
     times = []
-    for name, what in CORPORA.items():
+    for name, title in CORPORA.items():
         rows = _rows(name, records.get(name, {}))
         for peer, (ours, theirs, smaller, equal, larger) in _totals(name, rows).items():
-            body.append((what, len(rows), ours, PEERS[peer], theirs, f"{smaller} / {equal} / {larger}"))
+            body.append((title, len(rows), ours, PEERS[peer], theirs, f"{smaller} / {equal} / {larger}"))
         if rows:
-            spent = sorted(row["ms"] for row in rows)
+            times_ms = sorted(row["ms"] for row in rows)
             rabinizer = [row["rabinizer31_wall_ms"] for row in rows if "rabinizer31_wall_ms" in row]
-            beside = f"{median(rabinizer):.0f}" if rabinizer else "–"
+            rabinizer_ms = f"{median(rabinizer):.0f}" if rabinizer else "–"
             times.append(
-                (what, f"{median(spent):.1f}", f"{spent[int(0.95 * len(spent))]:.0f}", f"{spent[-1]:.0f}", beside)
+                (
+                    title,
+                    f"{median(times_ms):.1f}",
+                    f"{times_ms[int(0.95 * len(times_ms))]:.0f}",
+                    f"{times_ms[-1]:.0f}",
+                    rabinizer_ms,
+                )
             )
     if not body:
         return ""
@@ -134,10 +142,10 @@ def section(records: Mapping[str, Record]) -> str:
     return f"""
 ## Infinite traces
 
-`python -m benchmarks --only {SECTION}` makes the deterministic Rabin automata of two corpora. Peers' figures are
-recorded ones, `benchmarks/infinite.tsv` has them: Spot 2.14, Owl's own for its `symmetric` portfolio, Rabinizer 3.1,
-whose time is that of its whole process, a Java machine included. Ours is CPU time in one process, from a formula in
-memory to the automaton. *Smaller*: formulas for which ours has fewer states.
+`python -m benchmarks --only {SECTION}` builds the deterministic Rabin automata of two corpora. The figures of peers
+were recorded earlier, in `benchmarks/infinite.tsv`: Spot 2.14, Owl's own figures for its `symmetric` portfolio, and
+Rabinizer 3.1, whose time is that of its whole process with a Java virtual machine. Our time is CPU time in one
+process, from a formula in memory to the automaton. *Smaller*: formulas for which our automaton has fewer states.
 
 {sizes}
 
@@ -146,16 +154,16 @@ memory to the automaton. *Smaller*: formulas for which ours has fewer states.
 
 
 def _totals(corpus: str, rows: Sequence[Mapping[str, Any]]) -> dict[str, tuple[int, int, int, int, int]]:
-    """Of each peer that was asked: our states and its, and how often ours are fewer, as many, more."""
-    found = {}
+    """Return for each peer: our states, its states, and for how many formulas ours are fewer, equal or more."""
+    totals = {}
     for peer in PEERS:
         pairs = [(row["states" if corpus == "families" else "without"], row[peer]) for row in rows if peer in row]
         if pairs:
-            found[peer] = (
+            totals[peer] = (
                 sum(ours for ours, _ in pairs),
                 sum(theirs for _, theirs in pairs),
                 sum(ours < theirs for ours, theirs in pairs),
                 sum(ours == theirs for ours, theirs in pairs),
                 sum(ours > theirs for ours, theirs in pairs),
             )
-    return found
+    return totals

@@ -1,4 +1,4 @@
-"""What else a machine did while something was measured on it."""
+"""Measure how busy other processes keep the machine."""
 
 from __future__ import annotations
 
@@ -8,26 +8,26 @@ import time
 from pathlib import Path
 
 
-class Load:
-    """Begins to watch when it is made."""
+class LoadMeter:
+    """Measures the load from its creation on."""
 
     def __init__(self) -> None:
-        self._began, self._busy, self._own = time.monotonic(), _busy_s(), _children_s()
+        self._start, self._busy, self._own = time.monotonic(), _busy_s(), _children_s()
 
     def other_cores(self) -> float | None:
-        """How many cores were busy since then, on average, with what is no ended child of this process.
+        """Return the mean number of cores that were busy with processes other than ended children of this one.
 
-        None where the system does not tell.
+        Return None if the system does not tell.
         """
         busy = _busy_s()
         if busy is None or self._busy is None:
             return None
         spent = busy - self._busy - (_children_s() - self._own)
-        return max(0.0, spent / (time.monotonic() - self._began))
+        return max(0.0, spent / (time.monotonic() - self._start))
 
 
 def _busy_s() -> float | None:
-    """Seconds that all cores of the machine have worked so far."""
+    """Return the seconds that all cores together have worked since the machine started."""
     try:
         ticks = Path("/proc/stat").read_text(encoding="ascii").split("\n", 1)[0].split()[1:]
     except OSError:
@@ -37,5 +37,5 @@ def _busy_s() -> float | None:
 
 
 def _children_s() -> float:
-    used = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return used.ru_utime + used.ru_stime
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return usage.ru_utime + usage.ru_stime

@@ -1,8 +1,8 @@
-"""LTLf2DFA 2.0.0 as a peer: its own process, formula on standard input, a JSON object on standard output.
+"""Run LTLf2DFA 2.0.0 on a formula from standard input, and print a JSON object.
 
-Timed is ``to_dfa`` of a parsed formula, the MONA process that it starts included.  It passes one
-file in its own folder to MONA, so a lock keeps two of these processes apart; without MONA it answers
-wrongly, so :mod:`benchmarks.compile_table` leaves it out then.
+The time is that of ``to_dfa`` on a parsed formula, including the MONA process that it starts.
+LTLf2DFA passes a file in its own folder to MONA, so a lock prevents two runs at once. Without MONA,
+its answers are wrong, so :mod:`benchmarks.compile_table` leaves it out.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
-from benchmarks.measure import forked, median
+from benchmarks.measure import median, run_in_fork
 from tltlc.logic.formula import Formula
 
 RUNS = 3
@@ -26,7 +26,7 @@ _BINARY = {"implies": "->", "iff": "<->", "U": "U", "R": "R"}
 
 
 def notation(formula: Formula) -> str:
-    """The formula in LTLf2DFA's notation, all brackets written, atoms renamed ``p0``, ``p1``, … in order."""
+    """Return the formula in LTLf2DFA's notation, with all brackets, and atoms renamed ``p0``, ``p1``, … in order."""
     names = {atom: f"p{number}" for number, atom in enumerate(formula.atoms())}
 
     def text(node: Formula) -> str:
@@ -43,7 +43,7 @@ def notation(formula: Formula) -> str:
 
 
 def main() -> None:
-    """Read a formula in LTLf2DFA's notation, print the time in milliseconds and the size of the automaton."""
+    """Read a formula in LTLf2DFA's notation; print the time in milliseconds and the size of the automaton."""
     from ltlf2dfa.ltlf2dfa import to_dfa  # type: ignore[import-untyped,import-not-found,unused-ignore]
     from ltlf2dfa.parser.ltlf import LTLfParser  # type: ignore[import-untyped,import-not-found,unused-ignore]
 
@@ -56,13 +56,13 @@ def main() -> None:
     runs: list[dict[str, Any]] = []
     with (Path(tempfile.gettempdir()) / "ltlf2dfa-benchmark.lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
-        while len(runs) < RUNS and sum(made["cpu_ms"] for made in runs) < ENOUGH_MS:
-            # Each in a fork, as ours: sympy keeps tables that would make a second run cheaper than the first.
-            made = forked(solve)
-            if made is None:
+        while len(runs) < RUNS and sum(result["cpu_ms"] for result in runs) < ENOUGH_MS:
+            # Run each in a fork, as ours: sympy keeps tables that would make a second run cheaper than the first.
+            result = run_in_fork(solve)
+            if result is None:
                 raise SystemExit(1)
-            runs.append(made)
-    result = {"ltlf2dfa_ms": median([made["cpu_ms"] for made in runs])}
+            runs.append(result)
+    result = {"ltlf2dfa_ms": median([result["cpu_ms"] for result in runs])}
     print(json.dumps(result | {"ltlf2dfa_states": runs[0]["states"]}))
 
 

@@ -1,4 +1,4 @@
-"""Where the figures were measured: processor, memory, systems and versions, never a name of a host or a folder."""
+"""Describe the machine of the measurements: processor, memory, system and versions, but no host or folder names."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ PEERS = ("ltlf2dfa", "rtamt", "reelay")
 
 
 def facts() -> dict[str, str]:
-    """What a reader needs to judge the absolute figures, in the order of a table."""
+    """Return what a reader needs to judge the absolute figures, in the order of a table."""
     return {
         "processor": f"{_processor()}, {os.cpu_count()} cores",
         "memory": f"{os.sysconf('SC_PAGE_SIZE') * os.sysconf('SC_PHYS_PAGES') / 2**30:.0f} GiB",
@@ -26,10 +26,10 @@ def facts() -> dict[str, str]:
 
 def _processor() -> str:
     try:
-        found = re.search(r"model name\s*:\s*(.+)", Path("/proc/cpuinfo").read_text(encoding="utf-8"))
+        match = re.search(r"model name\s*:\s*(.+)", Path("/proc/cpuinfo").read_text(encoding="utf-8"))
     except OSError:
-        found = None
-    return found.group(1) if found else platform.processor() or "unknown"
+        match = None
+    return match.group(1) if match else platform.processor() or "unknown"
 
 
 def _mona() -> str:

@@ -1,4 +1,4 @@
-"""Pieces of Markdown that the report is made of."""
+"""Markdown for the report: tables and figures."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ def met_or_missed(met: bool) -> str:
 
 
 def spread(quartiles: Sequence[float], digits: int = 1) -> str:
-    """The median, with the quartiles behind it."""
+    """Return the median, and the quartiles in brackets."""
     lower, middle, upper = quartiles
     return f"{middle:.{digits}f} ({lower:.{digits}f}–{upper:.{digits}f})"
 

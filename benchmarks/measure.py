@@ -1,4 +1,4 @@
-"""Measuring: CPU time in this process, and CPU time, wall time and memory of a child process."""
+"""Measure CPU time in this process, and CPU time, wall time and memory of child processes."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ from pathlib import Path
 from typing import Any
 
 CHILD_MEMORY_BYTES = 8 << 30
-"""Address space that a child may take: enough for every peer, too little to bring the machine down."""
+"""Address space of a child: enough for every peer, too little to exhaust the machine."""
 
 
 @dataclass(frozen=True, slots=True)
 class Run:
-    """One run of a child process; times in milliseconds, its own and those of the children it waited for."""
+    """One run of a child process; times are in milliseconds and include the children that it waited for."""
 
     cpu_ms: float
     wall_ms: float
@@ -41,13 +41,13 @@ def run(
 ) -> Run:
     """Run a command to its end, or kill its process group after ``timeout_s`` seconds of wall time.
 
-    ``text`` is its standard input, ``environment`` all of its variables (by default those of this process).
-    ``output`` of the result holds its standard output, complete up to its end.
+    ``text`` is its standard input; ``environment`` replaces the variables of this process. The
+    ``output`` of the result is its standard output up to its end.
     """
     with tempfile.TemporaryFile() as standard_input, tempfile.TemporaryFile() as output:
         standard_input.write(text.encode())
         standard_input.seek(0)
-        started = time.perf_counter()
+        start = time.perf_counter()
         child = subprocess.Popen(
             command,
             stdin=standard_input,
@@ -58,29 +58,29 @@ def run(
             start_new_session=True,
             preexec_fn=_limit_memory,
         )
-        killed = threading.Event()
+        was_killed = threading.Event()
 
         def kill() -> None:
-            killed.set()
+            was_killed.set()
             os.killpg(child.pid, signal.SIGKILL)
 
         timer = threading.Timer(timeout_s, kill)
         timer.start()
         try:
-            # `wait4` has the resources of this child alone; `getrusage` would add up all that ever ran.
-            _, status, used = os.wait4(child.pid, 0)
-            wall = time.perf_counter() - started
+            # `wait4` returns the resources of this child; `getrusage` would add those of earlier children.
+            _, status, usage = os.wait4(child.pid, 0)
+            wall = time.perf_counter() - start
         finally:
             timer.cancel()
             timer.join()  # no thread is left when the next fork comes
         child.returncode = os.waitstatus_to_exitcode(status)
         output.seek(0)
         return Run(
-            cpu_ms=(used.ru_utime + used.ru_stime) * 1e3,
+            cpu_ms=(usage.ru_utime + usage.ru_stime) * 1e3,
             wall_ms=wall * 1e3,
             output=output.read().decode(errors="replace"),
             status=child.returncode,
-            timed_out=killed.is_set(),
+            timed_out=was_killed.is_set(),
         )
 
 
@@ -89,9 +89,9 @@ def _limit_memory() -> None:
 
 
 def cpu_times_ms(work: Callable[[], object], *, runs: int, enough_s: float) -> list[float]:
-    """CPU times in milliseconds of ``work``, at most ``runs`` of them, and no more once ``enough_s`` seconds are spent.
+    """Return CPU times of ``work`` in milliseconds: at most ``runs``, and fewer once ``enough_s`` seconds are spent.
 
-    Garbage is collected before each run, outside of its time; what a run itself collects counts.
+    Garbage is collected before each run, outside of its time; collections during a run count.
     """
     times: list[float] = []
     while len(times) < runs and sum(times) < enough_s * 1e3:
@@ -102,11 +102,11 @@ def cpu_times_ms(work: Callable[[], object], *, runs: int, enough_s: float) -> l
     return times
 
 
-def forked(work: Callable[[], dict[str, Any]]) -> dict[str, Any] | None:
-    """The result of ``work`` in a fork of this process, with ``cpu_ms`` and ``peak_mb``; None where it raised.
+def run_in_fork(work: Callable[[], dict[str, Any]]) -> dict[str, Any] | None:
+    """Return the result of ``work`` in a fork of this process, with ``cpu_ms`` and ``peak_mb``; None if it raised.
 
-    Modules are loaded, but what a first call would leave in tables and caches is gone with the fork.
-    Call it in a process without other threads: a fork copies their locks, and not the threads.
+    Modules are loaded already, but tables and caches that ``work`` fills are gone with the fork.
+    Call this in a process without other threads: a fork copies their locks, but not the threads.
     """
     reader, writer = os.pipe()
     child = os.fork()
@@ -115,8 +115,8 @@ def forked(work: Callable[[], dict[str, Any]]) -> dict[str, Any] | None:
         try:
             before = cpu_s()
             result = work()
-            spent = (cpu_s() - before) * 1e3
-            os.write(writer, json.dumps(result | {"cpu_ms": spent, "peak_mb": peak_memory_mb()}).encode())
+            spent_ms = (cpu_s() - before) * 1e3
+            os.write(writer, json.dumps(result | {"cpu_ms": spent_ms, "peak_mb": peak_memory_mb()}).encode())
         finally:
             os._exit(0)
     os.close(writer)
@@ -127,13 +127,13 @@ def forked(work: Callable[[], dict[str, Any]]) -> dict[str, Any] | None:
 
 
 def cpu_s() -> float:
-    """CPU time so far, in seconds, of this process and of the children it has waited for."""
+    """Return the CPU time so far, in seconds, of this process and of the children that it has waited for."""
     children = resource.getrusage(resource.RUSAGE_CHILDREN)
     return time.process_time() + children.ru_utime + children.ru_stime
 
 
 def peak_memory_mb() -> float:
-    """The greatest resident memory of this process so far, in megabytes (2**20 bytes)."""
+    """Return the greatest resident memory of this process so far, in MiB."""
     try:
         # Unlike `ru_maxrss` this does not begin with the memory of the process that started this one.
         status = Path("/proc/self/status").read_text(encoding="ascii")
@@ -143,12 +143,12 @@ def peak_memory_mb() -> float:
 
 
 def median(values: Sequence[float]) -> float:
-    """The median; of none, NaN."""
+    """Return the median; NaN if there are no values."""
     return statistics.median(values) if values else float("nan")
 
 
 def quartiles(values: Sequence[float]) -> tuple[float, float, float]:
-    """The lower quartile, the median and the upper quartile; of one value, that value thrice."""
+    """Return the lower quartile, the median and the upper quartile; three times the value if there is only one."""
     if len(values) < 2:
         return (median(values),) * 3
     lower, middle, upper = statistics.quantiles(values, n=4, method="inclusive")

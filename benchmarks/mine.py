@@ -1,4 +1,4 @@
-"""Specs recovered from traces in which they are planted, by ``tltlc mine`` and by peers that learn formulas."""
+"""Measure how well ``tltlc mine`` and peers that learn formulas recover specs that were planted in traces."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from statistics import median
 from typing import Any, Final
 
 from benchmarks.markdown import met_or_missed, table
-from benchmarks.mine_peers import Learned, enumerated, has_scarlet, scarlet
-from benchmarks.mine_traces import Planted, evidence, of_the_paper, planted
+from benchmarks.mine_peers import LearnedFormula, enumerate_formulas, has_scarlet, scarlet
+from benchmarks.mine_traces import PlantedSpec, evidence, paper_specs, random_spec
 from benchmarks.store import Record, Store, measure_missing, source_digest
 from tltlc.automaton.compare import are_equivalent
 from tltlc.automaton.fspa import Fspa
@@ -28,11 +28,11 @@ _TOP: Final = 5
 _RANDOM: Final = 20
 _MOST_PEER_S: Final = 20.0
 _LEAST_FOUND: Final = 20
-"""Of the specs without noise, as many are to be at rank 1."""
+"""At least this many specs without noise should be at rank 1."""
 _FACTOR: Final = 10.0
 
-SPECS: Final[Mapping[str, Planted]] = {
-    spec.name: spec for spec in (*of_the_paper(), *(planted(number) for number in range(_RANDOM)))
+SPECS: Final[Mapping[str, PlantedSpec]] = {
+    spec.name: spec for spec in (*paper_specs(), *(random_spec(number) for number in range(_RANDOM)))
 }
 PEERS: Final = {"enumeration": "plain enumeration", "scarlet": "Scarlet 0.0.4"}
 
@@ -44,49 +44,55 @@ def measure(store: Store, timeout_s: float, say: Callable[[str], None]) -> None:
         say("mine: Scarlet is left out, since it is not installed (benchmarks/requirements.txt)")
     peer_s = min(timeout_s, _MOST_PEER_S)
     measure_missing(
-        store, SECTION, SPECS, lambda name: {**_measured(SPECS[name], peer_s), **code}, say, done="ours", like=code
+        store,
+        SECTION,
+        SPECS,
+        lambda name: {**_measure_spec(SPECS[name], peer_s), **code},
+        say,
+        field="ours",
+        current=code,
     )
 
 
-def _measured(spec: Planted, peer_s: float) -> Record:
+def _measure_spec(spec: PlantedSpec, peer_s: float) -> Record:
     clean, noisy = (evidence(spec, TRACES, COUNTEREXAMPLES, seed=_SEED, noise=noise) for noise in (0.0, NOISE))
-    wanted = spec.automaton()
+    planted_fspa = spec.automaton()
     record: Record = {
         "clauses": list(spec.clauses),
         "limit_s": peer_s,
-        "ours": _ours(clean, wanted, 1.0),
-        "noisy": _ours(noisy, wanted, 1.0 - 2 * NOISE),
-        "enumeration": _peer(enumerated(clean, peer_s), spec, wanted),
+        "ours": _ours(clean, planted_fspa, 1.0),
+        "noisy": _ours(noisy, planted_fspa, 1.0 - 2 * NOISE),
+        "enumeration": _peer(enumerate_formulas(clean, peer_s), spec, planted_fspa),
     }
     if has_scarlet():
-        record["scarlet"] = _peer(scarlet(clean, peer_s), spec, wanted)
+        record["scarlet"] = _peer(scarlet(clean, peer_s), spec, planted_fspa)
     return record
 
 
-def _ours(given: Evidence, wanted: Fspa, min_support: float) -> Record:
-    """The time from letters in memory to proposals that automata have confirmed, and the rank of the planted spec."""
-    begun = time.perf_counter()
-    words = vocabulary_of_columns(dict.fromkeys(given.atoms(), True))
-    search = SpecSearch(given, MiningOptions(min_support=min_support))
+def _ours(evidence_: Evidence, planted_fspa: Fspa, min_support: float) -> Record:
+    """Return the time from letters in memory to confirmed proposals, and the rank of the planted spec."""
+    start = time.perf_counter()
+    words = vocabulary_of_columns(dict.fromkeys(evidence_.atoms(), True))
+    search = SpecSearch(evidence_, MiningOptions(min_support=min_support))
     for _ in search.run():
         pass
-    found = confirm(search.ranking(), given, words, CompileOptions(), _TOP)
-    seconds = time.perf_counter() - begun
-    ranks = [rank for rank, proposal in enumerate(found, start=1) if are_equivalent(proposal.fspa, wanted)]
+    matches = confirm(search.ranking(), evidence_, words, CompileOptions(), _TOP)
+    seconds = time.perf_counter() - start
+    ranks = [rank for rank, proposal in enumerate(matches, start=1) if are_equivalent(proposal.fspa, planted_fspa)]
     return {"seconds": seconds, "rank": ranks[0] if ranks else None, "tried": search.tried_count}
 
 
-def _peer(learned: Learned, spec: Planted, wanted: Fspa) -> Record:
+def _peer(learned: LearnedFormula, spec: PlantedSpec, planted_fspa: Fspa) -> Record:
     equal = False
     if learned.formula is not None:
-        signals = "".join(f"signal {atom}: bool\n" for atom in spec.likely)
+        signals = "".join(f"signal {atom}: bool\n" for atom in spec.probabilities)
         text = f"{signals}spec learned = {learned.formula}\n"
-        equal = are_equivalent(compile_source(SourceFile("learned.tltl", text)).automata[0], wanted)
+        equal = are_equivalent(compile_source(SourceFile("learned.tltl", text)).automata[0], planted_fspa)
     return {"seconds": learned.seconds, "formula": learned.formula, "equal": equal, "tried": learned.tried}
 
 
 def goals(records: Mapping[str, Record]) -> Iterable[Sequence[str]]:
-    """Rows of the table of goals, once all specs were measured."""
+    """Yield the rows of the table of goals, once all specs were measured."""
     if any("ours" not in records.get(name, {}) for name in SPECS):
         return
     first = sum(records[name]["ours"]["rank"] == 1 for name in SPECS)
@@ -96,24 +102,26 @@ def goals(records: Mapping[str, Record]) -> Iterable[Sequence[str]]:
         met_or_missed(first >= _LEAST_FOUND),
     )
     ratios = {peer: _ratios(records, peer) for peer in PEERS}
-    measured = {peer: found for peer, found in ratios.items() if found}
-    said = "; ".join(f"{PEERS[peer]} {median(found):.0f} times as long or longer" for peer, found in measured.items())
-    met = all(median(found) >= _FACTOR for found in measured.values())
-    yield "specs from traces in a tenth of the peers' time (median)", said, met_or_missed(met)
+    measured = {peer: matches for peer, matches in ratios.items() if matches}
+    figure = "; ".join(
+        f"{PEERS[peer]} {median(matches):.0f} times as long or longer" for peer, matches in measured.items()
+    )
+    met = all(median(matches) >= _FACTOR for matches in measured.values())
+    yield "specs from traces in a tenth of the peers' time (median)", figure, met_or_missed(met)
 
 
 def section(records: Mapping[str, Record]) -> str:
-    """The section on specs from traces."""
-    there = {name: records[name] for name in SPECS if "ours" in records.get(name, {})}
-    if not there:
+    """Return the section on specs from traces; empty without measurements."""
+    measured = {name: records[name] for name in SPECS if "ours" in records.get(name, {})}
+    if not measured:
         return ""
-    rows = [_row(name, record) for name, record in there.items()]
-    limits = sorted({record["limit_s"] for record in there.values() if "limit_s" in record})
+    rows = [_row(name, record) for name, record in measured.items()]
+    limits = sorted({record["limit_s"] for record in measured.values() if "limit_s" in record})
     stopped = f"Both are stopped after {' or '.join(f'{limit:g}' for limit in limits)} s. " if limits else ""
     header = ("planted", "clauses", "ours, s", "rank", "with noise", *(f"{peer}, s" for peer in PEERS.values()))
     counts = "; ".join(
-        f"{what} {sum(map(found, there.values()))} of {len(there)}"
-        for what, found in (
+        f"{title} {sum(map(matches, measured.values()))} of {len(measured)}"
+        for title, matches in (
             ("ours at rank 1", lambda record: record["ours"]["rank"] == 1),
             ("with noise", lambda record: record["noisy"]["rank"] == 1),
             *((title, lambda record, peer=peer: _is_equal(record, peer)) for peer, title in PEERS.items()),
@@ -122,18 +130,18 @@ def section(records: Mapping[str, Record]) -> str:
     return f"""
 ## Specs from traces
 
-`python -m benchmarks --only {SECTION}` plants the paper's three plans and {_RANDOM} random specs in {TRACES} traces
-that satisfy them and {COUNTEREXAMPLES} that do not (random walks on the automaton; half of the latter near misses),
-over free atoms, and has them recovered. The traces are those of seed {_SEED}, the same in each run; each time is that
-of one run. The planted specs are of kinds that `mine` has templates for, with atoms, lengths and noise that it is not
-told. Enumeration can say all of them, Scarlet's fragment those without an until; both look for any formula that
-separates the traces. *Ours* is wall time from letters in memory to the {_TOP} best proposals, each compiled and judged
-by its automaton; *rank* is that of the proposal that is equivalent to the planted spec, *with noise* the same where
-{NOISE:.0%} of the traces have changed sides. Enumeration, written for this in Python with a bit per sample, goes
-through all formulas of `! & | X F G U` by size, those alike on all samples once, until one separates all; Scarlet
-(TACAS 2022) is the package from PyPI, its process included. {stopped}A peer's time has `=` where its
-formula is equivalent to the planted one, `≠` where it only separates these traces, and `>` where it found none in that
-time.
+`python -m benchmarks --only {SECTION}` plants the paper's three plans and {_RANDOM} random specs, over free atoms, in
+{TRACES} traces that satisfy them and {COUNTEREXAMPLES} counterexamples (random walks on the automaton; half of the
+counterexamples are near misses). Then the tools recover the specs. The traces have seed {_SEED}, and are the same in
+each run; each time is that of one run. `mine` has templates for the kinds of the planted specs, but does not know
+their atoms, lengths and noise. Enumeration can express all of the specs, Scarlet's fragment only those without an
+until; both look for any formula that separates the traces. *Ours* is the wall time from letters in memory to the
+{_TOP} best proposals, each compiled and judged by its automaton. *Rank* is the rank of the proposal that is
+equivalent to the planted spec, and *with noise* the same if {NOISE:.0%} of the traces have changed sides. Enumeration
+was written for this comparison, in Python with a bit per sample. It tries all formulas of `! & | X F G U` by size,
+only one of those that agree on all samples, until one separates all traces. Scarlet (TACAS 2022) is the package from
+PyPI; its time includes its process. {stopped}A peer's time has `=` if its formula is equivalent to the planted one,
+`≠` if it only separates these traces, and `>` if the peer found none in that time.
 
 Recovered: {counts}.
 
@@ -162,7 +170,7 @@ def _is_equal(record: Record, peer: str) -> bool:
 
 
 def _ratios(records: Mapping[str, Record], peer: str) -> list[float]:
-    """The peer's time, or that at which it was stopped, by ours."""
+    """Return for each spec the peer's time, or the time at which it was stopped, divided by ours."""
     return [
         records[name][peer]["seconds"] / records[name]["ours"]["seconds"] for name in SPECS if peer in records[name]
     ]

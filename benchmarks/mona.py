@@ -1,9 +1,9 @@
-"""MONA 1.4 as a peer: a formula as a program of monadic second-order logic over strings, its time and its size.
+"""Run MONA 1.4 on a formula, as a program of monadic second-order logic over strings.
 
-A position of the string is a sample, an atom is the set of positions at which it holds, a temporal
-operator is a first-order quantifier over the positions that follow.  MONA's automaton is minimal.
-It has one initial state more than ours, as it first reads a letter that stands before the string.
-A string here is never empty.
+A position of the string is a sample, an atom is the set of positions at which it holds, and a
+temporal operator is a first-order quantifier over the positions that follow. Strings are not empty.
+MONA's automaton is minimal. It has one more initial state than ours, because it first reads a letter
+before the string.
 """
 
 from __future__ import annotations
@@ -26,20 +26,21 @@ def available() -> bool:
 
 
 def solve(formula: Formula, timeout_s: float) -> tuple[Run, int | None]:
-    """MONA's run on a formula, and the size of its automaton as we count; None where it gave up."""
+    """Run MONA on a formula; return the run, and the size of the automaton as we count it, or None without one."""
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "formula.mona"
         file.write_text(program(formula), encoding="ascii")
-        made = run([*COMMAND, str(file)], timeout_s)
-    # One that was stopped may have printed a part of its automaton.
-    return made, None if made.status else size(made.output)
+        process_run = run([*COMMAND, str(file)], timeout_s)
+    # A run that was stopped may have printed a part of its automaton.
+    return process_run, None if process_run.status else size(process_run.output)
 
 
 def size(output: str) -> int | None:
-    """The states of the automaton that MONA printed, counted as ours: whether the empty trace is accepted is free.
+    """Return the number of states of the automaton that MONA printed, counted as ours; None if it printed none.
 
-    MONA rejects it.  Where its state before the first sample differs from another one in acceptance only, ours is
-    one smaller.  Its own initial state stands before that one.
+    We do not count MONA's own initial state. MONA also rejects the empty trace, which our automata
+    leave open: if the state before the first sample differs from another state only in acceptance,
+    ours has one state fewer.
     """
     if "Formula is unsatisfiable" in output:
         return 1  # it prints no automaton then
@@ -57,14 +58,17 @@ def size(output: str) -> int | None:
 
 
 def program(formula: Formula) -> str:
-    """The MONA program whose models are the traces that satisfy the formula at their first sample."""
+    """Return the MONA program whose models are the traces that satisfy the formula at their first sample."""
     names = {atom: f"A{number}" for number, atom in enumerate(formula.atoms())}
     declaration = f"var2 {', '.join(names.values())};\n" if names else ""
     return f"m2l-str;\n{declaration}ex1 o: o = 0 & {_at(formula, 'o', names, count(1))};\n"
 
 
 def _at(formula: Formula, here: str, names: dict[str, str], numbers: count[int]) -> str:
-    """The formula at position ``here``; ``numbers`` makes the names of new position variables."""
+    """Return the formula at position ``here``; ``numbers`` numbers new position variables.
+
+    Raises ValueError for operators that the corpus does not have.
+    """
     op, args = formula.op, formula.args
 
     def at(argument: Formula, position: str) -> str:

@@ -1,7 +1,7 @@
-"""Steps per second: the generated Python monitor, one written by hand, and the online monitors of RTAMT and Reelay.
+"""Measure steps per second of the generated Python monitor, a handwritten one, RTAMT and Reelay.
 
-All of them see the same recorded trace.  Before anything is timed they are checked to agree: the
-hand-written one in every field of each step, the peers in whether the prefix is accepted.
+All of them read the same recorded trace. Before anything is timed, they are compared: the
+handwritten monitor in every field of each step, the peers in whether the prefix is accepted.
 
 ``python -m benchmarks.monitors SPEC`` measures one spec in a process of its own.
 """
@@ -18,7 +18,7 @@ from typing import Any
 
 from benchmarks.measure import median, quartiles, run
 from benchmarks.peer_monitors import PEERS
-from benchmarks.specs import PAPER_SPECS, hand_written, source, trace
+from benchmarks.specs import PAPER_SPECS, handwritten_monitor, source, trace
 from benchmarks.store import ROOT, Record, Store, measure_missing, source_digest
 
 SECTION = "monitors"
@@ -28,18 +28,20 @@ TIMEOUT_S = 600.0
 
 
 def measure(store: Store, _: float, say: Callable[[str], None]) -> None:
-    """Measure each spec that the store does not have yet, or that failed."""
-    measure_missing(store, SECTION, PAPER_SPECS, _measured, say)
+    """Measure each spec without a record in the store, or with a failed one."""
+    measure_missing(store, SECTION, PAPER_SPECS, _measure_in_process, say)
 
 
-def _measured(name: str) -> Record:
-    made = run([sys.executable, "-m", "benchmarks.monitors", name], TIMEOUT_S, cwd=ROOT)
-    record: Record = json.loads(made.output) if made.status == 0 else {"failed": f"exit status {made.status}"}
+def _measure_in_process(name: str) -> Record:
+    process_run = run([sys.executable, "-m", "benchmarks.monitors", name], TIMEOUT_S, cwd=ROOT)
+    record: Record = (
+        json.loads(process_run.output) if process_run.status == 0 else {"failed": f"exit status {process_run.status}"}
+    )
     return record
 
 
-def compared(name: str) -> Record:
-    """The steps per second of every monitor of a spec, and the ratio of the generated one to the hand-written one."""
+def compare_monitors(name: str) -> Record:
+    """Return the steps per second of every monitor of a spec, and the ratio of generated to handwritten."""
     from tltlc import compile_file
     from tltlc.backends import emit
     from tltlc.monitor import Monitor
@@ -49,23 +51,23 @@ def compared(name: str) -> Record:
     files = emit("python", fspa, None)
     sys.modules[module.__name__] = module
     exec(compile(next(iter(files.values())), f"{name}_monitor.py", "exec"), module.__dict__)
-    generated, by_hand, reference = module.Monitor(), hand_written(name), Monitor(fspa)
+    generated, by_hand, reference = module.Monitor(), handwritten_monitor(name), Monitor(fspa)
     samples = trace(name)
     for sample in samples:
         ours = generated.step(sample)
-        _agree(ours, by_hand.step(sample))
-        _agree(ours, reference.step(sample))
+        _check_equal(ours, by_hand.step(sample))
+        _check_equal(ours, reference.step(sample))
 
     passes = {
-        "generated": _pass(generated, samples),
-        "hand_written": _pass(by_hand, samples),
-        "tltlc.monitor": _pass(reference, samples),
+        "generated": _pass_over(generated, samples),
+        "hand_written": _pass_over(by_hand, samples),
+        "tltlc.monitor": _pass_over(reference, samples),
     }
     atoms, accepting = _atom_values(reference, samples)
     left_out: dict[str, str] = {}
     for peer, make in PEERS.items():
         try:
-            passes[peer] = _checked(make(name, atoms), accepting, peer)
+            passes[peer] = _check_peer(make(name, atoms), accepting, peer)
         except ImportError:
             left_out[peer] = "not installed"
 
@@ -73,7 +75,7 @@ def compared(name: str) -> Record:
     return {
         "samples": len(samples),
         "rounds": ROUNDS,
-        "steps_per_s": {who: round(median(values)) for who, values in rates.items()},
+        "steps_per_s": {monitor_name: round(median(values)) for monitor_name, values in rates.items()},
         "generated_to_hand_written": quartiles(
             [ours / hand for ours, hand in zip(rates["generated"], rates["hand_written"], strict=True)]
         ),
@@ -82,26 +84,28 @@ def compared(name: str) -> Record:
     }
 
 
-def _agree(found: Sequence[Any], expected: Sequence[Any]) -> None:
-    for one, other in zip(found, expected, strict=True):
-        if one != other and not (isinstance(one, float) and math.isclose(one, other, abs_tol=1e-12)):
-            raise AssertionError(f"monitors disagree: {found} and {expected}")
+def _check_equal(step: Sequence[Any], expected: Sequence[Any]) -> None:
+    for value, expected_value in zip(step, expected, strict=True):
+        if value != expected_value and not (
+            isinstance(value, float) and math.isclose(value, expected_value, abs_tol=1e-12)
+        ):
+            raise AssertionError(f"monitors disagree: {step} and {expected}")
 
 
-def _pass(monitor: Any, samples: list[dict[str, float]]) -> Callable[[], None]:
-    """One pass over the whole trace from its beginning."""
+def _pass_over(monitor: Any, samples: list[dict[str, float]]) -> Callable[[], None]:
+    """Return a function that runs a monitor over the whole trace."""
 
-    def once() -> None:
+    def run_pass() -> None:
         monitor.reset()
         step = monitor.step
         for sample in samples:
             step(sample)
 
-    return once
+    return run_pass
 
 
 def _atom_values(monitor: Any, samples: list[dict[str, float]]) -> tuple[list[dict[str, float]], list[bool]]:
-    """The values of the atoms at each sample, by name, and whether the prefix up to it is accepted."""
+    """Return the values of the atoms at each sample, by name, and whether each prefix is accepted."""
     monitor.reset()
     names = [atom.name for atom in monitor.fspa.atoms]
     values, accepting = [], []
@@ -111,34 +115,34 @@ def _atom_values(monitor: Any, samples: list[dict[str, float]]) -> tuple[list[di
     return values, accepting
 
 
-def _checked(
+def _check_peer(
     peer: tuple[Callable[[], None], Callable[[], list[float]]], accepting: list[bool], name: str
 ) -> Callable[[], None]:
-    once, outputs = peer
+    run_pass, outputs = peer
     if [value > 0 for value in outputs()] != accepting:
         raise AssertionError(f"{name} judges the trace otherwise")
-    return once
+    return run_pass
 
 
 def _rates(passes: dict[str, Callable[[], None]], steps: int) -> dict[str, list[float]]:
-    """Steps per second of CPU time for each monitor, one value per round; in a round all run, one after the other."""
+    """Return steps per second of CPU time for each monitor, one value per round; each round runs all in turn."""
     repeats = {}
-    for who, once in passes.items():
-        started = time.process_time()
+    for monitor_name, run_pass in passes.items():
+        start = time.process_time()
         count = 0
-        while time.process_time() - started < ROUND_S:
-            once()
+        while time.process_time() - start < ROUND_S:
+            run_pass()
             count += 1
-        repeats[who] = count
-    rates: dict[str, list[float]] = {who: [] for who in passes}
+        repeats[monitor_name] = count
+    rates: dict[str, list[float]] = {monitor_name: [] for monitor_name in passes}
     for _ in range(ROUNDS):
-        for who, once in passes.items():
-            started = time.process_time()
-            for _ in range(repeats[who]):
-                once()
-            rates[who].append(repeats[who] * steps / (time.process_time() - started))
+        for monitor_name, run_pass in passes.items():
+            start = time.process_time()
+            for _ in range(repeats[monitor_name]):
+                run_pass()
+            rates[monitor_name].append(repeats[monitor_name] * steps / (time.process_time() - start))
     return rates
 
 
 if __name__ == "__main__":
-    print(json.dumps(compared(sys.argv[1])))
+    print(json.dumps(compare_monitors(sys.argv[1])))

@@ -1,8 +1,8 @@
-"""Our side of the compile table, in a process of its own: formula on standard input, results on standard output.
+"""Measure how long tltlc takes for a formula from standard input, and print the results.
 
-``python -m benchmarks.ours`` prints one JSON object per line as soon as it is known: first the time from formula to
-minimal automaton, then those of complete builds, then the time with its guards as text, so that a kill loses only
-what is missing.
+``python -m benchmarks.ours`` prints a JSON object per line as soon as it is known, so that a kill
+loses only what is missing: the time from formula to minimal automaton, the times of complete builds,
+and the time to the minimal automaton with its guards as text.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import sys
 from collections.abc import Sequence
 from typing import Any
 
-from benchmarks.measure import cpu_s, cpu_times_ms, forked, median, peak_memory_mb
+from benchmarks.measure import cpu_s, cpu_times_ms, median, peak_memory_mb, run_in_fork
 from tests.reference_formulas import read_formula
 from tltlc.automaton.diagrams import OutOfSteps
 from tltlc.automaton.finite.blowup import recursion_room
@@ -38,27 +38,27 @@ def main() -> None:
                 lambda: minimal_machine(formula, atoms, DEFAULT_STATE_BUDGET), runs=RUNS, enough_s=ENOUGH_S
             )
     except (OutOfStates, OutOfSteps):
-        _say({"minimal_failed": "TLT0501"})
+        _print_result({"minimal_failed": "TLT0501"})
         return
-    _say({"minimal_ms": median(times), "minimal_mb": peak_memory_mb()})
+    _print_result({"minimal_ms": median(times), "minimal_mb": peak_memory_mb()})
     build(spec_from_formula(read_formula("a")))  # loads the modules that a build needs
-    started = cpu_s()
+    start = cpu_s()
     for _ in range(BUILDS):
-        if cpu_s() - started > ENOUGH_BUILDS_S:
+        if cpu_s() - start > ENOUGH_BUILDS_S:
             break
-        # The tables of rewriting that a first build fills would make a second one in the same process cheaper.
-        _say(forked(lambda: _build(formula)) or {"build_failed": "failed"})
+        # Build in a fork: the tables that a first build fills would make the second one cheaper.
+        _print_result(run_in_fork(lambda: _build(formula)) or {"build_failed": "failed"})
     try:
         with recursion_room():
-            guarded = cpu_times_ms(lambda: _guarded(formula, atoms), runs=RUNS, enough_s=ENOUGH_S)
+            guard_times = cpu_times_ms(lambda: _guard_texts(formula, atoms), runs=RUNS, enough_s=ENOUGH_S)
     except TooManyPrimes:
-        _say({"guarded_failed": "TLT0502"})
+        _print_result({"guarded_failed": "TLT0502"})
     else:
-        _say({"guarded_ms": median(guarded)})
+        _print_result({"guarded_ms": median(guard_times)})
 
 
-def _guarded(formula: Formula, atoms: Sequence[str]) -> list[str]:
-    """What LTLf2DFA gives: the minimal automaton with each edge's guard as a short text."""
+def _guard_texts(formula: Formula, atoms: Sequence[str]) -> list[str]:
+    """Return the guard of each edge of the minimal automaton as a short text, which is what LTLf2DFA gives."""
     successors, machine, allowed = minimal_machine(formula, atoms, DEFAULT_STATE_BUDGET)
     guards = Guards(successors.diagrams, atoms, allowed)
     edges = {guard for transition in machine.transitions.values() for guard in guards.by_leaf(transition).values()}
@@ -73,7 +73,7 @@ def _build(formula: Formula) -> dict[str, Any]:
     return {"states": len(fspa.states)}
 
 
-def _say(result: dict[str, Any]) -> None:
+def _print_result(result: dict[str, Any]) -> None:
     print(json.dumps(result), flush=True)
 
 

@@ -1,13 +1,12 @@
-"""The paper's specs as RTAMT and Reelay can say them: looking back from each sample instead of ahead.
+"""The paper's specs for RTAMT and Reelay, in past-time logic.
 
-``F(a & X F(b & X F c)) & G p`` holds of a prefix iff at its end
-``once(c & previous once(b & previous once a)) & historically p`` does.  Neither tool has predicates
-with cases, so both are given the values of the atoms, computed beforehand and outside of the time
-that is measured.  Both answer with the robustness of the prefix and with nothing else: no state,
-no progress, no reward.
+``F(a & X F(b & X F c)) & G p`` holds of a prefix if and only if
+``once(c & previous once(b & previous once a)) & historically p`` holds at its end. Neither tool has
+predicates with cases, so both get the values of the atoms, which are computed before the measured
+time. Both compute only the robustness of the prefix: no state, no progress, no reward.
 
-A peer is a function of a spec's name and of the values of the atoms; it returns one pass over the
-trace, and a function that yields the outputs of a new monitor over it.
+A peer is a function of a spec's name and of the values of the atoms. It returns two functions: one
+runs the monitor over the trace, the other returns the outputs of a new monitor over the trace.
 """
 
 from __future__ import annotations
@@ -47,7 +46,7 @@ REELAY = {
 
 
 def rtamt_peer(name: str, atoms: Values) -> Peer:
-    """RTAMT's online monitor in discrete time, in Python as it is installed."""
+    """Return RTAMT's online monitor in discrete time, in Python."""
     import rtamt  # type: ignore[import-untyped,import-not-found,unused-ignore]
 
     monitor = rtamt.StlDiscreteTimeSpecification()
@@ -63,38 +62,38 @@ def rtamt_peer(name: str, atoms: Values) -> Peer:
         monitor.reset()
         return [float(monitor.update(step, sample)) for step, sample in enumerate(samples)]
 
-    def once() -> None:
+    def run_pass() -> None:
         monitor.reset()
         update = monitor.update
         for step, sample in enumerate(samples):
             update(step, sample)
 
-    return once, outputs
+    return run_pass, outputs
 
 
 def reelay_peer(name: str, atoms: Values) -> Peer:
-    """Reelay's discrete robustness monitor, C++ behind Python.
+    """Return Reelay's discrete robustness monitor, which is C++ behind Python.
 
-    It has no reset and making one takes longer than the trace, so in the passes that are timed one monitor goes on.
+    It has no reset, and making one takes longer than the trace, so one monitor runs on in all timed passes.
     """
     import reelay  # type: ignore[import-untyped,import-not-found,unused-ignore]
 
     samples = [{NAMES[atom]: value for atom, value in values.items()} for values in atoms]
 
-    def new() -> Any:
+    def new_monitor() -> Any:
         return reelay.discrete_timed_monitor(pattern=REELAY[name], semantics="robustness", condense=False)
 
     def outputs() -> list[float]:
-        monitor = new()
+        monitor = new_monitor()
         return [float(monitor.update(sample)["value"]) for sample in samples]
 
-    update = new().update
+    update = new_monitor().update
 
-    def once() -> None:
+    def run_pass() -> None:
         for sample in samples:
             update(sample)
 
-    return once, outputs
+    return run_pass, outputs
 
 
 PEERS: dict[str, Callable[[str, Values], Peer]] = {"RTAMT": rtamt_peer, "Reelay": reelay_peer}

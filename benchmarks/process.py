@@ -1,4 +1,4 @@
-"""The whole process: commands of ``tltlc`` beside a bare ``python -c pass``, in turns, and what their imports cost."""
+"""Measure whole processes: commands of ``tltlc`` and a bare ``python -c pass`` in turns, and the time of imports."""
 
 from __future__ import annotations
 
@@ -23,54 +23,54 @@ SLOWEST_IMPORTS = 12
 
 
 def measure(store: Store, _: float, say: Callable[[str], None]) -> None:
-    """Measure each command that the store does not have yet, or that failed."""
+    """Measure each command without a record in the store, or with a failed one."""
     with tempfile.TemporaryDirectory() as folder:
         for key, arguments in _commands(Path(folder)).items():
             if "cpu_ratio" not in store.section(SECTION).get(key, {}):
-                record = _compared(arguments, with_bytecode(Path(folder)))
+                record = _compare_with_bare(arguments, with_bytecode(Path(folder)))
                 store.put(SECTION, key, record)
                 ratio = f"{record['cpu_ratio'][1]:.1f} times a bare interpreter" if "cpu_ratio" in record else "failed"
                 say(f"{key}: {ratio}")
 
 
 def with_bytecode(folder: Path) -> dict[str, str]:
-    """The variables of this process, but with compiled modules kept, as they are of an installed package."""
+    """Return the environment of this process, but let Python store compiled modules, as for an installed package."""
     environment = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
     return environment | {"PYTHONPYCACHEPREFIX": str(folder / "bytecode")}
 
 
 def _commands(folder: Path) -> dict[str, Sequence[str]]:
-    """The arguments of ``tltlc`` by the command as a reader would type it."""
+    """Return the arguments of each command, by the command line that the report shows."""
     spec = str(source("cover_and_hide"))
-    shown = "cover_and_hide.tltl"
+    file_name = "cover_and_hide.tltl"
     return {
-        f"tltlc compile {shown}": ("compile", spec, "-o", str(folder)),
-        f"tltlc compile {shown} -t json": ("compile", spec, "-o", str(folder), "-t", "json"),
-        f"tltlc check {shown}": ("check", spec),
+        f"tltlc compile {file_name}": ("compile", spec, "-o", str(folder)),
+        f"tltlc compile {file_name} -t json": ("compile", spec, "-o", str(folder), "-t", "json"),
+        f"tltlc check {file_name}": ("check", spec),
         "tltlc --help": ("--help",),
     }
 
 
-def _compared(arguments: Sequence[str], environment: dict[str, str]) -> Record:
-    """Medians of ``ROUNDS`` pairs of runs, each of the two first in turn; ratios are taken pair by pair."""
+def _compare_with_bare(arguments: Sequence[str], environment: dict[str, str]) -> Record:
+    """Return medians of ``ROUNDS`` pairs of runs, and the ratios of pairs; the order alternates."""
 
-    def once(line: Sequence[str]) -> Run:
+    def run_once(line: Sequence[str]) -> Run:
         return run(line, TIMEOUT_S, cwd=ROOT, environment=environment)
 
     command = [*TLTLC, *arguments]
     # The first runs compile modules and warm the file system's cache; they do not count.
-    first = once(command)
+    first = run_once(command)
     if first.status != 0:
         return {"failed": f"exit status {first.status}"}
-    once(BARE)
+    run_once(BARE)
     pairs: list[tuple[Run, Run]] = []
     for number in range(ROUNDS):
         if number % 2:
-            ours = once(command)
-            pairs.append((ours, once(BARE)))
+            ours = run_once(command)
+            pairs.append((ours, run_once(BARE)))
         else:
-            bare = once(BARE)
-            pairs.append((once(command), bare))
+            bare = run_once(BARE)
+            pairs.append((run_once(command), bare))
     return {
         "rounds": ROUNDS,
         "cpu_ms": median([ours.cpu_ms for ours, _ in pairs]),
@@ -85,8 +85,8 @@ def _compared(arguments: Sequence[str], environment: dict[str, str]) -> Record:
 
 
 def _imports(command: Sequence[str], environment: dict[str, str]) -> list[list[object]]:
-    """The slowest imports, as Python's ``-X importtime`` sees them: module and milliseconds of its own."""
-    made = subprocess.run(
+    """Return the slowest imports by Python's ``-X importtime``: the module, and its own milliseconds."""
+    completed = subprocess.run(
         [command[0], "-X", "importtime", *command[1:]],
         capture_output=True,
         text=True,
@@ -94,6 +94,6 @@ def _imports(command: Sequence[str], environment: dict[str, str]) -> list[list[o
         env=environment,
         check=False,
     )
-    own = re.findall(r"^import time:\s*(\d+) \|\s*\d+ \|\s*(\S+)$", made.stderr, flags=re.MULTILINE)
-    slowest = sorted(((int(us) / 1e3, module) for us, module in own), reverse=True)[:SLOWEST_IMPORTS]
+    own_times = re.findall(r"^import time:\s*(\d+) \|\s*\d+ \|\s*(\S+)$", completed.stderr, flags=re.MULTILINE)
+    slowest = sorted(((int(us) / 1e3, module) for us, module in own_times), reverse=True)[:SLOWEST_IMPORTS]
     return [[module, ms] for ms, module in slowest]

@@ -1,4 +1,4 @@
-"""How often each method of ``tltlc/resolve/range_proof`` decides, and which answers change without it.
+"""Count how often each method of ``tltlc/resolve/range_proof`` decides, and which answers change without it.
 
 ``python -m benchmarks.range_tiers`` prints two tables over the predicates of the standard library, of the examples,
 of the tests' specs, and of a seeded generator.
@@ -59,39 +59,39 @@ class Question:
     high: float
 
     def kinds(self) -> tuple[str, ...]:
-        """The kinds of findings; none means that range and continuity are proved."""
+        """Return the kinds of findings; none means that range and continuity are proved."""
         findings = check.check_predicate(self.expression, self.signals, self.params, self.low, self.high)
         return tuple(finding.kind for finding in findings)
 
 
 def corpus(generated: int) -> dict[str, list[Question]]:
-    """The different predicates by where they come from."""
-    questions = {name: _different(_of_folder(folder)) for name, folder in FOLDERS.items()}
-    questions["tests"] = _different([*questions["tests"], *_inline()])
-    questions["generated"] = list(_generated(generated))
+    """Return the distinct predicates, by where they come from."""
+    questions = {name: _distinct(_questions_of_folder(folder)) for name, folder in FOLDERS.items()}
+    questions["tests"] = _distinct([*questions["tests"], *_inline_questions()])
+    questions["generated"] = list(_random_questions(generated))
     return questions
 
 
-def _different(questions: Iterable[Question]) -> list[Question]:
-    return list({(asked.expression, asked.low, asked.high): asked for asked in questions}.values())
+def _distinct(questions: Iterable[Question]) -> list[Question]:
+    return list({(question.expression, question.low, question.high): question for question in questions}.values())
 
 
-def _of_folder(folder: str) -> Iterator[Question]:
+def _questions_of_folder(folder: str) -> Iterator[Question]:
     for path in sorted((ROOT / folder).rglob("*.tltl")):
-        asked: list[Question] = []
+        questions: list[Question] = []
 
-        def ask(*arguments: Any, asked: list[Question] = asked) -> tuple[()]:
-            asked.append(Question(*arguments))
+        def ask(*arguments: Any, questions: list[Question] = questions) -> tuple[()]:
+            questions.append(Question(*arguments))
             return ()
 
         module, _ = parse(read_source(str(path), path.name))
         with patch.object(range_proof, "check_predicate", ask):
             resolution(module, ResolveOptions())
-        yield from asked
+        yield from questions
 
 
-def _inline() -> Iterator[Question]:
-    """The predicates that the tests of the checker write as expressions."""
+def _inline_questions() -> Iterator[Question]:
+    """Yield the predicates that the tests of the checker write as expressions."""
     for test in (
         inline_tests.test_correct_predicates_are_proved,
         inline_tests.test_a_wrong_range_has_a_counterexample,
@@ -102,13 +102,13 @@ def _inline() -> Iterator[Question]:
             yield Question(row[0], inline_tests.SIGNALS, inline_tests.PARAMS, low, high)
 
 
-def _generated(count: int) -> Iterator[Question]:
-    """Random predicates over three signals; half of the declared ranges hold the sampled values and a margin."""
+def _random_questions(count: int) -> Iterator[Question]:
+    """Yield random predicates over three signals; half of the ranges contain the sampled values with a margin."""
     choose = random.Random(SEED)
     signals = {name: spec.Signal(name, "number", low, high) for name, low, high in RANGES}
     while count:
         expression = _expression(choose, 3)
-        values = _sampled(expression, choose)
+        values = _sample_values(expression, choose)
         if len(set(values)) > 1:
             least, most = min(values), max(values)
             margin = (most - least) * choose.choice((0.5, -0.1))
@@ -116,7 +116,7 @@ def _generated(count: int) -> Iterator[Question]:
             count -= 1
 
 
-def _sampled(expression: Expression, choose: random.Random) -> list[float]:
+def _sample_values(expression: Expression, choose: random.Random) -> list[float]:
     values = []
     for _ in range(SAMPLES):
         point = {name: choose.uniform(low, high) for name, low, high in RANGES}
@@ -130,13 +130,13 @@ def _sampled(expression: Expression, choose: random.Random) -> list[float]:
 def _expression(choose: random.Random, depth: int) -> Expression:
     if depth == 0 or choose.random() < 0.15:
         return SignalValue(choose.choice("xyz")) if choose.random() < 0.7 else Const(float(choose.randint(-3, 3)))
-    inside = [_expression(choose, depth - 1) for _ in range(3)]
+    operands = [_expression(choose, depth - 1) for _ in range(3)]
     if choose.random() < 0.15:
-        return When(((Condition("<", (inside[0], Const(1.0))), inside[1]),), inside[2])
-    one: tuple[ArithmeticOp, ...] = ("neg", "abs", "tanh", "exp")
-    two: tuple[ArithmeticOp, ...] = ("+", "-", "*", "*", "/", "min", "max")
-    name = choose.choice((*one, *two, *two))
-    return Op(name, tuple(inside[: 1 if name in one else 2]))
+        return When(((Condition("<", (operands[0], Const(1.0))), operands[1]),), operands[2])
+    unary: tuple[ArithmeticOp, ...] = ("neg", "abs", "tanh", "exp")
+    binary: tuple[ArithmeticOp, ...] = ("+", "-", "*", "*", "/", "min", "max")
+    name = choose.choice((*unary, *binary, *binary))
+    return Op(name, tuple(operands[: 1 if name in unary else 2]))
 
 
 def count_decisions(questions: Sequence[Question]) -> Counter[str]:
@@ -155,7 +155,7 @@ def count_decisions(questions: Sequence[Question]) -> Counter[str]:
         decisions.update([method] if method else [])
         return method is not None
 
-    def counted(name: str, decides: Callable[..., Any]) -> Callable[..., Any]:
+    def count_true(name: str, decides: Callable[..., Any]) -> Callable[..., Any]:
         def wrapped(*arguments: Any) -> Any:
             answer = decides(*arguments)
             decisions.update([name] if answer else [])
@@ -172,14 +172,14 @@ def count_decisions(questions: Sequence[Question]) -> Counter[str]:
             (jumps, "find_jump", "search for a jump"),
             (check, "_proves_exactly", "sympy"),
         ):
-            patches.enter_context(patch.object(module, function, counted(name, getattr(module, function))))
-        for asked in questions:
-            decisions["unproved"] += any(kind.endswith(("unproved", "unchecked")) for kind in asked.kinds())
+            patches.enter_context(patch.object(module, function, count_true(name, getattr(module, function))))
+        for question in questions:
+            decisions["unproved"] += any(kind.endswith(("unproved", "unchecked")) for kind in question.kinds())
     return decisions
 
 
 def _proving_method(value: Expression, region: ConstrainedBox, low: float, high: float, parts: int) -> str | None:
-    """The first method that proves a bound, in the order of ``proof.proves_within``."""
+    """Return the first method that proves a bound, in the order of ``proof.proves_within``; None if none does."""
     if holds_at_once(value, region, low, high):
         return "intervals"
     if proof._is_defined(value, region):
@@ -192,21 +192,21 @@ def _proving_method(value: Expression, region: ConstrainedBox, low: float, high:
 
 
 def changed_answers(questions: Sequence[Question], methods: Iterable[str]) -> dict[str, int]:
-    """For each method, the number of predicates that get another answer without it."""
-    before = [asked.kinds() for asked in questions]
+    """Return for each method the number of predicates that get another answer without it."""
+    before = [question.kinds() for question in questions]
     changes = {}
     for name in methods:
         module, function, answer = REPLACEMENTS[name]
         with patch.object(module, function, answer):
-            changes[name] = sum(asked.kinds() != kinds for asked, kinds in zip(questions, before, strict=True))
+            changes[name] = sum(question.kinds() != kinds for question, kinds in zip(questions, before, strict=True))
     return changes
 
 
-def _no(*_: object) -> bool:
+def _return_false(*_: object) -> bool:
     return False
 
 
-def _nothing(*_: object) -> None:
+def _return_none(*_: object) -> None:
     return None
 
 
@@ -216,16 +216,16 @@ def _same_region(_: Expression, region: ConstrainedBox) -> ConstrainedBox:
 
 REPLACEMENTS: Final[Mapping[str, tuple[Any, str, Callable[..., Any]]]] = {
     "intervals with bounded ratios": (proof, "_with_ratios", _same_region),
-    "signs of exact forms": (proof, "_proves_by_sign", _no),
-    "subdivision": (proof, "_holds_in_parts", _no),
-    "agreement of cases by substitution": (continuity, "_same_after_substitution", _no),
-    "search for a wrong point": (witness, "find_wrong_point", _nothing),
-    "search for a jump": (jumps, "find_jump", _nothing),
-    "sympy": (check, "_proves_exactly", _no),
+    "signs of exact forms": (proof, "_proves_by_sign", _return_false),
+    "subdivision": (proof, "_holds_in_parts", _return_false),
+    "agreement of cases by substitution": (continuity, "_same_after_substitution", _return_false),
+    "search for a wrong point": (witness, "find_wrong_point", _return_none),
+    "search for a jump": (jumps, "find_jump", _return_none),
+    "sympy": (check, "_proves_exactly", _return_false),
 }
-"""For each method, the function that decides, and one that never does."""
+"""For each method, its module, the name of its function, and a function in its place that never decides."""
 PROOFS: Final = tuple(REPLACEMENTS)[:4]
-"""The methods of proof that a browser has, where there is no sympy."""
+"""The methods of proof in a browser, which has no sympy."""
 
 
 def main() -> None:
@@ -235,12 +235,12 @@ def main() -> None:
     options = parser.parse_args()
     os.environ["TLTLC_CACHE_DIR"] = ""  # Every answer is computed.
     questions = corpus(options.generated)
-    counts = {name: count_decisions(asked) for name, asked in questions.items()}
+    counts = {name: count_decisions(group) for name, group in questions.items()}
     total = sum((Counter(count) for count in counts.values()), Counter[str]())
-    everything = [asked for group in questions.values() for asked in group]
-    changes = changed_answers(everything, REPLACEMENTS)
-    with patch.object(check, "_proves_exactly", _no):
-        changes_in_browser = changed_answers(everything, PROOFS)
+    all_questions = [question for group in questions.values() for question in group]
+    changes = changed_answers(all_questions, REPLACEMENTS)
+    with patch.object(check, "_proves_exactly", _return_false):
+        changes_in_browser = changed_answers(all_questions, PROOFS)
     rows = [
         (
             method,
@@ -254,7 +254,7 @@ def main() -> None:
     print(
         table(("method", *counts, "share", "answers that change without it", "the same where sympy is missing"), rows)
     )
-    print("\npredicates: " + ", ".join(f"{len(asked)} {name}" for name, asked in questions.items()))
+    print("\npredicates: " + ", ".join(f"{len(group)} {name}" for name, group in questions.items()))
 
 
 if __name__ == "__main__":

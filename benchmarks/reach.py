@@ -1,8 +1,9 @@
-"""Where the player gets in the real physics: a search over poses, by every action from each.
+"""Search for the places that a player can reach in the real physics, by every action from every pose.
 
-A pose is a cell of the level with a stance, whether the player stands on something, and how fast it rises or falls;
-each is explored from one state, the first that was met in it.  So what is found can be reached, and what
-is not found may still be; what is out of reach for certain is told by :mod:`tltl_runtime.stealth.capabilities.reach`.
+A pose is a cell of the level with a stance, whether the player stands on something, and how fast it
+rises or falls. Each pose is explored from the first state that was reached in it. So a place that is
+found can be reached; a place that is not found may be reachable, too.
+:mod:`tltl_runtime.stealth.capabilities.reach` proves that places cannot be reached.
 
 ``python -m benchmarks.reach`` shows both for ``navigation`` v0 and v2, from the start, with the gap shut until its
 switch has been pressed.  It takes a minute, and is no part of ``python -m benchmarks``.
@@ -27,14 +28,14 @@ if TYPE_CHECKING:
 
 CELL_M = 0.2
 SPEED_BUCKET = 3.0
-"""Metres a second of rising or falling that count as alike: what gravity does to a decision."""
+"""Vertical speeds are rounded to multiples of this, in m/s: the change by gravity in a decision."""
 
 
 @record
 class Search:
-    """What a search found: ``met`` its goal or not; how many ``poses`` and ``decisions``; where the feet came."""
+    """The result of a search: whether it found the goal, what it explored, and the places of the feet."""
 
-    met: bool
+    found_goal: bool
     poses: int
     decisions: int
     places: tuple[Point, ...]
@@ -48,12 +49,12 @@ def search(
     most: int | None = None,
     first: Callable[[Point], float] = lambda place: 0.0,
 ) -> Search:
-    """Explore all poses from that of the player on, until ``goal`` holds of the feet or nothing is left.
+    """Explore poses from the player's pose on, until the feet are at a ``goal`` or no pose is left.
 
-    Those with the least ``first`` are explored first; no more than ``most`` decisions are made.
+    Poses with the least ``first`` are explored first. The search ends after ``most`` decisions.
     """
     begin = world.player
-    met = {_pose(begin, cell)}
+    explored = {_pose(begin, cell)}
     waiting: list[tuple[float, int, PlayerState]] = [(first(begin.position), 0, begin)]
     places = [begin.position]
     decisions = 0
@@ -65,27 +66,27 @@ def search(
             decisions += 1
             new = world.player
             pose = _pose(new, cell)
-            if pose in met:
+            if pose in explored:
                 continue
-            met.add(pose)
+            explored.add(pose)
             places.append(new.position)
             if goal(new.position):
-                return Search(True, len(met), decisions, tuple(places))
-            # Sprinting is always possible here: the search asks where, and not how fast one tires.
-            heappush(waiting, (first(new.position), len(met), _rested(new)))
-    return Search(False, len(met), decisions, tuple(places))
+                return Search(True, len(explored), decisions, tuple(places))
+            # Restore the stamina: the search looks for places, whether or not the player would be tired.
+            heappush(waiting, (first(new.position), len(explored), _with_full_stamina(new)))
+    return Search(False, len(explored), decisions, tuple(places))
 
 
 def _actions(state: PlayerState) -> list[Action]:
-    """The 72 actions, without those that come to the same as another in this state."""
-    found = []
+    """Return the 72 actions, without those that have the same effect as another in this state."""
+    distinct_actions = []
     for x, y, jump, crouch, sprint in product((0, 1, 2), (0, 1, 2), (0, 1), (0, 1), (0, 1)):
         if jump and (crouch or not state.grounded):
             continue
         if sprint and (crouch or not (x or y)):
             continue
-        found.append((x, y, jump, crouch, sprint))
-    return found
+        distinct_actions.append((x, y, jump, crouch, sprint))
+    return distinct_actions
 
 
 def _pose(state: PlayerState, cell: float) -> tuple[int, int, int, bool, bool, int]:
@@ -93,14 +94,14 @@ def _pose(state: PlayerState, cell: float) -> tuple[int, int, int, bool, bool, i
     return x, y, z, state.crouching, state.grounded, round(state.velocity[2] / SPEED_BUCKET)
 
 
-def _rested(state: PlayerState) -> PlayerState:
+def _with_full_stamina(state: PlayerState) -> PlayerState:
     from tltlc.core.record import replace
 
     return replace(state, stamina=1.0)
 
 
 def main() -> None:
-    """Search v0 and v2 of navigation, and say how far one gets."""
+    """Search v0 and v2 of navigation, and print how far the player gets."""
     for variant in ("v0", "v2"):
         _show(variant)
 
@@ -114,14 +115,15 @@ def _show(variant: str) -> None:
     switch, begin = level.switches[0], time.perf_counter()
     with closing(World(level)) as world:
         world.reset(None)
-        room = search(world, lambda place: _near(place, switch.position, switch.radius))
-        print(f"{variant}: {switch.name} {'reached' if room.met else 'NOT reached'} after {room.decisions} decisions")
+        room = search(world, lambda place: _is_near(place, switch.position, switch.radius))
+        outcome = "reached" if room.found_goal else "NOT reached"
+        print(f"{variant}: {switch.name} {outcome} after {room.decisions} decisions")
         for index, barrier in enumerate(level.barriers):
             world.set_open(index, barrier.opened_by == (switch.name,))
         # The hurdle at the end of the corridor is 15.4 m from the west.
         rest = search(world, lambda place: place[0] > 16.0, first=lambda place: -place[0])
     print(
-        f"{variant}: {'passed' if rest.met else 'never passed'} the corridor, "
+        f"{variant}: {'passed' if rest.found_goal else 'never passed'} the corridor, "
         f"furthest east {max(place[0] for place in rest.places):.2f} m; {rest.poses} poses, "
         f"{room.decisions + rest.decisions} decisions, {time.perf_counter() - begin:.0f} s"
     )
@@ -129,8 +131,8 @@ def _show(variant: str) -> None:
     print(f"{variant}: for certain, nobody gets nearer to each than: {near}")
 
 
-def _near(place: Point, other: Point, radius: float) -> bool:
-    return sum((a - b) ** 2 for a, b in zip(place, other, strict=True)) <= radius * radius
+def _is_near(place: Point, centre: Point, radius: float) -> bool:
+    return sum((a - b) ** 2 for a, b in zip(place, centre, strict=True)) <= radius * radius
 
 
 if __name__ == "__main__":

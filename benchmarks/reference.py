@@ -13,8 +13,8 @@ TABLE = Path(__file__).with_name("reference.tsv")
 class Reference:
     """A formula (``X`` strong, ``WX`` weak next), its size, and times in milliseconds recorded on one other machine.
 
-    ``states`` is None where the automaton is too large to check explicitly; a time is None where the
-    tool failed, ran out of time, or has a wall time only.
+    ``states`` is None if the automaton is too large to check explicitly. A time is None if the tool
+    failed or ran out of time, or if only its wall time was recorded.
     """
 
     name: str
@@ -26,7 +26,7 @@ class Reference:
 
 
 def references() -> list[Reference]:
-    """All of them, in file order."""
+    """Return all formulas, in the order of the file."""
     with TABLE.open(encoding="utf-8", newline="") as file:
         return [
             Reference(

@@ -1,4 +1,4 @@
-"""RESULTS.md from the stored records."""
+"""Write RESULTS.md from the stored records."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ BATCH_GPU_MS = 1.0
 
 
 def render(store: Store) -> str:
-    """The whole report in Markdown."""
+    """Return the whole report in Markdown."""
     compiled = store.section(compile_table.SECTION)
     timeout_s = store.section("machine")["options"]["peer_timeout_s"]
     rows = summary.families(compiled, references(), timeout_s)
@@ -55,7 +55,7 @@ def render(store: Store) -> str:
         _head(store),
         "## Goals\n\n" + table(("goal", "figure", ""), goals),
         *(
-            ["### Why some are missed\n\n" + CAUSES.read_text(encoding="utf-8")]
+            ["### Why some goals are missed\n\n" + CAUSES.read_text(encoding="utf-8")]
             if any(verdict == MISSED for *_, verdict in goals)
             else []
         ),
@@ -66,8 +66,8 @@ def render(store: Store) -> str:
         _monitors(store.section(monitors.SECTION)),
         engine_report.section(store),
         _batch(store.section(batch.SECTION)),
-        game_report.speed(store.section(game.SECTION)),
-        game_report.safe(store.section(safety.SECTION)),
+        game_report.speed_section(store.section(game.SECTION)),
+        game_report.safety_section(store.section(safety.SECTION)),
         expert_report.section(store.section(expert.SECTION)),
         training_report.section(store.section(training.SECTION)),
         verdicts_report.section(store.section(verdicts.SECTION)),
@@ -96,10 +96,10 @@ def _head(store: Store) -> str:
     return f"""
 # Benchmarks
 
-Made by `make bench`, which is `python -m benchmarks` in the project's environment with `benchmarks/requirements.txt`
-and MONA (Debian package `mona`) installed. A run that was stopped resumes; `--fresh` begins anew. All times are CPU
-times and medians of several runs unless said otherwise; what stands in one row was measured one after the other in the
-same run. Absolute figures are those of this machine; the ratios are what to compare.
+`make bench` writes this page. It runs `python -m benchmarks` in the project's environment, with
+`benchmarks/requirements.txt` and MONA (Debian package `mona`) installed. A stopped run resumes; `--fresh` discards
+earlier results. Unless a section says otherwise, times are CPU times and medians of several runs, and the figures of a
+row were measured one after another in the same run. Absolute figures depend on the machine, so compare the ratios.
 {changed}
 {table(("", ""), store.section("machine")["facts"].items())}
 """
@@ -117,7 +117,7 @@ def _goals(store: Store, rows: Sequence[summary.Family]) -> Iterable[Sequence[st
         + (f"; over 3 with Spot's times as recorded: {', '.join(slow_recorded)}" if slow_recorded else ""),
         met_or_missed(bool(rows) and not slow),
     )
-    for field, what in (
+    for field, task in (
         ("ltlf2dfa_over_minimal", "formula to minimal automaton"),
         ("ltlf2dfa_over_guarded", "formula to minimal automaton with guards as text, which is what LTLf2DFA gives,"),
         ("ltlf2dfa_over_build", "complete build"),
@@ -126,7 +126,7 @@ def _goals(store: Store, rows: Sequence[summary.Family]) -> Iterable[Sequence[st
         low = [f"{name} {ratio}" for ratio, name in ratios if ratio.value < LTLF2DFA_FACTOR]
         least = min((ratio.value for ratio, _ in ratios), default=math.nan)
         yield (
-            f"{what} at least 20 times faster than LTLf2DFA, on every family",
+            f"{task} at least 20 times faster than LTLf2DFA, on every family",
             f"worst family {least:.0f}" + (f"; under 20: {', '.join(low)}" if low else ""),
             met_or_missed(bool(ratios) and not low),
         )
@@ -174,7 +174,7 @@ def _goals(store: Store, rows: Sequence[summary.Family]) -> Iterable[Sequence[st
 
 
 def _batch_goals(records: dict[str, Record]) -> Iterable[Sequence[str]]:
-    rates = {name: each["steps_per_s"]["batch"] for name, each in records.items() if "steps_per_s" in each}
+    rates = {name: record["steps_per_s"]["batch"] for name, record in records.items() if "steps_per_s" in record}
     if rates:
         yield (
             f"batched monitor and reward at least 10 million steps per second on one core, N = {batch.COUNT}",
@@ -228,18 +228,19 @@ def _families(rows: Sequence[summary.Family], timeout_s: float) -> str:
     return f"""
 ## Compiling, by family of formulas
 
-*minimal*: from a formula in memory to the minimal automaton, normal form included, in one process with fresh tables.
-*guarded*: the same with the guard of every edge as a short text, which is what LTLf2DFA's result holds.
-*build*: all that an artefact holds: guards as all prime implicants too, distances, verdicts, labels shortened with
-proof, texts in three notations; each run in a fork, so that none profits from an earlier one.
-*MONA*: the whole process `mona -q -u -w` on a program written by `benchmarks/mona.py`; a few milliseconds of it are
-the start of the process. *Spot est.*: Spot 2.14's time in process, recorded in `benchmarks/reference.tsv`, times
-MONA's time here over MONA's time recorded there (where MONA ran out of time, the median of that factor).
-*LTLf2DFA*: `to_dfa` of a parsed formula with the MONA process that it starts, in a fork as above; shown is the median
-of the ratios of its time to ours, formula by formula.
+*minimal*: from a formula in memory to the minimal automaton, including the normal form, in one process with fresh
+tables. *guarded*: the same, with the guard of every edge as a short text, which is what LTLf2DFA's result contains.
+*build*: everything that an artefact contains: also all prime implicants of guards, distances, verdicts, labels that
+are shortened by proof, and texts in three notations. Each build runs in a fork, so that no run profits from an earlier
+one.
+*MONA*: the whole process `mona -q -u -w` on a program that `benchmarks/mona.py` writes; the start of the process takes
+a few milliseconds. *Spot est.*: an estimate of Spot 2.14's time in process. It is the time recorded in
+`benchmarks/reference.tsv`, times MONA's time here, divided by MONA's recorded time (if MONA ran out of time, the median
+of these factors is used). *LTLf2DFA*: `to_dfa` of a parsed formula with the MONA process that it starts, in a fork as
+above; the columns show the median of the ratios of its time to ours, formula by formula.
 
-Peers are stopped after {timeout_s:g} s on a formula, which counts as that time (`≥`). After
-{compile_table.LTLF2DFA_FAILURES} such formulas LTLf2DFA is spared the rest of a family.
+Peers are stopped after {timeout_s:g} s on a formula, and this limit then counts as their time (`≥`). After
+{compile_table.LTLF2DFA_FAILURES} such formulas, the rest of a family is left out for LTLf2DFA.
 
 {table(header, body)}
 """
@@ -257,14 +258,14 @@ def _sizes(compiled: dict[str, Record]) -> str:
     return f"""
 ## Sizes
 
-Of {len(built)} automata that were built, {known} have a reference size and {mona_known} a size by MONA here, counted
-as ours are (`benchmarks/mona.py` says how): {verdict}. LTLf2DFA's have the same size in {same} cases of {len(both)}
-and one state more in {one_more}.
+{len(built)} automata were built. {known} have a reference size, and MONA computed the size of {mona_known}, counted as
+ours (`benchmarks/mona.py` explains how): {verdict}. LTLf2DFA's automata have the same size in {same} cases of
+{len(both)}, and one state more in {one_more}.
 """
 
 
 def _large(compiled: dict[str, Record]) -> str:
-    shown = {
+    large = {
         name: record
         for name, record in compiled.items()
         if (record["states_expected"] or 601) > summary.SOLVED_STATES or name in summary.unsolved(compiled)
@@ -279,13 +280,14 @@ def _large(compiled: dict[str, Record]) -> str:
             _outcome(record, "mona"),
             _outcome(record, "ltlf2dfa"),
         )
-        for name, record in shown.items()
+        for name, record in large.items()
     ]
     return f"""
 ## Large automata
 
-Formulas with more than 600 states or an unknown number of them, and any smaller one that missed its goal. A code is
-that of the error which ends a blow-up: TLT0501 the state budget of 50,000, TLT0502 a guard with too many primes.
+Formulas with more than 600 states or an unknown number of states, and smaller ones that missed their goal. A code is
+the error that ends a construction that grows too large: TLT0501 the state budget of 50,000, TLT0502 a guard with too
+many primes.
 
 {table(("formula", "states", "minimal", "build", "MB", "MONA", "LTLf2DFA"), body)}
 """
@@ -309,22 +311,28 @@ def _process(records: dict[str, Record]) -> str:
     return f"""
 ## The whole process
 
-Each command and a bare `python -c pass` in turns, {process.ROUNDS} pairs; compiled modules are kept, as they are of
-an installed package. Ratios are those of pairs: median and, in brackets, quartiles.
+Each command and a bare `python -c pass` run in turns, in {process.ROUNDS} pairs. Python stores compiled modules, as for
+an installed package. The ratios are those of pairs: the median, and the quartiles in brackets.
 
 {table(("command", "CPU ms", "wall ms", "bare CPU ms", "CPU ratio", "wall ratio"), body)}
 
-The slowest imports of the first one, in milliseconds of their own (with Python's tracing on): {imports or "–"}.
+The slowest imports of the first command, in milliseconds of the module itself (with Python's tracing on):
+{imports or "–"}.
 """
 
 
 def _monitors(records: dict[str, Record]) -> str:
-    whos = list(dict.fromkeys(who for record in records.values() for who in record.get("steps_per_s", {})))
+    monitor_names = list(
+        dict.fromkeys(monitor_name for record in records.values() for monitor_name in record.get("steps_per_s", {}))
+    )
     body = [
         (
             name,
             record["samples"],
-            *(f"{record['steps_per_s'][who]:,}" if who in record["steps_per_s"] else "–" for who in whos),
+            *(
+                f"{record['steps_per_s'][monitor_name]:,}" if monitor_name in record["steps_per_s"] else "–"
+                for monitor_name in monitor_names
+            ),
             spread(record["generated_to_hand_written"], 2),
         )
         for name, record in records.items()
@@ -333,16 +341,16 @@ def _monitors(records: dict[str, Record]) -> str:
     return f"""
 ## Monitors, steps per second
 
-On the recorded trace of each of the paper's specs, the median of {monitors.ROUNDS} rounds in which all run one after
-the other. *generated*: `NAME_monitor.py`. *hand_written*: `benchmarks/handwritten/NAME.py`, plain Python for the same
-automaton with every field of a step (state, label, verdict, acceptance, end, progress, reward, robustness, limiting
-atom), checked to be equal on the trace before it is timed; it computes only the predicates that its state needs and
-gives no notices of clamped values. *tltlc.monitor*: the monitor behind `tltlc monitor`, which runs any automaton.
-*RTAMT* and *Reelay* compute the robustness of each prefix by the past-time form of the formula
-(`benchmarks/peer_monitors.py`) and nothing else, and are given the values of the predicates ready-made; the sign of
-their answers was checked against acceptance at each step.
+Each figure is the median of {monitors.ROUNDS} rounds over the recorded trace of one of the paper's specs; in a round,
+all monitors run one after another. *generated*: `NAME_monitor.py`. *hand_written*: `benchmarks/handwritten/NAME.py`,
+plain Python for the same automaton with every field of a step (state, label, verdict, acceptance, end, progress,
+reward, robustness, limiting atom), which is compared on the trace before it is timed. It computes only the predicates
+that its state needs, and gives no notices of clamped values. *tltlc.monitor*: the monitor behind `tltlc monitor`,
+which runs any automaton. *RTAMT* and *Reelay* compute the robustness of each prefix by the past-time form of the
+formula (`benchmarks/peer_monitors.py`) and nothing else, and get the values of the predicates as input. At each step,
+the sign of their answers was compared with acceptance.
 
-{table(("spec", "samples", *whos, "generated / hand_written"), body)}
+{table(("spec", "samples", *monitor_names, "generated / hand_written"), body)}
 """
 
 
@@ -363,10 +371,10 @@ def _batch(records: dict[str, Record]) -> str:
     return f"""
 ## Many automata at once, steps per second
 
-`tltl_runtime.spec.batch` on one core for N = {batch.COUNT:,} environments in different states, in float64, beside
-`tltlc.monitor`, one sample at a time; both in turns in each of {batch.ROUNDS} rounds, checked to be equal before. A
-step computes atoms, transition, progress, reward and the end of the episode from signals that are given as one tensor.
-On a GPU: wall time of one call for {batch.GPU_COUNT:,} environments.
+`tltl_runtime.spec.batch` on one core, for N = {batch.COUNT:,} environments in different states, in float64, and
+`tltlc.monitor`, one sample at a time. Both run in turns in each of {batch.ROUNDS} rounds, and their results were
+compared before. A step computes atoms, transition, progress, reward and the end of the episode from signals in one
+tensor. On a GPU: wall time of one call for {batch.GPU_COUNT:,} environments.
 
 {table(("spec", "batch", "tltlc.monitor", "batch / tltlc.monitor", "GPU, ms a call"), body)}
 """

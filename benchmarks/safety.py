@@ -1,7 +1,7 @@
-"""A million random steps in the game's worlds: nothing passes a wall, leaves its bounds or stops being a number.
+"""Play a million random steps, and check that nothing passes a wall, leaves its bounds or becomes NaN.
 
-Half of the episodes begin at the level's start, half anywhere on its floors.  At each reset and at each end of an
-episode the world checks its walls, by rays, and its collision filters; it does so with filters after each crouch.
+Half of the episodes begin at the level's start, half anywhere on its floors. At each reset and at
+each end of an episode, the world checks its walls, by rays, and its collision filters.
 
 ``python -m benchmarks.safety LEVEL VARIANT [STEPS]`` tries one variant in a process of its own.
 """
@@ -28,27 +28,27 @@ if TYPE_CHECKING:
 
 SECTION = "safety"
 STEPS = 112_000
-"""In each variant; nine make a million."""
+"""Steps in each variant; the nine variants together have a million."""
 EPISODE = 400
 TIMEOUT_S = 3600.0
 DEEPEST = 0.25
-"""How far the capsule may reach into a box, in metres: its axis, 0.3 m further in, stays outside."""
+"""How far the capsule may reach into a box, in metres; its radius is 0.3 m, so its axis stays outside."""
 
 
 class Violation(AssertionError):
-    """Something that must never be."""
+    """A check has failed."""
 
 
 def measure(store: Store, _: float, say: Callable[[str], None]) -> None:
-    """Try each variant that the store does not have yet, or that failed."""
+    """Check each variant without a record in the store, or with a failed one."""
     measure_each(store, SECTION, variants_of_all, TIMEOUT_S, say)
 
 
-def tried(level: str, variant: str, steps: int) -> Record:
-    """So many random steps of one variant, with a seed of its own.
+def play_random_steps(level: str, variant: str, steps: int) -> Record:
+    """Play random steps in one variant, with a seed that depends on the variant.
 
-    ``checks`` counts those of all walls and filters; ``deepest_m`` is how far the player's body ever reached into
-    a box.  Raises Violation and WorldError, which say where and when.
+    In the result, ``checks`` counts the checks of all walls and filters, and ``deepest_m`` is how far
+    the player's body ever reached into a box. Raises Violation and WorldError with the place and step.
     """
     import numpy as np
 
@@ -57,19 +57,19 @@ def tried(level: str, variant: str, steps: int) -> Record:
     seed = zlib.crc32(f"{level} {variant}".encode())
     rng = np.random.default_rng(seed)
     env = GameEnv(level, variant)
-    chosen = actions(rng)
-    own = env.level
-    began, deepest, checks, episodes = time.process_time(), 0.0, 0, 0
+    random_actions = actions(rng)
+    own_level = env.level
+    start_s, deepest, checks, episodes = time.process_time(), 0.0, 0, 0
     for step in range(steps):
         if step % EPISODE == 0:
             if step:
                 env.game.world.check()
-            _begin(env, own, rng, anywhere=episodes % 2 == 1)
+            _begin_episode(env, own_level, rng, anywhere=episodes % 2 == 1)
             env.game.world.check()
             episodes, checks = episodes + 1, checks + 2
-        observation, *_ = env.step(next(chosen))
+        observation, *_ = env.step(next(random_actions))
         try:
-            deepest = max(deepest, _look_over(env, observation))
+            deepest = max(deepest, _check_step(env, observation))
         except Violation as violation:
             raise Violation(f"{level} {variant}, seed {seed}, step {step}: {violation}") from None
     env.close()
@@ -78,27 +78,27 @@ def tried(level: str, variant: str, steps: int) -> Record:
         "episodes": episodes,
         "checks": checks - 1,
         "deepest_m": round(deepest, 4),
-        "steps_per_cpu_s": round(steps / (time.process_time() - began)),
+        "steps_per_cpu_s": round(steps / (time.process_time() - start_s)),
         "source": source_digest("runtime"),
     }
 
 
-def _begin(env: GameEnv, own: Level, rng: np.random.Generator, *, anywhere: bool) -> None:
-    """Begin an episode at the start of the level, its ``own``, or anywhere on a floor where there is room."""
+def _begin_episode(env: GameEnv, own_level: Level, rng: np.random.Generator, *, anywhere: bool) -> None:
+    """Begin an episode at the start of the level ``own_level``, or anywhere on a floor where there is room."""
     from tltl_runtime.stealth.level import Start
     from tltlc.core.record import replace
 
     world = env.game.world
-    world.level = own
+    world.level = own_level
     env.reset(seed=int(rng.integers(2**31)))
     if anywhere:
-        place = next(place for place in _places(own, rng) if world.room(place, world.kind.height))
-        world.level = replace(own, start=Start(place, own.start.yaw, 0.0))
+        place = next(place for place in _places(own_level, rng) if world.room(place, world.kind.height))
+        world.level = replace(own_level, start=Start(place, own_level.start.yaw, 0.0))
         env.reset(seed=int(rng.integers(2**31)))
 
 
 def _places(level: Level, rng: np.random.Generator) -> Iterable[Point]:
-    """Random places on floors, without end, a body's width from their edges."""
+    """Yield random places on floors without end, at least 0.5 m from their edges."""
     floors = [solid.box for solid in level.solids if solid.kind == "floor"]
     areas = [(box.high[0] - box.low[0]) * (box.high[1] - box.low[1]) for box in floors]
     while True:
@@ -107,8 +107,8 @@ def _places(level: Level, rng: np.random.Generator) -> Iterable[Point]:
         yield (x, y, box.high[2])
 
 
-def _look_over(env: GameEnv, observation: dict[str, Any]) -> float:
-    """All that can be told from outside after a step; returns how far the body reaches into boxes, in metres."""
+def _check_step(env: GameEnv, observation: dict[str, Any]) -> float:
+    """Check everything that can be observed after a step; return how far the body reaches into boxes, in metres."""
     game = env.game
     player, level = game.world.player, env.level
     numbers = [*player.position, *player.velocity, player.yaw, player.stamina, game.health, *game.enemies.yaws]
@@ -122,13 +122,13 @@ def _look_over(env: GameEnv, observation: dict[str, Any]) -> float:
     for x, y, z in game.enemies.positions:
         if not (low[0] <= x <= high[0] and low[1] <= y <= high[1] and z == 0.0):
             raise Violation(f"an enemy is at {(x, y, z)}")
-    deep = _deepest(game.world.kind, player, level)
+    deep = _depth_in_boxes(game.world.kind, player, level)
     if deep > DEEPEST:
         raise Violation(f"the player at {player.position} is {deep:.2f} m inside a box")
     return deep
 
 
-def _deepest(kind: Any, player: Any, level: Level) -> float:
+def _depth_in_boxes(kind: Any, player: Any, level: Level) -> float:
     from tltl_runtime.stealth.world.geometry import depth
 
     x, y, z = player.position
@@ -147,12 +147,12 @@ def _deepest(kind: Any, player: Any, level: Level) -> float:
 
 
 def main() -> None:
-    """Try what the command line names; a violation is told in the record."""
+    """Check the variant that the command line names, and print the record; a violation is its ``failed``."""
     from tltl_runtime.stealth.world.physics import WorldError
 
     level, variant, *steps = sys.argv[1:]
     try:
-        record = tried(level, variant, int(steps[0]) if steps else STEPS)
+        record = play_random_steps(level, variant, int(steps[0]) if steps else STEPS)
     except (Violation, WorldError) as error:
         record = {"failed": str(error)}
     print(json.dumps(record))

@@ -1,4 +1,4 @@
-"""The three specifications of the paper with recorded traces, and the monitors that are written by hand for them."""
+"""The three specs of the paper, their recorded traces, and the handwritten monitors for them."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ PAPER_SPECS = ("navigation", "cover_and_hide", "branching")
 
 
 def source(name: str) -> Path:
-    """The example file of a spec; the spec has the same name."""
+    """Return the path of the example file of a spec, which has the same name."""
     return ROOT / "examples" / f"{name}.tltl"
 
 
 def trace(name: str) -> list[dict[str, float]]:
-    """The recorded trace of a spec: one sample per step, ``true`` and ``false`` as 1 and 0."""
+    """Return the recorded trace of a spec: one sample per step, ``true`` and ``false`` as 1 and 0."""
     with source(name).with_suffix(".csv").open(encoding="utf-8", newline="") as file:
         return [{signal: _number(cell) for signal, cell in row.items()} for row in csv.DictReader(file)]
 
 
-def hand_written(name: str) -> Any:
-    """A new monitor written by hand."""
+def handwritten_monitor(name: str) -> Any:
+    """Return a new handwritten monitor of a spec."""
     return importlib.import_module(f"benchmarks.handwritten.{name}").Monitor()
 
 

@@ -1,4 +1,4 @@
-"""The results in a JSON file with a line for each record, written after each measurement so that a run can resume."""
+"""Store results in a JSON file, a line for each record. Each measurement writes the file, so a run can resume."""
 
 from __future__ import annotations
 
@@ -24,16 +24,16 @@ class Store:
             self._content = json.loads(path.read_text(encoding="utf-8"))
 
     def discard(self, section: str | None) -> None:
-        """Forget the records of a section, or all; the file keeps them until the next one is put."""
-        self._content = {name: kept for name, kept in self._content.items() if section not in (None, name)}
+        """Forget the records of a section, or all if it is None; the file changes with the next :meth:`put`."""
+        self._content = {name: record for name, record in self._content.items() if section not in (None, name)}
 
     def section(self, name: str) -> dict[str, Record]:
-        """The records of a section by key."""
+        """Return the records of a section by key."""
         records: dict[str, Record] = self._content.get(name, {})
         return records
 
     def put(self, section: str, key: str, record: Record) -> None:
-        """Keep a record and write the file, whole or not at all."""
+        """Store a record, and write the file as a whole or not at all."""
         self._content.setdefault(section, {})[key] = record
         partial = self._path.with_suffix(".partial")
         partial.write_text(_text(self._content), encoding="utf-8")
@@ -41,7 +41,7 @@ class Store:
 
 
 def _text(content: Mapping[str, Mapping[str, Record]]) -> str:
-    """The content as JSON, each record on a line of its own."""
+    """Return the content as JSON, with each record on a line of its own."""
     sections = (
         f"{json.dumps(name)}: {{\n"
         + ",\n".join(f" {json.dumps(key)}: {json.dumps(record)}" for key, record in records.items())
@@ -55,28 +55,29 @@ def measure_missing(
     store: Store,
     section: str,
     names: Iterable[str],
-    measured: Callable[[str], Record],
+    measure: Callable[[str], Record],
     say: Callable[[str], None],
     *,
-    done: str = "steps_per_s",
-    like: Record | None = None,
+    field: str = "steps_per_s",
+    current: Record | None = None,
 ) -> None:
-    """Put the record of each name that has no ``done`` in the store yet, or other values than ``like``: it was not
-    measured, failed, or is of another time.
+    """Measure each name whose stored record lacks ``field``, or differs from a value in ``current``.
+
+    Such a record is missing, failed, or was made by other code.
     """
     for name in names:
-        kept = store.section(section).get(name, {})
-        if done not in kept or any(kept.get(key) != value for key, value in (like or {}).items()):
-            record = measured(name)
+        record = store.section(section).get(name, {})
+        if field not in record or any(record.get(key) != value for key, value in (current or {}).items()):
+            record = measure(name)
             store.put(section, name, record)
             say(f"{name}: {json.dumps(record)}")
 
 
 def source_digest(*places: str) -> str:
-    """Twelve hexadecimal digits that stand for these Python files of the project, and those of these folders."""
+    """Return a hash, as 12 hexadecimal digits, of Python files and of all Python files in folders of the project."""
     digest = hashlib.sha256()
-    for place in places:
-        path = ROOT / place
+    for path_name in places:
+        path = ROOT / path_name
         for file in [path] if path.is_file() else sorted(path.rglob("*.py")):
             digest.update(file.relative_to(ROOT).as_posix().encode() + b"\0" + file.read_bytes())
     return digest.hexdigest()[:12]

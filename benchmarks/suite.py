@@ -1,4 +1,4 @@
-"""The verdicts of ``tltlc regress`` on the suite that comes with tltlc, beside those that are asked for."""
+"""Compare the verdicts of ``tltlc regress`` on the shipped suite with the required verdicts."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ SECTION = "suite"
 COMMAND: Final = "tltlc regress"
 TIMEOUT_S: Final = 3600.0
 
-ASKED: Final[Mapping[str, Sequence[str]]] = {
+REQUIRED_VERDICTS: Final[Mapping[str, Sequence[str]]] = {
     "navigation:v0": ("pass",),
     "cover_and_hide:v0": ("pass",),
     "branching:v0": ("pass",),
@@ -29,76 +29,80 @@ ASKED: Final[Mapping[str, Sequence[str]]] = {
 }
 """The verdicts that a case may have."""
 BLOCKED: Final = ("navigation:v2", "corridor_block_2")
-"""The case whose reasons are to name what shuts the way."""
+"""The case whose reasons must name the block that shuts the corridor, and the block."""
 
 
 def measure(store: Store, _: float, say: Callable[[str], None]) -> None:
-    """Run the suite where the store does not have its verdicts yet."""
+    """Run the suite if the store has no verdicts."""
     if find_spec("torch") is None or find_spec("pybullet") is None:
         say(f"{SECTION} left out: torch or pybullet is not installed (the extra `rl`, Python 3.10 or 3.11)")
         return
-    measure_missing(store, SECTION, [COMMAND], lambda _: _verdicts(), say, done="cases")
+    measure_missing(store, SECTION, [COMMAND], lambda _: _verdicts(), say, field="cases")
 
 
 def goals(records: Mapping[str, Record]) -> Iterable[Sequence[str]]:
-    """A row of the table of goals, once the suite was run."""
+    """Yield the row of the table of goals, once the suite was run."""
     cases = _cases(records)
     if not cases:
         return
-    wrong = [f"{name} {cases[name]['verdict']}" for name, asked in ASKED.items() if cases[name]["verdict"] not in asked]
+    wrong = [
+        f"{name} {cases[name]['verdict']}"
+        for name, required in REQUIRED_VERDICTS.items()
+        if cases[name]["verdict"] not in required
+    ]
     case, block = BLOCKED
-    if not any(block in each for each in cases[case]["reasons"]):
+    if not any(block in reason for reason in cases[case]["reasons"]):
         wrong.append(f"{case} does not name {block}")
     yield (
         "of the shipped suite all v0 `pass`, navigation v1 does not `fail`, navigation v2 does and names what shuts "
         "the corridor, cover_and_hide v2 and branching v2 do not `pass`",
-        ", ".join(wrong) or ", ".join(f"{name} {each['verdict']}" for name, each in cases.items()),
+        ", ".join(wrong) or ", ".join(f"{name} {case_record['verdict']}" for name, case_record in cases.items()),
         met_or_missed(not wrong),
     )
 
 
 def section(records: Mapping[str, Record]) -> str:
-    """The section on the shipped suite."""
+    """Return the section on the shipped suite; empty without measurements."""
     cases = _cases(records)
     if not cases:
         return ""
     body = [
         (
             name,
-            f"`{each['verdict']}`" + ("" if each["certain"] else " *"),
-            f"{round(each['pass_rate'] * each['episodes'])} of {each['episodes']}",
-            *(f"{each[figure]:.2f} ({each['before'][figure]:.2f})" for figure in ("progress", "reward")),
-            each["headline"],
+            f"`{case_record['verdict']}`" + ("" if case_record["certain"] else " *"),
+            f"{round(case_record['pass_rate'] * case_record['episodes'])} of {case_record['episodes']}",
+            *(f"{case_record[figure]:.2f} ({case_record['before'][figure]:.2f})" for figure in ("progress", "reward")),
+            case_record["headline"],
         )
-        for name, each in cases.items()
+        for name, case_record in cases.items()
     ]
     header = ("case", "verdict", "met", "progress", "reward", "why")
     return f"""
 ## The shipped suite
 
-`python -m benchmarks --only {SECTION}` runs `{COMMAND}`. *Met*: the episodes that meet the spec, of those that were
-played until the verdict was certain; a `*` marks one that is not. *Progress* and *reward* are means, those of the
-baseline in brackets.
+`python -m benchmarks --only {SECTION}` runs `{COMMAND}`. *Met*: how many episodes met the spec, of the episodes that
+were played until the verdict was certain; `*` marks a verdict that is not certain. *Progress* and *reward* are means,
+with those of the baseline in brackets.
 
 {table(header, body)}
 """
 
 
 def _verdicts() -> Record:
-    with tempfile.TemporaryDirectory() as place:
-        path = Path(place) / "report.json"
-        command = [sys.executable, "-m", "tltlc", "regress", "--out", place, "--json", str(path)]
-        made = run(command, TIMEOUT_S, cwd=ROOT)
-        if made.status not in (0, 1):
-            return {"failed": f"exit status {made.status}"}
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "report.json"
+        command = [sys.executable, "-m", "tltlc", "regress", "--out", folder, "--json", str(path)]
+        process_run = run(command, TIMEOUT_S, cwd=ROOT)
+        if process_run.status not in (0, 1):
+            return {"failed": f"exit status {process_run.status}"}
         report = json.loads(path.read_text(encoding="utf-8"))
     return {
-        "cases": {case["name"]: _kept(case) for case in report["cases"]},
+        "cases": {case["name"]: _case_record(case) for case in report["cases"]},
         "source": source_digest("tltlc", "runtime"),
     }
 
 
-def _kept(case: Mapping[str, Any]) -> Record:
+def _case_record(case: Mapping[str, Any]) -> Record:
     keys = ("verdict", "certain", "episodes", "pass_rate", "headline", "reasons")
     return {**{key: case[key] for key in keys}, **_means(case), "before": _means(case["baseline"])}
 
@@ -108,5 +112,5 @@ def _means(figures: Mapping[str, Any]) -> Record:
 
 
 def _cases(records: Mapping[str, Record]) -> dict[str, Record]:
-    found: dict[str, Record] = records.get(COMMAND, {}).get("cases", {})
-    return found
+    cases: dict[str, Record] = records.get(COMMAND, {}).get("cases", {})
+    return cases

@@ -1,4 +1,4 @@
-"""From the records of the compile table to figures per family; pure arithmetic, no measuring."""
+"""Compute figures per family from the records of the compile table."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ SOLVED_MB = 2048.0
 
 @dataclass(frozen=True, slots=True)
 class AtLeast:
-    """A ratio, or a lower bound of it where the peer ran out of time."""
+    """A ratio, or a lower bound of it if the peer ran out of time."""
 
     value: float
     is_bound: bool
@@ -29,9 +29,10 @@ class AtLeast:
 class Family:
     """Medians over the formulas of a family; times in milliseconds.
 
-    ``to_spot`` is our median over Spot's, on the formulas where both are known, with Spot's times scaled to this
-    machine by MONA's; ``to_spot_recorded`` with Spot's times as recorded.  ``ltlf2dfa_over_*`` is the median of
-    the ratios formula by formula.  ``ltlf2dfa_solved`` counts of ``ltlf2dfa_tried`` formulas.
+    ``to_spot`` is our median over Spot's, on the formulas with both times, with Spot's times scaled
+    to this machine by MONA's; ``to_spot_recorded`` uses Spot's times as recorded.
+    ``ltlf2dfa_over_*`` is the median of the ratios of single formulas. LTLf2DFA solved
+    ``ltlf2dfa_solved`` of ``ltlf2dfa_tried`` formulas.
     """
 
     name: str
@@ -51,16 +52,17 @@ class Family:
 
 
 def families(records: Mapping[str, Record], references: Sequence[Reference], timeout_s: float) -> list[Family]:
-    """A row per family, in order of the corpus, of the formulas that were measured."""
+    """Return a row per family, in the order of the corpus, for the formulas that were measured."""
     spot = spot_estimates(records, references)
     names = dict.fromkeys(reference.family for reference in references if reference.name in records)
     return [_family(name, records, references, spot, timeout_s) for name in names]
 
 
 def spot_estimates(records: Mapping[str, Record], references: Sequence[Reference]) -> dict[str, float]:
-    """Spot's time on this machine: the recorded one times MONA's time here over MONA's recorded one, in milliseconds.
+    """Estimate Spot's times on this machine, in milliseconds, by formula.
 
-    Where MONA ran out of time, here or there, the median of these factors over the corpus stands in.
+    The estimate is Spot's recorded time, times MONA's time here, divided by MONA's recorded time. If
+    MONA ran out of time, the median of these factors over the corpus is used.
     """
     factor = {
         reference.name: records[reference.name]["mona_ms"] / reference.mona_ms
@@ -83,27 +85,31 @@ def _family(
     timeout_s: float,
 ) -> Family:
     members = [reference.name for reference in references if reference.family == name and reference.name in records]
-    own = [records[member] for member in members]
-    both = [member for member in members if member in spot and "minimal_ms" in records[member]]
-    spot_ms = median([spot[member] for member in both])
-    tried = [record for record in own if "ltlf2dfa_ms" in record or record.get("ltlf2dfa_failed") != "left out"]
+    family_records = [records[member] for member in members]
+    comparable = [member for member in members if member in spot and "minimal_ms" in records[member]]
+    spot_ms = median([spot[member] for member in comparable])
+    attempted = [
+        record for record in family_records if "ltlf2dfa_ms" in record or record.get("ltlf2dfa_failed") != "left out"
+    ]
     return Family(
         name=name,
         formulas=len(members),
-        minimal_ms=_median_of(own, "minimal_ms"),
-        guarded_ms=_median_of(own, "guarded_ms"),
-        build_ms=_median_of(own, "build_ms"),
-        mona_ms=_median_of(own, "mona_ms"),
+        minimal_ms=_median_of(family_records, "minimal_ms"),
+        guarded_ms=_median_of(family_records, "guarded_ms"),
+        build_ms=_median_of(family_records, "build_ms"),
+        mona_ms=_median_of(family_records, "mona_ms"),
         spot_ms=spot_ms,
         to_spot_recorded=_over_recorded_spot(
-            [reference for reference in references if reference.name in both], records
+            [reference for reference in references if reference.name in comparable], records
         ),
-        to_spot=median([records[member]["minimal_ms"] for member in both]) / spot_ms if both else float("nan"),
-        ltlf2dfa_over_minimal=_speed_up(own, "minimal_ms", timeout_s),
-        ltlf2dfa_over_guarded=_speed_up(own, "guarded_ms", timeout_s),
-        ltlf2dfa_over_build=_speed_up(own, "build_ms", timeout_s),
-        ltlf2dfa_solved=sum("ltlf2dfa_ms" in record for record in own),
-        ltlf2dfa_tried=sum("ltlf2dfa_ms" in record or "ltlf2dfa_failed" in record for record in tried),
+        to_spot=median([records[member]["minimal_ms"] for member in comparable]) / spot_ms
+        if comparable
+        else float("nan"),
+        ltlf2dfa_over_minimal=_speed_up(family_records, "minimal_ms", timeout_s),
+        ltlf2dfa_over_guarded=_speed_up(family_records, "guarded_ms", timeout_s),
+        ltlf2dfa_over_build=_speed_up(family_records, "build_ms", timeout_s),
+        ltlf2dfa_solved=sum("ltlf2dfa_ms" in record for record in family_records),
+        ltlf2dfa_tried=sum("ltlf2dfa_ms" in record or "ltlf2dfa_failed" in record for record in attempted),
     )
 
 
@@ -118,10 +124,10 @@ def _median_of(records: Iterable[Record], field: str) -> float:
 
 
 def _speed_up(records: Iterable[Record], field: str, timeout_s: float) -> AtLeast | None:
-    """The median of LTLf2DFA's time over ours; a formula on which it ran out of time counts with that time.
+    """Return the median of LTLf2DFA's time over ours; if LTLf2DFA ran out of time, its time limit counts.
 
-    None where there is no formula that both have.  Of an even number the lower middle one is taken, so that
-    a bound stays a bound.
+    Return None if no formula has both times. Of an even number of ratios, the lower middle one is
+    taken, so that a bound stays a bound.
     """
     ratios: list[tuple[float, bool]] = []
     for record in records:
@@ -133,12 +139,12 @@ def _speed_up(records: Iterable[Record], field: str, timeout_s: float) -> AtLeas
         return None
     ratios.sort()
     value, _ = ratios[(len(ratios) - 1) // 2]
-    # A bound below the middle might in truth stand above it: then the middle is a bound too.
+    # The true ratio of a bound below the middle may be above it, so then the middle is only a bound, too.
     return AtLeast(value, any(is_bound for ratio, is_bound in ratios if ratio <= value))
 
 
 def unsolved(records: Mapping[str, Record]) -> list[str]:
-    """The formulas with at most 600 states whose complete build took over 5 s or 2 GB, or failed."""
+    """Return the formulas with at most 600 states whose complete build took over 5 s or 2 GB, or failed."""
     return [
         name
         for name, record in records.items()
@@ -148,14 +154,14 @@ def unsolved(records: Mapping[str, Record]) -> list[str]:
 
 
 def wrong_sizes(records: Mapping[str, Record]) -> list[str]:
-    """The formulas on which our size is not the reference's, or not MONA's."""
+    """Return the formulas for which our size differs from the reference's or from MONA's."""
     return [
         name
         for name, record in records.items()
         if "states" in record
         and any(
-            record[other] not in (None, record["states"])
-            for other in ("states_expected", "mona_states")
-            if other in record
+            record[field] not in (None, record["states"])
+            for field in ("states_expected", "mona_states")
+            if field in record
         )
     ]

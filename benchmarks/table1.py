@@ -1,4 +1,4 @@
-"""The paper's Table I: ``tltlc table1``, and whether who learns from the spec is above who imitates."""
+"""Make the paper's Table I with ``tltlc table1``, and compare agents that learn from specs with agents that imitate."""
 
 from __future__ import annotations
 
@@ -23,59 +23,59 @@ FIGURES: Final = ("pass rate", "progress", "reward")
 
 
 def measure(store: Store, _: float, say: Callable[[str], None], folder: Path = FOLDER) -> None:
-    """Make the table where the store does not have it yet; what was trained and played so far stays in ``folder``."""
+    """Make the table if the store has none; ``folder`` keeps the trainings and episodes of interrupted runs."""
     if find_spec("torch") is None or find_spec("pybullet") is None:
         say(f"{SECTION} left out: torch or pybullet is not installed (the extra `rl`, Python 3.10 or 3.11)")
         return
-    measure_missing(store, SECTION, [COMMAND], lambda _: _made(folder), say, done="table")
+    measure_missing(store, SECTION, [COMMAND], lambda _: _make_table(folder), say, field="table")
 
 
 def discard(folder: Path = FOLDER) -> None:
-    """Forget what was trained and played so far."""
+    """Delete the stored trainings and episodes."""
     shutil.rmtree(folder, ignore_errors=True)
 
 
 def goals(records: Mapping[str, Record]) -> Iterable[Sequence[str]]:
-    """A row of the table of goals, once there is the table."""
+    """Yield the row of the table of goals, once the table was made."""
     cells = records.get(COMMAND, {}).get("cells")
     if not cells:
         return
-    compared = [
+    comparisons = [
         (f"{level} {figure}", cells[f"{level} v0 ours"][figure], cells[f"{level} v0 imitation"][figure])
         for level in dict.fromkeys(name.split()[0] for name in cells)
         for figure in FIGURES
     ]
     yield (
         "an agent that learns from its spec is above one that imitates, in every column of v0 in Table I",
-        ", ".join(f"{what} {ours:.2f} against {other:.2f}" for what, ours, other in compared),
-        met_or_missed(all(ours > other for _, ours, other in compared)),
+        ", ".join(f"{column} {ours:.2f} against {imitation:.2f}" for column, ours, imitation in comparisons),
+        met_or_missed(all(ours > imitation for _, ours, imitation in comparisons)),
     )
 
 
 def section(records: Mapping[str, Record]) -> str:
-    """The section on Table I."""
+    """Return the section on Table I; empty without measurements."""
     record = records.get(COMMAND, {})
     if "table" not in record:
         return ""
     return f"""
 ## The paper's Table I
 
-`python -m benchmarks --only {SECTION}` runs `{COMMAND}` on two cores; [the page on it](../docs/table1.md) says what
+`python -m benchmarks --only {SECTION}` runs `{COMMAND}` on two cores; [its page](../docs/table1.md) explains what
 can be compared.
 
 {record["table"]}
 """
 
 
-def _made(folder: Path) -> Record:
-    made = run([sys.executable, "-m", "tltlc", "table1", "--shipped", "--out", str(folder)], TIMEOUT_S, cwd=ROOT)
-    if made.status != 0:
-        return {"failed": f"exit status {made.status}"}
+def _make_table(folder: Path) -> Record:
+    process_run = run([sys.executable, "-m", "tltlc", "table1", "--shipped", "--out", str(folder)], TIMEOUT_S, cwd=ROOT)
+    if process_run.status != 0:
+        return {"failed": f"exit status {process_run.status}"}
     cells = {path.stem.replace("-", " "): _figures(path) for path in sorted(folder.glob("*.json"))}
-    return {"table": made.output, "cells": cells, "source": source_digest("tltlc", "runtime")}
+    return {"table": process_run.output, "cells": cells, "source": source_digest("tltlc", "runtime")}
 
 
 def _figures(path: Path) -> Record:
     episodes: list[Mapping[str, Any]] = json.loads(path.read_text(encoding="utf-8"))["content"]
-    means = (statistics.fmean(each[key] for each in episodes) for key in ("success", "progress", "reward"))
+    means = (statistics.fmean(episode[key] for episode in episodes) for key in ("success", "progress", "reward"))
     return dict(zip(FIGURES, means, strict=True))

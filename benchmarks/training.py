@@ -1,10 +1,10 @@
-"""Trainings to their end: how long they take, and what becomes of them; and what they come to with other settings.
+"""Measure trainings: how long they take, how well their policies play, and the effect of settings.
 
-A cell is a level and a seed, trained by ``tltlc train`` and evaluated by ``tltlc evaluate`` on fresh episodes, or an
-ablation: a training of a few minutes in which one setting differs.  What a cell has trained so far stays in a folder,
-so that a run that was stopped goes on within it.
+A cell is a level and a seed, trained by ``tltlc train`` and evaluated by ``tltlc evaluate`` on fresh
+episodes; or an ablation, a training of a few minutes in which one setting differs. The folder of a
+cell keeps its training, so that a stopped run resumes.
 
-``python -m benchmarks.training --quick`` tries all of this with a few updates, and keeps nothing.
+``python -m benchmarks.training --quick`` tries all of this with a few updates, and stores nothing.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from pathlib import Path
 from typing import Any
 
 from benchmarks import training_report
-from benchmarks.load import Load
+from benchmarks.load import LoadMeter
 from benchmarks.store import ROOT, Record, Store, measure_missing, source_digest
 from benchmarks.training_report import ABLATION, CORES, GPU, NO_LIMIT
 
@@ -33,20 +33,20 @@ NEEDED = ("torch", "rsl_rl", "pybullet")
 FOLDER = Path(__file__).with_name(".training")
 PICTURE = Path(__file__).with_name(training_report.PICTURE_NAME)
 FRESH_SEED = 1000
-"""Of the episodes of evaluations, far from those of trainings."""
+"""The first seed of evaluations, far from the seeds of trainings."""
 CURVE_POINTS = 60
-OTHERS = "other_cores.txt"
-"""In the folder of a training: what else the machine did while it ran for the last time."""
-SOURCE = ".source.json"
-"""Behind the name of a training's folder, beside it: the code with which it was begun, or resumed for the last time."""
+OTHER_CORES_FILE = "other_cores.txt"
+"""In the folder of a training: how many cores other processes used during its last run."""
+SOURCE_SUFFIX = ".source.json"
+"""Suffix of the file beside the folder of a training that identifies the code that last began or resumed it."""
 
 Settings = Mapping[str, Mapping[str, str | int | list[int]]]
-"""Settings of a training that differ from the defaults, by table and key; those of no table are under ""."""
+"""Settings of a training that differ from the defaults, by table and key; keys outside tables are under ""."""
 
 
 @dataclass(frozen=True, slots=True)
 class Ablation:
-    """What differs from the defaults: ``settings``, and further ``options`` of ``tltlc train``."""
+    """The differences from the defaults: ``settings``, and further ``options`` of ``tltlc train``."""
 
     settings: Settings = field(default_factory=dict)
     options: Sequence[str] = ()
@@ -69,10 +69,11 @@ ABLATIONS: Mapping[str, Ablation] = {
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """What is measured: ``minutes`` limit a training of a level, ``ablation_minutes`` and ``ablation_steps`` one of an
-    ablation; ``settings`` are of all cells.
+    """What is measured.
 
-    By steps ablations can be compared, also those that were disturbed more than others.
+    ``minutes`` limits the training of a level; ``ablation_minutes`` and ``ablation_steps`` limit an
+    ablation. ``settings`` apply to all cells. Equal numbers of steps make ablations comparable, even
+    if other work slowed some of them down.
     """
 
     levels: Sequence[str] = training_report.LEVELS
@@ -87,7 +88,7 @@ class Plan:
 
 FULL = Plan()
 _QUICK_MINUTES = 0.001
-"""The first update is beyond it."""
+"""Shorter than the first update."""
 QUICK = Plan(
     levels=(ABLATED,),
     seeds=(1,),
@@ -107,33 +108,39 @@ def measure(
     folder: Path = FOLDER,
     picture: Path = PICTURE,
 ) -> None:
-    """Train, evaluate and draw what the store does not have yet, or what failed."""
+    """Train, evaluate and draw each cell without a record in the store, or with a failed one."""
     missing = [name for name in NEEDED if find_spec(name) is None]
     if missing:
         say(f"{SECTION} left out: {', '.join(missing)} not installed (the extra `rl`, Python 3.10 or 3.11)")
         return
     cells = dict(_cells(plan, folder))
     try:
-        measure_missing(store, SECTION, cells, lambda name: cells[name](), say, done="end")
+        measure_missing(store, SECTION, cells, lambda name: cells[name](), say, field="end")
     finally:
         picture.write_bytes(training_report.picture(store.section(SECTION)))
 
 
 def discard(folder: Path = FOLDER) -> None:
-    """Forget what was trained so far."""
+    """Delete the stored trainings."""
     shutil.rmtree(folder, ignore_errors=True)
 
 
 def _cells(plan: Plan, folder: Path) -> Iterator[tuple[str, Callable[[], Record]]]:
-    """What measures each cell, by its name."""
+    """Yield the name of each cell with the function that measures it."""
     for level in plan.levels:
         for seed in plan.seeds:
-            yield f"{level} {seed}", Cell(folder / f"{level}-{seed}", level, seed, plan).judged
+            yield f"{level} {seed}", Cell(folder / f"{level}-{seed}", level, seed, plan).measure_level
     if plan.ablations:
-        yield f"{ABLATION}as it is", Cell(folder / f"{ABLATED}-{plan.seeds[0]}", ABLATED, plan.seeds[0], plan).beginning
+        yield (
+            f"{ABLATION}as it is",
+            Cell(folder / f"{ABLATED}-{plan.seeds[0]}", ABLATED, plan.seeds[0], plan).measure_beginning,
+        )
     for name, ablation in plan.ablations.items():
-        yield f"{ABLATION}{name}", Cell(folder / name.replace(" ", "-"), ABLATED, plan.seeds[0], plan, ablation).curve
-    yield GPU, Cell(folder / GPU, ABLATED, plan.seeds[0], plan, Ablation(options=("--device", GPU))).on_gpu
+        yield (
+            f"{ABLATION}{name}",
+            Cell(folder / name.replace(" ", "-"), ABLATED, plan.seeds[0], plan, ablation).measure_curve,
+        )
+    yield GPU, Cell(folder / GPU, ABLATED, plan.seeds[0], plan, Ablation(options=("--device", GPU))).measure_on_gpu
 
 
 @dataclass(frozen=True, slots=True)
@@ -146,8 +153,8 @@ class Cell:
     plan: Plan
     ablation: Ablation | None = None
 
-    def judged(self) -> Record:
-        """The training's figures, and those of its policy over fresh episodes."""
+    def measure_level(self) -> Record:
+        """Return the figures of the training, and of its policy in fresh episodes."""
         if not self._train(self.plan.minutes, NO_LIMIT):
             return {"failed": "tltlc train"}
         report = self.folder / "evaluation.json"
@@ -156,24 +163,24 @@ class Cell:
         options = ("--episodes", episodes, "--seed", FRESH_SEED, "--workers", workers, "--json", report)
         if _tltlc("evaluate", self.folder, *options) != 0:
             return {"failed": "tltlc evaluate"}
-        found = json.loads(report.read_text(encoding="utf-8"))
-        return {**self._figures(), "sampled": _rates(found), "argmax": _rates(found["argmax"])}
+        evaluation = json.loads(report.read_text(encoding="utf-8"))
+        return {**self._figures(), "sampled": _rates(evaluation), "argmax": _rates(evaluation["argmax"])}
 
-    def curve(self) -> Record:
-        """The training's figures, and how it came to them."""
+    def measure_curve(self) -> Record:
+        """Return the figures of the training, and its learning curve."""
         if not self._train(self.plan.ablation_minutes, self.plan.ablation_steps):
             return {"failed": "tltlc train"}
         return {**self._figures(), "curve": _points(self._record()["curve"])}
 
-    def beginning(self) -> Record:
-        """The training's beginning, as long as an ablation: where nothing differs none need be trained."""
+    def measure_beginning(self) -> Record:
+        """Return the figures of the first part of the training, which is as long as an ablation."""
         if not self._train(self.plan.minutes, NO_LIMIT):
             return {"failed": "tltlc train"}
-        whole, lines = self._figures(), [line for line in self._lines() if line["steps"] <= self.plan.ablation_steps]
+        figures, lines = self._figures(), [line for line in self._lines() if line["steps"] <= self.plan.ablation_steps]
         last, busy_s = lines[-1], sum(line["collect_s"] + line["learn_s"] for line in lines)
         return {
-            **{name: whole[name] for name in ("end", "other_cores", "versions", "revision", "source")},
-            **({"end": "steps"} if last["steps"] < whole["steps"] else {}),
+            **{name: figures[name] for name in ("end", "other_cores", "versions", "revision", "source")},
+            **({"end": "steps"} if last["steps"] < figures["steps"] else {}),
             "steps": last["steps"],
             "minutes": round(last["seconds"] / 60, 2),
             "steps_per_s": round(last["steps"] / busy_s),
@@ -181,8 +188,8 @@ class Cell:
             "curve": _points(lines),
         }
 
-    def on_gpu(self) -> Record:
-        """The training's figures where a GPU is at hand."""
+    def measure_on_gpu(self) -> Record:
+        """Return the figures of a training on a GPU, if there is one."""
         import torch
 
         if not torch.cuda.is_available():
@@ -192,34 +199,34 @@ class Cell:
         return {**self._figures(), "gpu": torch.cuda.get_device_name()}
 
     def _train(self, minutes: float, steps: int) -> bool:
-        """Train to the end, from where an earlier run stopped; whether that was reached."""
-        before = self._source.read_text(encoding="utf-8") if self._source.exists() else None
-        if before is None:
-            # Nobody knows of which source it is.
+        """Train, or continue an earlier run; return whether the training has ended."""
+        earlier_source = self._source.read_text(encoding="utf-8") if self._source.exists() else None
+        if earlier_source is None:
+            # The source of an earlier training is unknown, so start again.
             shutil.rmtree(self.folder, ignore_errors=True)
         if self._has_ended():
             return True
-        load = Load()
+        load = LoadMeter()
         source = {"revision": _revision(), "source": source_digest("tltlc", "runtime")}
         self.folder.parent.mkdir(parents=True, exist_ok=True)
-        # A training outlives whoever kills this process, and its figures need the source.
+        # The training goes on if this process is killed, and its figures need the source.
         self._source.write_text(json.dumps(source), encoding="utf-8")
         self._run(minutes, steps)
-        # By its status alone an error looks like the end by a limit.
+        # The exit status does not tell an error from the end by a limit.
         if not self._has_ended():
-            if before is not None:
-                # Perhaps it goes on elsewhere.
-                self._source.write_text(before, encoding="utf-8")
+            if earlier_source is not None:
+                # The training may be running elsewhere.
+                self._source.write_text(earlier_source, encoding="utf-8")
             return False
-        if (others := load.other_cores()) is not None:
-            (self.folder / OTHERS).write_text(f"{others:.2f}", encoding="utf-8")
+        if (other_cores := load.other_cores()) is not None:
+            (self.folder / OTHER_CORES_FILE).write_text(f"{other_cores:.2f}", encoding="utf-8")
         return True
 
     def _has_ended(self) -> bool:
         return (self.folder / "record.json").exists()
 
     def _run(self, minutes: float, steps: int) -> None:
-        """Have ``tltlc train`` begin, or go on."""
+        """Start ``tltlc train``, or resume it."""
         limit = ("--minutes", minutes, "--steps", steps, "--workers", CORES)
         if (self.folder / "checkpoint.pt").exists():
             _tltlc("train", "--resume", self.folder, *limit)
@@ -228,24 +235,24 @@ class Cell:
         settings = self.folder.with_suffix(".toml")
         ablation = self.ablation or Ablation()
         settings.write_text(settings_text(self.plan.settings, ablation.settings), encoding="utf-8")
-        given = ("--level", self.level, "--seed", self.seed, "--config", settings, "--out", self.folder)
-        _tltlc("train", *given, *limit, *ablation.options)
+        options = ("--level", self.level, "--seed", self.seed, "--config", settings, "--out", self.folder)
+        _tltlc("train", *options, *limit, *ablation.options)
 
     @property
     def _source(self) -> Path:
-        return self.folder.with_suffix(SOURCE)
+        return self.folder.with_suffix(SOURCE_SUFFIX)
 
     def _record(self) -> Any:
         return json.loads((self.folder / "record.json").read_text(encoding="utf-8"))
 
     def _lines(self) -> Sequence[Record]:
-        """What was measured after each iteration."""
+        """Return the metrics of each iteration."""
         text = (self.folder / "metrics.jsonl").read_text(encoding="utf-8")
         return [json.loads(line) for line in text.splitlines()]
 
     def _figures(self) -> Record:
-        """Why the training ended, after how much, how fast it was, and the last window."""
-        record, others = self._record(), self.folder / OTHERS
+        """Return why the training ended, its steps, time and speed, and the figures of its last window."""
+        record, other_cores = self._record(), self.folder / OTHER_CORES_FILE
         collect_s, learn_s = (sum(line[name] for line in self._lines()) for name in ("collect_s", "learn_s"))
         search = record["search"] or {"steps": 0, "replayed": 0, "seconds": 0.0}
         return {
@@ -257,37 +264,37 @@ class Cell:
             "steps_per_s": round(record["steps"] / (record["seconds"] - search["seconds"])),
             "learn_share": round(learn_s / (collect_s + learn_s), 3),
             "window": record["window"],
-            "other_cores": float(others.read_text(encoding="utf-8")) if others.exists() else None,
+            "other_cores": float(other_cores.read_text(encoding="utf-8")) if other_cores.exists() else None,
             "versions": record["versions"],
             **json.loads(self._source.read_text(encoding="utf-8")),
         }
 
 
 def _points(measured: Sequence[Record]) -> Sequence[Sequence[float]]:
-    """Steps, pass rate and progress of at most ``CURVE_POINTS`` of what was measured, the last one among them."""
+    """Return steps, pass rate and progress of at most ``CURVE_POINTS`` records, among them the last one."""
     stride = -(-len(measured) // CURVE_POINTS)
-    return [[each[name] for name in ("steps", "pass_rate", "progress")] for each in measured[::-stride][::-1]]
+    return [[record[name] for name in ("steps", "pass_rate", "progress")] for record in measured[::-stride][::-1]]
 
 
 def settings_text(*settings: Settings) -> str:
-    """The TOML text of settings together, of which later ones go before earlier ones."""
+    """Return the merged settings as TOML; later settings override earlier ones."""
     merged: dict[str, dict[str, str | int | list[int]]] = {}
-    for each in settings:
-        for table, values in each.items():
+    for settings_ in settings:
+        for table, values in settings_.items():
             merged.setdefault(table, {}).update(values)
     lines = {table: [f"{key} = {json.dumps(value)}\n" for key, value in merged[table].items()] for table in merged}
-    # TOML has those of no table before all tables.
+    # In TOML, keys outside tables come first.
     return "".join((f"[{table}]\n" if table else "") + "".join(lines[table]) for table in sorted(lines, key=bool))
 
 
 def _tltlc(*arguments: object) -> int:
-    """Run a command of tltlc, which shows on standard error how it goes; its exit status."""
+    """Run a command of tltlc with its output on standard error; return its exit status."""
     command = [sys.executable, "-m", "tltlc", *map(str, arguments)]
     with subprocess.Popen(command, cwd=ROOT, stdout=sys.stderr, preexec_fn=_on_two_cores) as child:
         try:
             return child.wait()
         except KeyboardInterrupt:
-            # It has heard Ctrl-C, too, and keeps what it has learned.
+            # The training has received Ctrl-C, too, and stores its checkpoint.
             child.wait()
             raise
         except BaseException:
@@ -302,12 +309,12 @@ def _on_two_cores() -> None:
 
 
 def _rates(figures: Mapping[str, Any]) -> Record:
-    """What is told of an evaluation."""
+    """Return the figures of an evaluation that the report shows."""
     return {name: figures[name] for name in ("pass_rate", "pass_interval", "progress", "reward", "steps")}
 
 
 def _revision() -> str:
-    """The version in git, with a `-dirty` behind it where files differ from it."""
+    """Return the git revision, with `-dirty` if files differ from it; "unknown" without git."""
     command = ["git", "describe", "--always", "--dirty", "--exclude", "*"]
     try:
         return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout.strip()
@@ -316,7 +323,7 @@ def _revision() -> str:
 
 
 def main() -> None:
-    """Try the section: a few updates in each cell."""
+    """Measure every cell with a few updates, and print the section."""
     if sys.argv[1:] != ["--quick"]:
         sys.exit("usage: python -m benchmarks.training --quick")
     with tempfile.TemporaryDirectory() as place:

@@ -1,8 +1,9 @@
-"""How good the verdicts of ``tltlc regress`` are: the rule itself, on episodes that are drawn at random.
+"""Measure how often the verdicts of ``tltlc regress`` are wrong, on simulated episodes.
 
-Episodes are like those of the shipped policies: successes with a reward around 0.79, failures below 0 at some stage of
-the spec.  A case is drawn many times and judged in suites of 1, 9 and 30 cases; how often a whole suite has a verdict
-follows, since its cases are independent.
+The episodes are like those of the shipped policies: successes with a reward around 0.79, failures
+with a reward around -0.3 at some stage of the spec. Each case is simulated many times, and judged as
+in suites of 1, 9 and 30 cases. The cases of a suite are independent, so the probabilities for whole
+suites follow.
 """
 
 from __future__ import annotations
@@ -26,32 +27,32 @@ if TYPE_CHECKING:
 SECTION = "verdicts"
 
 Pairing = Literal["identical", "half", "independent"]
-"""Of equal seeds, the same episodes as in the baseline: all of them, half of them by chance, or none."""
+"""Which episodes are the same as in the baseline: all of them, half of them by chance, or none."""
 
 ERROR: Final = 0.05
-"""Of a suite, as it is where a suite says nothing else."""
+"""The default error probability of a suite."""
 
 LATEST: Final = (25, 50, 100)
-"""Numbers of episodes by which a verdict is counted, beside all."""
+"""Numbers of episodes; the report counts the verdicts that came by then."""
 
 _RARE: Final = 0.97
-"""From this pass rate on false alarms are rare."""
+"""From this pass rate on, false alarms are rare."""
 
 JUST_BELOW: Final = 0.849
-"""A pass rate that no other one below the threshold is as hard to tell from."""
+"""A pass rate just below the threshold, which is hardest to tell from a rate above it."""
 
 THRESHOLD: Final = 0.05
-"""Of progress and reward, as it is where a suite says nothing else."""
+"""The default threshold for changes of progress and reward."""
 
 _STAGES: Final = (0.25, 0.5, 0.75)
-"""The progress of failures, as likely one as the other."""
+"""The values of the progress of failures; all are equally likely."""
 _FAILED: Final = (-0.3, 0.2)
-"""Mean and standard deviation of their reward."""
+"""Mean and standard deviation of the reward of failures."""
 
 
 @dataclass(frozen=True, slots=True)
 class Play:
-    """How a policy plays: its pass rate, and mean and standard deviation of the reward of successes."""
+    """How a policy plays: its pass rate, and the mean and standard deviation of the reward of successes."""
 
     rate: float
     reward: float = 0.79
@@ -60,7 +61,7 @@ class Play:
 
 @dataclass(frozen=True, slots=True)
 class Scenario:
-    """What a policy does now, and what it did when the baseline was recorded."""
+    """How a policy plays now, and how it played when the baseline was recorded."""
 
     now: Play
     before: Play
@@ -68,31 +69,31 @@ class Scenario:
 
     @property
     def is_slight(self) -> bool:
-        """Whether something has changed, and by less than its threshold."""
+        """Whether the reward has changed by less than its threshold, and nothing else has changed."""
         now, before = self.now, self.before
         return now != before and now.rate == before.rate and abs(now.reward - before.reward) < THRESHOLD
 
     @property
     def is_rare(self) -> bool:
-        """Whether what a verdict may do wrong is rare, so that many trials are needed to see it."""
-        same = self.now == self.before
-        return self.is_slight or (same and (self.now.rate >= _RARE or self.now.rate == JUST_BELOW))
+        """Whether wrong verdicts are rare, so that many trials are needed."""
+        same_share = self.now == self.before
+        return self.is_slight or (same_share and (self.now.rate >= _RARE or self.now.rate == JUST_BELOW))
 
     @property
     def name(self) -> str:
-        """As it stands in the results."""
+        """The name of the scenario in the results."""
         now, before = self.now, self.before
         if now == before:
             return f"{now.rate:g} {self.pairing}"
         parts = [
-            f"{what} {old:g} to {new:g}"
-            for what, old, new in (("rate", before.rate, now.rate), ("reward", before.reward, now.reward))
+            f"{figure} {old:g} to {new:g}"
+            for figure, old, new in (("rate", before.rate, now.rate), ("reward", before.reward, now.reward))
             if old != new
         ]
         return f"{', '.join(parts)}, ± {now.spread:g}"
 
 
-def _unchanged() -> Iterator[Scenario]:
+def _unchanged_scenarios() -> Iterator[Scenario]:
     for rate in (1.0, 0.99, 0.98, 0.97, 0.95):
         for pairing in ("identical", "half", "independent"):
             yield Scenario(Play(rate), Play(rate), pairing)
@@ -100,7 +101,7 @@ def _unchanged() -> Iterator[Scenario]:
         yield Scenario(Play(rate), Play(rate), "identical")
 
 
-def _changed() -> Iterator[Scenario]:
+def _changed_scenarios() -> Iterator[Scenario]:
     for reward, spread in ((0.75, 0.05), (0.745, 0.15)):
         yield Scenario(Play(0.98, reward, spread), Play(0.98, 0.79, spread))
     for reward, spread in ((0.65, 0.05), (0.65, 0.15), (0.69, 0.05), (0.69, 0.15)):
@@ -111,47 +112,49 @@ def _changed() -> Iterator[Scenario]:
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """What is measured: each scenario, so many ``trials`` of a case, in suites of ``sizes`` cases.
+    """What is measured: each scenario, with ``trials`` of a case, in suites of ``sizes`` cases.
 
-    Where verdicts come late, or errors are frequent, ``few`` trials have to do.
+    If verdicts come late, or errors are frequent, only ``few`` trials are made.
     """
 
-    scenarios: Sequence[Scenario] = field(default_factory=lambda: (*_unchanged(), *_changed()))
+    scenarios: Sequence[Scenario] = field(default_factory=lambda: (*_unchanged_scenarios(), *_changed_scenarios()))
     trials: int = 4000
     few: int = 500
     sizes: Sequence[int] = (1, 9, 30)
 
 
 def measure(store: Store, _: float, say: Callable[[str], None], plan: Plan | None = None) -> None:
-    """Draw what the store does not have yet."""
+    """Simulate each scenario without a record of the present rule in the store."""
     if find_spec("numpy") is None:
         say(f"{SECTION} left out: numpy is not installed (the extra `rl`, Python 3.10 or 3.11)")
         return
-    made = plan or Plan()
-    scenarios = {scenario.name: scenario for scenario in made.scenarios}
+    chosen_plan = plan or Plan()
+    scenarios = {scenario.name: scenario for scenario in chosen_plan.scenarios}
 
     def record(name: str) -> Record:
         scenario = scenarios[name]
-        return measured(scenario, made.trials if scenario.is_rare else made.few, made.sizes)
+        return measure_scenario(
+            scenario, chosen_plan.trials if scenario.is_rare else chosen_plan.few, chosen_plan.sizes
+        )
 
-    measure_missing(store, SECTION, scenarios, record, say, done="suites", like={"rule": rule()})
+    measure_missing(store, SECTION, scenarios, record, say, field="suites", current={"rule": rule()})
 
 
 def rule() -> str:
-    """Twelve hexadecimal digits that stand for the rule: figures of another one are measured again."""
+    """Return a hash of the code of the rule; records of another rule are measured again."""
     return source_digest(*(f"runtime/tltl_runtime/regression/verdict/{name}.py" for name in ("verdict", "confidence")))
 
 
-def measured(scenario: Scenario, trials: int, sizes: Sequence[int]) -> Record:
-    """How a case is judged, by the number of cases of its suite; equal arguments give equal figures."""
+def measure_scenario(scenario: Scenario, trials: int, sizes: Sequence[int]) -> Record:
+    """Return how a case is judged, by the number of cases of its suite; equal arguments give equal figures."""
     import numpy as np
 
     generator = np.random.default_rng(zlib.crc32(scenario.name.encode()))
-    found: dict[int, list[tuple[Judgement, int]]] = {size: [] for size in sizes}
+    judgements: dict[int, list[tuple[Judgement, int]]] = {size: [] for size in sizes}
     for _ in range(trials):
-        now, before = drawn(scenario, generator)
+        now, before = draw_episodes(scenario, generator)
         for size in sizes:
-            found[size].append(judged(now, before, ERROR / size))
+            judgements[size].append(first_verdict(now, before, ERROR / size))
     return {
         "trials": trials,
         "rule": rule(),
@@ -159,20 +162,24 @@ def measured(scenario: Scenario, trials: int, sizes: Sequence[int]) -> Record:
         "pairing": scenario.pairing,
         "changed": scenario.now != scenario.before,
         "slight": scenario.is_slight,
-        "suites": {str(size): _shares(judgements) for size, judgements in found.items()},
+        "suites": {str(size): _shares(by_size) for size, by_size in judgements.items()},
     }
 
 
-def drawn(scenario: Scenario, generator: np.random.Generator) -> tuple[list[EpisodeSummary], list[EpisodeSummary]]:
-    """The episodes of a case and of its baseline, as many as are played at the most."""
+def draw_episodes(
+    scenario: Scenario, generator: np.random.Generator
+) -> tuple[list[EpisodeSummary], list[EpisodeSummary]]:
+    """Return the greatest number of episodes that a case plays, and as many of its baseline."""
     before, now = (_episodes(play, generator) for play in (scenario.before, scenario.now))
-    same = {"identical": 1.0, "half": 0.5, "independent": 0.0}[scenario.pairing]
-    kept = generator.random(len(now)) < same
-    return [old if keep else new for old, new, keep in zip(before, now, kept, strict=True)], before
+    same_share = {"identical": 1.0, "half": 0.5, "independent": 0.0}[scenario.pairing]
+    is_same = generator.random(len(now)) < same_share
+    return [old if is_kept else new for old, new, is_kept in zip(before, now, is_same, strict=True)], before
 
 
-def judged(now: Sequence[EpisodeSummary], before: Sequence[EpisodeSummary], error: float) -> tuple[Judgement, int]:
-    """The verdict, and after how many episodes it came."""
+def first_verdict(
+    now: Sequence[EpisodeSummary], before: Sequence[EpisodeSummary], error: float
+) -> tuple[Judgement, int]:
+    """Return the first verdict that is certain or final, and the number of episodes that it took."""
     from tltl_runtime.regression.suite.suite import LEAST_EPISODES, Thresholds
     from tltl_runtime.regression.verdict.verdict import judge
 
@@ -184,33 +191,33 @@ def judged(now: Sequence[EpisodeSummary], before: Sequence[EpisodeSummary], erro
     raise AssertionError("the last episode settles every verdict")
 
 
-def in_suite(share: float, size: int) -> float:
-    """How likely it is that something happens in at least one of so many independent cases."""
+def probability_in_suite(share: float, size: int) -> float:
+    """Return the probability that an event of probability ``share`` happens in one of ``size`` cases or more."""
     return float(1.0 - (1.0 - share) ** size)
 
 
-def at_most(share: float, trials: int) -> float:
-    """The upper limit of 95 % for what happened in a share of the trials.
+def upper_limit(share: float, trials: int) -> float:
+    """Return the upper limit, at 95 %, of the probability of what happened in a share of the trials.
 
-    The greatest probability with which it happens that seldom in at least 1 of 20 simulations (C. Clopper, E. Pearson,
-    Biometrika 26 (1934), 404-413).
+    It is the greatest probability with which the event happens that seldom in at least 1 of 20
+    simulations (C. Clopper, E. Pearson, Biometrika 26 (1934), 404-413).
     """
     count = round(share * trials)
     low, high = share, 1.0
     for _ in range(50 if count < trials else 0):
         middle = (low + high) / 2
-        low, high = (middle, high) if _seldom(count, trials, middle) >= 0.05 else (low, middle)
+        low, high = (middle, high) if _probability_of_at_most(count, trials, middle) >= 0.05 else (low, middle)
     return high
 
 
-def _seldom(count: int, trials: int, probability: float) -> float:
-    """How likely at most ``count`` of the trials are."""
+def _probability_of_at_most(count: int, trials: int, probability: float) -> float:
+    """Return the probability that an event happens in at most ``count`` of the trials."""
     logs = log(probability), log1p(-probability)
-    each = (
+    terms = (
         lgamma(trials + 1) - lgamma(done + 1) - lgamma(trials - done + 1) + done * logs[0] + (trials - done) * logs[1]
         for done in range(count + 1)
     )
-    return fsum(map(exp, each))
+    return fsum(map(exp, terms))
 
 
 def _episodes(play: Play, generator: np.random.Generator) -> list[EpisodeSummary]:
@@ -229,18 +236,16 @@ def _episodes(play: Play, generator: np.random.Generator) -> list[EpisodeSummary
 
 
 def _summary(index: int, success: bool, progress: float, reward: float) -> EpisodeSummary:
-    """The summary of an episode; a verdict does not look at its steps and its last state."""
+    """Return the summary of an episode; verdicts do not use its steps and its last state."""
     from tltl_runtime.spec.episode_summary import EpisodeSummary
 
     return EpisodeSummary(index, None, success, "success" if success else "limit", progress, reward, 1, 0)
 
 
 def _shares(judgements: Sequence[tuple[Judgement, int]]) -> Mapping[str, float]:
-    """Shares of the verdicts, of those that are not certain, of figures that are said to have certainly changed, and of
-    changes that were found early; mean episodes.
-    """
+    """Return the shares of verdicts, uncertain verdicts, certain changes and early findings; and the mean episodes."""
     counts = Counter(judgement.verdict for judgement, _ in judgements)
-    early = {f"changed_by_{latest}": _found_by(judgements, latest) for latest in LATEST}
+    early = {f"changed_by_{latest}": _count_found_by(judgements, latest) for latest in LATEST}
     figures = {
         **{verdict: counts[verdict] for verdict in ("pass", "review", "fail")},
         "uncertain": sum(not judgement.certain for judgement, _ in judgements),
@@ -252,5 +257,5 @@ def _shares(judgements: Sequence[tuple[Judgement, int]]) -> Mapping[str, float]:
     return {**shares, "episodes": round(sum(count for _, count in judgements) / total, 1)}
 
 
-def _found_by(judgements: Sequence[tuple[Judgement, int]], latest: int) -> int:
+def _count_found_by(judgements: Sequence[tuple[Judgement, int]], latest: int) -> int:
     return sum(count <= latest and judgement.verdict != "pass" for judgement, count in judgements)

@@ -1,4 +1,4 @@
-"""A player who holds random actions: the load of the game's benchmarks, and what tries its walls."""
+"""A player who holds random actions; it plays in the benchmarks of the game's speed and safety."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ if TYPE_CHECKING:
     import numpy as np
 
 HELD = 6
-"""Decisions for which an action is held, on average."""
+"""The mean number of decisions for which an action is held."""
 
 
 def actions(rng: np.random.Generator) -> Iterator[tuple[int, ...]]:
-    """Actions without end, each held for a while."""
+    """Yield actions without end, each held for a geometrically distributed number of decisions."""
     from tltl_runtime.stealth.snapshot import BRANCHES
 
     while True:

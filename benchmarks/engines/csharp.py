@@ -1,4 +1,4 @@
-"""C# by Mono's compiler and runtime, optimised; what is compiled is a library."""
+"""C# with Mono's compiler and runtime, optimised; the size is that of a library."""
 
 from __future__ import annotations
 
@@ -10,17 +10,17 @@ _COMPILER = ("mcs", "-langversion:6", "-optimize+", "-debug-")
 
 
 def _build(task: Task) -> tuple[str, ...]:
-    give = ", ".join(
+    assignments = ", ".join(
         f"{signal.field} = row[{place}]{' != 0.0' if signal.is_bool else ''}"
         for place, signal in enumerate(task.signals)
     )
     generated = f"Tltl.{task.name}_monitor"
-    for who, pass_, types in (
+    for author, pass_, types in (
         ("generated", "Generated", (generated, f"{generated}.Result", f"{generated}.Signals")),
         ("by_hand", "ByHandPass", ("ByHand.Monitor", "ByHand.Result", "ByHand.Signals")),
     ):
         monitor, result, signals = types
-        tokens = {"who": who, "monitor": monitor, "result": result, "signals": signals, "give": give}
+        tokens = {"who": author, "monitor": monitor, "result": result, "signals": signals, "assignments": assignments}
         fill(DRIVERS / "csharp/Pass.cs", task, **tokens, **{"pass": pass_})
         (task.folder / "Pass.cs").replace(task.folder / f"{pass_}.cs")
     sources = ("Generated.cs", "ByHandPass.cs", *_generated(task), *_by_hand(task))
@@ -28,12 +28,12 @@ def _build(task: Task) -> tuple[str, ...]:
     return ("mono", "driver.exe")
 
 
-def _compiled(task: Task) -> Mapping[str, Mapping[str, int]]:
-    found: dict[str, Mapping[str, int]] = {}
-    for who, sources in (("generated", _generated(task)), ("by_hand", _by_hand(task))):
-        make(task, *_COMPILER, "-target:library", f"-out:{who}.dll", *sources)
-        found[who] = {"mcs, library": (task.folder / f"{who}.dll").stat().st_size}
-    return found
+def _compiled_sizes(task: Task) -> Mapping[str, Mapping[str, int]]:
+    sizes: dict[str, Mapping[str, int]] = {}
+    for author, sources in (("generated", _generated(task)), ("by_hand", _by_hand(task))):
+        make(task, *_COMPILER, "-target:library", f"-out:{author}.dll", *sources)
+        sizes[author] = {"mcs, library": (task.folder / f"{author}.dll").stat().st_size}
+    return sizes
 
 
 def _generated(task: Task) -> tuple[str, ...]:
@@ -53,7 +53,7 @@ ENGINES = (
         sources=("{name}_monitor.cs",),
         comments=("//",),
         build=_build,
-        compiled=_compiled,
+        compiled=_compiled_sizes,
         tools=("mcs", "mono"),
     ),
 )

@@ -1,4 +1,4 @@
-"""What a language gives to the benchmark: how its driver is built, what is said of it, and what its monitors weigh."""
+"""The description of a language for the benchmark: how to build its driver, and the sizes of its monitors."""
 
 from __future__ import annotations
 
@@ -31,12 +31,12 @@ OUTPUT_FIELDS: Final = (
     "robustness",
     "limiting",
 )
-"""Of a row, behind the monitor's name; the fields of the generated Python monitor's step."""
+"""The columns of a row after the monitor's name: the fields of a step."""
 
 
 @record
 class Signal:
-    """A signal: its name in the spec, and that of the field or variable which holds it."""
+    """A signal: its name in the spec, and the name of its field or variable in the generated code."""
 
     name: str
     field: str
@@ -45,7 +45,7 @@ class Signal:
 
 @record
 class Task:
-    """A spec, and the folder in which its generated monitor lies and everything is built."""
+    """A spec, and the folder with its generated monitor, in which everything is built."""
 
     name: str
     signals: tuple[Signal, ...]
@@ -56,10 +56,11 @@ class Task:
 class Engine:
     """A language and its compiler or interpreter.
 
-    ``build`` makes the driver and returns the command that runs it: ``COMMAND rows TRACE...`` prints a row per step, of
-    the generated monitor and then of the one written by hand; ``COMMAND time ROUNDS SECONDS TRACE`` prints JSON lines.
-    ``compiled`` returns what both monitors take in the compiler's output, in bytes, by who wrote them and the kind of
-    output.  ``sources`` are the generated files that a game takes, ``comments`` begin lines that are comments alone.
+    ``build`` makes the driver and returns the command that runs it: ``COMMAND rows TRACE...`` prints a
+    row per step, first of the generated monitor and then of the handwritten one; ``COMMAND time
+    ROUNDS SECONDS TRACE`` prints JSON lines. ``compiled`` returns the bytes of both monitors in the
+    compiler's output, by author and kind of output. ``sources`` are the generated files that a game
+    uses. Lines that start with one of ``comments`` contain only a comment.
     """
 
     name: str
@@ -73,46 +74,46 @@ class Engine:
     tools: tuple[str, ...] = ()
 
     def missing(self) -> str | None:
-        """Why it cannot be used here, if it cannot."""
-        lacking = [tool for tool in self.tools if shutil.which(tool) is None]
-        return f"{', '.join(lacking)} is not installed" if lacking else None
+        """Return why the language cannot be measured on this machine, or None."""
+        missing = [tool for tool in self.tools if shutil.which(tool) is None]
+        return f"{', '.join(missing)} is not installed" if missing else None
 
 
 def engines() -> tuple[Engine, ...]:
-    """Those of all modules beside this one, by name."""
+    """Return the engines of all modules in this package, sorted by name."""
     from benchmarks import engines as package
 
-    found: list[Engine] = []
+    all_engines: list[Engine] = []
     for module in pkgutil.iter_modules(package.__path__):
-        found += getattr(importlib.import_module(f"{package.__name__}.{module.name}"), "ENGINES", ())
-    return tuple(sorted(found, key=lambda engine: engine.name))
+        all_engines += getattr(importlib.import_module(f"{package.__name__}.{module.name}"), "ENGINES", ())
+    return tuple(sorted(all_engines, key=lambda engine: engine.name))
 
 
 def generate(engine: Engine, name: str, folder: Path) -> Task:
-    """Write the monitor of a spec, as its target writes it, into a folder."""
+    """Write the generated monitor of a spec into a folder."""
     fspa = next(fspa for fspa in compile_file(source(name)) if fspa.name == name)
     for file, content in emit(engine.target, fspa).items():
         (folder / file).write_bytes(content.encode() if isinstance(content, str) else content)
-    signals = (Signal(each.name, _field(each.name), each.type == "bool") for each in fspa.signals)
+    signals = (Signal(signal.name, _field(signal.name), signal.type == "bool") for signal in fspa.signals)
     return Task(name, tuple(signals), folder)
 
 
 def write_trace(task: Task, samples: Sequence[Mapping[str, float]], path: Path) -> Path:
-    """A trace as the drivers read it: a line per sample, the values of the signals in their order."""
+    """Write a trace for the drivers: a line per sample, with the values of the signals in order; return the path."""
     lines = (" ".join(repr(sample[signal.name]) for signal in task.signals) for sample in samples)
     path.write_text("\n".join(lines) + "\n", encoding="ascii")
     return path
 
 
 def make(task: Task, *command: str) -> None:
-    """Run a compiler in the folder of a task; AssertionError, with what it says, where it fails."""
-    done = subprocess.run(command, cwd=task.folder, capture_output=True, timeout=LONGEST_BUILD_S)
-    said = (done.stdout + done.stderr).decode(errors="replace")
-    assert done.returncode == 0, f"{' '.join(command)}\n{said}"
+    """Run a compiler in the folder of a task; raise AssertionError with its output if it fails."""
+    completed = subprocess.run(command, cwd=task.folder, capture_output=True, timeout=LONGEST_BUILD_S)
+    output = (completed.stdout + completed.stderr).decode(errors="replace")
+    assert completed.returncode == 0, f"{' '.join(command)}\n{output}"
 
 
 def fill(template: Path, task: Task, **tokens: str) -> None:
-    """A file of the drivers into the folder of a task, with the text of each token for ``@TOKEN@``."""
+    """Copy a file of the drivers into the folder of a task, and replace each ``@TOKEN@`` by its text."""
     text = template.read_text(encoding="utf-8")
     for token, value in tokens.items():
         text = text.replace(f"@{token.upper()}@", value)
@@ -120,7 +121,7 @@ def fill(template: Path, task: Task, **tokens: str) -> None:
 
 
 def without_comments(engine: Engine, text: str) -> str:
-    """A generated file without blank lines and lines that hold a comment alone."""
+    """Return a generated file without blank lines and without lines that contain only a comment."""
     lines = (line.strip() for line in text.splitlines())
     return "".join(f"{line}\n" for line in lines if line and not line.startswith(engine.comments))
 

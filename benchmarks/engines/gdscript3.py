@@ -1,4 +1,4 @@
-"""GDScript by Godot 3, which speaks for Godot 4, too; the scripts are compiled when they are loaded."""
+"""GDScript with Godot 3, whose monitors are nearly those of Godot 4; scripts are compiled when they are loaded."""
 
 from __future__ import annotations
 
@@ -7,23 +7,23 @@ from collections.abc import Mapping
 
 from benchmarks.engines.engine import BY_HAND, DRIVERS, Engine, Task, fill
 
-# The engine takes no locale C, and asks for a project.
+# Godot does not accept the locale C, and needs a project.
 _COMMAND = 'LANG=en exec godot3-server --path . -s driver.gd "$@"'
 
 
 def _build(task: Task) -> tuple[str, ...]:
-    give = "\n".join(
+    assignments = "\n".join(
         f"\t\tsample.{signal.field} = row[{place}]{' != 0.0' if signal.is_bool else ''}"
         for place, signal in enumerate(task.signals)
     )
-    fill(DRIVERS / "gdscript3/driver.gd", task, spec=task.name, give=give)
+    fill(DRIVERS / "gdscript3/driver.gd", task, spec=task.name, assignments=assignments)
     for file in ("common", task.name):
         shutil.copy(BY_HAND / f"gdscript3/{file}.gd", task.folder)
     (task.folder / "project.godot").touch()
     return ("bash", "-c", _COMMAND, "driver")
 
 
-def _compiled(_: Task) -> Mapping[str, Mapping[str, int]]:
+def _compiled_sizes(_: Task) -> Mapping[str, Mapping[str, int]]:
     return {}
 
 
@@ -36,7 +36,7 @@ ENGINES = (
         sources=("{name}_monitor.gd",),
         comments=("#",),
         build=_build,
-        compiled=_compiled,
+        compiled=_compiled_sizes,
         tools=("godot3-server", "bash"),
     ),
 )

@@ -1,4 +1,4 @@
-"""JavaScript by Node; nothing is compiled beforehand."""
+"""JavaScript with Node; nothing is compiled in advance."""
 
 from __future__ import annotations
 
@@ -9,15 +9,21 @@ from benchmarks.engines.engine import BY_HAND, DRIVERS, Engine, Task, fill
 
 
 def _build(task: Task) -> tuple[str, ...]:
-    give = ", ".join(
+    assignments = ", ".join(
         f"{json.dumps(signal.name)}: row[{place}]{' !== 0' if signal.is_bool else ''}"
         for place, signal in enumerate(task.signals)
     )
-    fill(DRIVERS / "javascript/driver.mjs", task, spec=task.name, by_hand=str(BY_HAND / "javascript"), give=give)
+    fill(
+        DRIVERS / "javascript/driver.mjs",
+        task,
+        spec=task.name,
+        by_hand=str(BY_HAND / "javascript"),
+        assignments=assignments,
+    )
     return ("node", "driver.mjs")
 
 
-def _compiled(_: Task) -> Mapping[str, Mapping[str, int]]:
+def _compiled_sizes(_: Task) -> Mapping[str, Mapping[str, int]]:
     return {}
 
 
@@ -30,7 +36,7 @@ ENGINES = (
         sources=("{name}_monitor.mjs",),
         comments=("//", "/*", "*"),
         build=_build,
-        compiled=_compiled,
+        compiled=_compiled_sizes,
         tools=("node",),
     ),
 )

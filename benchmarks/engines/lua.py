@@ -1,4 +1,4 @@
-"""Lua by its own interpreter and by LuaJIT; what is compiled is stripped bytecode."""
+"""Lua with its own interpreter and with LuaJIT; the size is that of stripped bytecode."""
 
 from __future__ import annotations
 
@@ -11,28 +11,28 @@ from benchmarks.engines.engine import BY_HAND, DRIVERS, Engine, Task, fill, make
 
 
 def _build(interpreter: str, task: Task) -> tuple[str, ...]:
-    give = ", ".join(
+    assignments = ", ".join(
         f"[{json.dumps(signal.name)}] = row[{place}]{' ~= 0' if signal.is_bool else ''}"
         for place, signal in enumerate(task.signals, start=1)
     )
-    fill(DRIVERS / "lua/driver.lua", task, spec=task.name, by_hand=str(BY_HAND / "lua"), give=give)
+    fill(DRIVERS / "lua/driver.lua", task, spec=task.name, by_hand=str(BY_HAND / "lua"), assignments=assignments)
     return (interpreter, "driver.lua")
 
 
-def _compiled(
+def _compiled_sizes(
     name: str, compiler: tuple[str, ...], output: tuple[str, ...], task: Task
 ) -> Mapping[str, Mapping[str, int]]:
     if shutil.which(compiler[0]) is None:
         return {}
     by_hand = [BY_HAND / f"lua/{file}.lua" for file in ("common", task.name)]
-    found: dict[str, dict[str, int]] = {}
-    for who, files in (("generated", [task.folder / f"{task.name}_monitor.lua"]), ("by_hand", by_hand)):
-        found[who] = {name: 0}
+    sizes: dict[str, dict[str, int]] = {}
+    for author, files in (("generated", [task.folder / f"{task.name}_monitor.lua"]), ("by_hand", by_hand)):
+        sizes[author] = {name: 0}
         for file in files:
             words = (*output, str(file)) if output[0] == "-o" else (str(file), *output)
             make(task, *compiler, *words)
-            found[who][name] += (task.folder / output[-1]).stat().st_size
-    return found
+            sizes[author][name] += (task.folder / output[-1]).stat().st_size
+    return sizes
 
 
 def _engine(interpreter: str, title: str, kind: str, compiler: tuple[str, ...], output: tuple[str, ...]) -> Engine:
@@ -44,7 +44,7 @@ def _engine(interpreter: str, title: str, kind: str, compiler: tuple[str, ...], 
         sources=("{name}_monitor.lua",),
         comments=("--",),
         build=partial(_build, interpreter),
-        compiled=partial(_compiled, kind, compiler, output),
+        compiled=partial(_compiled_sizes, kind, compiler, output),
         tools=(interpreter,),
     )
 

@@ -11,24 +11,24 @@ _FLAGS = ("rustc", "--edition", "2021", "-O", "-C", "debuginfo=0")
 
 
 def _build(task: Task) -> tuple[str, ...]:
-    give = ", ".join(
+    assignments = ", ".join(
         f"{signal.field}: row[{place}]{' != 0.0' if signal.is_bool else ''}"
         for place, signal in enumerate(task.signals)
     )
     for file in sorted((DRIVERS / "rust").iterdir()):
-        fill(file, task, spec=task.name, by_hand=str(BY_HAND / "rust"), give=give)
+        fill(file, task, spec=task.name, by_hand=str(BY_HAND / "rust"), assignments=assignments)
     make(task, *_FLAGS, "-D", "warnings", "driver.rs", "-o", "driver")
     return ("./driver",)
 
 
-def _compiled(task: Task) -> Mapping[str, Mapping[str, int]]:
-    found: dict[str, Mapping[str, int]] = {}
-    for who, file in (("generated", f"{task.name}_monitor.rs"), ("by_hand", "by_hand.rs")):
-        make(task, *_FLAGS, "--crate-type", "lib", "--crate-name", who, "--emit", "obj=object.o", file)
-        said = subprocess.run(["size", "object.o"], cwd=task.folder, capture_output=True, text=True, check=True)
-        text, data, *_ = said.stdout.splitlines()[1].split()
-        found[who] = {"rustc -O": int(text) + int(data)}
-    return found
+def _compiled_sizes(task: Task) -> Mapping[str, Mapping[str, int]]:
+    sizes: dict[str, Mapping[str, int]] = {}
+    for author, file in (("generated", f"{task.name}_monitor.rs"), ("by_hand", "by_hand.rs")):
+        make(task, *_FLAGS, "--crate-type", "lib", "--crate-name", author, "--emit", "obj=object.o", file)
+        output = subprocess.run(["size", "object.o"], cwd=task.folder, capture_output=True, text=True, check=True)
+        text, data, *_ = output.stdout.splitlines()[1].split()
+        sizes[author] = {"rustc -O": int(text) + int(data)}
+    return sizes
 
 
 ENGINES = (
@@ -40,7 +40,7 @@ ENGINES = (
         sources=("{name}_monitor.rs",),
         comments=("//",),
         build=_build,
-        compiled=_compiled,
+        compiled=_compiled_sizes,
         tools=("rustc", "size"),
     ),
 )

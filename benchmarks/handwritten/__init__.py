@@ -1,1 +1,1 @@
-"""Monitors of the three paper specs, written by hand: what a careful programmer would ship without a compiler."""
+"""Handwritten monitors of the paper's three specs, as a careful programmer would write them without a compiler."""

@@ -34,7 +34,7 @@ LIMIT = 600
 
 
 class Monitor:
-    """States as in the picture: 0, 1, 3 wait for a switch, 4 for an exit, 5 is out, 2 is dead."""
+    """States as in the picture: 0, 1, 3 wait for a switch, 4 for an exit, 5 is the goal, 2 is the trap."""
 
     __slots__ = ("done", "level_size", "progress", "state", "steps")
 

@@ -1,4 +1,4 @@
-"""What the hand-written monitors share: their result and the reading of samples."""
+"""The result of the handwritten monitors, and functions that read samples."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Step(NamedTuple):
 
 
 def read(signals: Mapping[str, float], names: Sequence[str]) -> list[float]:
-    """The values of the signals; KeyError for a missing one, ValueError for one that is not finite."""
+    """Return the values of the signals; raises KeyError if one is missing, ValueError if one is not finite."""
     values = [signals[name] for name in names]
     if not all(map(isfinite, values)):
         raise ValueError(f"not finite: {dict(zip(names, values, strict=True))}")
@@ -30,7 +30,7 @@ def read(signals: Mapping[str, float], names: Sequence[str]) -> list[float]:
 
 
 def near(distance: float, level_size: float) -> float:
-    """Closeness in [-1, 1] (eq. 2 of the paper): 1 at the target, 0 at 1 m, -1 from ``level_size`` on."""
+    """Return the closeness in [-1, 1] (eq. 2 of the paper): 1 at the target, 0 at 1 m, -1 from ``level_size`` on."""
     if distance < 1.0:
         return 1.0 - distance if distance > 0.0 else 1.0
     if distance <= level_size:

@@ -26,7 +26,7 @@ LIMIT = 400
 
 
 class Monitor:
-    """States as in the picture: 0, 1, 3 wait for a place, 4 has been everywhere, 2 is dead."""
+    """States as in the picture: 0, 1, 3 wait for a place, 4 is the goal, 2 is the trap."""
 
     __slots__ = ("done", "level_size", "progress", "state", "steps")
 
@@ -64,7 +64,7 @@ class Monitor:
             if here > 0.0:
                 state, robustness, progress = NEXT[state], min(here, alive), (place + 1) / 3
             else:
-                # Not here, or at one of the other places, which would say so too.
+                # At another place the player is certainly not here, because the places exclude each other.
                 robustness = min(max(-here, closeness[place - 1], closeness[place - 2]), alive)
                 limiting = ATOMS[place]
                 progress = (place + 1.0 + here) / 3

@@ -8,21 +8,21 @@ from typing import Any
 import pytest
 
 from benchmarks import edits, edits_report
-from benchmarks.random_edits import HARMLESS, WANTED, Edit, Wanted, random_edits
+from benchmarks.random_edits import EDIT_REQUESTS, HARMLESS, Edit, EditRequest, random_edits
 from benchmarks.store import Record, Store, source_digest
 
 
 @pytest.fixture(scope="module")
-def made() -> tuple[Edit, ...]:
+def made_edits() -> tuple[Edit, ...]:
     pytest.importorskip("pybullet")
     return all_edits(15)
 
 
 def all_edits(seed: int) -> tuple[Edit, ...]:
-    return random_edits(seed, edits._assets({wanted_edit.asset for wanted_edit in WANTED}), edits._loads)
+    return random_edits(seed, edits._assets({request.asset for request in EDIT_REQUESTS}), edits._loads)
 
 
-def loaded(edit: Edit, tmp_path: Path) -> Any:
+def load_edited_level(edit: Edit, tmp_path: Path) -> Any:
     from tltl_runtime.stealth.levels.file import load_level
 
     path = tmp_path / "edit.toml"
@@ -30,20 +30,22 @@ def loaded(edit: Edit, tmp_path: Path) -> Any:
     return load_level(edit.level, f"v0+{path}")
 
 
-def test_thirty_edits_cover_all_levels_and_many_are_harmless(made: tuple[Edit, ...]) -> None:
-    assert [edit.number for edit in made] == list(range(1, 31))
-    assert {edit.level for edit in made} == {"branching", "cover_and_hide", "navigation"}
-    assert len([edit for edit in made if edit.kind in HARMLESS]) >= 10
-    assert all_edits(15) == made
-    assert all_edits(16) != made
+def test_thirty_edits_cover_all_levels_and_many_are_harmless(made_edits: tuple[Edit, ...]) -> None:
+    assert [edit.number for edit in made_edits] == list(range(1, 31))
+    assert {edit.level for edit in made_edits} == {"branching", "cover_and_hide", "navigation"}
+    assert len([edit for edit in made_edits if edit.kind in HARMLESS]) >= 10
+    assert all_edits(15) == made_edits
+    assert all_edits(16) != made_edits
 
 
 @pytest.mark.parametrize("number", range(1, 31))
-def test_each_edit_loads_and_changes_what_its_kind_says(made: tuple[Edit, ...], number: int, tmp_path: Path) -> None:
+def test_each_edit_loads_and_changes_what_its_kind_says(
+    made_edits: tuple[Edit, ...], number: int, tmp_path: Path
+) -> None:
     from tltl_runtime.stealth.levels.file import load_level
 
-    edit = made[number - 1]
-    now, before = loaded(edit, tmp_path), load_level(edit.level)
+    edit = made_edits[number - 1]
+    now, before = load_edited_level(edit, tmp_path), load_level(edit.level)
     known = {solid.name: solid for solid in before.solids}
     solids = [(new, known[new.name]) for new in now.solids if new.name in known and new != known[new.name]]
     differs = [name for name in ("solids", "enemies", "movers") if getattr(now, name) != getattr(before, name)]
@@ -70,7 +72,7 @@ def test_an_edit_that_does_not_load_is_drawn_again() -> None:
         tried.append(overlay)
         return len(tried) > 2
 
-    wanted = (Wanted("navigation", "corridor", "hair"),)
+    wanted = (EditRequest("navigation", "corridor", "hair"),)
     assets = edits._assets({"corridor"})
     (edit,) = random_edits(1, assets, loads, wanted)
     assert edit.overlay == tried[2] not in tried[:2]

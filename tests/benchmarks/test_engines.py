@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from benchmarks import engine_report
-from benchmarks.engine_speed import disagreement, stepped
+from benchmarks.engine_speed import disagreement, monitor_rows
 from benchmarks.engines.engine import Engine, engines, generate, write_trace
 from benchmarks.specs import PAPER_SPECS, source, trace
 from benchmarks.store import Store
@@ -34,7 +34,7 @@ def test_both_monitors_equal_the_reference(engine: Engine, spec: str, tmp_path: 
     recorded = trace(spec)
     walks = [recorded, *(_shuffled(recorded, generator) for _ in range(20))]
     traces = [write_trace(task, walk, tmp_path / f"{place}.txt") for place, walk in enumerate(walks)]
-    rows = stepped(task, engine.build(task), traces)
+    rows = monitor_rows(task, engine.build(task), traces)
     expected, reached = _expected(spec, walks)
     assert reached >= {"pending", "satisfied"} or reached == {"pending", "holding", "violated"}
     for author, author_rows in rows.items():

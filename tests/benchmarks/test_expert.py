@@ -20,9 +20,9 @@ def test_the_interval_of_a_rate_matches_published_examples(
 
 def test_episodes_are_grouped_by_the_barriers_that_opened() -> None:
     pytest.importorskip("pybullet")
-    from benchmarks.expert import played
+    from benchmarks.expert import play_episodes
 
-    record = played("cover_and_hide", "v0", "careless", 2)
+    record = play_episodes("cover_and_hide", "v0", "careless", 2)
     assert list(record["barriers"]) == [""]
     assert record["barriers"][""]["episodes"] == 2
     assert record["barriers"][""]["chased"] == 1.0

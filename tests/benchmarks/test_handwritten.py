@@ -7,7 +7,7 @@ import random
 
 import pytest
 
-from benchmarks.specs import PAPER_SPECS, hand_written, source, trace
+from benchmarks.specs import PAPER_SPECS, handwritten_monitor, source, trace
 from tltlc import compile_file
 from tltlc.monitor import Monitor
 
@@ -15,7 +15,7 @@ from tltlc.monitor import Monitor
 @pytest.mark.parametrize("name", PAPER_SPECS)
 def test_a_handwritten_monitor_equals_the_reference(name: str) -> None:
     fspa = next(fspa for fspa in compile_file(source(name)) if fspa.name == name)
-    reference, by_hand = Monitor(fspa), hand_written(name)
+    reference, by_hand = Monitor(fspa), handwritten_monitor(name)
     generator = random.Random(name)
     recorded = trace(name)
     samples = [recorded, *(_shuffled(recorded, generator) for _ in range(20))]

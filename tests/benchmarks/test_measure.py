@@ -92,7 +92,7 @@ def test_a_fork_does_not_change_the_parent() -> None:
             seen.append(1)
             return {"answer": len(seen)}
 
-        print(forked(work)["answer"], forked(work)["answer"], seen)
+        print(run_in_fork(work)["answer"], run_in_fork(work)["answer"], seen)
         """
         )
         == "1 1 []\n"
@@ -100,18 +100,18 @@ def test_a_fork_does_not_change_the_parent() -> None:
 
 
 def test_a_fork_that_fails_returns_none() -> None:
-    assert alone("print(forked(lambda: {'answer': 1 // 0}))") == "None\n"
+    assert alone("print(run_in_fork(lambda: {'answer': 1 // 0}))") == "None\n"
 
 
 def test_no_thread_is_left_before_a_fork() -> None:
     """From Python 3.12 on, forking beside other threads warns, and here warnings are errors."""
-    assert alone("run([sys.executable, '-c', ''], 30); print(forked(lambda: {})['cpu_ms'] >= 0)") == "True\n"
+    assert alone("run([sys.executable, '-c', ''], 30); print(run_in_fork(lambda: {})['cpu_ms'] >= 0)") == "True\n"
 
 
 def alone(program: str) -> str:
     """Return the output of a program in a new process: the process of the tests has threads, so it
     should not fork."""
-    text = "import sys\nfrom benchmarks.measure import forked, run\n" + textwrap.dedent(program)
+    text = "import sys\nfrom benchmarks.measure import run_in_fork, run\n" + textwrap.dedent(program)
     command = [sys.executable, "-W", "error", "-c", text]
     return subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, text=True, check=True, timeout=HANG_S).stdout
 

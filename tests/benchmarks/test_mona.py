@@ -45,7 +45,7 @@ def test_the_initial_state_is_merged_if_possible() -> None:
     assert mona.size(unlike) == mona.size(reached_again) == 3
 
 
-def test_sizes_of_special_outputs() -> None:
+def test_outputs_without_a_normal_automaton_have_the_right_size() -> None:
     assert mona.size("Formula is unsatisfiable\n") == 1
     assert mona.size("Out of memory\n") is None
 

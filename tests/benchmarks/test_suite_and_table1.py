@@ -17,7 +17,11 @@ def judged(**verdicts: str) -> dict[str, Record]:
     """Records of the suite with the required verdicts, except the given ones; ``_`` in a name
     stands for ``:``."""
     cases: dict[str, Any] = {}
-    for name, required in {**suite.ASKED, "branching:v1": ("pass",), "cover_and_hide:v1": ("pass",)}.items():
+    for name, required in {
+        **suite.REQUIRED_VERDICTS,
+        "branching:v1": ("pass",),
+        "cover_and_hide:v1": ("pass",),
+    }.items():
         figures = {"progress": 1.0, "reward": 0.7}
         reasons = ["the way ends at `corridor_block_2`"] if name == "navigation:v2" else ["met"]
         figures_of_verdict = {

@@ -87,7 +87,7 @@ def test_a_training_resumes_from_its_checkpoint_or_starts_again(
     (cell.folder / left).touch()
     source = cell.folder.with_suffix(training.SOURCE)
     source.write_text("of who began it")
-    assert cell.judged() == {"failed": "tltlc train"}
+    assert cell.measure_level() == {"failed": "tltlc train"}
     assert ran == [how]
     assert source.read_text() == "of who began it"
     assert cell.folder.exists() == (how == "--resume")
@@ -99,7 +99,7 @@ def test_a_training_of_an_unknown_source_starts_again(tmp_path: Path, monkeypatc
     cell = training.Cell(tmp_path / "cell", "navigation", 1, training.FULL)
     cell.folder.mkdir()
     (cell.folder / "record.json").touch()
-    assert cell.judged() == {"failed": "tltlc train"}
+    assert cell.measure_level() == {"failed": "tltlc train"}
     assert ran == ["--level"]
 
 

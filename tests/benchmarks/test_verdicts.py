@@ -9,7 +9,17 @@ import pytest
 
 from benchmarks import verdicts, verdicts_report
 from benchmarks.store import ROOT, Store
-from benchmarks.verdicts import ERROR, Plan, Play, Scenario, at_most, drawn, in_suite, judged, measured
+from benchmarks.verdicts import (
+    ERROR,
+    Plan,
+    Play,
+    Scenario,
+    draw_episodes,
+    first_verdict,
+    measure_scenario,
+    probability_in_suite,
+    upper_limit,
+)
 
 np = pytest.importorskip("numpy")
 
@@ -18,13 +28,13 @@ np = pytest.importorskip("numpy")
     ("pairing", "least", "most"), [("identical", 1.0, 1.0), ("half", 0.4, 0.6), ("independent", 0, 0)]
 )
 def test_the_share_of_equal_episodes_matches_the_pairing(pairing: verdicts.Pairing, least: float, most: float) -> None:
-    now, before = drawn(Scenario(Play(0.9), Play(0.9), pairing), np.random.default_rng(1))
+    now, before = draw_episodes(Scenario(Play(0.9), Play(0.9), pairing), np.random.default_rng(1))
     same = [new == old for new, old in zip(now, before, strict=True)]
     assert least <= np.mean(same) <= most
 
 
 def test_episodes_are_drawn_from_the_scenario() -> None:
-    now, before = drawn(Scenario(Play(0.6, 0.5, 0.01), Play(1.0)), np.random.default_rng(1))
+    now, before = draw_episodes(Scenario(Play(0.6, 0.5, 0.01), Play(1.0)), np.random.default_rng(1))
     assert all(episode.success and episode.progress == 1.0 for episode in before)
     assert np.mean([episode.success for episode in now]) == pytest.approx(0.6, abs=0.1)
     assert np.mean([episode.reward for episode in now if episode.success]) == pytest.approx(0.5, abs=0.005)
@@ -34,8 +44,8 @@ def test_episodes_are_drawn_from_the_scenario() -> None:
 
 @pytest.mark.parametrize(("rate", "verdict"), [(1.0, "pass"), (0.0, "fail")])
 def test_clear_cases_are_judged_early_and_with_certainty(rate: float, verdict: str) -> None:
-    now, before = drawn(Scenario(Play(rate), Play(1.0)), np.random.default_rng(1))
-    judgement, episodes = judged(now, before, ERROR / 9)
+    now, before = draw_episodes(Scenario(Play(rate), Play(1.0)), np.random.default_rng(1))
+    judgement, episodes = first_verdict(now, before, ERROR / 9)
     assert (judgement.verdict, judgement.certain) == (verdict, True)
     assert episodes < 100
 
@@ -50,7 +60,7 @@ def test_a_quick_run_is_resumed_and_reproducible(tmp_path: Path) -> None:
     records = store.section(verdicts.SECTION)
     assert [record["trials"] for record in records.values()] == [6, 4]
     for scenario in scenarios:
-        assert records[scenario.name] == measured(scenario, records[scenario.name]["trials"], (1, 9))
+        assert records[scenario.name] == measure_scenario(scenario, records[scenario.name]["trials"], (1, 9))
     for record in records.values():
         for shares in record["suites"].values():
             assert sum(shares[verdict] for verdict in ("pass", "review", "fail")) == pytest.approx(1.0, abs=1e-4)
@@ -60,16 +70,16 @@ def test_a_quick_run_is_resumed_and_reproducible(tmp_path: Path) -> None:
 
 
 def test_a_suite_shows_an_event_if_any_of_its_cases_does() -> None:
-    assert in_suite(0.01, 1) == pytest.approx(0.01)
-    assert in_suite(0.5, 2) == pytest.approx(0.75)
-    assert in_suite(0.0, 30) == 0.0
+    assert probability_in_suite(0.01, 1) == pytest.approx(0.01)
+    assert probability_in_suite(0.5, 2) == pytest.approx(0.75)
+    assert probability_in_suite(0.0, 30) == 0.0
 
 
 def test_the_upper_limit_is_a_one_sided_95_percent_bound() -> None:
     # The rule of three, and its exact form.
-    assert at_most(0.0, 4000) == pytest.approx(1 - 0.05 ** (1 / 4000)) == pytest.approx(3 / 4000, rel=0.01)
-    assert at_most(1.0, 10) == 1.0
-    seen = np.random.default_rng(3).binomial(500, at_most(0.02, 500), 4000) <= 10
+    assert upper_limit(0.0, 4000) == pytest.approx(1 - 0.05 ** (1 / 4000)) == pytest.approx(3 / 4000, rel=0.01)
+    assert upper_limit(1.0, 10) == 1.0
+    seen = np.random.default_rng(3).binomial(500, upper_limit(0.02, 500), 4000) <= 10
     assert np.mean(seen) == pytest.approx(0.05, abs=0.01)
 
 
@@ -129,11 +139,11 @@ def test_the_documentation_has_the_measured_rates_of_false_alarms() -> None:
         for cell, size in zip(line.split("|")[2:4], (9, 30), strict=True):
             alarms = [1.0 - records[name]["suites"][str(size)]["pass"] for name in names]
             most = [
-                in_suite(at_most(alarm, records[name]["trials"]), size)
+                probability_in_suite(upper_limit(alarm, records[name]["trials"]), size)
                 for alarm, name in zip(alarms, names, strict=True)
             ]
             *seen, limit = (float(number) / 100 for number in re.findall(r"[\d.]+", cell))
             digits = 3 if "." in cell else 2
-            ends = {round(in_suite(alarm, size), digits) for alarm in (min(alarms), max(alarms))}
+            ends = {round(probability_in_suite(alarm, size), digits) for alarm in (min(alarms), max(alarms))}
             assert {round(rate, digits) for rate in seen} == ends, line
             assert limit == pytest.approx(round(max(most), digits)), line

@@ -1,4 +1,4 @@
-// What the monitors written by hand share: their result, and closeness.  C99 and C++17.
+// The result of the handwritten monitors, and closeness.  C99 and C++17.
 
 #ifndef BY_HAND_COMMON_H
 #define BY_HAND_COMMON_H

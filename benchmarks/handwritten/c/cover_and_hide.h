@@ -15,7 +15,7 @@ typedef struct {
     double health;
 } Signals;
 
-// States 0, 1 and 3 wait for a place, 4 has been everywhere, 2 is dead.  False, and the state stays, where a signal is
+// States 0, 1 and 3 wait for a place, 4 is the goal, 2 is the trap.  False, and the state stays, where a signal is
 // not finite or two places are near at once.
 static inline bool monitor_step(Monitor *monitor, const Signals *signals, Result *result) {
     static const char *const atoms[] = {"near(s1)", "near(s2)", "near(exit)"};
@@ -63,7 +63,7 @@ static inline bool monitor_step(Monitor *monitor, const Signals *signals, Result
             robustness = least(here, alive);
             progress = (place + 1.0) / 3.0;
         } else {
-            // Not here, or at one of the other places, which would say so too.
+            // At another place the player is certainly not here, because the places exclude each other.
             const double elsewhere = greatest(near[(place + 1) % 3], near[(place + 2) % 3]);
             robustness = least(greatest(-here, elsewhere), alive);
             progress = (place + 1.0 + here) / 3.0;

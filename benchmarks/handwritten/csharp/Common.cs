@@ -1,4 +1,4 @@
-// What the monitors written by hand share: their result, and what an episode earns.
+// The parts that the handwritten monitors share: their result, and the reward.
 
 namespace ByHand
 {
@@ -12,7 +12,7 @@ namespace ByHand
         Violated
     }
 
-    /// <summary>What one sample did.</summary>
+    /// <summary>The result of a step.</summary>
     public struct Result
     {
         public int State;
@@ -48,7 +48,7 @@ namespace ByHand
             _steps = 0;
         }
 
-        /// <summary>Count a step that came to this progress; returns its reward.</summary>
+        /// <summary>Count a step with this progress; returns its reward.</summary>
         protected double Advance(double progress, bool violated, bool ends, int limit)
         {
             _steps++;

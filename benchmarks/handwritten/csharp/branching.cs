@@ -16,7 +16,7 @@ namespace ByHand
         public double health;
     }
 
-    /// <summary>States 0, 1 and 3 wait for a switch, 4 for an exit, 5 is out, 2 is dead.</summary>
+    /// <summary>States 0, 1 and 3 wait for a switch, 4 for an exit, 5 is the goal, 2 is the trap.</summary>
     public sealed class Monitor : Episode
     {
         private const int Trap = 2;

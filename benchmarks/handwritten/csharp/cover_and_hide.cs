@@ -13,7 +13,7 @@ namespace ByHand
         public double health;
     }
 
-    /// <summary>States 0, 1 and 3 wait for a place, 4 has been everywhere, 2 is dead.</summary>
+    /// <summary>States 0, 1 and 3 wait for a place, 4 is the goal, 2 is the trap.</summary>
     public sealed class Monitor : Episode
     {
         private const int Trap = 2;
@@ -86,7 +86,7 @@ namespace ByHand
                 }
                 else
                 {
-                    // Not here, or at one of the other places, which would say so too.
+                    // At another place the player is certainly not here, because the places exclude each other.
                     double elsewhere = Math.Max(place == 0 ? s2 : s1, place == 2 ? s2 : exit);
                     result.Robustness = Math.Min(Math.Max(-here, elsewhere), alive);
                     result.Limiting = Atoms[place];

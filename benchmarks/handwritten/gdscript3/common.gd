@@ -1,4 +1,4 @@
-# What the monitors written by hand share: what an episode earns, and closeness.
+# The parts that the handwritten monitors share: the reward, and closeness.
 
 extends Reference
 
@@ -30,7 +30,7 @@ func reset():
 	problem = ""
 
 
-# Counts a step that came to this progress.
+# Counts a step with this progress.
 func _advance(reached: float, ends: bool, limit: int):
 	steps += 1
 	var gained: float = reached - progress if reached > progress else 0.0

@@ -26,7 +26,7 @@ class Sample:
 	var health: float
 
 
-# States 0, 1 and 3 wait for a place, 4 has been everywhere, 2 is dead.  Returns false, and the state stays, where a
+# States 0, 1 and 3 wait for a place, 4 is the goal, 2 is the trap.  Returns false, and the state stays, where a
 # signal is not finite or two places are near at once.
 func step(sample: Sample) -> bool:
 	if not _is_finite(sample.distance_s1):
@@ -69,7 +69,7 @@ func step(sample: Sample) -> bool:
 			robustness = here if here < alive else alive
 			reached = (place + 1) / 3.0
 		else:
-			# Not here, or at one of the other places, which would say so too.
+			# At another place the player is certainly not here, because the places exclude each other.
 			robustness = -here if -here > elsewhere else elsewhere
 			if robustness > alive:
 				robustness = alive

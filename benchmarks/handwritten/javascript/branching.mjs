@@ -21,7 +21,7 @@ const EXITS = 4;
 const GOAL = 5;
 const LIMIT = 600;
 
-/** States 0, 1 and 3 wait for a switch, 4 for an exit, 5 is out, 2 is dead. */
+/** States 0, 1 and 3 wait for a switch, 4 for an exit, 5 is the goal, 2 is the trap. */
 export class Monitor extends Episode {
   constructor(levelSize = 20) {
     super(levelSize);

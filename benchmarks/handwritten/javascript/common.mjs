@@ -1,6 +1,6 @@
-// What the monitors written by hand share: their result, what an episode earns, and the reading of samples.
+// The parts that the handwritten monitors share: their result, the reward, and reading samples.
 
-/** What one sample did. */
+/** The result of a step. */
 export class Result {
   state = 0;
   label = "";
@@ -28,7 +28,7 @@ export class Episode {
     this.done = false;
   }
 
-  /** Count a step that came to this progress; returns its reward. */
+  /** Count a step with this progress; returns its reward. */
   advance(progress, violated, ends, limit) {
     this.steps += 1;
     const best = progress > this.progress ? progress : this.progress;

@@ -20,7 +20,7 @@ const TRAP = 2;
 const GOAL = 4;
 const LIMIT = 400;
 
-/** States 0, 1 and 3 wait for a place, 4 has been everywhere, 2 is dead. */
+/** States 0, 1 and 3 wait for a place, 4 is the goal, 2 is the trap. */
 export class Monitor extends Episode {
   constructor(levelSize = 20) {
     super(levelSize);
@@ -54,7 +54,7 @@ export class Monitor extends Episode {
         robustness = Math.min(here, alive);
         progress = (place + 1) / 3;
       } else {
-        // Not here, or at one of the other places, which would say so too.
+        // At another place the player is certainly not here, because the places exclude each other.
         const elsewhere = Math.max(place === 0 ? nearS2 : nearS1, place === 2 ? nearS2 : nearExit);
         robustness = Math.min(Math.max(-here, elsewhere), alive);
         progress = (place + 1 + here) / 3;

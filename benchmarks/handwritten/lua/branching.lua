@@ -18,7 +18,7 @@ local SWITCH = { [0] = 0, [1] = 1, [3] = 2 }
 local NEXT = { [0] = 1, [1] = 3, [3] = 4 }
 local TRAP, EXITS, GOAL, LIMIT = 2, 4, 5, 600
 
--- States 0, 1 and 3 wait for a switch, 4 for an exit, 5 is out, 2 is dead.
+-- States 0, 1 and 3 wait for a switch, 4 for an exit, 5 is the goal, 2 is the trap.
 local Monitor = common.class()
 
 -- Take one sample, into `result` or a new table.  Returns nil and a message, and the state stays, where a signal is

@@ -1,4 +1,4 @@
--- What the monitors written by hand share: what an episode earns, the reading of samples, closeness.
+-- The parts that the handwritten monitors share: the reward, reading samples, and closeness.
 
 local common = {}
 
@@ -17,7 +17,7 @@ function common.near(distance, level_size)
   return rest * rest - 1.0
 end
 
--- Count a step that came to this progress; returns its reward.
+-- Count a step with this progress; returns its reward.
 function common.advance(monitor, progress, violated, ends, limit)
   local steps, before = monitor.steps + 1, monitor.progress
   local best = progress > before and progress or before

@@ -18,7 +18,7 @@ local PLACE = { [0] = 0, [1] = 1, [3] = 2 }
 local NEXT = { [0] = 1, [1] = 3, [3] = 4 }
 local TRAP, GOAL, LIMIT = 2, 4, 400
 
--- States 0, 1 and 3 wait for a place, 4 has been everywhere, 2 is dead.
+-- States 0, 1 and 3 wait for a place, 4 is the goal, 2 is the trap.
 local Monitor = common.class()
 
 -- Take one sample, into `result` or a new table.  Returns nil and a message, and the state stays, where a signal is
@@ -62,7 +62,7 @@ function Monitor:step(signals, result)
       robustness = min(here, alive)
       progress = (place + 1) / 3.0
     else
-      -- Not here, or at one of the other places, which would say so too.
+      -- At another place the player is certainly not here, because the places exclude each other.
       robustness = min(max(-here, elsewhere), alive)
       progress = (place + 1.0 + here) / 3.0
       limiting = ATOMS[place]

@@ -30,7 +30,7 @@ pub struct Signals {
     pub health: f64,
 }
 
-/// States 0, 1 and 3 wait for a switch, 4 for an exit, 5 is out, 2 is dead.
+/// States 0, 1 and 3 wait for a switch, 4 for an exit, 5 is the goal, 2 is the trap.
 #[derive(Clone, Debug)]
 pub struct Monitor {
     level_size: f64,

@@ -1,4 +1,4 @@
-//! What the monitors written by hand share: their result, what an episode earns, and closeness.
+//! The parts that the handwritten monitors share: their result, the reward, and closeness.
 
 /// What the verdict would be if the trace ended here.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -9,7 +9,7 @@ pub enum Verdict {
     Violated,
 }
 
-/// What one sample did.
+/// The result of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Step {
     pub state: usize,
@@ -39,7 +39,7 @@ pub struct Episode {
 }
 
 impl Episode {
-    /// Count a step that came to this progress; returns its reward.
+    /// Count a step with this progress; returns its reward.
     #[inline]
     pub fn advance(&mut self, progress: f64, violated: bool, ends: bool, limit: u32) -> f64 {
         self.steps += 1;

@@ -25,7 +25,7 @@ pub struct Signals {
     pub health: f64,
 }
 
-/// States 0, 1 and 3 wait for a place, 4 has been everywhere, 2 is dead.
+/// States 0, 1 and 3 wait for a place, 4 is the goal, 2 is the trap.
 #[derive(Clone, Debug)]
 pub struct Monitor {
     level_size: f64,
@@ -79,7 +79,7 @@ impl Monitor {
                 } else {
                     progress = (place as f64 + 1.0 + here) / 3.0;
                     limiting = Some(ATOMS[place]);
-                    // Not here, or at one of the other places, which would say so too.
+                    // At another place the player is certainly not here, because the places exclude each other.
                     let elsewhere = closeness[(place + 1) % 3].max(closeness[(place + 2) % 3]);
                     elsewhere.max(-here).min(alive)
                 }

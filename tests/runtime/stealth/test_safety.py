@@ -15,7 +15,7 @@ STEPS = 2_300
 
 @pytest.mark.parametrize("level, variant", variants_of_all())
 def test_the_player_passes_no_wall_and_stays_in_bounds(level: str, variant: str) -> None:
-    record = safety.tried(level, variant, STEPS)
+    record = safety.play_random_steps(level, variant, STEPS)
     assert (record["steps"], record["episodes"], record["checks"]) == (STEPS, 6, 11)
     assert 0.0 < record["deepest_m"] < safety.DEEPEST
 
@@ -34,10 +34,10 @@ def test_a_missing_wall_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
 
     monkeypatch.setattr(safety, "_begin", begin_with_complete_level)
     with pytest.raises(WorldError, match="nothing is hit on its side"):
-        safety.tried("navigation", "v0", 10)
+        safety.play_random_steps("navigation", "v0", 10)
 
 
 def test_a_player_inside_a_box_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(safety, "DEEPEST", -1.0)
     with pytest.raises(safety.Violation, match=r"navigation v0, seed \d+, step 0: the player at .* m inside a box"):
-        safety.tried("navigation", "v0", 10)
+        safety.play_random_steps("navigation", "v0", 10)

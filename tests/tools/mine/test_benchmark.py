@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from benchmarks import mine
-from benchmarks.mine_peers import enumerated, has_scarlet, scarlet
-from benchmarks.mine_traces import Planted, evidence, of_the_paper, planted
+from benchmarks.mine_peers import enumerate_formulas, has_scarlet, scarlet
+from benchmarks.mine_traces import PlantedSpec, evidence, paper_specs, random_spec
 from tests.tools.mine.conftest import vocabulary
 from tests.waiting import HANG_S
 from tltlc.automaton.compare import are_equivalent
@@ -16,11 +16,11 @@ from tltlc.pipeline import compile_source
 from tltlc.tools.mine.confirm import judge
 from tltlc.tools.mine.evidence import Evidence
 
-SHORT = Planted("short", ("reach p0 then p1",), dict.fromkeys(("p0", "p1", "p2"), 0.2))
+SHORT = PlantedSpec("short", ("reach p0 then p1",), dict.fromkeys(("p0", "p1", "p2"), 0.2))
 
 
-def learned(formula: str, spec: Planted) -> Fspa:
-    text = vocabulary(tuple(spec.likely)).library.text + f"spec found = {formula}\n"
+def learned(formula: str, spec: PlantedSpec) -> Fspa:
+    text = vocabulary(tuple(spec.probabilities)).library.text + f"spec found = {formula}\n"
     return compile_source(SourceFile("found.tltl", text)).automata[0]
 
 
@@ -34,15 +34,15 @@ def separates(fspa: Fspa, given_evidence: Evidence) -> bool:
     "clauses", [("reach p0",), ("keep not p0",), ("require p0 until p1",), ("require X p1",), ("reach p0 and p1",)]
 )
 def test_enumeration_finds_a_formula_that_separates_the_traces(clauses: tuple[str, ...]) -> None:
-    spec = Planted("tiny", clauses, SHORT.likely)
+    spec = PlantedSpec("tiny", clauses, SHORT.probabilities)
     given_evidence = evidence(spec, 20, 40, seed=1)
-    result = enumerated(given_evidence, timeout_s=HANG_S)
+    result = enumerate_formulas(given_evidence, timeout_s=HANG_S)
     assert result.formula is not None
     assert separates(learned(result.formula, spec), given_evidence)
 
 
 def test_enumeration_stops_at_the_timeout() -> None:
-    result = enumerated(evidence(planted(0), 20, 40, seed=1), timeout_s=0.0)
+    result = enumerate_formulas(evidence(random_spec(0), 20, 40, seed=1), timeout_s=0.0)
     # The clock is checked after every 64 formulas.
     assert (result.formula, result.tried) == (None, 64)
 
@@ -55,8 +55,8 @@ def test_the_translated_formula_of_scarlet_separates_the_traces() -> None:
     assert separates(learned(result.formula, SHORT), given_evidence)
 
 
-@pytest.mark.parametrize("spec", [*of_the_paper(), *map(planted, range(10))], ids=lambda spec: spec.name)
-def test_the_planted_spec_separates_the_generated_evidence(spec: Planted) -> None:
+@pytest.mark.parametrize("spec", [*paper_specs(), *map(random_spec, range(10))], ids=lambda spec: spec.name)
+def test_the_planted_spec_separates_the_generated_evidence(spec: PlantedSpec) -> None:
     given_evidence = evidence(spec, 6, 8, seed=2)
     assert separates(spec.automaton(), given_evidence)
     assert given_evidence == evidence(spec, 6, 8, seed=2)
@@ -65,7 +65,7 @@ def test_the_planted_spec_separates_the_generated_evidence(spec: Planted) -> Non
 
 
 def test_two_random_specs_are_not_equivalent() -> None:
-    automata = [planted(number).automaton() for number in range(0, 20, 10)]
+    automata = [random_spec(number).automaton() for number in range(0, 20, 10)]
     assert not are_equivalent(*automata)
 
 

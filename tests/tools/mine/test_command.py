@@ -11,15 +11,15 @@ from typing import Any
 import jsonschema
 import pytest
 
-from benchmarks.mine_traces import Planted, evidence
+from benchmarks.mine_traces import PlantedSpec, evidence
 from tests.interfaces.cli.conftest import ROOT, Outcome
-from tests.interfaces.cli.test_loading import HEAVY, loaded
+from tests.interfaces.cli.test_loading import HEAVY, loaded_modules
 from tltlc.automaton.compare import are_equivalent
 from tltlc.pipeline import CompileOptions, compile_file
 from tltlc.tools.fmt import format_text
 from tltlc.tools.mine.evidence import LabelledTrace
 
-SPEC = Planted(
+SPEC = PlantedSpec(
     "heist",
     ("reach near(s1) then near(s2) then near(exit)", "keep alive"),
     {"near(s1)": 0.1, "near(s2)": 0.1, "near(exit)": 0.1, "alive": 0.985, "seen": 0.3},
@@ -35,7 +35,7 @@ signal near(place: entity): bool
 Run = Callable[..., Outcome]
 
 
-class PlantedWithEntities(Planted):
+class PlantedWithEntities(PlantedSpec):
     """A planted spec whose source declares the predicates with arguments."""
 
     @property
@@ -47,7 +47,7 @@ class PlantedWithEntities(Planted):
 @pytest.fixture
 def recorded(inside: Path) -> Path:
     """Write traces of a planted spec to the subfolders `good` and `bad`, and return the folder."""
-    planted = evidence(PlantedWithEntities(SPEC.name, SPEC.clauses, SPEC.likely), 12, 24, seed=4)
+    planted = evidence(PlantedWithEntities(SPEC.name, SPEC.clauses, SPEC.probabilities), 12, 24, seed=4)
     for folder, traces in (("good", planted.traces), ("bad", planted.counterexamples)):
         (inside / folder).mkdir()
         for number, trace in enumerate(traces):
@@ -56,9 +56,9 @@ def recorded(inside: Path) -> Path:
 
 
 def _csv(trace: LabelledTrace) -> str:
-    rows = [",".join(["time", *SPEC.likely])]
+    rows = [",".join(["time", *SPEC.probabilities])]
     for number, letter in enumerate(trace.letters):
-        rows.append(",".join([f"{number / 10}", *(str(name in letter).lower() for name in SPEC.likely)]))
+        rows.append(",".join([f"{number / 10}", *(str(name in letter).lower() for name in SPEC.probabilities)]))
     return "\n".join(rows) + "\n"
 
 
@@ -249,7 +249,7 @@ def test_traces_in_which_nothing_holds_give_no_proposal(tltlc: Run, inside: Path
 
 
 def test_no_heavy_module_is_imported(recorded: Path) -> None:
-    assert not loaded("mine", "good", "--against", "bad", folder=recorded) & HEAVY
+    assert not loaded_modules("mine", "good", "--against", "bad", folder=recorded) & HEAVY
 
 
 def test_a_column_missing_in_one_trace_is_reported(tltlc: Run, recorded: Path) -> None:

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from benchmarks.mine_traces import ATOMS, Planted, evidence, of_the_paper, planted
+from benchmarks.mine_traces import ATOMS, PlantedSpec, evidence, paper_specs, random_spec
 from tests.tools.mine.conftest import evidences, vocabulary
 from tltlc.automaton.compare import are_equivalent
 from tltlc.core.source import SourceFile
@@ -57,7 +57,7 @@ def test_bit_masks_agree_with_the_automata(given_evidence: Evidence) -> None:
 def test_every_template_has_an_instance_in_some_evidence() -> None:
     kinds = {"reach"}
     for number in (1, 4, 8):
-        given_evidence = evidence(planted(number), 10, 10, seed=3)
+        given_evidence = evidence(random_spec(number), 10, 10, seed=3)
         forwards, backwards = Bits(given_evidence), Bits(given_evidence, backwards=True)
         portions = clauses(forwards, backwards, list(forwards.holds), 10)
         kinds |= {clause.kind for clause in chain.from_iterable(portions)}
@@ -89,13 +89,13 @@ def test_a_support_of_one_means_that_all_traces_are_accepted(given_evidence: Evi
 @given(st.integers(1, 8), st.integers(0, 10_000))
 def test_a_planted_sequence_of_any_length_is_recovered(length: int, seed: int) -> None:
     steps = Random(seed).sample(ATOMS, length)
-    spec = Planted("sequence", ("reach " + " then ".join(steps),), dict.fromkeys(ATOMS, 0.15))
+    spec = PlantedSpec("sequence", ("reach " + " then ".join(steps),), dict.fromkeys(ATOMS, 0.15))
     # The added counterexamples lack one step, or swap two steps, so that no shorter spec separates the traces.
     proposed = proposals(_with_all_orders(spec, steps, evidence(spec, 20, 40, seed)))
     assert are_equivalent(proposed[0].fspa, spec.automaton())
 
 
-def _with_all_orders(spec: Planted, steps: list[str], given_evidence: Evidence) -> Evidence:
+def _with_all_orders(spec: PlantedSpec, steps: list[str], given_evidence: Evidence) -> Evidence:
     wrong_orders = [steps[:place] + steps[place + 1 :] for place in range(len(steps))]
     wrong_orders += [
         [*steps[:place], steps[place + 1], steps[place], *steps[place + 2 :]] for place in range(len(steps) - 1)
@@ -112,14 +112,14 @@ def _with_all_orders(spec: Planted, steps: list[str], given_evidence: Evidence) 
     return Evidence(given_evidence.traces, (*given_evidence.counterexamples, *missed))
 
 
-@pytest.mark.parametrize("spec", of_the_paper(), ids=lambda spec: spec.name)
-def test_the_plans_of_the_paper_are_recovered(spec: Planted) -> None:
+@pytest.mark.parametrize("spec", paper_specs(), ids=lambda spec: spec.name)
+def test_the_plans_of_the_paper_are_recovered(spec: PlantedSpec) -> None:
     proposed = proposals(evidence(spec, 40, 80, seed=1), top=1)
     assert are_equivalent(proposed[0].fspa, spec.automaton())
 
 
 def test_a_planted_spec_is_recovered_despite_wrong_labels_if_support_is_below_one() -> None:
-    spec = planted(0)
+    spec = random_spec(0)
     given_evidence = evidence(spec, 40, 80, seed=1, noise=0.05)
     proposed = proposals(given_evidence, MiningOptions(min_support=0.9))
     assert are_equivalent(proposed[0].fspa, spec.automaton())
@@ -127,7 +127,7 @@ def test_a_planted_spec_is_recovered_despite_wrong_labels_if_support_is_below_on
 
 
 def test_the_order_of_proposals_does_not_depend_on_the_order_of_traces() -> None:
-    given_evidence = evidence(planted(3), 20, 30, seed=5)
+    given_evidence = evidence(random_spec(3), 20, 30, seed=5)
     first, second = ([proposal.clauses for proposal in proposals(given_evidence)] for _ in range(2))
     assert _texts(first) == _texts(second)
     reversed_evidence = Evidence(given_evidence.traces[::-1], given_evidence.counterexamples[::-1])
@@ -139,7 +139,7 @@ def _texts(conjunctions: list[Conjunction]) -> list[list[str]]:
 
 
 def test_the_best_proposal_so_far_is_available_at_any_time() -> None:
-    given_evidence = evidence(planted(1), 20, 30, seed=5)
+    given_evidence = evidence(random_spec(1), 20, 30, seed=5)
     search = SpecSearch(given_evidence, MiningOptions())
     best = -2.0
     assert search.ranking() == []
@@ -153,7 +153,7 @@ def test_the_best_proposal_so_far_is_available_at_any_time() -> None:
 
 
 def test_no_proposal_is_longer_than_allowed() -> None:
-    given_evidence = evidence(planted(1), 20, 30, seed=5)
+    given_evidence = evidence(random_spec(1), 20, 30, seed=5)
     search = SpecSearch(given_evidence, MiningOptions(max_length=3))
     list(search.run())
     assert search.ranking()
@@ -161,7 +161,7 @@ def test_no_proposal_is_longer_than_allowed() -> None:
 
 
 def test_a_later_proposal_never_has_more_atoms() -> None:
-    proposed = [proposal.clauses for proposal in proposals(evidence(planted(2), 20, 40, seed=2))]
+    proposed = [proposal.clauses for proposal in proposals(evidence(random_spec(2), 20, 40, seed=2))]
     sizes = [count_atoms(conjunction) for conjunction in proposed]
     assert sizes == sorted(sizes, reverse=True)
     assert len(proposed) > 1

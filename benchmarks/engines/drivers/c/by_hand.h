@@ -1,4 +1,4 @@
-// The monitor written by hand.
+// The handwritten monitor.
 
 #include "@BY_HAND@/@SPEC@.h"
 

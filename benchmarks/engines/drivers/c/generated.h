@@ -1,4 +1,4 @@
-// The generated monitor, under the names of the one written by hand.
+// The generated monitor, with the names of the handwritten one.
 
 #include "@SPEC@_monitor.h"
 

@@ -1,4 +1,4 @@
-// What a game compiles to have a monitor and to log what is wrong with a sample.
+// What a game compiles to run a monitor and to log invalid samples.
 
 #include ADAPTER
 

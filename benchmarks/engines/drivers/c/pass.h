@@ -1,4 +1,4 @@
-// What the driver asks of each monitor.
+// The functions of a monitor that the driver calls.
 
 #ifndef PASS_H
 #define PASS_H
@@ -7,10 +7,10 @@
 
 typedef struct {
     const char *name;
-    void (*load)(const double *numbers, size_t count);    // the samples of a trace, one behind the other
-    void (*run)(void);                                     // one pass over it from its beginning
+    void (*load)(const double *numbers, size_t count);    // the samples of a trace, one after another
+    void (*run)(void);                                     // one pass over the trace from its start
     double (*rewards)(void);                               // the sum over the last pass
-    void (*print)(void);                                   // what the last pass gave
+    void (*print)(void);                                   // the results of the last pass
 } Pass;
 
 extern const Pass generated, by_hand;

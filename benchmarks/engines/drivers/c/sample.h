@@ -1,7 +1,7 @@
-// From a line of a trace to a sample.
+// Makes a sample from a line of a trace.
 
 static inline Signals sample_of(const double *numbers) {
     Signals sample;
-@GIVE@
+@ASSIGNMENTS@
     return sample;
 }

@@ -1,6 +1,6 @@
-// Runs the generated monitor and the one written by hand over the same traces: a line of numbers for each sample.
+// Runs the generated and the handwritten monitor over the same traces, which have a line of numbers for each sample.
 //
-//     driver rows TRACE...               a row for each step, of the one and then of the other
+//     driver rows TRACE...               a row for each step, first of the generated monitor, then of the handwritten one
 //     driver time ROUNDS SECONDS TRACE   JSON lines: steps per second of CPU time in each round
 
 using System;
@@ -30,7 +30,7 @@ internal static class Driver
         return loaded.Length;
     }
 
-    // CPU time of this process in microseconds; what .NET tells of it is rounded to hundredths of a second.
+    // CPU time of this process in microseconds; .NET rounds its own figure to hundredths of a second.
     [DllImport("libc", EntryPoint = "clock")]
     private static extern IntPtr Clock();
 

@@ -15,7 +15,7 @@ public sealed class @PASS@ : Pass
 
     public override void Load(double[][] rows)
     {
-        _samples = rows.Select(row => new Signals {@GIVE@}).ToArray();
+        _samples = rows.Select(row => new Signals {@ASSIGNMENTS@}).ToArray();
         _results = new Result[rows.Length];
     }
 

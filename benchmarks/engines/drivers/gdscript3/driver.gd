@@ -1,6 +1,6 @@
-# Runs the generated monitor and the one written by hand over the same traces: a line of numbers for each sample.
+# Runs the generated and the handwritten monitor over the same traces, which have a line of numbers for each sample.
 #
-#     driver rows TRACE...               a row for each step, of the one and then of the other
+#     driver rows TRACE...               a row for each step, first of the generated monitor, then of the handwritten one
 #     driver time ROUNDS SECONDS TRACE   JSON lines: steps per second in each round
 
 extends SceneTree
@@ -34,7 +34,7 @@ func _samples(module, path: String) -> Array:
 			# `float(cell)` would round to single precision.
 			row.append(float(str2var(cell)))
 		var sample = module.Sample.new()
-@GIVE@
+@ASSIGNMENTS@
 		found.append(sample)
 	return found
 

@@ -1,6 +1,6 @@
-// Runs the generated monitor and the one written by hand over the same traces: a line of numbers for each sample.
+// Runs the generated and the handwritten monitor over the same traces, which have a line of numbers for each sample.
 //
-//     driver rows TRACE...               a row for each step, of the one and then of the other
+//     driver rows TRACE...               a row for each step, first of the generated monitor, then of the handwritten one
 //     driver time ROUNDS SECONDS TRACE   JSON lines: steps per second of CPU time in each round
 
 import { readFileSync } from "node:fs";
@@ -13,7 +13,7 @@ function samplesOf(path) {
   const lines = readFileSync(path, "ascii").trim().split("\n");
   return lines.map((line) => {
     const row = line.split(" ").map(Number);
-    return { @GIVE@ };
+    return { @ASSIGNMENTS@ };
   });
 }
 

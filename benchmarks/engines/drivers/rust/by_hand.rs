@@ -1,4 +1,4 @@
-//! The monitor written by hand as a crate of its own, to see what it weighs.
+//! The handwritten monitor as a crate of its own, to measure its size.
 
 #[path = "@BY_HAND@/common.rs"]
 pub mod common;

@@ -1,6 +1,6 @@
-//! Runs the generated monitor and the one written by hand over the same traces: a line of numbers for each sample.
+//! Runs the generated and the handwritten monitor over the same traces, which have a line of numbers for each sample.
 //!
-//!     driver rows TRACE...               a row for each step, of the one and then of the other
+//!     driver rows TRACE...               a row for each step, first of the generated monitor, then of the handwritten one
 //!     driver time ROUNDS SECONDS TRACE   JSON lines: steps per second of CPU time in each round
 //!
 //! All results are written to memory, so that no field of them is left out.
@@ -41,7 +41,7 @@ macro_rules! pass {
 
         impl $who {
             fn new(rows: &[Vec<f64>]) -> Self {
-                let samples: Vec<_> = rows.iter().map(|row| $name::Signals { @GIVE@ }).collect();
+                let samples: Vec<_> = rows.iter().map(|row| $name::Signals { @ASSIGNMENTS@ }).collect();
                 let mut monitor = $new;
                 let steps = samples.iter().map(|sample| monitor.step(sample).expect("a sample is refused")).collect();
                 $who { monitor, samples, steps }

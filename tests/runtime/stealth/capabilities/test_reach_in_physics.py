@@ -28,12 +28,12 @@ def search_corridor(variant: str) -> Search:
 
 @pytest.mark.parametrize("variant", ["v0", "v1"])
 def test_the_corridor_can_be_passed(variant: str) -> None:
-    assert search_corridor(variant).met
+    assert search_corridor(variant).found_goal
 
 
 def test_the_stretched_block_cannot_be_passed() -> None:
     result = search_corridor("v2")
-    assert not result.met
+    assert not result.found_goal
     assert result.poses > 300
     east = max(place[0] for place in result.places)
     assert BLOCK_2 - 0.35 < east < BLOCK_2
