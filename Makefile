@@ -1,10 +1,10 @@
-# One target per thing a person does here; stamps in .venv make a second run quick.
+# A target for each task of a contributor. Stamp files in .venv avoid installing again.
 PYTHON ?= python3
 VENV   := .venv
 BIN    := $(VENV)/bin
 PIP    := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-# `make test ORDER=random` shuffles the tests and prints a seed; SEED=N gives that order again.
+# `make test ORDER=random` shuffles the tests and prints a seed; SEED=N repeats that order.
 ORDER  ?= fixed
 ifeq ($(ORDER),random)
 ifndef SEED
@@ -13,13 +13,13 @@ endif
 ORDERED := --random-order --random-order-seed=$(SEED)
 endif
 
-# Python stores compiled modules even where the shell forbids it; otherwise each process that a test starts, and each
+# Let Python store compiled modules, even if the shell forbids it. Otherwise each process that a test starts, and each
 # worker of pytest, compiles all modules again.
 unexport PYTHONDONTWRITEBYTECODE
 
 .PHONY: demo quick test tests test-again test-slow fuzz lint format generate docs vscode bench checkers clean
 
-# Compile and draw the Cover and Hide spec, run its generated monitor over a recorded trace, and have it played.
+# Compile and draw the Cover and Hide spec, run its generated monitor over a recorded trace, and play the level.
 demo: $(VENV)/.installed-rl
 	$(BIN)/tltlc compile examples/cover_and_hide.tltl -o demo -t json,dot,python,svg
 	$(BIN)/python demo/cover_and_hide_monitor.py examples/cover_and_hide.csv > demo/cover_and_hide_run.csv
@@ -42,12 +42,12 @@ demo: $(VENV)/.installed-rl
 	fi
 	@echo "The command is $(BIN)/tltlc; after 'source $(BIN)/activate' it is tltlc."
 
-# An answer within a minute: the tests of the compiler that start no process and no compiler. The rules: tests/quick.py.
+# Run the tests of the compiler that start no process and no other compiler, in a minute. tests/quick.py has the rules.
 quick: $(VENV)/.installed-dev
 	$(BIN)/ruff check .
 	$(BIN)/python -m pytest -q -n 2 -m quick $(ORDERED)
 
-# The static checks and the tests, side by side: mypy alone would leave a core idle.
+# Run the static checks and the tests at the same time, because mypy alone would leave a core idle.
 test: $(VENV)/.installed-dev
 	@$(MAKE) --no-print-directory -j 2 lint tests SEED=$(SEED)
 
@@ -55,18 +55,18 @@ tests: $(VENV)/.installed-dev
 	@$(if $(ORDERED),echo "The order is random; the same one again: make test ORDER=random SEED=$(SEED)")
 	$(BIN)/python -m pytest -q -rs -n 2 -m "not slow" $(ORDERED)
 
-# Do the tests depend on their order, or on how busy the machine is? N runs in random orders beside BUSY busy processes,
-# a line each; ARGS are further arguments of pytest, such as `-n 4` or a folder.
+# Check that the tests depend neither on their order nor on how busy the machine is: N runs in random orders, beside BUSY
+# busy processes, with a line for each. ARGS are further arguments of pytest, such as `-n 4` or a folder.
 N      ?= 10
 BUSY   ?= 6
 test-again: $(VENV)/.installed-dev
 	$(BIN)/python -m tests.repeated_runs $(N) $(BUSY) $(ARGS)
 
-# Trainings that are killed and go on, the shipped suite, large formulas: some minutes more.
+# Run the slow tests: trainings that are killed and continued, the shipped suite, large formulas. This takes minutes.
 test-slow: $(VENV)/.installed-dev
 	$(BIN)/python -m pytest -q -rs -n 2 -m slow
 
-# The property tests with other examples in every run; a failure prints how to see it again.
+# Run the property tests with new examples each time; a failure prints how to reproduce it.
 fuzz: $(VENV)/.installed-dev
 	$(BIN)/python -m pytest -q -n 2 -m hypothesis --hypothesis-profile=fuzz
 
@@ -82,7 +82,7 @@ format: $(VENV)/.installed-dev
 	$(BIN)/ruff check --fix .
 	$(BIN)/ruff format .
 
-# Rewrite the files that are made from others and kept in the repository.
+# Rewrite the files in the repository that are generated from other files.
 generate: $(VENV)/.installed-dev
 	$(BIN)/python -m tltlc.grammar.tables
 	$(BIN)/python -m tltlc.artefact.generate
@@ -104,11 +104,11 @@ vscode:
 	npm --prefix editors/vscode run build
 	npm --prefix editors/vscode run package
 
-# Measure beside the peers and write benchmarks/RESULTS.md; a run that was stopped goes on. MONA: Debian package `mona`.
+# Compare with peers and write benchmarks/RESULTS.md; a stopped run resumes. MONA is the Debian package `mona`.
 bench: $(VENV)/.installed-bench
 	$(BIN)/python -m benchmarks
 
-# What tests take from elsewhere, each in a folder of its own, since gdtoolkit asks for another lark than tltlc.
+# Install the checkers that tests use, each in a folder of its own: gdtoolkit needs another version of lark than tltlc.
 checkers: $(VENV)/gdtoolkit/bin/gdparse $(VENV)/npm/node_modules/.bin/tsc $(VENV)/pyodide/node_modules/pyodide
 
 $(VENV)/gdtoolkit/bin/gdparse:

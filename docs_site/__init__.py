@@ -1,1 +1,1 @@
-"""The documentation as a site: pages made of what the code says, beside those of ``docs/``; ``make docs`` builds it."""
+"""The documentation as a site: the pages of ``docs/``, and pages made from the code. ``make docs`` builds it."""

@@ -1,4 +1,4 @@
-"""A page for each diagnostic, and one that lists them by family."""
+"""Make a page for each diagnostic code, and a page that lists the codes by family."""
 
 from __future__ import annotations
 
@@ -23,18 +23,18 @@ FAMILIES: Final = {
     "TLT08": "Levels, episodes, policies and training",
     "TLT09": "Suites, demonstrations and Table I",
 }
-"""What the codes of each beginning are about."""
+"""The title of each family of codes, by its first five characters."""
 
 
 def pages() -> Iterator[Page]:
-    """The list of all codes first."""
+    """Yield the list of all codes, then the page of each code."""
     yield Page("diagnostics/index.md", _index(), f"{FOLDER}/index.md")
     for code in codes.codes():
         yield Page(_uri(code), codes.page(code), f"{FOLDER}/{code}.md")
 
 
 def navigation() -> list[Any]:
-    """The pages as MkDocs wants them, by family."""
+    """Return the entries of the pages for the navigation of MkDocs, by family."""
     return [
         "diagnostics/index.md",
         *({FAMILIES[family]: [{code: _uri(code)} for code in members]} for family, members in _families()),
@@ -42,7 +42,7 @@ def navigation() -> list[Any]:
 
 
 def homes() -> dict[str, str]:
-    """The pages of the files, for links to them."""
+    """Return the page of each file of a code, for links to the files."""
     return {FOLDER: "diagnostics/index.md"} | {f"{FOLDER}/{code}.md": _uri(code) for code in codes.codes()}
 
 

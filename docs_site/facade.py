@@ -1,4 +1,4 @@
-"""The names that ``import tltlc`` offers, from their docstrings."""
+"""Make the reference of ``import tltlc`` from docstrings."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _EMPTY: Final = inspect.Parameter.empty
 
 
 def page(lead: str) -> Page:
-    """The reference, behind what the README says of it: functions first, then what they take and give."""
+    """Return the page: ``lead``, which is the README's section, then functions, then classes."""
     values = {name: getattr(tltlc, name) for name in tltlc.__all__ if not name.startswith("_")}
     functions = {name: value for name, value in values.items() if not isinstance(value, type)}
     lines = [lead.rstrip(), "", "## Functions", ""]
@@ -37,12 +37,14 @@ def _entry(name: str, head: str, value: Any) -> list[str]:
 
 def _signature(name: str, function: Any) -> str:
     signature = inspect.signature(function)
-    taken = [_field(each.name, each.annotation, each.default) for each in signature.parameters.values()]
+    parameters = [
+        _field(parameter.name, parameter.annotation, parameter.default) for parameter in signature.parameters.values()
+    ]
     result = "" if signature.return_annotation is _EMPTY else f" -> {signature.return_annotation}"
-    one_line = f"{name}({', '.join(taken)}){result}"
+    one_line = f"{name}({', '.join(parameters)}){result}"
     if len(one_line) <= 80:
         return one_line
-    return "\n".join([f"{name}(", *(f"    {each}," for each in taken), f"){result}"])
+    return "\n".join([f"{name}(", *(f"    {parameter}," for parameter in parameters), f"){result}"])
 
 
 def _field(name: str, kind: Any, default: Any) -> str:
@@ -50,7 +52,7 @@ def _field(name: str, kind: Any, default: Any) -> str:
 
 
 def _fields(value: type) -> str:
-    """The fields of a record, as its class says them."""
+    """Return the fields of a record with types and defaults, one a line."""
     types = inspect.get_annotations(value)
     parameters = inspect.signature(value).parameters if types else {}
     return "\n".join(
@@ -65,7 +67,7 @@ def _methods(value: type) -> Iterator[tuple[str, Any]]:
 
 
 def _prose(value: Any) -> str:
-    """A docstring as Markdown: roles and double backticks become code, examples blocks."""
+    """Return a docstring as Markdown: roles and double backquotes become code, examples become blocks."""
     text = inspect.cleandoc(value.__doc__ or "")
     text = re.sub(r":\w+:`~?([^`]+)`", r"`\1`", text).replace("``", "`")
-    return _EXAMPLE.sub(lambda found: f"```python\n{found[0].rstrip()}\n```\n", text)
+    return _EXAMPLE.sub(lambda example: f"```python\n{example[0].rstrip()}\n```\n", text)

@@ -1,6 +1,6 @@
-"""What MkDocs calls: pages are added to those of ``docs/``, and links between files become links between pages.
+"""Hooks of MkDocs: add pages to those of ``docs/``, and turn links between files into links between pages.
 
-Nothing is fetched, and nothing is written but the site.
+The build fetches nothing, and writes only the site.
 """
 
 from __future__ import annotations
@@ -18,13 +18,13 @@ from docs_site import commands, diagnostics, links, readme, sources
 from docs_site.page import ROOT, Page, read
 from tltlc.grammar.pygments_lexer import TltlLexer
 
-WHOLE: Final = {
+UNCHANGED: Final = {
     "CHANGELOG.md": "changelog.md",
     "CONTRIBUTING.md": "contributing.md",
     "benchmarks/RESULTS.md": "benchmarks.md",
     "docs/adr": "adr/README.md",
 }
-"""Files, and a folder, that are pages as they stand."""
+"""Files of the project that become pages without changes, and the folder of the records."""
 
 COPIED: Final = {
     "LICENSE": "LICENSE",
@@ -40,78 +40,81 @@ _COMMENT: Final = re.compile(r"^<!--.*?-->\n", re.DOTALL | re.MULTILINE)
 
 
 def on_config(config: MkDocsConfig) -> MkDocsConfig:
-    """Make the colours of `.tltl` known, also where this project is not installed."""
+    """Register the lexer of `.tltl` with Pygments, which finds it only if this project is installed."""
     cls = TltlLexer
-    known = (cls.__module__, cls.name, tuple(cls.aliases), tuple(cls.filenames), tuple(cls.mimetypes))
-    pygments.lexers.LEXERS.setdefault(cls.__name__, known)
+    entry = (cls.__module__, cls.name, tuple(cls.aliases), tuple(cls.filenames), tuple(cls.mimetypes))
+    pygments.lexers.LEXERS.setdefault(cls.__name__, entry)
     return config
 
 
 def on_files(files: Files, config: MkDocsConfig) -> Files:
-    """Add the pages that are made, and the files of the project that pages link to."""
-    for page in made().values():
+    """Add the generated pages, and the files of the project that pages link to."""
+    for page in generated_pages().values():
         files.append(File.generated(config, page.uri, content=page.text))
     for path, uri in COPIED.items():
         files.append(File.generated(config, uri, abs_src_path=str(ROOT / path)))
-    named = {uri for entry in config.nav or () for uri in _named(entry)}
-    uris = sorted((file.src_uri for file in files.documentation_pages()), key=_place)
-    config.nav = _expanded(config.nav or [], [uri for uri in uris if uri not in named])
+    named_uris = {uri for entry in config.nav or () for uri in _uris_of(entry)}
+    uris = sorted((file.src_uri for file in files.documentation_pages()), key=_sort_key)
+    config.nav = _expand(config.nav or [], [uri for uri in uris if uri not in named_uris])
     return files
 
 
 def on_page_markdown(markdown: str, page: SitePage, config: MkDocsConfig, files: Files) -> str:
-    """Make what is written for hosts of repositories fit here; comments are for the tests of the pages."""
+    """Adapt the Markdown of a page to the site, and remove comments, which are for the tests of the pages."""
     uri = page.file.src_uri
-    origin = made()[uri].origin if uri in made() else f"docs/{uri}"
-    text = _ROW.sub(lambda row: _CODE.sub(_with_bars, row[0]), _COMMENT.sub("", markdown))
+    origin = generated_pages()[uri].origin if uri in generated_pages() else f"docs/{uri}"
+    text = _ROW.sub(lambda row: _CODE.sub(_unescape_bars, row[0]), _COMMENT.sub("", markdown))
     return links.to_pages(text, origin, uri, homes())
 
 
-def _with_bars(code: re.Match[str]) -> str:
-    """Code in a table: hosts of repositories want a backslash before a bar, Python-Markdown shows it."""
+def _unescape_bars(code: re.Match[str]) -> str:
+    """Remove the backslash before a bar in code in a table: GitHub needs it, Python-Markdown shows it."""
     return code[0].replace(r"\|", "|")
 
 
 @lru_cache(maxsize=1)
-def made() -> dict[str, Page]:
-    """The pages that are no files of ``docs/``, by their place in the site."""
-    whole = [Page(uri, read(path), path) for path, uri in WHOLE.items() if path.endswith(".md")]
-    pages = [*readme.pages(), *commands.pages(), *diagnostics.pages(), *sources.pages(), *whole]
+def generated_pages() -> dict[str, Page]:
+    """Return the pages that are not files of ``docs/``, by URI."""
+    unchanged = [Page(uri, read(path), path) for path, uri in UNCHANGED.items() if path.endswith(".md")]
+    pages = [*readme.pages(), *commands.pages(), *diagnostics.pages(), *sources.pages(), *unchanged]
     return {page.uri: page for page in pages}
 
 
 @lru_cache(maxsize=1)
 def homes() -> dict[str, str]:
-    """Where the files of the project are in the site."""
-    return {"docs": "index.md"} | COPIED | WHOLE | readme.homes() | diagnostics.homes() | sources.homes()
+    """Return the URI of each file of the project that is in the site."""
+    return {"docs": "index.md"} | COPIED | UNCHANGED | readme.homes() | diagnostics.homes() | sources.homes()
 
 
-def _place(uri: str) -> tuple[str, bool, str]:
-    """By folders, in each the page on all of it first."""
+def _sort_key(uri: str) -> tuple[str, bool, str]:
+    """Return the sort key of a page: by folder, with the index of a folder first."""
     folder, _, name = uri.rpartition("/")
     return folder, name != "index.md", name
 
 
-def _named(entry: Any) -> list[str]:
-    """The pages that an entry of the navigation names."""
+def _uris_of(entry: Any) -> list[str]:
+    """Return the URIs that an entry of the navigation names."""
     if isinstance(entry, str):
         return [entry]
     inner = entry if isinstance(entry, list) else entry.values()
-    return [uri for each in inner for uri in _named(each)]
+    return [uri for item in inner for uri in _uris_of(item)]
 
 
-def _expanded(entry: Any, left: list[str]) -> Any:
-    """An entry in which ``FOLDER/`` in a list stands for the pages of that folder that are named nowhere."""
+def _expand(entry: Any, unnamed: list[str]) -> Any:
+    """Expand an entry of the navigation.
+
+    In a list, ``FOLDER/`` stands for the pages of that folder that no entry names.
+    """
     if isinstance(entry, dict):
-        return {title: _expanded(inner, left) for title, inner in entry.items()}
+        return {title: _expand(inner, unnamed) for title, inner in entry.items()}
     if not isinstance(entry, list):
         return entry
-    found: list[Any] = []
-    for each in entry:
-        if not isinstance(each, str) or not each.endswith("/"):
-            found.append(_expanded(each, left))
-        elif each == "diagnostics/":
-            found += diagnostics.navigation()
+    items: list[Any] = []
+    for item in entry:
+        if not isinstance(item, str) or not item.endswith("/"):
+            items.append(_expand(item, unnamed))
+        elif item == "diagnostics/":
+            items += diagnostics.navigation()
         else:
-            found += [uri for uri in left if uri.startswith(each)]
-    return found
+            items += [uri for uri in unnamed if uri.startswith(item)]
+    return items

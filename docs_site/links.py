@@ -1,4 +1,4 @@
-"""Links between files of the project as links between pages of the site."""
+"""Turn links between files of the project into links between pages of the site."""
 
 from __future__ import annotations
 
@@ -19,20 +19,21 @@ _PART: Final = re.compile(
 
 
 def to_pages(text: str, origin: str, uri: str, homes: Mapping[str, str]) -> str:
-    """The Markdown of the file ``origin`` as that of the page ``uri``; codes of diagnostics become links.
+    """Return the Markdown of the file ``origin`` with links that are right on the page ``uri``.
 
-    ``homes`` are the pages of files, or of a file's headings, by their paths in the project; what is in ``docs/`` has
-    its own.  A link that leads nowhere stays, for MkDocs to report.
+    Codes of diagnostics become links. ``homes`` has the URI of the page of each file, or of a
+    heading (``FILE#ANCHOR``); files in ``docs/`` need no entry. A link without a target stays, and
+    MkDocs reports it.
     """
 
-    def part(found: re.Match[str]) -> str:
-        if found["kept"]:
-            return found[0]
-        if found["code"]:
-            return _code(found["code"], uri)
-        return f"{found['text']}({_target(found['target'], origin, uri, homes)})"
+    def replace_part(match: re.Match[str]) -> str:
+        if match["kept"]:
+            return match[0]
+        if match["code"]:
+            return _code(match["code"], uri)
+        return f"{match['text']}({_target(match['target'], origin, uri, homes)})"
 
-    return _PART.sub(part, text)
+    return _PART.sub(replace_part, text)
 
 
 def _code(code: str, uri: str) -> str:

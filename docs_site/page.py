@@ -1,4 +1,4 @@
-"""A page of the site, and the files of the project that pages are made of."""
+"""Pages of the site, and the files of the project from which they are made."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ ROOT: Final = Path(__file__).parents[1]
 
 @record
 class Page:
-    """A page that is made at build time.
+    """A page that is made when the site is built.
 
-    ``uri`` is its place in the site, ``text`` its Markdown, and ``origin`` the file of the project that its links are
-    relative to.
+    ``uri`` is its place in the site, and ``text`` is its Markdown. Its links are relative to
+    ``origin``, a file of the project.
     """
 
     uri: str
@@ -25,10 +25,10 @@ class Page:
 
 
 def read(path: str) -> str:
-    """The text of a file of the project."""
+    """Return the text of a file of the project."""
     return (ROOT / path).read_text(encoding="utf-8")
 
 
 def slug(heading: str) -> str:
-    """The anchor of a heading, as hosts of repositories make it."""
+    """Return the anchor of a heading, as GitHub makes it."""
     return re.sub(r"[^\w\s-]", "", heading.lower()).replace(" ", "-")

@@ -1,4 +1,4 @@
-"""Pages of the examples and of the libraries: their texts, and what they declare."""
+"""Make pages of the examples and of the libraries: their texts, and lists of their declarations."""
 
 from __future__ import annotations
 
@@ -23,36 +23,36 @@ _KINDS: Final[dict[type, str]] = {
 
 
 def pages() -> Iterator[Page]:
-    """The example specs and the standard libraries, each with a list in front."""
-    yield from _of_folder(EXAMPLES, "examples", "Examples", "Whole plans, each with a recorded trace beside it.")
-    said = "What `import NAME` offers. The signals are what a game supplies, the params what a level may set."
-    yield from _of_folder(LIBRARIES, "libraries", "Libraries", said)
+    """Yield the pages and the indexes of the examples and of the standard libraries."""
+    yield from _pages_of_folder(EXAMPLES, "examples", "Examples", "Whole plans, each with a recorded trace beside it.")
+    summary = "What `import NAME` offers. The signals are what a game supplies, the params what a level may set."
+    yield from _pages_of_folder(LIBRARIES, "libraries", "Libraries", summary)
 
 
 def homes() -> dict[str, str]:
-    """The pages of the files and of their folders."""
-    found = {EXAMPLES: "examples/index.md", LIBRARIES: "libraries/index.md"}
+    """Return the URIs of the files and of their folders."""
+    uris = {EXAMPLES: "examples/index.md", LIBRARIES: "libraries/index.md"}
     for folder, place in ((EXAMPLES, "examples"), (LIBRARIES, "libraries")):
-        found |= {f"{folder}/{name}.tltl": f"{place}/{name}.md" for name in _names(folder)}
-    return found
+        uris |= {f"{folder}/{name}.tltl": f"{place}/{name}.md" for name in _names(folder)}
+    return uris
 
 
 def _names(folder: str) -> list[str]:
-    """The files of a folder, without those that only test another."""
+    """Return the names of the files of a folder, without files that only test another file."""
     return sorted(path.stem for path in (ROOT / folder).glob("*.tltl") if not path.stem.endswith("_tests"))
 
 
-def _of_folder(folder: str, place: str, title: str, said: str) -> Iterator[Page]:
+def _pages_of_folder(folder: str, place: str, title: str, summary: str) -> Iterator[Page]:
     rows = []
     for name in _names(folder):
         source = read_source(ROOT / folder / f"{name}.tltl")
         module, _ = parse(source)
-        declared = [line for declaration in module.declarations if (line := _row(source.text, declaration))]
-        table = ["| | declares | |", "|---|---|---|", *declared]
+        rows_of_declarations = [line for declaration in module.declarations if (line := _row(source.text, declaration))]
+        table = ["| | declares | |", "|---|---|---|", *rows_of_declarations]
         text = "\n".join([f"# {name}", "", *table, "", "## Source", "", "```tltl", source.text.rstrip(), "```", ""])
         yield Page(f"{place}/{name}.md", text, f"{folder}/{name}.md")
         rows.append(f"| [{name}]({name}.tltl) | {_comment(source.text) or _names_of(module.declarations)} |")
-    text = "\n".join([f"# {title}", "", said, "", "| | |", "|---|---|", *rows, ""])
+    text = "\n".join([f"# {title}", "", summary, "", "| | |", "|---|---|", *rows, ""])
     yield Page(f"{place}/index.md", text, f"{folder}/index.md")
 
 
@@ -61,13 +61,13 @@ def _row(text: str, declaration: Declaration) -> str | None:
         return None
     head = declaration.name
     if isinstance(declaration, PredicateDecl | LetDecl | SignalDecl) and declaration.parameters:
-        spans = [each.span for each in declaration.parameters]
+        spans = [parameter.span for parameter in declaration.parameters]
         head += f"({', '.join(' '.join(text[span.start : span.end].split()) for span in spans)})"
     return f"| {_KINDS[type(declaration)]} | `{head}` | {' '.join(declaration.doc.split())} |"
 
 
 def _comment(text: str) -> str:
-    """What the first lines of a file say of it."""
+    """Return the comment at the start of a file; empty if there is none."""
     lines = []
     for line in text.splitlines():
         if not line.startswith("// "):
@@ -77,4 +77,4 @@ def _comment(text: str) -> str:
 
 
 def _names_of(declarations: tuple[Declaration, ...]) -> str:
-    return ", ".join(f"`{each.name}`" for each in declarations if isinstance(each, PredicateDecl))
+    return ", ".join(f"`{declaration.name}`" for declaration in declarations if isinstance(declaration, PredicateDecl))

@@ -1,4 +1,4 @@
-// Browsers start no worker for a page that was opened as a file: there, a hidden frame does the work of the search.
+// Browsers start no worker for a page that was opened as a file. There, a hidden frame runs the search instead.
 if (location.protocol === "file:") {
   window.Worker = class extends EventTarget {
     constructor(url) {
