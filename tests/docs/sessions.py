@@ -59,10 +59,10 @@ class Shell:
         return completed.stdout + completed.stderr
 
 
-def matches(printed: str, shown: str) -> bool:
+def matches(printed: str, expected: str) -> bool:
     """Whether the printed text matches the shown text, in which a line `…` stands for any number of
     lines."""
-    parts = [re.escape(part) for part in re.split(rf"^ *{ANYTHING}\n", shown, flags=re.MULTILINE)]
+    parts = [re.escape(part) for part in re.split(rf"^ *{ANYTHING}\n", expected, flags=re.MULTILINE)]
     return re.fullmatch(r"(?:.*\n)*".join(parts), printed) is not None
 
 
@@ -81,8 +81,8 @@ def run_page(text: str, shell: Shell) -> int:
             assert before in source, part[0]
             path.write_text(source.replace(before, after, 1), encoding="utf-8")
             continue
-        for command, shown in _COMMAND.findall(part["session"]):
+        for command, expected in _COMMAND.findall(part["session"]):
             printed = shell.run(command)
-            assert matches(printed, shown), f"$ {command}\n{printed}"
+            assert matches(printed, expected), f"$ {command}\n{printed}"
             commands += 1
     return commands

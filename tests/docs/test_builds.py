@@ -57,7 +57,7 @@ def status(shell: Shell, command: str) -> tuple[int, str]:
 
 
 @pytest.mark.parametrize(
-    ("before", "after", "said"),
+    ("before", "after", "message"),
     [
         ("", "", "0 breaking, 0 changed, 0 compatible"),
         ("    keep", "  keep", "1 file would change"),
@@ -67,11 +67,11 @@ def status(shell: Shell, command: str) -> tuple[int, str]:
         ("400 steps", "300 steps", "error[TLT0758]"),
     ],
 )
-def test_the_script_fails_if_something_is_wrong(project: Shell, before: str, after: str, said: str) -> None:
+def test_the_script_fails_if_something_is_wrong(project: Shell, before: str, after: str, message: str) -> None:
     path = project.folder / "specs" / "heist.tltl"
     path.write_text(SPEC.replace(before, after, 1))
     exit_status, printed = status(project, "sh check_specs.sh")
-    assert (exit_status, said in printed) == (int(bool(before)), True), printed
+    assert (exit_status, message in printed) == (int(bool(before)), True), printed
 
 
 def test_the_commands_of_the_workflow_run(project: Shell) -> None:

@@ -16,7 +16,7 @@ A, B, NONE = (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)
 """Values of the atoms a and b."""
 
 
-def compiled(formula: str, clauses: str = "semantics infinite") -> Fspa:
+def compile_spec(formula: str, clauses: str = "semantics infinite") -> Fspa:
     (fspa,) = tltlc.compile_text(f"signal a: bool signal b: bool spec s {{ {clauses} require {formula} }}")
     return fspa
 
@@ -28,41 +28,41 @@ def after(fspa: Fspa, *samples: tuple[float, float]) -> Step:
 
 @pytest.mark.parametrize("formula", ["G a", "G F a", "F G a", "G(a -> F b)"])
 def test_every_state_but_traps_is_a_goal(formula: str) -> None:
-    fspa = compiled(formula)
+    fspa = compile_spec(formula)
     assert {state.verdict for state in fspa.states} <= {"holding", "violated"}
     assert all(state.accepting == (state.verdict == "holding") for state in fspa.states)
     assert (fspa.spec_size, fspa.judge) == (0, "limit")
 
 
 def test_over_finite_traces_recurrence_depends_on_the_last_sample() -> None:
-    assert [after(compiled("G F a", ""), *trace).accepting for trace in ((A, NONE), (NONE, A))] == [False, True]
-    assert [after(compiled("F G a", ""), *trace).accepting for trace in ((A, NONE), (NONE, A))] == [False, True]
+    assert [after(compile_spec("G F a", ""), *trace).accepting for trace in ((A, NONE), (NONE, A))] == [False, True]
+    assert [after(compile_spec("F G a", ""), *trace).accepting for trace in ((A, NONE), (NONE, A))] == [False, True]
 
 
 def test_obligations_are_in_the_label_and_bounds_can_be_broken() -> None:
-    step = after(compiled("G(a -> F b)"), A, *[NONE] * 20)
+    step = after(compile_spec("G(a -> F b)"), A, *[NONE] * 20)
     assert (step.verdict, step.accepting, step.label) == ("holding", True, "G(a -> F b) & F b")
-    bounded = compiled("G(a -> F[0,9] b)")
+    bounded = compile_spec("G(a -> F[0,9] b)")
     assert [after(bounded, A, *[NONE] * rest).verdict for rest in (8, 9)] == ["holding", "violated"]
 
 
 def test_two_states_may_have_one_label_and_two_edges_their_states() -> None:
-    fspa = compiled("G F a & G F b")
+    fspa = compile_spec("G F a & G F b")
     assert [str(state.label) for state in fspa.states] == ["G F a & G F b"] * 2
-    ends = [(edge.source, edge.target) for edge in compiled("G F a").edges]
+    ends = [(edge.source, edge.target) for edge in compile_spec("G F a").edges]
     assert ends == [(0, 0), (0, 0)]
 
 
 def test_the_automaton_decides_when_a_spec_is_judged() -> None:
-    assert [compiled("a & G b", clauses).judge for clauses in ("", "semantics infinite")] == ["limit", "goal"]
-    assert after(compiled("a & G b"), (1.0, 1.0)).done
-    assert not after(compiled("a & G b", "semantics infinite judge at limit"), (1.0, 1.0)).done
+    assert [compile_spec("a & G b", clauses).judge for clauses in ("", "semantics infinite")] == ["limit", "goal"]
+    assert after(compile_spec("a & G b"), (1.0, 1.0)).done
+    assert not after(compile_spec("a & G b", "semantics infinite judge at limit"), (1.0, 1.0)).done
 
 
 def test_progress_is_the_share_of_the_limit_that_was_survived() -> None:
-    assert after(compiled("G F a", "semantics infinite limit 4 steps"), A, NONE).progress == 0.5
-    assert after(compiled("G F a"), A, NONE).progress == 0.0
-    assert after(compiled("a W b", "semantics infinite"), B).progress == 1.0
+    assert after(compile_spec("G F a", "semantics infinite limit 4 steps"), A, NONE).progress == 0.5
+    assert after(compile_spec("G F a"), A, NONE).progress == 0.0
+    assert after(compile_spec("a W b", "semantics infinite"), B).progress == 1.0
 
 
 def test_automata_are_compared(capsys: pytest.CaptureFixture[str]) -> None:

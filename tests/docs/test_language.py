@@ -143,7 +143,7 @@ def test_all_spellings_of_an_operator_mean_the_same(row: list[str]) -> None:
         ("a then b", "F(a & X F b)"),
     ],
 )
-def test_order_of_operators(short: str, long: str) -> None:
+def test_operators_bind_in_the_documented_order(short: str, long: str) -> None:
     assert formula(short) == formula(long)
 
 

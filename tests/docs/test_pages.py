@@ -69,7 +69,7 @@ def test_the_index_lists_every_decision() -> None:
 
 
 @pytest.mark.parametrize(
-    "said, file, remark",
+    "claim, file, remark",
     [
         ("Truth decides", "reward.py", "by truth"),
         ("The paper evaluates the formula as it is written", "guards.py", "the guard as written"),
@@ -82,9 +82,9 @@ def test_the_index_lists_every_decision() -> None:
         ("Edges into a trap", "reward_modes/edge.py", "left out"),
     ],
 )
-def test_a_deviation_from_the_paper_is_marked_here_and_in_the_code(said: str, file: str, remark: str) -> None:
+def test_a_deviation_from_the_paper_is_marked_on_the_page_and_in_the_code(claim: str, file: str, remark: str) -> None:
     page = (DOCS / "semantics.md").read_text(encoding="utf-8")
-    assert re.search(rf"▲[^▲]*{re.escape(said)}", page)
+    assert re.search(rf"▲[^▲]*{re.escape(claim)}", page)
     code = (ROOT / "tltlc" / "monitor" / file).read_text(encoding="utf-8")
     assert re.search(rf"▲[^▲\n]*{re.escape(remark)}", code)
 
@@ -146,7 +146,7 @@ def test_the_exit_statuses_are_documented() -> None:
     assert {int(number) for cell in documented for number in cell.split(",")} == used
 
 
-def test_excerpts_for_contributors_are_in_the_sources() -> None:
+def test_excerpts_in_the_contributing_guide_are_in_the_sources() -> None:
     page = ROOT / "CONTRIBUTING.md"
     sources = [ROOT / name for name in re.findall(r"`((?:tltlc|tests)/[\w/.]+\.(?:py|txt))`", page.read_text("utf-8"))]
     texts = [source.read_text("utf-8") for source in sources]
@@ -156,7 +156,7 @@ def test_excerpts_for_contributors_are_in_the_sources() -> None:
         assert any(excerpt.text in text for text in texts), f"line {excerpt.line} of CONTRIBUTING.md is out of date"
 
 
-def test_the_places_that_contributors_are_sent_to_are_there() -> None:
+def test_the_places_that_the_contributing_guide_names_exist() -> None:
     text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
     table = text[text.index("## Where is … made?") : text.index("## Adding things")]
     places = re.findall(r"`((?:tltlc|tltl_runtime)/[\w/]+\.py)`: `(\w+)`", table)
@@ -167,7 +167,7 @@ def test_the_places_that_contributors_are_sent_to_are_there() -> None:
         assert re.search(rf"^(?:def {name}|class {name}|{name})\b", source, re.MULTILINE), f"{file}: {name}"
 
 
-def test_the_folders_of_the_code_that_contributors_read_of_are_all_of_them() -> None:
+def test_the_contributing_guide_lists_every_folder_of_the_code() -> None:
     text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
     for folder in ("tltlc", "runtime/tltl_runtime", "runtime/tltl_runtime/stealth"):
         head = f"| in `{folder.removeprefix('runtime/')}/` | contains |"

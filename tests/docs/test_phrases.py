@@ -34,7 +34,7 @@ def text_of(cell: str) -> str:
     return f"{DECLARED}spec phrase {{\n    limit 60 s\n    {clauses}\n}}\n"
 
 
-def compiled(cell: str) -> Fspa:
+def compile_cell(cell: str) -> Fspa:
     (fspa,) = tltlc.compile_text(text_of(cell))
     return fspa
 
@@ -48,7 +48,7 @@ def test_all_rows_are_found() -> None:
 
 @pytest.mark.parametrize(("write", "read"), PHRASES)
 def test_a_phrase_is_explained_as_shown(write: str, read: str) -> None:
-    assert formula_text(compiled(write)) == read
+    assert formula_text(compile_cell(write)) == read
 
 
 @pytest.mark.parametrize("write", [write for write, _ in PHRASES])
@@ -69,7 +69,7 @@ def test_a_measured_signal_can_be_used_in_a_goal(declare: str, ask: str) -> None
 
 @pytest.mark.parametrize(("wrong", "right"), SLIPS)
 def test_a_wrong_phrase_differs_from_the_right_one(wrong: str, right: str) -> None:
-    assert not are_equivalent(compiled(wrong), compiled(right))
+    assert not are_equivalent(compile_cell(wrong), compile_cell(right))
 
 
 ACCEPTED = {
@@ -92,7 +92,7 @@ ACCEPTED = {
 @pytest.mark.parametrize("write", ACCEPTED)
 def test_a_phrase_accepts_and_rejects_the_listed_traces(write: str) -> None:
     assert write in dict(PHRASES)
-    fspa = compiled(write)
+    fspa = compile_cell(write)
     for trace, expected in zip(ACCEPTED[write], (True, False), strict=True):
         monitor = Monitor(fspa)
         for letter in trace:
@@ -101,12 +101,12 @@ def test_a_phrase_accepts_and_rejects_the_listed_traces(write: str) -> None:
 
 
 def test_staying_by_always_is_met_in_one_step() -> None:
-    step = Monitor(compiled("`reach (always for 3 s near(vault))`")).step_atoms([1.0])
+    step = Monitor(compile_cell("`reach (always for 3 s near(vault))`")).step_atoms([1.0])
     assert step.accepting and step.done
 
 
 def test_a_sequence_is_met_only_in_its_order() -> None:
-    fspa = compiled("`reach near(key) then near(chest) then near(exit)`")
+    fspa = compile_cell("`reach near(key) then near(chest) then near(exit)`")
     for order in product(range(3), repeat=3):
         monitor = Monitor(fspa)
         for place in order:

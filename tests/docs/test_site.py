@@ -30,7 +30,7 @@ SOURCES = sorted([*DOCS.rglob("*.md"), *ROOT.glob("*.md"), *(ROOT / "tltlc" / "d
 LOADING = {("script", "src"), ("link", "href"), ("img", "src"), ("iframe", "src"), ("source", "src"), ("video", "src")}
 
 
-class Read(HTMLParser):
+class ParsedPage(HTMLParser):
     """A parsed page: the URLs that it loads, its links, its anchors and its text."""
 
     def __init__(self, text: str) -> None:
@@ -76,18 +76,18 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def pages(site: Path) -> dict[Path, Read]:
-    return {path: Read(path.read_text(encoding="utf-8")) for path in site.rglob("*.html")}
+def pages(site: Path) -> dict[Path, ParsedPage]:
+    return {path: ParsedPage(path.read_text(encoding="utf-8")) for path in site.rglob("*.html")}
 
 
-def test_every_code_has_a_page(site: Path, pages: dict[Path, Read]) -> None:
+def test_every_code_has_a_page(site: Path, pages: dict[Path, ParsedPage]) -> None:
     for code in codes():
         text = pages[site / "diagnostics" / f"{code}.html"].text
         assert f"{code}: {title(code)}".replace("`", "") in text
         assert code in pages[site / "diagnostics" / "index.html"].text
 
 
-def test_every_command_has_a_page(site: Path, pages: dict[Path, Read]) -> None:
+def test_every_command_has_a_page(site: Path, pages: dict[Path, ParsedPage]) -> None:
     assert set(BUILT_IN) <= set(commands.names())
     for name in commands.names():
         assert f"tltlc {name}" in pages[site / "commands" / f"{name}.html"].text
@@ -97,14 +97,14 @@ def test_every_command_has_a_page(site: Path, pages: dict[Path, Read]) -> None:
     )
 
 
-def test_no_page_loads_from_another_host(site: Path, pages: dict[Path, Read]) -> None:
+def test_no_page_loads_from_another_host(site: Path, pages: dict[Path, ParsedPage]) -> None:
     for path, page in pages.items():
         assert [url for url in page.loads if re.match(r"(\w+:)?//", url)] == [], path
     for path in site.rglob("*.css"):
         assert not re.search(r"url\([\"']?(https?:)?//|@import", path.read_text(encoding="utf-8")), path
 
 
-def test_every_link_has_a_target(site: Path, pages: dict[Path, Read]) -> None:
+def test_every_link_has_a_target(site: Path, pages: dict[Path, ParsedPage]) -> None:
     for path, page in pages.items():
         if path.name == "404.html":
             continue

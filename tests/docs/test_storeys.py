@@ -19,7 +19,7 @@ def test_the_source_of_the_picture_is_drawn_from_the_contracts() -> None:
 def test_the_picture_has_the_boxes_and_arrows_of_its_source() -> None:
     root = ET.parse(IMAGES / "storeys.svg").getroot()
     kinds = {"node", "edge", "cluster"}
-    shown = {
+    drawn_elements = {
         (group.attrib["class"], title.text)
         for group in root.iter(f"{_SVG}g")
         if group.attrib["class"] in kinds and (title := group.find(f"{_SVG}title")) is not None
@@ -28,7 +28,7 @@ def test_the_picture_has_the_boxes_and_arrows_of_its_source() -> None:
     nodes = set(re.findall(r"^\s*([\w.]+) \[label=", source, re.MULTILINE))
     edges = {"->".join(ends) for ends in re.findall(r"([\w.]+) -> ([\w.]+)", source)}
     clusters = set(re.findall(r"subgraph (cluster_[\w.]+)", source))
-    assert shown == {
+    assert drawn_elements == {
         *(("node", name) for name in nodes),
         *(("edge", name) for name in edges),
         *(("cluster", name) for name in clusters),

@@ -95,17 +95,17 @@ class Neovim:
     def until(self, holds: Callable[[], Any], what: str) -> Any:
         """Wait until ``holds`` returns something true, and return it."""
 
-        def happened() -> Any:
+        def holds_now() -> Any:
             assert self.process.poll() is None, self.errors()
             return holds()
 
-        return until(happened, what, 0.1)
+        return until(holds_now, what, 0.1)
 
     def errors(self) -> str:
         """The last 1,000 characters that Neovim wrote."""
         return (self.home / "errors").read_text(encoding="utf-8")[-1000:]
 
-    def left(self) -> list[str]:
+    def running_processes(self) -> list[str]:
         """The command lines of processes started by this Neovim that are still running; on Linux."""
         command_lines = []
         for process in Path("/proc").glob("[0-9]*"):
@@ -124,13 +124,13 @@ class Neovim:
         self._errors.close()
 
     def _answers(self) -> bool:
-        return Path(self._socket).exists() and self._asked("--remote-expr", "1").returncode == 0
+        return Path(self._socket).exists() and self._run_remote("--remote-expr", "1").returncode == 0
 
     def _remote(self, *words: str) -> None:
-        done = self._asked(*words)
+        done = self._run_remote(*words)
         assert done.returncode == 0, done.stderr
 
-    def _asked(self, *words: str) -> subprocess.CompletedProcess[str]:
+    def _run_remote(self, *words: str) -> subprocess.CompletedProcess[str]:
         return subprocess.run(
             [str(PROGRAM), "--server", self._socket, *words],
             env=self._environment,

@@ -49,7 +49,7 @@ def rules(patterns: list[dict[str, object]]) -> Iterator[dict[str, object]]:
 RULES = [(re.compile(str(rule["match"])), rule) for rule in rules(GRAMMAR["patterns"])]
 
 
-def coloured(text: str) -> dict[int, tuple[str, str]]:
+def scopes(text: str) -> dict[int, tuple[str, str]]:
     """Return the scoped pieces of a text as an editor finds them: line by line, the earliest match
     first."""
     pieces = {}
@@ -80,7 +80,7 @@ def coloured(text: str) -> dict[int, tuple[str, str]]:
 
 @pytest.mark.parametrize(("spelling", "terminal"), [*load().words.items(), *load().signs.items()])
 def test_every_word_and_sign_has_its_scope(spelling: str, terminal: str) -> None:
-    piece, scope = coloured(f"{spelling} ")[0]
+    piece, scope = scopes(f"{spelling} ")[0]
     assert piece == spelling
     assert scope.startswith(SCOPES.get(terminal, "keyword.operator"))
 
@@ -88,7 +88,7 @@ def test_every_word_and_sign_has_its_scope(spelling: str, terminal: str) -> None
 @pytest.mark.parametrize("unit", load().units)
 def test_every_unit_has_its_scope(unit: str) -> None:
     for space in ("", " "):
-        assert coloured(f"x > 1.5{space}{unit}")[len(f"x > 1.5{space}")] == (unit, "keyword.other.unit.tltl")
+        assert scopes(f"x > 1.5{space}{unit}")[len(f"x > 1.5{space}")] == (unit, "keyword.other.unit.tltl")
 
 
 @pytest.mark.parametrize(
@@ -111,7 +111,7 @@ def test_every_unit_has_its_scope(unit: str) -> None:
     ],
 )
 def test_contextual_keywords_have_a_scope(text: str, words: tuple[str, ...]) -> None:
-    names = {piece for piece, scope in coloured(text).values() if not scope.startswith("variable.")}
+    names = {piece for piece, scope in scopes(text).values() if not scope.startswith("variable.")}
     assert set(words) <= names
 
 
@@ -128,7 +128,7 @@ def test_real_files_are_split_like_the_compiler_splits_them() -> None:
         _, syntax_errors = parse(source)
         if not syntax_errors:
             count += 1
-            pieces = coloured(source.text)
+            pieces = scopes(source.text)
             for token in tokenize(source.text).tokens[:-1]:
                 assert pieces[token.start][0] == token.text, path
     assert count > 100
@@ -141,6 +141,6 @@ def test_other_editors_know_every_word(file: str) -> None:
 
 
 def test_comments_and_strings_are_not_coloured_inside() -> None:
-    assert coloured("// spec a = G b")[0] == ("// spec a = G b", "comment.line.double-slash.tltl")
-    assert coloured("/// spec a")[0][1] == "comment.line.documentation.tltl"
-    assert coloured('"spec a // b"')[0] == ('"spec a // b"', "string.quoted.double.tltl")
+    assert scopes("// spec a = G b")[0] == ("// spec a = G b", "comment.line.double-slash.tltl")
+    assert scopes("/// spec a")[0][1] == "comment.line.documentation.tltl"
+    assert scopes('"spec a // b"')[0] == ('"spec a // b"', "string.quoted.double.tltl")

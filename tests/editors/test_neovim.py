@@ -58,10 +58,10 @@ def editor(tmp_path: Path) -> Iterator[Neovim]:
     started.end()
 
 
-def test_an_editing_session(editor: Neovim) -> None:
+def test_an_editing_session_works_from_its_first_to_its_last_key(editor: Neovim) -> None:
     editor.keys(":edit main.tltl<CR>")
     editor.until(lambda: editor.lua("vim.bo.filetype") == "tltl", "the file")
-    lenses = editor.until(lambda: refreshed_lenses(editor), "lenses")
+    lenses = editor.until(lambda: wait_for_lenses(editor), "lenses")
     assert [lens["command"]["title"] for lens in lenses] == ["5 states, distance 1", "1 test passes"]
 
     # A misspelt word is marked while it is typed, and a quick fix corrects it.
@@ -80,7 +80,7 @@ def test_an_editing_session(editor: Neovim) -> None:
     editor.keys("<C-e><Esc>u")
 
     editor.keys("/near(s1)<CR>:lua vim.lsp.buf.hover()<CR>")
-    hover_text = editor.until(lambda: floating(editor), "what a name means")
+    hover_text = editor.until(lambda: floating_text(editor), "what a name means")
     assert "Closeness to `target`" in hover_text
 
     # Rename a symbol in both files.
@@ -100,15 +100,15 @@ def test_an_editing_session(editor: Neovim) -> None:
     editor.keys(":qall!<CR>")
     assert editor.process.wait(timeout=HANG_S) == 0
     assert "Error" not in editor.errors()
-    assert_nothing_is_left(editor)
+    assert_all_processes_ended(editor)
 
 
 def test_a_killed_editor_ends_the_server(editor: Neovim) -> None:
     editor.keys(":edit main.tltl<CR>")
-    editor.until(lambda: refreshed_lenses(editor), "lenses")
+    editor.until(lambda: wait_for_lenses(editor), "lenses")
     editor.process.kill()
     editor.process.wait()
-    assert_nothing_is_left(editor)
+    assert_all_processes_ended(editor)
 
 
 def test_words_have_their_colours(editor: Neovim) -> None:
@@ -143,7 +143,7 @@ GROUPS = {
 """The highlight groups of each terminal. All other terminals are operators."""
 
 
-def refreshed_lenses(editor: Neovim) -> object:
+def wait_for_lenses(editor: Neovim) -> object:
     # If the lenses are requested before the client is initialized, some versions never ask again.
     if not editor.lua("#vim.tbl_filter(function(client) return client.initialized end, vim.lsp.get_active_clients())"):
         return None
@@ -151,7 +151,7 @@ def refreshed_lenses(editor: Neovim) -> object:
     return editor.lua("vim.lsp.codelens.get(vim.api.nvim_get_current_buf())")
 
 
-def floating(editor: Neovim) -> str:
+def floating_text(editor: Neovim) -> str:
     """The text of the floating window, if there is one."""
     lines: list[str] = editor.lua(
         "vim.tbl_flatten(vim.tbl_map(function(window) return vim.api.nvim_win_get_config(window).relative ~= ''"
@@ -161,5 +161,5 @@ def floating(editor: Neovim) -> str:
     return "\n".join(lines)
 
 
-def assert_nothing_is_left(editor: Neovim) -> None:
-    until(lambda: not editor.left(), "the end of all processes that Neovim started")
+def assert_all_processes_ended(editor: Neovim) -> None:
+    until(lambda: not editor.running_processes(), "the end of all processes that Neovim started")

@@ -33,7 +33,7 @@ def npm(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
 
 
 @pytest.fixture(scope="module")
-def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def extension(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A built copy of the extension; skipped if node or the packages are missing."""
     if shutil.which("node") is None or shutil.which("npm") is None:
         pytest.skip("node and npm build the extension; they are not installed")
@@ -52,15 +52,15 @@ def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def test_the_grammar_tests_pass(built: Path) -> None:
-    done = npm(built, "test")
+def test_the_grammar_tests_pass(extension: Path) -> None:
+    done = npm(extension, "test")
     assert done.returncode == 0, done.stdout + done.stderr
 
 
-def test_the_package_is_complete(built: Path) -> None:
-    done = npm(built, "run", "package")
+def test_the_package_is_complete(extension: Path) -> None:
+    done = npm(extension, "run", "package")
     assert done.returncode == 0, done.stdout + done.stderr
-    with zipfile.ZipFile(built / "tltl.vsix") as package:
+    with zipfile.ZipFile(extension / "tltl.vsix") as package:
         names = {name.removeprefix("extension/").lower() for name in package.namelist()}
     manifest = json.loads((EXTENSION / "package.json").read_text(encoding="utf-8"))
     named = re.findall(r'"\./([^"]+)"', json.dumps([manifest["contributes"], manifest["main"]]))
@@ -68,8 +68,8 @@ def test_the_package_is_complete(built: Path) -> None:
     assert not any(name.startswith(("node_modules", "src", "test")) for name in names)
 
 
-def started(
-    built: Path,
+def run_extension(
+    extension: Path,
     folder: Path,
     setting: list[str],
     *,
@@ -80,49 +80,55 @@ def started(
 ) -> list[str]:
     """Run the extension with stand-ins for the editor and its client, then draw a file; return the
     log."""
-    script = built / "start.js"
+    script = extension / "start.js"
     script.write_text(STAND_IN, encoding="utf-8")
     words = ["node", str(script), json.dumps([str(folder), setting, answer, fails, drawn and str(drawn), trusted])]
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
-    completed = subprocess.run(words, cwd=built, env=environment, capture_output=True, text=True, timeout=HANG_S)
+    completed = subprocess.run(words, cwd=extension, env=environment, capture_output=True, text=True, timeout=HANG_S)
     assert completed.returncode == 0, completed.stderr
     return completed.stdout.splitlines()
 
 
-def test_the_server_is_started(built: Path, tmp_path: Path) -> None:
+def test_the_server_is_started(extension: Path, tmp_path: Path) -> None:
     """The command comes from the settings and gets `lsp`; by default it is the one in the folder's
     `.venv`, if any."""
     commands = "commands tltl.restart,tltl.showPicture"
     own = tmp_path / ".venv" / "bin" / "tltlc"
-    assert started(built, tmp_path, ["tltlc"]) == [f"start tltlc lsp in {tmp_path}", commands]
-    assert started(built, tmp_path, [".venv/bin/tltlc", "-X"]) == [f"start {own} -X lsp in {tmp_path}", commands]
+    assert run_extension(extension, tmp_path, ["tltlc"]) == [f"start tltlc lsp in {tmp_path}", commands]
+    assert run_extension(extension, tmp_path, [".venv/bin/tltlc", "-X"]) == [
+        f"start {own} -X lsp in {tmp_path}",
+        commands,
+    ]
     own.parent.mkdir(parents=True)
     own.touch()
-    assert started(built, tmp_path, ["tltlc"]) == [f"start {own} lsp in {tmp_path}", commands]
-    assert started(built, tmp_path, ["tltlc"], trusted=False) == [f"start tltlc lsp in {Path.home()}", commands]
+    assert run_extension(extension, tmp_path, ["tltlc"]) == [f"start {own} lsp in {tmp_path}", commands]
+    assert run_extension(extension, tmp_path, ["tltlc"], trusted=False) == [
+        f"start tltlc lsp in {Path.home()}",
+        commands,
+    ]
 
 
-def test_a_failed_start_is_reported_once(built: Path, tmp_path: Path) -> None:
-    missing = started(built, tmp_path, ["no-such-tltlc"], fails=True)
+def test_a_failed_start_is_reported_once(extension: Path, tmp_path: Path) -> None:
+    missing = run_extension(extension, tmp_path, ["no-such-tltlc"], fails=True)
     assert missing[-1].startswith("error TLTL: `no-such-tltlc` is not found. Install tltlc with its extra `lsp`")
     failing_command = [sys.executable, "-c", "raise SystemExit('error: no pygls')"]
-    *_, message = started(built, tmp_path, failing_command, fails=True)
+    *_, message = run_extension(extension, tmp_path, failing_command, fails=True)
     assert message.endswith("lsp` does not start. error: no pygls")
-    retried = started(built, tmp_path, ["no-such-tltlc"], fails=True, answer="Try Again")
+    retried = run_extension(extension, tmp_path, ["no-such-tltlc"], fails=True, answer="Try Again")
     assert [line.split()[0] for line in retried] == ["start", "commands", "error", "start"]
 
 
-def test_automata_are_drawn_and_redrawn(built: Path, tmp_path: Path) -> None:
+def test_automata_are_drawn_and_redrawn(extension: Path, tmp_path: Path) -> None:
     file = tmp_path / "a.tltl"
     tltlc = [sys.executable, "-m", "tltlc"]
     file.write_text("signal p: bool\nspec alone = G p\n", encoding="utf-8")
-    *_, drawn, redrawn = started(built, tmp_path, tltlc, drawn=file)
+    *_, drawn, redrawn = run_extension(extension, tmp_path, tltlc, drawn=file)
     assert drawn == redrawn == "picture alone <!DOCTYPE html>"
     file.write_text("signal p: bool\nspec alone = G q\n", encoding="utf-8")
-    *_, message = started(built, tmp_path, tltlc, drawn=file)
+    *_, message = run_extension(extension, tmp_path, tltlc, drawn=file)
     assert message.startswith("error TLTL: `alone` cannot be drawn: error[TLT0201]: ")
     file.write_text("signal p: bool\nspec one = G p\nspec two = F p\n", encoding="utf-8")
-    assert started(built, tmp_path, tltlc, drawn=file)[-1] == "picture two <!DOCTYPE html>"
+    assert run_extension(extension, tmp_path, tltlc, drawn=file)[-1] == "picture two <!DOCTYPE html>"
 
 
 STAND_IN = """
