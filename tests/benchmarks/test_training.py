@@ -85,7 +85,7 @@ def test_a_training_resumes_from_its_checkpoint_or_starts_again(
     cell = training.Cell(tmp_path / "cell", "navigation", 1, training.FULL)
     cell.folder.mkdir()
     (cell.folder / left).touch()
-    source = cell.folder.with_suffix(training.SOURCE)
+    source = cell.folder.with_suffix(training.SOURCE_SUFFIX)
     source.write_text("of who began it")
     assert cell.measure_level() == {"failed": "tltlc train"}
     assert ran == [how]

@@ -198,7 +198,7 @@ def test_a_client_that_disconnects_causes_no_error(server: PlaygroundServer, cap
 
 
 def test_a_large_text_reaches_a_child_that_reads_slowly(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(children, "_LOOK_S", 0.001)
+    monkeypatch.setattr(children, "_CHECK_S", 0.001)
     text = f"// {'far more than a pipe holds ' * 10_000}\nsignal a: bool\nspec x = F a"
     with running_server() as server:
         status, _, answer = ask(server, "POST", "/api", json.dumps({"text": text}), JSON)

@@ -27,12 +27,12 @@ def test_a_missing_wall_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
     without_walls = replace(complete, solids=tuple(solid for solid in complete.solids if solid.kind != "wall"))
     env.close()
     monkeypatch.setattr("tltl_runtime.stealth.env.load_level", lambda *_: without_walls)
-    begin = safety._begin
+    begin = safety._begin_episode
 
     def begin_with_complete_level(env: GameEnv, _: object, rng: object, *, anywhere: bool) -> None:
         begin(env, complete, rng, anywhere=anywhere)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(safety, "_begin", begin_with_complete_level)
+    monkeypatch.setattr(safety, "_begin_episode", begin_with_complete_level)
     with pytest.raises(WorldError, match="nothing is hit on its side"):
         safety.play_random_steps("navigation", "v0", 10)
 
