@@ -201,10 +201,10 @@ def test_without_descriptors_the_server_retries_after_a_pause(monkeypatch: pytes
         with connect(server) as waiting:
             # At each attempt one of the three idle connections gives way; after that, the server only waits.
             assert [read_to_end(connection) for connection in made] == [b""] * 3
-            assert wait_until(lambda: server._again is not None)
+            assert wait_until(lambda: server._retry_timer is not None)
             full.is_full = False
             assert full.looks == 4
-            server._loop.call_soon_threadsafe(server._look)
+            server._loop.call_soon_threadsafe(server._watch_listener)
             waiting.sendall(index(b"Connection: close\r\n"))
             assert statuses(read_to_end(waiting)) == [200]
 
