@@ -22,37 +22,37 @@ def _packages(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def hashed() -> str:
+def fresh_hash() -> str:
     importlib.invalidate_caches()
     return sources.sources_hash.__wrapped__()
 
 
 def test_any_change_of_a_module_changes_the_hash(packages: Path) -> None:
-    hashes = {hashed()}
+    hashes = {fresh_hash()}
     rule = packages / "other_here" / "inner" / "rule.py"
     rule.write_bytes(rule.read_bytes().replace(b"3", b"4"))
-    hashes.add(hashed())
+    hashes.add(fresh_hash())
     rule.rename(rule.with_name("law.py"))
-    hashes.add(hashed())
+    hashes.add(fresh_hash())
     (packages / "one_here" / "new.py").write_bytes(b"")
-    hashes.add(hashed())
+    hashes.add(fresh_hash())
     assert len(hashes) == 4
 
 
 def test_line_endings_and_compiled_files_do_not_change_the_hash(packages: Path) -> None:
-    before = hashed()
+    before = fresh_hash()
     rule = packages / "one_here" / "inner" / "rule.py"
     rule.write_bytes(rule.read_bytes().replace(b"\n", b"\r\n"))
     (packages / "one_here" / "__pycache__").mkdir()
     (packages / "one_here" / "__pycache__" / "rule.pyc").write_bytes(b"compiled")
-    assert hashed() == before
+    assert fresh_hash() == before
 
 
 def test_the_hash_covers_compiler_and_runtime(monkeypatch: pytest.MonkeyPatch) -> None:
-    both = hashed()
-    assert sources.sources_hash() == both
-    hashes = {both}
+    hash_of_both = fresh_hash()
+    assert sources.sources_hash() == hash_of_both
+    hashes = {hash_of_both}
     for package in ("tltlc", "tltl_runtime"):
         monkeypatch.setattr(sources, "_PACKAGES", (package,))
-        hashes.add(hashed())
+        hashes.add(fresh_hash())
     assert len(hashes) == 3

@@ -89,10 +89,12 @@ def _stopped_text(path: Path, partial: Path | None, *, existed: bool) -> str:
     ``partial`` is the file of the finished references, if there is one.  ``existed`` says whether the
     output file existed before.
     """
-    from tltl_runtime.support.shown_path import shown
+    from tltl_runtime.support.shown_path import path_text
 
     if partial and not existed:
-        return f"no `{path}` was written; what is over is kept in `{shown(partial)}`: the same command goes on with it"
+        return (
+            f"no `{path}` was written; what is over is kept in `{path_text(partial)}`: the same command goes on with it"
+        )
     return f"`{path}` is as it was; the same command {'goes on with what is over' if partial else 'begins anew'}"
 
 

@@ -19,7 +19,7 @@ from tltl_runtime.cli.support.level_faults import level_faults
 from tltl_runtime.cli.support.options import output_folder, seed_option
 from tltl_runtime.cli.support.worker_options import WorkersType
 from tltl_runtime.cli.support.writable_paths import check_writable
-from tltl_runtime.support.number_text import listed
+from tltl_runtime.support.number_text import short_list
 from tltlc.api import cli
 
 if TYPE_CHECKING:
@@ -198,6 +198,6 @@ def _print_results(files: EvaluationFiles, json_file: Path | None, folder: Path 
         click.echo(text, nl=False)
     contents = files.write(text)
     if removed := files.removed_files:
-        click.echo(f"removed from {folder}, of an earlier evaluation: {listed(removed, _MOST_NAMED)}", err=True)
+        click.echo(f"removed from {folder}, of an earlier evaluation: {short_list(removed, _MOST_NAMED)}", err=True)
     if contents:
         click.echo(f"wrote {contents}", err=True)

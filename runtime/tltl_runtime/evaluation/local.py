@@ -16,7 +16,7 @@ from typing import Final
 from tltl_runtime.evaluation.player import EpisodeRequest, PlayedEpisode, Plays
 from tltl_runtime.evaluation.scheduler import LostError
 from tltl_runtime.game.registry import registered_game
-from tltl_runtime.support.child_processes import interrupts_withheld
+from tltl_runtime.support.child_processes import block_interrupts
 
 
 class WorkerProcess:
@@ -33,7 +33,7 @@ class WorkerProcess:
         """Start to play an episode."""
         future: Future[PlayedEpisode] = Future()
         try:
-            with interrupts_withheld():
+            with block_interrupts():
                 playing = self._executor.submit(_play, task)
             playing.add_done_callback(lambda done: _pass_on(done, future))
         except BrokenProcessPool:

@@ -21,7 +21,7 @@ from tltl_runtime.game.sensors import Sensors
 from tltl_runtime.policies.card import Card
 from tltl_runtime.policies.network import Network
 from tltl_runtime.policies.policy import Policy, blank_actor, weight_count
-from tltl_runtime.support.load_errors import Refusals
+from tltl_runtime.support.load_errors import LoadErrors
 from tltl_runtime.support.record_json import RecordJsonError, from_json, to_json
 from tltlc.api import Diagnostic, Fspa, TltlError, compiler, fileio
 
@@ -40,7 +40,7 @@ _KEY: Final = "card"
 With several, their order could differ between the files of equal policies.
 """
 
-_REFUSALS: Final = Refusals("a", "policy", "TLT0840", "TLT0841", "TLT0842", again="train the policy again")
+_ERRORS: Final = LoadErrors("a", "policy", "TLT0840", "TLT0841", "TLT0842", again="train the policy again")
 _HASH: Final = re.compile(r"[0-9a-f]{64}\Z")
 
 
@@ -105,7 +105,7 @@ def from_bytes(data: bytes, name: str) -> Policy:
     Raises the errors of :func:`read_policy`, except TLT0001.
     """
     if len(data) > MAX_BYTES:
-        raise _REFUSALS.unreadable(name, f"it is larger than {MAX_BYTES >> 20} MiB")
+        raise _ERRORS.unreadable_error(name, f"it is larger than {MAX_BYTES >> 20} MiB")
     header = _header(data, name)
     card = _card(header, name)
     _check_tensors(header, card, name)
@@ -132,7 +132,7 @@ def _header(data: bytes, name: str) -> dict[str, Any]:
     except (ValueError, RecursionError):
         header = None
     if not isinstance(header, dict):
-        raise _REFUSALS.unreadable(name, "it is no whole safetensors file")
+        raise _ERRORS.unreadable_error(name, "it is no whole safetensors file")
     return header
 
 
@@ -142,17 +142,17 @@ def _card(header: dict[str, Any], name: str) -> Card:
     except (KeyError, TypeError):
         document = None
     except (ValueError, RecursionError):
-        raise _REFUSALS.broken(name, "its card is not JSON") from None
+        raise _ERRORS.broken_error(name, "its card is not JSON") from None
     if not isinstance(document, dict) or document.pop("format", None) != FORMAT:
-        raise _REFUSALS.unreadable(name, "it holds the weights of something else")
-    _REFUSALS.check_version(name, document.pop("version", None), VERSION)
+        raise _ERRORS.unreadable_error(name, "it holds the weights of something else")
+    _ERRORS.check_version(name, document.pop("version", None), VERSION)
     try:
         fspa = compiler.decode_artefact(document.pop("artefact", None), f"{name}/artefact")
         card = from_json(Card, document, "card", fspa=fspa)
     except (RecordJsonError, RecursionError) as error:
-        raise _REFUSALS.broken(name, str(error)) from None
+        raise _ERRORS.broken_error(name, str(error)) from None
     if wrong := _fault(card):
-        raise _REFUSALS.broken(name, wrong)
+        raise _ERRORS.broken_error(name, wrong)
     return card
 
 
@@ -184,25 +184,25 @@ def _check_tensors(header: dict[str, Any], card: Card, name: str) -> None:
     try:
         wanted = {f"{_PREFIX}{key}": list(tensor.shape) for key, tensor in blank_actor(card).state_dict().items()}
     except (ValueError, RuntimeError, OverflowError) as error:
-        raise _REFUSALS.broken(name, f"its card describes no network: {error!s:.80}") from None
+        raise _ERRORS.broken_error(name, f"its card describes no network: {error!s:.80}") from None
     stored = {key: entry for key, entry in header.items() if key != "__metadata__"}
     for key in sorted(wanted.keys() | stored.keys()):
         if key not in stored:
-            raise _REFUSALS.broken(name, f"the tensor `{key}` is missing")
+            raise _ERRORS.broken_error(name, f"the tensor `{key}` is missing")
         if key not in wanted:
-            raise _REFUSALS.broken(name, f"there is a tensor `{key:.60}`, which its network has no use for")
+            raise _ERRORS.broken_error(name, f"there is a tensor `{key:.60}`, which its network has no use for")
         entry = stored[key] if isinstance(stored[key], dict) else {}
         if entry.get("dtype") != "F16" or entry.get("shape") != wanted[key]:
             is_ = f"{entry.get('dtype')!s:.20} of shape {entry.get('shape')!s:.40}"
-            raise _REFUSALS.broken(name, f"the tensor `{key}` is {is_}, not F16 of shape {wanted[key]}")
+            raise _ERRORS.broken_error(name, f"the tensor `{key}` is {is_}, not F16 of shape {wanted[key]}")
 
 
 def _weights(data: bytes, name: str) -> dict[str, Tensor]:
     try:
         tensors = load(data)
     except (SafetensorError, ValueError):
-        raise _REFUSALS.unreadable(name, "its weights are cut off or damaged") from None
+        raise _ERRORS.unreadable_error(name, "its weights are cut off or damaged") from None
     for key, tensor in tensors.items():
         if not bool(tensor.isfinite().all()):
-            raise _REFUSALS.broken(name, f"the tensor `{key}` has values that are no finite numbers")
+            raise _ERRORS.broken_error(name, f"the tensor `{key}` has values that are no finite numbers")
     return {key.removeprefix(_PREFIX): tensor for key, tensor in tensors.items()}

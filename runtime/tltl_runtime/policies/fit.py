@@ -9,7 +9,7 @@ from tltl_runtime.game.level import Level
 from tltl_runtime.game.registry import registered_game
 from tltl_runtime.policies.card import OBSERVATION, Card
 from tltl_runtime.policies.identity import spec_hash
-from tltl_runtime.support.number_text import listed
+from tltl_runtime.support.number_text import short_list
 from tltlc.api import Diagnostic, Fspa, TltlError, label_text
 
 _MOST: Final = 3
@@ -35,7 +35,7 @@ def check_policy(card: Card, level: Level, fspa: Fspa | None = None) -> None:
         raise _unfit(f"the policy chooses among {own} actions, and the game has {sizes}")
     missing = [*game.missing_sensors(level, card.sensors)]
     if missing:
-        title = f"the policy senses {listed(missing, _MOST)}, which the level `{level.name}` does not have"
+        title = f"the policy senses {short_list(missing, _MOST)}, which the level `{level.name}` does not have"
         suggestion = f"let it play `{card.level}`, where it was trained"
         if card.level == level.name:
             suggestion = "put back what was there when it was trained"
@@ -50,7 +50,7 @@ def differences(own: Fspa, fspa: Fspa) -> str:
 
     Differences in what the designer wrote come before differences in the automaton.
     """
-    return listed([*_differences(own, fspa)], _MOST)
+    return short_list([*_differences(own, fspa)], _MOST)
 
 
 def _differences(own: Fspa, fspa: Fspa) -> Iterator[str]:

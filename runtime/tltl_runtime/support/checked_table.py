@@ -22,18 +22,19 @@ FARTHEST: Final = 1000.0
 
 
 class CheckedTable:
-    """A table that is read key by key; errors go to ``log``, and a stand-in value is returned.
+    """A table that is read key by key.
 
-    ``what`` is the name of the table in messages. Call :meth:`done` at the end: it reports the keys
-    that were not read.
+    If a key is missing or its value is wrong, the method adds a diagnostic to ``log`` and returns a
+    stand-in value. ``description`` is the name of the table in messages. After the last key, call
+    :meth:`report_unknown_keys`.
     """
 
-    def __init__(self, entry: Entry, what: str, log: list[Diagnostic]) -> None:
+    def __init__(self, entry: Entry, description: str, log: list[Diagnostic]) -> None:
         self.entries: Tree = entry.value if isinstance(entry.value, dict) else {}
         self.label = entry.label
-        self.what = what
+        self.description = description
         self.log = log
-        self._asked: list[str] = []
+        self._read_keys: list[str] = []
 
     def number(
         self, key: str, default: float = REQUIRED, *, low: float = -FARTHEST, high: float = FARTHEST, unit: str = "m"
@@ -80,37 +81,37 @@ class CheckedTable:
         return self._read(key, REQUIRED, f"a list of {least} or more points [x, y, z] in metres", is_valid, (), convert)
 
     def table(self, key: str, *, needed: bool = True) -> CheckedTable | None:
-        """Read a table; return None if it is missing or is not a table."""
+        """Read a table; return None if the key is missing or its value is not a table."""
         entry = self.entries.get(key)
         value = self._read(key, REQUIRED if needed else {}, "a table", lambda v: isinstance(v, dict), None, lambda v: v)
         return CheckedTable(entry, f"`[{key}]`", self.log) if entry is not None and value is not None else None
 
     def tables(self, key: str) -> list[CheckedTable]:
-        """Read a list of tables; empty if it is missing."""
-        self._asked.append(key)
+        """Read a list of tables; return an empty list if the key is missing or its value is wrong."""
+        self._read_keys.append(key)
         entry = self.entries.get(key)
         if entry is None:
             return []
         if not isinstance(entry.value, list) or not all(isinstance(item, Entry) for item in entry.value):
-            self.log.append(wrong(entry, key, f"tables, each under a line `[[{key}]]`"))
+            self.log.append(wrong_value(entry, key, f"tables, each under a line `[[{key}]]`"))
             return []
         return [CheckedTable(item, f"`[[{key}]]`", self.log) for item in entry.value]
 
-    def place(self, key: str) -> Label:
-        """Return the label of a key, or of the table's header if the key is missing."""
+    def label_of(self, key: str) -> Label:
+        """Return the label of a key, or the label of the table if the key is missing."""
         return self.entries[key].label if key in self.entries else self.label
 
-    def done(self, elsewhere: Mapping[str, str] = EMPTY) -> None:
-        """Report the keys that were not read (TLT0802).
+    def report_unknown_keys(self, elsewhere: Mapping[str, str] = EMPTY) -> None:
+        """Report the keys that no method has read (TLT0802).
 
-        ``elsewhere`` names, for misplaced keys, the table that they belong to.
+        ``elsewhere`` maps the keys of other tables to the tables where they belong, for the help.
         """
-        known = dict.fromkeys(self._asked)
+        known = dict.fromkeys(self._read_keys)
         for key, entry in self.entries.items():
             if key not in known:
                 hint = suggestion(key, known) if len(self.log) < MOST_SUGGESTIONS else None
                 help_ = f"it is a key of `{elsewhere[key]}`" if key in elsewhere else hint
-                self.log.append(Diagnostic("TLT0802", f"{self.what} has no key `{key}`", (entry.label,), help_))
+                self.log.append(Diagnostic("TLT0802", f"{self.description} has no key `{key}`", (entry.label,), help_))
 
     def _read(
         self,
@@ -121,26 +122,26 @@ class CheckedTable:
         stand_in: T,
         convert: Callable[[Any], T],
     ) -> T:
-        self._asked.append(key)
+        self._read_keys.append(key)
         entry = self.entries.get(key)
         if entry is None:
             if default is REQUIRED:
-                title = f"{self.what} lacks `{key}`"
+                title = f"{self.description} lacks `{key}`"
                 self.log.append(Diagnostic("TLT0803", title, (self.label,), f"give `{key}`: {expected}"))
                 return stand_in
             return default  # type: ignore[no-any-return]
         if not is_valid(entry.value):
-            self.log.append(wrong(entry, key, expected))
+            self.log.append(wrong_value(entry, key, expected))
             return stand_in
         return convert(entry.value)
 
 
-def wrong(entry: Entry, key: str, expected: str) -> Diagnostic:
+def wrong_value(entry: Entry, key: str, expected: str) -> Diagnostic:
     """Return TLT0803 for a value of a wrong type or out of its range."""
     help_ = f"expected {expected}"
     if "[x, y, z]" in expected and _has_decimal_commas(entry.value):
         help_ += "; these are six numbers: decimals have a point, as in 6.5"
-    return Diagnostic("TLT0803", f"wrong value for `{key}`: {_shown(entry.value)}", (entry.label,), help_)
+    return Diagnostic("TLT0803", f"wrong value for `{key}`: {_value_text(entry.value)}", (entry.label,), help_)
 
 
 def _is_number(value: object) -> bool:
@@ -165,7 +166,7 @@ def _point(value: list[float]) -> Point:
     return (x, y, z)
 
 
-def _shown(value: object) -> str:
+def _value_text(value: object) -> str:
     if isinstance(value, str):
         return f'"{value}"'
     if isinstance(value, bool):

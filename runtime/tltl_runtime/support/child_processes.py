@@ -8,11 +8,12 @@ from contextlib import contextmanager
 
 
 @contextmanager
-def interrupts_withheld() -> Iterator[None]:
-    """Block SIGINT in processes started within this context, even while they import; this process
-    receives it afterwards.
+def block_interrupts() -> Iterator[None]:
+    """Block SIGINT within this context, and in all processes that are started there.
 
-    Windows has no signal masks: there, a child receives Ctrl-C until it ignores it itself.
+    A child process keeps SIGINT blocked, even while it imports its modules. This process receives a
+    pending SIGINT at the end of the context. Windows has no signal masks: there, a child receives
+    Ctrl-C until it ignores SIGINT itself.
     """
     if not hasattr(signal, "pthread_sigmask"):
         yield

@@ -6,11 +6,12 @@ from tltlc.api import Diagnostic, TltlError, record
 
 
 @record
-class Refusals:
-    """The errors of files that contain what ``article`` and ``noun`` name, such as "a" and "policy".
+class LoadErrors:
+    """The errors of one kind of file, which messages call ``article`` and ``noun``, such as "a" and "policy".
 
-    There is a code for a file that is something else or damaged, one for another version, and one
-    for invalid content. ``again`` says how to make the file anew, such as "train the policy again".
+    ``unreadable_code`` is the code for a file that is something else or damaged, ``version_code``
+    for another version, and ``broken_code`` for invalid content. ``again`` says how to make the file
+    anew, such as "train the policy again".
     """
 
     article: str
@@ -20,20 +21,20 @@ class Refusals:
     broken_code: str
     again: str
 
-    def unreadable(self, name: str, why: str) -> TltlError:
-        """Return the error that the file ``name`` is something else or damaged."""
+    def unreadable_error(self, name: str, why: str) -> TltlError:
+        """Return the error for a file ``name`` that is something else or damaged; ``why`` is the reason."""
         return self._error(self.unreadable_code, f"`{name}` cannot be read as {self.article} {self.noun}: {why}")
 
-    def broken(self, name: str, why: str) -> TltlError:
-        """Return the error that something in the file ``name`` is invalid."""
+    def broken_error(self, name: str, why: str) -> TltlError:
+        """Return the error for a file ``name`` with invalid content; ``why`` is the reason."""
         return self._error(self.broken_code, f"`{name}` is a broken {self.noun}: {why}")
 
-    def check_version(self, name: str, found: object, known: int) -> None:
-        """Raise TltlError if the version ``found`` in a file is not the ``known`` one."""
-        if type(found) is int and found == known:
+    def check_version(self, name: str, version: object, supported: int) -> None:
+        """Raise TltlError if ``version``, as read from the file ``name``, is not ``supported``."""
+        if type(version) is int and version == supported:
             return
-        help_ = "use a newer tltlc" if type(found) is int and found > known else self.again
-        title = f"`{name}` has version {found!r:.20}, and only version {known} can be read"
+        help_ = "use a newer tltlc" if type(version) is int and version > supported else self.again
+        title = f"`{name}` has version {version!r:.20}, and only version {supported} can be read"
         raise TltlError([Diagnostic(self.version_code, title, help=help_)])
 
     def _error(self, code: str, title: str) -> TltlError:

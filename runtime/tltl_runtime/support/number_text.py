@@ -32,14 +32,14 @@ def percent_exactly(value: float) -> str:
     return f"{100.0 * value:g}%"
 
 
-def counted(count: int, total: int, what: str = "") -> str:
-    """Return a count out of a total, with the percentage if the total is large: ``121 of 300 episodes (40%)``."""
-    text = f"{count} of {total}{' ' * bool(what)}{what}"
+def count_text(count: int, total: int, noun: str = "") -> str:
+    """Return a count out of a total, with the percentage if the total is above 25: ``121 of 300 episodes (40%)``."""
+    text = f"{count} of {total}{' ' * bool(noun)}{noun}"
     return f"{text} ({percent(count / total)})" if total > _FEW and 0 < count < total else text
 
 
-def between(interval: tuple[float, float]) -> str:
-    """Return an interval of shares in percent, rounded outwards so that the shown interval contains the exact one."""
+def interval_text(interval: tuple[float, float]) -> str:
+    """Return an interval of shares in percent: ``85% to 93%``. It is rounded outwards, to contain the exact one."""
     low, high = floor(100.0 * interval[0] + 1e-9), ceil(100.0 * interval[1] - 1e-9)
     return f"{low}% to {high}%"
 
@@ -59,7 +59,7 @@ def duration(seconds: float) -> str:
     return f"{hours} h {minutes} min" if hours else f"{minutes} min {rest} s"
 
 
-def listed(names: Sequence[str], most: int) -> str:
+def short_list(names: Sequence[str], most: int) -> str:
     """Return the first ``most`` names, separated by commas, and the number of the others."""
     left_out = len(names) - most
     return ", ".join(names[:most]) + (f" and {left_out} more" if left_out > 0 else "")

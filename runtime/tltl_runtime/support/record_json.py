@@ -2,9 +2,11 @@
 
 A record becomes an object with a key per field, a mapping with text keys an object, and a tuple a
 list. A text, number, bool or None stays the same, and so does a field annotated as ``Any``, which
-already contains JSON data. If the class of a record has an attribute ``json_inlined``, a mapping from
-fields that are records to some of their fields without a default, the object has these keys in place
-of the inner objects.
+already contains JSON data.
+
+The class of a record may have an attribute ``json_inlined``. It maps fields whose values are records
+to some of the fields of those records. The object then has these inner fields as keys of its own, in
+place of the inner objects. The inner fields have no default.
 """
 
 from __future__ import annotations
@@ -27,7 +29,7 @@ class RecordJsonError(ValueError):
 
 
 def to_json(value: object) -> Any:
-    """Return an argument for ``json.dumps`` for a record, a tuple of records or a plain value."""
+    """Return the JSON data, for ``json.dumps``, of a record, a tuple of records or a plain value."""
     names = getattr(type(value), "__match_args__", None)
     if names is not None:
         inlined = _inlined(type(value))
@@ -126,7 +128,7 @@ def _record(kind: Any, data: object, where: str, known: Mapping[str, object]) ->
 
 
 def _inlined(kind: type) -> Mapping[str, tuple[str, ...]]:
-    """Return the inlined fields of a record's class, each with the keys that stand in its place."""
+    """Return the inlined fields of a record's class, each with the keys that replace it in JSON."""
     inlined: Mapping[str, tuple[str, ...]] = getattr(kind, "json_inlined", {})
     return inlined
 
@@ -136,9 +138,9 @@ def _gather_inlined(kind: Any, values: dict[str, object]) -> list[str]:
     missing = []
     for name, keys in _inlined(kind).items():
         inner = {key: values.pop(key) for key in keys if key in values}
-        lacking = [key for key in keys if key not in inner]
-        values[name] = None if lacking else get_type_hints(kind)[name](**inner)
-        missing += lacking
+        missing_keys = [key for key in keys if key not in inner]
+        values[name] = None if missing_keys else get_type_hints(kind)[name](**inner)
+        missing += missing_keys
     return missing
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 
-def shown(path: Path) -> str:
-    """Return the path, relative to the current folder if it is inside."""
+def path_text(path: Path) -> str:
+    """Return a path as text, relative to the current folder if the path is inside that folder."""
     try:
         return str(path.absolute().relative_to(Path.cwd()))
     except ValueError:

@@ -1,4 +1,4 @@
-"""Hash of all source modules; identifies the code where the version string does not, as in a clone."""
+"""Hash of all source modules; identifies the code where the version string does not, such as in a clone."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _PACKAGES: Final = ("tltlc", "tltl_runtime")
 def sources_hash() -> str:
     """Return the SHA-256 (hexadecimal) of the names and contents of all modules; line endings do not matter.
 
-    It is computed once, so that it describes the code that this process may have loaded.
+    The hash is computed once per process, so that it describes the code that the process has loaded.
     """
     digest = hashlib.sha256()
     for package in _PACKAGES:

@@ -9,11 +9,11 @@ from typing import Final
 MOST_SUGGESTIONS: Final = 100
 """The most diagnostics per file that suggest similar names.
 
-Searching similar names for thousands of diagnostics would take long.
+Searching for similar names takes too long for thousands of diagnostics.
 """
 
 _LONGEST: Final = 100
-"""No similar names are searched for names longer than this, in characters."""
+"""Names longer than this, in characters, get no similar name, because the search takes too long."""
 
 
 def suggestion(name: str, known: Iterable[str], listed: str | None = None) -> str:
@@ -23,9 +23,9 @@ def suggestion(name: str, known: Iterable[str], listed: str | None = None) -> st
     """
     names = list(known)
     close = get_close_matches(name, names, n=1) if len(name) <= _LONGEST else []
-    close = close or [known for known in names if known.lower() == name.lower()]
+    close = close or [candidate for candidate in names if candidate.lower() == name.lower()]
     if close:
         return f"did you mean `{close[0]}`?"
     if listed is not None:
         return f"there are: {listed}"
-    return "there are: " + ", ".join(f"`{known}`" for known in names) if names else "there are none"
+    return "there are: " + ", ".join(f"`{candidate}`" for candidate in names) if names else "there are none"

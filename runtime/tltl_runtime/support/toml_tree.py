@@ -1,6 +1,6 @@
-"""TOML with labels: every value knows the text that it comes from.
+"""TOML with labels: every value has the label of its key in the file that it comes from.
 
-Diagnostics about overlays can thus point into the overlay's file.
+So a diagnostic about a value that an overlay changed can point into the file of the overlay.
 """
 
 from __future__ import annotations
@@ -33,35 +33,38 @@ Tree = dict[str, Entry]
 
 
 def read_tree(source: SourceFile, code: str = "TLT0801", help_: str = _HELP) -> Tree:
-    """Parse a TOML text; raises TltlError with ``code`` and ``help_`` if it is invalid.
+    """Return the tree of a TOML text.
 
     Values inside an inline table have the span of the key before the table.
+
+    Raises:
+        TltlError: ``code``, with the help ``help_``: the text is not TOML.
     """
     data = fileio.parse_toml(source, code, help_)
-    return _tree(data, (), _places(source.text), Label(source, Span(0, 0)))
+    return _tree(data, (), _key_spans(source.text), Label(source, Span(0, 0)))
 
 
-def _tree(data: dict[str, Any], path: tuple[str | int, ...], places: dict[Any, Span], around: Label) -> Tree:
+def _tree(data: dict[str, Any], path: tuple[str | int, ...], spans: dict[Any, Span], around: Label) -> Tree:
     tree: Tree = {}
     for key, value in data.items():
         here = (*path, key)
-        label = Label(around.source, places[here]) if here in places else around
+        label = Label(around.source, spans[here]) if here in spans else around
         if isinstance(value, dict):
-            tree[key] = Entry(_tree(value, here, places, label), label)
+            tree[key] = Entry(_tree(value, here, spans, label), label)
         elif isinstance(value, list) and value and all(isinstance(item, dict) for item in value):
             tables = []
             for number, item in enumerate(value):
-                place = Label(around.source, places.get((*here, number), label.span))
-                tables.append(Entry(_tree(item, (*here, number), places, place), place))
+                place = Label(around.source, spans.get((*here, number), label.span))
+                tables.append(Entry(_tree(item, (*here, number), spans, place), place))
             tree[key] = Entry(tables, label)
         else:
             tree[key] = Entry(value, label)
     return tree
 
 
-def _places(text: str) -> dict[tuple[str | int, ...], Span]:
+def _key_spans(text: str) -> dict[tuple[str | int, ...], Span]:
     """Find the spans of the keys and table headers in a text that is valid TOML."""
-    places: dict[tuple[str | int, ...], Span] = {}
+    spans: dict[tuple[str | int, ...], Span] = {}
     counts: dict[tuple[str | int, ...], int] = {}
     table: tuple[str | int, ...] = ()
     position = 0
@@ -69,26 +72,26 @@ def _places(text: str) -> dict[tuple[str | int, ...], Span]:
         brackets = 2 if text.startswith("[[", position) else 1 if text[position] == "[" else 0
         start = _end(_BLANK, text, position + brackets)
         end = _end(_DOTTED, text, start)
-        path = _inside(text[start:end], () if brackets else table, counts)
+        path = _dotted_path(text[start:end], () if brackets else table, counts)
         if brackets == 2:
             counts[path] = counts.get(path, -1) + 1
-            places.setdefault(path, Span(start, end))
+            spans.setdefault(path, Span(start, end))
             path = (*path, counts[path])
         for length in range(0 if brackets else len(table), len(path)):
-            places.setdefault(path[:length], Span(start, end))
-        places[path] = Span(start, end)
+            spans.setdefault(path[:length], Span(start, end))
+        spans[path] = Span(start, end)
         if brackets:
             table = path
             position = text.find("]", end) + brackets
         else:
             position = _value_end(text, text.index("=", end) + 1)
-    return places
+    return spans
 
 
-def _inside(
+def _dotted_path(
     dotted: str, around: tuple[str | int, ...], counts: dict[tuple[str | int, ...], int]
 ) -> tuple[str | int, ...]:
-    """The path of a dotted key in the table ``around``.
+    """Return the path of a dotted key in the table ``around``.
 
     A list of tables in the path stands for its last table.
     """

@@ -13,7 +13,7 @@ from typing import Any, Final
 from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import CloudpickleWrapper
 
-from tltl_runtime.support.child_processes import interrupts_withheld
+from tltl_runtime.support.child_processes import block_interrupts
 from tltl_runtime.vector.errors import Loss
 from tltl_runtime.vector.memory import Rows
 from tltl_runtime.vector.worker import CLOSE, FAILED, EnvFunction, work
@@ -73,7 +73,7 @@ class Workers:
                 name=f"env worker {worker}",
                 daemon=True,
             )
-            with interrupts_withheld():
+            with block_interrupts():
                 process.start()
             theirs.close()
             self._processes[worker], self._connections[worker] = process, ours

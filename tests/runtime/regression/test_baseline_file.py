@@ -20,7 +20,7 @@ from tltl_runtime.regression.verdict.baseline import (
     reference_of,
     write_baseline,
 )
-from tltl_runtime.support.shown_path import shown
+from tltl_runtime.support.shown_path import path_text
 from tltlc import compile_text
 from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import TltlError
@@ -201,7 +201,7 @@ def test_the_suggested_command_writes_the_missing_baseline(path: Path) -> None:
     assert baseline_command(named) == f"tltlc baseline{words} --output 'a night.json'"
     shipped = replace(named, baseline=default_output(path))
     assert baseline_command(shipped) == f"tltlc baseline{words}"
-    assert baseline_command(read_suite(SHIPPED)) == f"tltlc baseline --output {shown(baseline_path(SHIPPED))}"
+    assert baseline_command(read_suite(SHIPPED)) == f"tltlc baseline --output {path_text(baseline_path(SHIPPED))}"
 
 
 @pytest.mark.parametrize("indices", [[], [1], [0, 2], [0, 0], [1, 0]])

@@ -22,7 +22,7 @@ from tltl_runtime.stealth.recordings.versions import versions
 from tltl_runtime.stealth.rendering.plan import draw_episode
 from tltl_runtime.stealth.rendering.trajectories import draw_trajectories
 from tltl_runtime.support.record_json import to_json
-from tltl_runtime.support.shown_path import shown
+from tltl_runtime.support.shown_path import path_text
 from tltlc.api import Diagnostic, TltlError, cli, fileio
 
 _REPORT: Final = "evaluation.json"
@@ -112,7 +112,7 @@ class EvaluationFiles:
         """Return the text report."""
         setup = self._setup
         # Show the path of a user's level, which may have the name of a level of the package.
-        level = shown(Path(setup.level)) if setup.level.endswith(".toml") else self._level.name
+        level = path_text(Path(setup.level)) if setup.level.endswith(".toml") else self._level.name
         head = f"{level} {self._level.variant}, spec {setup.fspa.name}, seed {setup.seed}: {self._path}"
         evaluations = {CHOICES[sampled]: evaluation for sampled, evaluation in self._evaluations().items()}
         text = f"{head}\n{self._note()}\n{report_text(evaluations)}"

@@ -18,7 +18,7 @@ from tltl_runtime.stealth.capabilities.spec_places import SpecPlaces
 from tltl_runtime.stealth.level import Level
 from tltl_runtime.stealth.levels.file import level_names, read_level, variants
 from tltl_runtime.stealth.observation.observation import Senses
-from tltl_runtime.support.shown_path import shown
+from tltl_runtime.support.shown_path import path_text
 from tltlc.api import Diagnostic, Fspa, TltlError, cli, fileio
 
 
@@ -89,7 +89,7 @@ class _Check:
             advice = 'name one before --level, or in the level: `spec = "FILE.tltl:NAME"`'
             self._say(f"{level.name}: made for no spec; {advice}")
             return []
-        opened = cli.open_input(shown(Path(level.spec)), self._settings)
+        opened = cli.open_input(path_text(Path(level.spec)), self._settings)
         self._add(opened.diagnostics)
         return [opened]
 

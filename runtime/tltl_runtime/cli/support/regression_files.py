@@ -22,7 +22,7 @@ from tltl_runtime.regression.verdict.suite_run import CASES, FinishedCase, case_
 from tltl_runtime.regression.verdict.verdict import Verdict
 from tltl_runtime.stealth.recordings.episode import Episode
 from tltl_runtime.stealth.recordings.file import read_episode
-from tltl_runtime.support.number_text import listed
+from tltl_runtime.support.number_text import short_list
 from tltl_runtime.training.run.versions import versions
 from tltlc.api import TltlError, fileio, record
 
@@ -92,7 +92,7 @@ def _cases_not_run(outcome: SuiteRun) -> Iterator[NotRun]:
     """Yield the cases that were not judged, in the suite's order."""
     unaffected = "--changed names no file"
     if outcome.changed:
-        names = listed([f"`{file}`" for file in outcome.changed], _MOST_NAMED)
+        names = short_list([f"`{file}`" for file in outcome.changed], _MOST_NAMED)
         unaffected = f"it depends on none of the files that --changed names: {names}"
     reasons = {
         **dict.fromkeys(outcome.missing, "the run was stopped before; the same command goes on"),

@@ -25,7 +25,7 @@ from tltl_runtime.regression.suite.suite import SHIPPED, Case, Suite, read_suite
 from tltl_runtime.regression.suite.unnamed_changes import unnamed_changes
 from tltl_runtime.regression.verdict.baseline import Reference, baseline_of
 from tltl_runtime.regression.verdict.suite_run import FinishedCase, check_references, lock_run, regress
-from tltl_runtime.support.number_text import listed
+from tltl_runtime.support.number_text import short_list
 from tltlc.api import TltlError, cli, record, workflow_command
 
 _MOST_NAMED: Final = 8
@@ -102,7 +102,7 @@ def _select_cases(suite: Suite, options: RegressOptions) -> Selection:
         return Selection(suite.cases)
     selection = select(suite, options.changed)
     if selection.unknown:
-        click.echo(f"no case depends on {plain_text(listed(selection.unknown, _MOST_NAMED))}", err=True)
+        click.echo(f"no case depends on {plain_text(short_list(selection.unknown, _MOST_NAMED))}", err=True)
     for name, suggestion in selection.suggestions:
         message = plain_text(f"there is no file `{name}`: did you mean `{suggestion}`?")
         click.echo(f"warning: {message}", err=True)
@@ -127,7 +127,7 @@ def _references(suite: Suite, cases: Sequence[Case]) -> tuple[Reference, ...]:
 def _warn_unnamed(suite: Suite, left_out: Sequence[Case], references: tuple[Reference, ...]) -> None:
     """Warn about files that have changed but were not named as changed."""
     for name, cases in unnamed_changes(suite, left_out, references).items():
-        names = plain_text(listed(cases, _MOST_NAMED))
+        names = plain_text(short_list(cases, _MOST_NAMED))
         message = (
             f"`{plain_text(name)}` has changed since the baseline, and is not among the files that are named; "
             f"left out: {names}"

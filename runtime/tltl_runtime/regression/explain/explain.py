@@ -12,7 +12,7 @@ from tltl_runtime.regression.explain.account import ExplainedEpisode
 from tltl_runtime.regression.explain.failures import end_of, failures
 from tltl_runtime.regression.explain.path_points import positions_along
 from tltl_runtime.regression.explain.stages import Subgoal, subgoal_of_all, subgoals_text
-from tltl_runtime.support.number_text import counted, percent
+from tltl_runtime.support.number_text import count_text, percent
 from tltlc.api import Fspa, record
 
 _STAGE_TOLERANCE: Final = 0.05
@@ -71,7 +71,7 @@ def _stages(fspa: Fspa, now: Sequence[ExplainedEpisode], before: Sequence[Explai
         prefix = f"{subgoals_text(unchanged_stages)} as before, then " if unchanged_stages else ""
         failed = tuple(episode.summary.index for episode in now if episode not in passed_now)
         counts = [
-            counted(len(passed), len(episodes), "episodes")
+            count_text(len(passed), len(episodes), "episodes")
             for passed, episodes in ((passed_now, now), (passed_before, before))
         ]
         text = f"{prefix}{stage.text} in {counts[0]}; before: in {counts[1]}"

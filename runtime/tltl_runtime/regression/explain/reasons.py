@@ -14,7 +14,7 @@ from tltl_runtime.regression.suite.suite import Thresholds
 from tltl_runtime.regression.verdict.baseline import Identity
 from tltl_runtime.regression.verdict.verdict import Judgement, differing_figures
 from tltl_runtime.spec.episode_summary import EpisodeSummary
-from tltl_runtime.support.number_text import between, counted, percent_exactly
+from tltl_runtime.support.number_text import count_text, interval_text, percent_exactly
 from tltlc.api import Fspa
 
 _OVERLAYS: Final = "overlays/"
@@ -30,7 +30,7 @@ def reasons(
     """
     passed, passed_before = (sum(episode.success for episode in episodes) for episodes in (now, before))
     pass_rate, fail_rate = percent_exactly(thresholds.pass_rate), percent_exactly(thresholds.fail_rate)
-    met = f"met in {counted(passed, len(now), 'episodes')}, before in {counted(passed_before, len(before))}"
+    met = f"met in {count_text(passed, len(now), 'episodes')}, before in {count_text(passed_before, len(before))}"
     if judgement.verdict == "fail":
         yield f"{met}: certainly in less than {fail_rate}"
     elif judgement.rate_interval[0] >= thresholds.pass_rate:
@@ -38,7 +38,7 @@ def reasons(
     elif judgement.certain and judgement.rate_interval[1] < thresholds.pass_rate:
         yield f"{met}: certainly in {fail_rate} to {pass_rate}"
     else:
-        yield f"{met}: {between(judgement.rate_interval)} can be said for certain, and {pass_rate} are asked for"
+        yield f"{met}: {interval_text(judgement.rate_interval)} can be said for certain, and {pass_rate} are asked for"
     for change in judgement.changes:
         yield _change_text(change.figure, change.now, change.before)
     if judgement.verdict == "review" and not judgement.certain:

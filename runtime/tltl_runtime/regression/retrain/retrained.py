@@ -7,7 +7,7 @@ from typing import Final, Literal
 
 from tltl_runtime.evaluation.figures import Figures
 from tltl_runtime.regression.suite.suite import Thresholds
-from tltl_runtime.support.number_text import between, duration, number, percent_exactly
+from tltl_runtime.support.number_text import duration, interval_text, number, percent_exactly
 from tltlc.api import record
 
 Outcome = Literal["learned", "feasible", "no_way"]
@@ -89,7 +89,7 @@ def sentence(
         effort = f"{duration(trained.seconds)} of search and training ({counts})"
     count, passed = figures.episodes, round(figures.pass_rate * figures.episodes)
     fresh_result = (
-        f"the policy meets the spec in {passed} of {count} fresh episodes ({between(rate_interval)} for certain)"
+        f"the policy meets the spec in {passed} of {count} fresh episodes ({interval_text(rate_interval)} for certain)"
     )
     if outcome == "learned":
         return f"feasible: after {effort} {fresh_result}"

@@ -6,7 +6,7 @@ import json
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Final, TypeGuard
 
-from tltl_runtime.support.number_text import listed
+from tltl_runtime.support.number_text import short_list
 from tltlc.api import SourceFile, TltlError, fileio
 
 _MOST_KEYS: Final = 3
@@ -26,7 +26,7 @@ def changed_keys(before: str, now: str) -> str:
         old, new = (fileio.parse_toml(SourceFile("", text), "TLT0801", "") for text in (before, now))
     except TltlError:
         return ""
-    return listed(list(_changes((), old, new)), _MOST_KEYS) or "its layout"
+    return short_list(list(_changes((), old, new)), _MOST_KEYS) or "its layout"
 
 
 def _changes(path: tuple[str, ...], old: Mapping[str, Any], new: Mapping[str, Any]) -> Iterator[str]:

@@ -17,8 +17,8 @@ from tltl_runtime.regression.suite.named_files import (
     similar_level,
     spec_diagnostics,
 )
-from tltl_runtime.support.checked_table import REQUIRED, CheckedTable, wrong
-from tltl_runtime.support.shown_path import shown
+from tltl_runtime.support.checked_table import REQUIRED, CheckedTable, wrong_value
+from tltl_runtime.support.shown_path import path_text
 from tltl_runtime.support.suggestion import suggestion
 from tltl_runtime.support.toml_tree import Entry, read_tree
 from tltlc.api import Diagnostic, Label, Span, TltlError, fileio, record
@@ -112,7 +112,7 @@ def read_suite(path: Path, baseline: Path | None = None) -> Suite:
             TLT0853, no policy comes with the level; TLT0006, too many cases; and the errors of policies
             and specs from :mod:`~tltl_runtime.regression.suite.named_files`.
     """
-    source = fileio.read_source(path, shown(path))
+    source = fileio.read_source(path, path_text(path))
     log: list[Diagnostic] = []
     table = CheckedTable(Entry(read_tree(source, help_=_HELP), Label(source, Span(0, 0))), "the suite", log)
     if "case" not in table.entries:
@@ -121,7 +121,7 @@ def read_suite(path: Path, baseline: Path | None = None) -> Suite:
             raise TltlError([Diagnostic("TLT0803", f"this is {kind}, and no suite", (table.label,), help_)])
         if "level" in table.entries:
             title, help_ = "the suite has no cases, and `level` is a key of one", "write `[[case]]` in a line above it"
-            raise TltlError([Diagnostic("TLT0802", title, (table.place("level"),), help_)])
+            raise TltlError([Diagnostic("TLT0802", title, (table.label_of("level"),), help_)])
     seed = table.whole("seed", 0, low=0, high=2**31 - 1)
     error = table.number("error", 0.05, low=0.0001, high=0.5, unit="")
     episodes = _episodes(table, MOST_EPISODES)
@@ -137,7 +137,7 @@ def read_suite(path: Path, baseline: Path | None = None) -> Suite:
             log.append(_unread_cases_error(len(case_tables) - number, case_table.label))
             break
         cases.append(_case(case_table, path.parent, episodes, thresholds, known_variants))
-    table.done()
+    table.report_unknown_keys()
     if not cases and not log:
         log.append(Diagnostic("TLT0803", "the suite has no cases", (table.label,), "give one, under `[[case]]`"))
     labels: dict[str, Label] = {}
@@ -175,20 +175,20 @@ def _case(
     episodes, thresholds = _episodes(table, episodes), _thresholds(table, thresholds)
     name = _text(table, "name", "")
     policy = _policy(table, folder, level)
-    table.done()
+    table.report_unknown_keys()
     if len(table.log) > before or policy is None:
         return None
     variant_names = _variants(table, level, known_variants)
     for key, value in (("variant", variant), ("reference", reference)):
         if value and value not in variant_names:
             title = f"the level `{level}` has no variant `{value}`"
-            table.log.append(Diagnostic("TLT0800", title, (table.place(key),), suggestion(value, variant_names)))
+            table.log.append(Diagnostic("TLT0800", title, (table.label_of(key),), suggestion(value, variant_names)))
     overlay_names = registered_game().level_files.overlays(level)
     for overlay in overlays:
         if not overlay.endswith(".toml") and overlay not in overlay_names:
             title = f"there is no overlay `{overlay}`"
             table.log.append(
-                Diagnostic("TLT0805", title, (table.place("overlay"),), suggestion(overlay, overlay_names))
+                Diagnostic("TLT0805", title, (table.label_of("overlay"),), suggestion(overlay, overlay_names))
             )
     base = variant or variant_names[0]
     name = name or f"{Path(level).stem}:{'+'.join((base, *(Path(overlay).stem for overlay in overlays)))}"
@@ -202,7 +202,7 @@ def _text(table: CheckedTable, key: str, default: str = REQUIRED) -> str:
     """Read a string that must not be empty if it is present."""
     text, entry = table.text(key, default), table.entries.get(key)
     if entry is not None and entry.value == "":
-        table.log[-1] = wrong(entry, key, "a text that is not empty")
+        table.log[-1] = wrong_value(entry, key, "a text that is not empty")
     return text
 
 
@@ -229,7 +229,7 @@ def _level(table: CheckedTable, folder: Path) -> tuple[str, str]:
     if level.endswith(".toml"):
         if not fileio.is_file(folder / level):
             help_ = similar_level(level, folder) or "paths are relative to the suite"
-            table.log.append(Diagnostic("TLT0800", f"there is no level `{level}`", (table.place("level"),), help_))
+            table.log.append(Diagnostic("TLT0800", f"there is no level `{level}`", (table.label_of("level"),), help_))
         return str(folder / level), Path(normpath(level)).as_posix()
     level_files = registered_game().level_files
     try:
@@ -243,7 +243,7 @@ def _level(table: CheckedTable, folder: Path) -> tuple[str, str]:
             help_text = _separate_keys_help(name, variant)
         elif not level.endswith((".tltl", ".json")) and "+" not in level:
             help_text = similar_level(level, folder) or diagnostic.help
-        table.log.append(Diagnostic(diagnostic.code, diagnostic.title, (table.place("level"),), help_text))
+        table.log.append(Diagnostic(diagnostic.code, diagnostic.title, (table.label_of("level"),), help_text))
     return level, ""
 
 
@@ -267,7 +267,7 @@ def _overlays(table: CheckedTable, folder: Path) -> tuple[str, ...]:
     for name in names:
         path = folder / name
         if name.endswith(".toml") and not fileio.is_file(path):
-            table.log.append(_missing_file_error("overlay", name, table.place("overlay")))
+            table.log.append(_missing_file_error("overlay", name, table.label_of("overlay")))
         overlays.append(str(path) if name.endswith(".toml") else name)
     return tuple(overlays)
 
@@ -278,10 +278,10 @@ def _spec(table: CheckedTable, folder: Path) -> str | None:
         return None
     file, name = fileio.split_spec_name(text)
     if not fileio.is_file(folder / file):
-        table.log.append(_missing_file_error("spec", file, table.place("spec")))
+        table.log.append(_missing_file_error("spec", file, table.label_of("spec")))
     spec = f"{folder / file}:{name}" if name else str(folder / file)
     if fileio.is_file(folder / file):
-        table.log += spec_diagnostics(spec, table.place("spec"))
+        table.log += spec_diagnostics(spec, table.label_of("spec"))
     return spec
 
 
@@ -294,7 +294,7 @@ def _policy(table: CheckedTable, folder: Path, level: str) -> Path | None:
     if not name or name in shipped_policies():
         shipped = shipped_policy(name or level)
         if shipped is None and level and not table.log:
-            title, label = f"no policy comes with the level `{level}`", table.place("level")
+            title, label = f"no policy comes with the level `{level}`", table.label_of("level")
             help_ = f'name one that was trained, e.g. `policy = "training/{Path(level).stem}"`'
             if related_level := level_with_fitting_policy(level):
                 help_ += f', or the one for the same spec that comes with tltlc: `policy = "{related_level}"`'
@@ -303,9 +303,9 @@ def _policy(table: CheckedTable, folder: Path, level: str) -> Path | None:
     path = folder / name
     if not fileio.exists(path):
         candidates = (*shipped_policies(), *sorted(file.name for file in folder.glob(f"*{SUFFIX}")))
-        table.log.append(_missing_file_error("policy", name, table.place("policy"), candidates))
+        table.log.append(_missing_file_error("policy", name, table.label_of("policy"), candidates))
     else:
-        table.log += policy_diagnostics(path, table.place("policy"))
+        table.log += policy_diagnostics(path, table.label_of("policy"))
     return path
 
 
@@ -322,17 +322,17 @@ def _thresholds(table: CheckedTable, defaults: Thresholds) -> Thresholds:
         subtable.number(key, getattr(defaults, key), low=0.0, high=_GREATEST.get(key, 1.0), unit="")
         for key in defaults.__match_args__
     ]
-    subtable.done()
+    subtable.report_unknown_keys()
     thresholds = Thresholds(*values)
     if thresholds.fail_rate > thresholds.pass_rate and len(table.log) == before:
         if "fail_rate" in subtable.entries:
             expected = f"a `fail_rate` of {thresholds.pass_rate:g}, the `pass_rate`, at the most"
-            table.log.append(wrong(subtable.entries["fail_rate"], "fail_rate", expected))
+            table.log.append(wrong_value(subtable.entries["fail_rate"], "fail_rate", expected))
         else:
             default = f"`fail_rate`, which is {thresholds.fail_rate:g} by default"
             title = f"`pass_rate` is {thresholds.pass_rate:g}, below the {default}"
             help_ = f"give a `fail_rate`, too, of {thresholds.pass_rate:g} at the most"
-            table.log.append(Diagnostic("TLT0803", title, (subtable.place("pass_rate"),), help_))
+            table.log.append(Diagnostic("TLT0803", title, (subtable.label_of("pass_rate"),), help_))
     return thresholds
 
 

@@ -12,9 +12,9 @@ from typing import Final
 from tltl_runtime.regression.explain.account import ExplainedEpisode
 from tltl_runtime.regression.suite.suite import SHIPPED, Suite, baseline_path
 from tltl_runtime.regression.verdict.verdict import FIGURES
-from tltl_runtime.support.load_errors import Refusals
+from tltl_runtime.support.load_errors import LoadErrors
 from tltl_runtime.support.record_json import RecordJsonError, from_json, to_json
-from tltl_runtime.support.shown_path import shown
+from tltl_runtime.support.shown_path import path_text
 from tltlc.api import EMPTY, Diagnostic, Fspa, TltlError, fileio, record
 
 FORMAT: Final = "tltl-baseline"
@@ -24,7 +24,7 @@ MAX_BYTES: Final = fileio.limits.REPORT.size
 _ROUNDING: Final = 1e-6
 """The rounding error by which a figure may leave its range."""
 
-_REFUSALS: Final = Refusals(
+_REFUSALS: Final = LoadErrors(
     "a", "baseline", "TLT0900", "TLT0901", "TLT0902", again="record it again with `tltlc baseline`"
 )
 
@@ -94,28 +94,28 @@ def read_baseline(path: Path) -> tuple[Reference, ...]:
     try:
         document = fileio.parse_json(fileio.read_bytes(path, name, MAX_BYTES), fileio.limits.REPORT)
     except (ValueError, RecursionError) as error:
-        raise _REFUSALS.unreadable(name, f"it is not JSON: {error!s:.60}") from None
+        raise _REFUSALS.unreadable_error(name, f"it is not JSON: {error!s:.60}") from None
     if not isinstance(document, dict) or document.get("format") != FORMAT:
-        raise _REFUSALS.unreadable(name, "it is something else")
+        raise _REFUSALS.unreadable_error(name, "it is something else")
     _REFUSALS.check_version(name, document.get("version"), VERSION)
     try:
         parsed = from_json(_Document, document, "baseline")
     except (RecordJsonError, RecursionError) as error:
-        raise _REFUSALS.broken(name, str(error)) from None
+        raise _REFUSALS.broken_error(name, str(error)) from None
     texts = {sha256: "\n".join(lines) for sha256, lines in parsed.texts.items()}
     for sha256, text in texts.items():
         if text_sha256(text) != sha256:
-            raise _REFUSALS.broken(name, f"baseline.texts: what is called `{sha256:.12}` has another SHA-256")
+            raise _REFUSALS.broken_error(name, f"baseline.texts: what is called `{sha256:.12}` has another SHA-256")
     for row, reference in enumerate(parsed.references):
         where = f"baseline.references[{row}].accounts"
         # Episodes are compared by index, and the mean of no episodes is undefined.
         if not reference.accounts or any(
             episode.summary.index != place for place, episode in enumerate(reference.accounts)
         ):
-            raise _REFUSALS.broken(name, f"{where}: the episodes must be there from number 0 on, without a gap")
+            raise _REFUSALS.broken_error(name, f"{where}: the episodes must be there from number 0 on, without a gap")
         for episode in reference.accounts:
             for flaw in _flaws(episode):
-                raise _REFUSALS.broken(name, f"{where}[{episode.summary.index}]: {flaw}")
+                raise _REFUSALS.broken_error(name, f"{where}[{episode.summary.index}]: {flaw}")
     return tuple(
         Reference(reference.played, reference.accounts, _texts(reference.played, texts), reference.sources)
         for reference in parsed.references
@@ -172,7 +172,7 @@ def baseline_of(suite: Suite) -> tuple[Reference, ...]:
         TltlError: TLT0903, the suite has no baseline; see also :func:`read_baseline`.
     """
     if _is_missing(suite.baseline):
-        title = f"the suite `{shown(suite.path)}` has no baseline: there is no `{shown(suite.baseline)}`"
+        title = f"the suite `{path_text(suite.path)}` has no baseline: there is no `{path_text(suite.baseline)}`"
         raise TltlError([Diagnostic("TLT0903", title, help=f"record it: {baseline_command(suite)}")])
     return read_baseline(suite.baseline)
 
@@ -221,7 +221,7 @@ def check_states(reference: Reference, fspa: Fspa, suite: Suite) -> None:
         if (state := max(_states(episode))) >= count:
             where = f"episode {episode.summary.index} of `{played.level}:{played.variant}`"
             why = f"{where} has the state {state}, and those of `{played.spec}` are 0 to {count - 1}"
-            raise _REFUSALS.broken(str(suite.baseline), why)
+            raise _REFUSALS.broken_error(str(suite.baseline), why)
 
 
 def default_output(suite: Path) -> Path:
@@ -234,9 +234,9 @@ def default_output(suite: Path) -> Path:
 
 def baseline_command(suite: Suite) -> str:
     """Return the shell command that records the baseline of a suite."""
-    words = ["tltlc", "baseline", *([] if suite.path == SHIPPED else [shown(suite.path)])]
+    words = ["tltlc", "baseline", *([] if suite.path == SHIPPED else [path_text(suite.path)])]
     if suite.baseline != default_output(suite.path):
-        words += ["--output", shown(suite.baseline)]
+        words += ["--output", path_text(suite.baseline)]
     return join(words)
 
 

@@ -21,8 +21,8 @@ from tltl_runtime.stealth.levels.bounds_check import check_room
 from tltl_runtime.stealth.levels.made_for import LEVELS, made_for
 from tltl_runtime.stealth.levels.path_check import check_ways
 from tltl_runtime.stealth.levels.regions import named_regions, part_regions
-from tltl_runtime.support.checked_table import CheckedTable, wrong
-from tltl_runtime.support.shown_path import shown
+from tltl_runtime.support.checked_table import CheckedTable, wrong_value
+from tltl_runtime.support.shown_path import path_text
 from tltl_runtime.support.suggestion import MOST_SUGGESTIONS, suggestion
 from tltl_runtime.support.toml_tree import Entry, Tree, read_tree
 from tltlc.api import Diagnostic, Label, SourceFile, Span, TltlError, fileio, replace
@@ -137,7 +137,7 @@ class _Loading:
         base, added = overlays_of(variant)
         if base not in self.variants:
             title = f"the level `{self.path.stem}` has no variant `{base}`"
-            label = self.table.place("variants")
+            label = self.table.label_of("variants")
             raise TltlError([Diagnostic("TLT0800", title, (label,), suggestion(base, self.variants))])
         table, places = self.table, self.places
         doc, spec = table.text("doc"), made_for(table, self.path)
@@ -160,7 +160,7 @@ class _Loading:
         if enemies and is_too_large(bounds):
             title = f"the bounds of the level `{self.path.stem}` are too large for enemies"
             help_ = "let them hold 250 m by 250 m at most, or leave the enemies out"
-            raise TltlError([Diagnostic("TLT0006", title, (table.place("bounds"),), help_)])
+            raise TltlError([Diagnostic("TLT0006", title, (table.label_of("bounds"),), help_)])
         level = Level(
             name=self.path.stem,
             variant=shown_variant(variant),
@@ -182,11 +182,11 @@ class _Loading:
         )
         names = entity_names(level)
         level = replace(level, sensors=parts.sensors(table.table("sensors", needed=False), names, places))
-        table.done()
+        table.report_unknown_keys()
         self.check()
         self.log += check.check_names(names, places)
         self.log += check.check_references(level, places)
-        self.log += check_room(level, places, table.place("start"))
+        self.log += check_room(level, places, table.label_of("start"))
         self.check()
         return level
 
@@ -209,7 +209,7 @@ class _Loading:
             raise TltlError([Diagnostic("TLT0006", title, (self.root.label,), help_)])
 
     def _read(self, path: Path, name: str) -> Entry:
-        source = fileio.read_source(path, shown(path))
+        source = fileio.read_source(path, path_text(path))
         # Git may convert line ends; the hash must not depend on that.
         text = source.text.replace("\r\n", "\n")
         self.files.append((name, hashlib.sha256(text.encode()).hexdigest()))
@@ -228,7 +228,7 @@ class _Loading:
             if not fileio.is_plain_name(key):
                 title = f"no command could speak of the variant `{key}`"
                 help_ = "a name is one word of letters, digits and _, e.g. `very_hard`"
-                self.log.append(Diagnostic("TLT0804", title, (table.place(key),), help_))
+                self.log.append(Diagnostic("TLT0804", title, (table.label_of(key),), help_))
         self.check()
         return overlays
 
@@ -238,10 +238,10 @@ class _Loading:
             return Box((-1.0, -1.0, -1.0), (1.0, 1.0, 1.0))
         before = len(self.log)
         box = parts.box(table)
-        table.done()
+        table.report_unknown_keys()
         if len(self.log) == before and not box.low[2] < 0.0 < box.high[2]:
             help_ = "expected the floor, at height 0, inside: `at` below 0, `at` and `size` above it"
-            self.log.append(Diagnostic("TLT0803", "the bounds hold no floor", (table.place("at"),), help_))
+            self.log.append(Diagnostic("TLT0803", "the bounds hold no floor", (table.label_of("at"),), help_))
         return box
 
     def _assets(self, variant: str, added: Sequence[str]) -> tuple[list[CheckedTable], dict[str, CheckedTable]]:
@@ -252,7 +252,7 @@ class _Loading:
         entries: dict[str, Entry] = {}
         for table, key in references:
             name = table.text(key)
-            if name and name not in entries and (path := self._shared("assets", name, table.place(key))):
+            if name and name not in entries and (path := self._shared("assets", name, table.label_of(key))):
                 entries[name] = self._read(path, f"assets/{name}.toml")
         trees: dict[str, Tree] = {name: entry.value for name, entry in entries.items()}
         named = self.table.entries["variants"].value[variant].label if self.variants[variant] else self.table.label
@@ -311,19 +311,19 @@ class _Loading:
         for use in uses:
             asset = use.text("asset")
             prefix, shift = use.text("name", asset) + "_", use.point("at", (0.0, 0.0, 0.0))
-            use.done()
+            use.report_unknown_keys()
             if prefix in prefixes:
                 title, help_ = f"two parts are called `{prefix[:-1]}`", "give one of them another `name`"
-                labels = (use.place("name"), prefixes[prefix].place("name"))
+                labels = (use.label_of("name"), prefixes[prefix].label_of("name"))
                 self.log.append(Diagnostic("TLT0804", title, labels, help_))
                 continue
             prefixes[prefix] = use
             if asset in kinds:
-                self.log.append(wrong(use.entries["asset"], "asset", 'the name of an asset with `type = "part"`'))
+                self.log.append(wrong_value(use.entries["asset"], "asset", 'the name of an asset with `type = "part"`'))
                 continue
             still = parts.solids(assets[asset], self.places, shift, prefix)
             moving = parts.movers(assets[asset], self.places, shift, prefix)
-            assets[asset].done()
+            assets[asset].report_unknown_keys()
             solids += still
             movers += moving
             self._check_count(solids, movers)
@@ -334,7 +334,7 @@ class _Loading:
         for enemy in self._listed("enemy"):
             kind = enemy.value.get("kind")
             if kind is not None and kind.value in [name for name in assets if name not in kinds]:
-                self.log.append(wrong(kind, "kind", 'the name of an asset with `type = "enemy"`'))
+                self.log.append(wrong_value(kind, "kind", 'the name of an asset with `type = "enemy"`'))
         return solids, movers, regions
 
     def _signals(self) -> tuple[tuple[str, str], ...]:

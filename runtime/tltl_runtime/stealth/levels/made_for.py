@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Final
 
-from tltl_runtime.support.checked_table import CheckedTable, wrong
-from tltl_runtime.support.shown_path import shown
+from tltl_runtime.support.checked_table import CheckedTable, wrong_value
+from tltl_runtime.support.shown_path import path_text
 from tltl_runtime.support.suggestion import suggestion
 from tltlc.api import Diagnostic, fileio
 
@@ -28,9 +28,9 @@ def made_for(table: CheckedTable, level: Path) -> str:
     if not text:
         return ""
     if not file.endswith(".tltl") or not name:
-        table.log.append(wrong(table.entries["spec"], "spec", "FILE.tltl:NAME, e.g. `stealth.tltl:unseen`"))
+        table.log.append(wrong_value(table.entries["spec"], "spec", "FILE.tltl:NAME, e.g. `stealth.tltl:unseen`"))
         return ""
-    label = table.place("spec")
+    label = table.label_of("spec")
     path = next((folder / file for folder in (level.parent, *SPECS) if fileio.is_file(folder / file)), None)
     if path is None:
         help_ = f"put it beside `{level.name}`"
@@ -52,5 +52,5 @@ def _specs(path: Path) -> list[str]:
     """Return the names of the specs in a file, even if the file has other errors."""
     from tltlc.api import syntax
 
-    declarations = syntax.parse(fileio.read_source(path, shown(path)))[0].declarations
+    declarations = syntax.parse(fileio.read_source(path, path_text(path)))[0].declarations
     return [declaration.name for declaration in declarations if isinstance(declaration, syntax.SpecDecl)]

@@ -56,12 +56,12 @@ class Places:
 
     def put(self, name: str, table: CheckedTable, spot: str) -> None:
         """Record the labels of a thing; a name that is already taken is an error (TLT0804)."""
-        label = table.place("name")
+        label = table.label_of("name")
         if name in self.names:
             title = f"two things are called `{name}`"
             table.log.append(Diagnostic("TLT0804", title, (label, self.names[name]), "give one another `name`"))
         self.names.setdefault(name, label)
-        self.spots.setdefault(name, table.place(spot))
+        self.spots.setdefault(name, table.label_of(spot))
 
     def named(self, name: str) -> tuple[Label, ...]:
         """Return the label of a thing's name, if there is one."""
@@ -73,7 +73,7 @@ class Places:
 
     def refer(self, kind: str, table: CheckedTable, key: str, names: tuple[str, ...]) -> None:
         """Record that a key refers to things of a kind."""
-        self.references.extend((kind, name, table.place(key)) for name in names)
+        self.references.extend((kind, name, table.label_of(key)) for name in names)
 
 
 def solids(table: CheckedTable, places: Places, shift: Point = (0.0, 0.0, 0.0), prefix: str = "") -> list[Solid]:
@@ -84,14 +84,14 @@ def solids(table: CheckedTable, places: Places, shift: Point = (0.0, 0.0, 0.0), 
             name = prefix + item.text("name", f"{kind}_{number}")
             solids.append(Solid(name, kind, box(item, shift)))
             places.put(name, item, "at")
-            item.done()
+            item.report_unknown_keys()
     for number, item in enumerate(table.tables("stairs"), 1):
         name = prefix + item.text("name", f"stairs_{number}")
         steps = _stairs(item, name, shift)
         solids += steps
         places.put(name, item, "from")
-        places.spots.update({solid.name: item.place("from") for solid in steps})
-        item.done()
+        places.spots.update({solid.name: item.label_of("from") for solid in steps})
+        item.report_unknown_keys()
     return solids
 
 
@@ -115,7 +115,7 @@ def _stairs(table: CheckedTable, name: str, shift: Point) -> list[Solid]:
     elif not 0.0 < rise <= _MAX_RISE + 1e-9:
         problem = f"upwards, with steps of at most {_MAX_RISE} m (here {rise:.3g} m)"
     if problem:
-        label = table.place("to")
+        label = table.label_of("to")
         table.log.append(Diagnostic("TLT0803", f"nobody walks up `{name}`", (label,), f"expected stairs {problem}"))
         return []
     boxes = []
@@ -142,7 +142,7 @@ def movers(table: CheckedTable, places: Places, shift: Point = (0.0, 0.0, 0.0), 
         offset = item.number("offset", 0.0, low=0.0, high=600.0, unit="s")
         movers.append(Mover(name, size, path, speed, pause, offset, item.flag("closed")))
         places.put(name, item, "path")
-        item.done()
+        item.report_unknown_keys()
     return movers
 
 
@@ -153,7 +153,7 @@ def switches(table: CheckedTable, places: Places) -> list[Switch]:
         name = item.text("name")
         switches.append(Switch(name, item.point("at"), item.number("radius", 1.0, low=0.1, high=10.0)))
         places.put(name, item, "at")
-        item.done()
+        item.report_unknown_keys()
     return switches
 
 
@@ -167,7 +167,7 @@ def barriers(table: CheckedTable, places: Places) -> list[Barrier]:
             barriers.append(Barrier(name, cast(Literal["solid", "laser"], kind), box(item), opened_by, damage))
             places.put(name, item, "at")
             places.refer("switch", item, "opened_by", opened_by)
-            item.done({"damage": "[[laser]]"})
+            item.report_unknown_keys({"damage": "[[laser]]"})
     return barriers
 
 
@@ -179,10 +179,10 @@ def unlocks(table: CheckedTable, places: Places) -> list[Unlock]:
         if len(set(unlock.barriers)) < max(2, len(unlock.barriers)):
             help_ = "expected two or more barriers, each once"
             title = "nothing is left to chance here"
-            item.log.append(Diagnostic("TLT0803", title, (item.place("barriers"),), help_))
+            item.log.append(Diagnostic("TLT0803", title, (item.label_of("barriers"),), help_))
         places.refer("switch", item, "switch", (unlock.switch,))
         places.refer("barrier", item, "barriers", unlock.barriers)
-        item.done()
+        item.report_unknown_keys()
         unlocks.append(unlock)
     return unlocks
 
@@ -194,7 +194,7 @@ def exits(table: CheckedTable, places: Places) -> list[Exit]:
         name = item.text("name")
         exits.append(Exit(name, item.point("at")))
         places.put(name, item, "at")
-        item.done()
+        item.report_unknown_keys()
     return exits
 
 
@@ -206,7 +206,7 @@ def enemies(table: CheckedTable, kinds: dict[str, EnemyKind], places: Places) ->
         if kind in kinds:
             enemies.append(Enemy(name, kinds[kind], route))
         places.put(name, item, "route")
-        item.done()
+        item.report_unknown_keys()
     return enemies
 
 
@@ -231,8 +231,8 @@ def enemy_kind(table: CheckedTable, name: str) -> EnemyKind:
         if branch not in added_branches():
             title = f"there is no behaviour branch `{branch}`"
             help_ = suggestion(branch, added_branches())
-            table.log.append(Diagnostic("TLT0805", title, (table.place("branches"),), help_))
-    table.done()
+            table.log.append(Diagnostic("TLT0805", title, (table.label_of("branches"),), help_))
+    table.report_unknown_keys()
     return kind
 
 
@@ -243,7 +243,7 @@ def start(table: CheckedTable) -> Start:
         math.radians(table.number("yaw", 0.0, low=-360.0, high=360.0, unit="degrees")),
         table.number("spread", 0.0, low=0.0, high=10.0),
     )
-    table.done()
+    table.report_unknown_keys()
     return start
 
 
@@ -257,15 +257,15 @@ def sensors(table: CheckedTable | None, entities: tuple[str, ...], places: Place
         if extent % 2 == 0:
             help_ = "expected an odd number of cells, so that one is in the middle"
             title = f"wrong value for `extent`: {extent}"
-            map_.log.append(Diagnostic("TLT0803", title, (map_.place("extent"),), help_))
+            map_.log.append(Diagnostic("TLT0803", title, (map_.label_of("extent"),), help_))
         types = map_.names("types", CELL_TYPES)
         places.refer("cell type", map_, "types", types)
         map_sensor = MapSensor(types, map_.number("cell", low=CELL_WIDTH[0], high=CELL_WIDTH[1]), extent)
-        map_.done()
+        map_.report_unknown_keys()
     sensors = Sensors(table.names("entities", entities), table.names("variables", _VARIABLES), map_sensor)
     places.refer("entity", table, "entities", sensors.entities)
     places.refer("signal", table, "variables", sensors.variables)
-    table.done()
+    table.report_unknown_keys()
     return sensors
 
 

@@ -14,7 +14,7 @@ def named_regions(table: CheckedTable) -> tuple[Region, ...]:
     regions = []
     for item in table.tables("region"):
         regions.append(Region(item.text("name"), box(item)))
-        item.done()
+        item.report_unknown_keys()
     return tuple(regions)
 
 

@@ -19,7 +19,7 @@ from tltl_runtime.stealth.recordings.arrays import ARRAYS, Array, Arrays, shape_
 from tltl_runtime.stealth.recordings.episode import Episode
 from tltl_runtime.stealth.recordings.numpy_archive import ArchiveError, read_array, read_members
 from tltl_runtime.stealth.snapshot import BRANCHES
-from tltl_runtime.support.load_errors import Refusals
+from tltl_runtime.support.load_errors import LoadErrors
 from tltl_runtime.support.record_json import RecordJsonError, from_json, to_json
 from tltlc.api import Fspa, RewardOptions, SourceFile, compiler, fileio, record, replace
 
@@ -34,7 +34,7 @@ That is about half a million decisions.
 _TEXTS: Final = ("meta", "artefact")
 """The arrays that contain the bytes of a UTF-8 text."""
 
-_REFUSALS: Final = Refusals("an", "episode", "TLT0820", "TLT0821", "TLT0822", again="record the episode again")
+_ERRORS: Final = LoadErrors("an", "episode", "TLT0820", "TLT0821", "TLT0822", again="record the episode again")
 
 
 @record
@@ -166,13 +166,13 @@ def _names(level: Level, fspa: Fspa) -> AxisNames:
 def _members(data: bytes, name: str) -> dict[str, bytes]:
     """Unpack the archive's files that an episode has, by the names of their arrays."""
     if len(data) > MAX_BYTES:
-        raise _REFUSALS.unreadable(name, f"it is larger than {MAX_BYTES >> 20} MiB")
+        raise _ERRORS.unreadable_error(name, f"it is larger than {MAX_BYTES >> 20} MiB")
     try:
         members = read_members(data, [*_TEXTS, *(array.name for array in ARRAYS)], MAX_BYTES)
     except ArchiveError as error:
-        raise _REFUSALS.unreadable(name, str(error)) from None
+        raise _ERRORS.unreadable_error(name, str(error)) from None
     if "meta" not in members:
-        raise _REFUSALS.unreadable(name, "it is an archive of something else")
+        raise _ERRORS.unreadable_error(name, "it is an archive of something else")
     return members
 
 
@@ -181,31 +181,31 @@ def _read_meta(members: Mapping[str, bytes], name: str) -> Meta:
     try:
         document = fileio.parse_json(text, fileio.limits.RECORDED_TEXTS["meta"])
     except (ValueError, RecursionError):
-        raise _REFUSALS.broken(name, "`meta` is not JSON") from None
+        raise _ERRORS.broken_error(name, "`meta` is not JSON") from None
     if not isinstance(document, dict) or document.get("format") != FORMAT:
-        raise _REFUSALS.unreadable(name, "it is an archive of something else")
-    _REFUSALS.check_version(name, document.get("version"), VERSION)
+        raise _ERRORS.unreadable_error(name, "it is an archive of something else")
+    _ERRORS.check_version(name, document.get("version"), VERSION)
     try:
         meta = from_json(Meta, document, "meta")
     except (RecordJsonError, RecursionError) as error:
-        raise _REFUSALS.broken(name, str(error)) from None
+        raise _ERRORS.broken_error(name, str(error)) from None
     if wrong := fault(meta.level):
-        raise _REFUSALS.broken(name, f"its level is unfit: {wrong}")
+        raise _ERRORS.broken_error(name, f"its level is unfit: {wrong}")
     return meta
 
 
 def _text(members: Mapping[str, bytes], array: str, name: str) -> str:
     data = _array(members, array, name)
     if data.dtype != np.uint8 or data.ndim != 1:
-        raise _REFUSALS.broken(name, f"the array `{array}` holds no bytes")
+        raise _ERRORS.broken_error(name, f"the array `{array}` holds no bytes")
     limit = fileio.limits.RECORDED_TEXTS[array]
     if data.size > limit.size or np.count_nonzero(data == ord(",")) >= (limit.values or 0):
         most = f"{limit.size >> 20} MiB or {limit.values:,} values"
-        raise _REFUSALS.broken(name, f"the array `{array}` holds more than {most}")
+        raise _ERRORS.broken_error(name, f"the array `{array}` holds more than {most}")
     try:
         return data.tobytes().decode()
     except UnicodeDecodeError:
-        raise _REFUSALS.broken(name, f"the array `{array}` is no UTF-8 text") from None
+        raise _ERRORS.broken_error(name, f"the array `{array}` is no UTF-8 text") from None
 
 
 def _read_arrays(members: Mapping[str, bytes], level: Level, fspa: Fspa, name: str) -> dict[str, NDArray[Any]]:
@@ -221,17 +221,17 @@ def _read_arrays(members: Mapping[str, bytes], level: Level, fspa: Fspa, name: s
 def _array(members: Mapping[str, bytes], array: str, name: str) -> NDArray[Any]:
     """Read an array of any shape."""
     if array not in members:
-        raise _REFUSALS.broken(name, f"the array `{array}` is missing")
+        raise _ERRORS.broken_error(name, f"the array `{array}` is missing")
     try:
         return read_array(members[array])
     except ArchiveError as error:
-        raise _REFUSALS.broken(name, f"the array `{array}`: {error}") from None
+        raise _ERRORS.broken_error(name, f"the array `{array}`: {error}") from None
 
 
 def _check(values: NDArray[Any], array: Array, shape: tuple[int, ...], name: str) -> None:
     if values.dtype != np.dtype(array.dtype) or values.shape != shape:
         expected = f"{array.dtype} of shape {shape}"
-        raise _REFUSALS.broken(
+        raise _ERRORS.broken_error(
             name, f"the array `{array.name}` is {values.dtype.str} of shape {values.shape}, not {expected}"
         )
     if values.dtype == np.bool_:
@@ -240,7 +240,7 @@ def _check(values: NDArray[Any], array: Array, shape: tuple[int, ...], name: str
         # The comparisons reject not-a-number; isfinite also rejects infinities.
         valid = bool(((values >= array.low) & (values <= array.high) & np.isfinite(values)).all())
     if not valid:
-        raise _REFUSALS.broken(name, f"the array `{array.name}` has values that it cannot have")
+        raise _ERRORS.broken_error(name, f"the array `{array.name}` has values that it cannot have")
 
 
 def _check_indices(arrays: Arrays, meta: Meta, fspa: Fspa, name: str) -> None:
@@ -252,8 +252,8 @@ def _check_indices(arrays: Arrays, meta: Meta, fspa: Fspa, name: str) -> None:
     ]
     for array, limit in limits:
         if bool((arrays[array] >= limit).any()):
-            raise _REFUSALS.broken(name, f"the array `{array}` has values that it cannot have")
+            raise _ERRORS.broken_error(name, f"the array `{array}` has values that it cannot have")
     if meta.names != _names(meta.level, fspa):
-        raise _REFUSALS.broken(name, "`meta.names` are not those of the level and of the spec")
+        raise _ERRORS.broken_error(name, "`meta.names` are not those of the level and of the spec")
     if meta.seed < 0:
-        raise _REFUSALS.broken(name, "`meta.seed` is below 0")
+        raise _ERRORS.broken_error(name, "`meta.seed` is below 0")

@@ -17,7 +17,7 @@ from tltl_runtime.game.registry import registered_game
 from tltl_runtime.game.sensors import Sensors
 from tltl_runtime.policies.card import OBSERVATION
 from tltl_runtime.policies.identity import spec_hash
-from tltl_runtime.support.number_text import listed
+from tltl_runtime.support.number_text import short_list
 from tltl_runtime.support.record_json import RecordJsonError, from_json, to_json
 from tltl_runtime.training.imitation.demonstrations import recordings
 from tltl_runtime.training.run.settings import TrainingSettings, read_settings
@@ -245,7 +245,7 @@ def resume_command(folder: Path) -> str:
 def named_trainings(folder: Path) -> str:
     """Return a help text that names the trainings directly below a folder; empty if there are none."""
     trainings = sorted(path.parent for path in folder.glob(f"*/{RUN}"))
-    return f"name one of them: {listed([f'`{path}`' for path in trainings], _MOST_NAMED)}" if trainings else ""
+    return f"name one of them: {short_list([f'`{path}`' for path in trainings], _MOST_NAMED)}" if trainings else ""
 
 
 def _content_hash(folder: Path) -> str:
