@@ -18,7 +18,9 @@ PLACES = ("s1", "s2", "s3", "e_left", "e_right")
     ("state", "opened", "goals"),
     [(0, None, ("s1",)), (1, None, ("s2",)), (4, "left", ("e_left",)), (4, "right", ("e_right",)), (4, None, ())],
 )
-def test_the_goals_of_branching(state: int, opened: str | None, goals: tuple[str, ...]) -> None:
+def test_the_goals_of_branching_follow_its_state_and_the_open_branch(
+    state: int, opened: str | None, goals: tuple[str, ...]
+) -> None:
     task = load_task(BRANCHING)
     sample = SAMPLE | ({f"open_{opened}": 1.0} if opened else {})
     assert next_goals(task.fspa, state, sample, task.params, PLACES) == goals

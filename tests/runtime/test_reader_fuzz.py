@@ -107,7 +107,7 @@ def _levels(folder: Path) -> Path:
 
 @given(seed=SEEDS)
 @times(40)
-def test_levels(seed: int, levels: Path) -> None:
+def test_a_damaged_level_file_is_read_or_rejected(seed: int, levels: Path) -> None:
     random = Random(seed)
     own = sorted(levels.glob("*.toml"))
     path = random.choice(own if random.random() < 0.6 else sorted(levels.rglob("*.toml")))
@@ -122,7 +122,7 @@ def test_levels(seed: int, levels: Path) -> None:
 
 @given(seed=SEEDS)
 @times(100)
-def test_suites(seed: int, folder: Path) -> None:
+def test_a_damaged_suite_is_read_or_rejected(seed: int, folder: Path) -> None:
     path = folder / "suite.toml"
     path.write_text(mutated_text(Random(seed), SUITE), encoding="utf-8", errors="replace")
     check(lambda: read_suite(path))
@@ -130,7 +130,7 @@ def test_suites(seed: int, folder: Path) -> None:
 
 @given(seed=SEEDS)
 @times(100)
-def test_settings(seed: int, folder: Path) -> None:
+def test_a_damaged_file_of_settings_is_read_or_rejected(seed: int, folder: Path) -> None:
     path = folder / "settings.toml"
     text = (FOLDER / "training" / "run" / "settings.toml").read_text(encoding="utf-8")
     path.write_text(mutated_text(Random(seed), text), encoding="utf-8", errors="replace")
@@ -175,13 +175,13 @@ def _packed(arrays: dict[str, np.ndarray[Any, Any]]) -> bytes:
 
 @given(seed=SEEDS)
 @times(100)
-def test_bytes_of_recordings(seed: int) -> None:
+def test_a_recording_with_damaged_bytes_is_read_or_rejected(seed: int) -> None:
     _read_recording(mutated_bytes(Random(seed), _packed(_arrays())))
 
 
 @given(seed=SEEDS)
 @times(60)
-def test_texts_in_recordings(seed: int) -> None:
+def test_a_recording_with_a_damaged_text_is_read_or_rejected(seed: int) -> None:
     random, arrays = Random(seed), dict(_arrays())
     name = random.choice(("meta", "meta", "artefact"))
     document = json.loads(arrays[name].tobytes())
@@ -191,7 +191,7 @@ def test_texts_in_recordings(seed: int) -> None:
 
 @given(seed=SEEDS)
 @times(60)
-def test_arrays_in_recordings(seed: int) -> None:
+def test_a_recording_with_another_array_is_read_or_rejected(seed: int) -> None:
     random, arrays = Random(seed), dict(_arrays())
     name = random.choice(list(arrays))
     changed = _other_array(random, arrays[name].copy())
@@ -233,7 +233,7 @@ def _read_policy(header: bytes, rest: bytes) -> None:
 
 @given(seed=SEEDS)
 @times(60)
-def test_bytes_of_policies(seed: int) -> None:
+def test_a_policy_with_damaged_bytes_is_read_or_rejected(seed: int) -> None:
     random, (header, _, _, rest) = Random(seed), _policy()
     text = json.dumps(header).encode()
     if random.random() < 0.7:
@@ -244,7 +244,7 @@ def test_bytes_of_policies(seed: int) -> None:
 
 @given(seed=SEEDS)
 @times(60)
-def test_cards_of_policies(seed: int) -> None:
+def test_a_policy_with_a_damaged_header_is_read_or_rejected(seed: int) -> None:
     random, (header, key, card, rest) = Random(seed), _policy()
     if random.random() < 0.7:
         text = json.dumps({**header, "__metadata__": {key: mutated_json(random, card)}})
@@ -278,7 +278,7 @@ def _training(folder: Path) -> Path:
 
 @given(seed=SEEDS)
 @times(100)
-def test_runs(seed: int, folder: Path, training: Path) -> None:
+def test_a_damaged_run_file_is_read_or_rejected(seed: int, folder: Path, training: Path) -> None:
     document = json.loads((training / RUN).read_text(encoding="utf-8"))
     run_folder = folder / "run"
     run_folder.mkdir(exist_ok=True)
@@ -288,7 +288,7 @@ def test_runs(seed: int, folder: Path, training: Path) -> None:
 
 @given(seed=SEEDS)
 @times(100)
-def test_metrics(seed: int, training: Path) -> None:
+def test_damaged_metrics_are_read_or_rejected(seed: int, training: Path) -> None:
     random, path = Random(seed), training / METRICS
     lines = [json_text(MEASURED), mutated_json(random, MEASURED).replace("\n", " "), mutated_json(random, MEASURED)]
     path.write_bytes("\n".join(lines).encode("utf-8", "surrogatepass"))
@@ -309,7 +309,7 @@ def test_metrics(seed: int, training: Path) -> None:
 
 @given(seed=SEEDS)
 @times(100)
-def test_records(seed: int, training: Path) -> None:
+def test_a_damaged_record_of_a_training_is_read_or_rejected(seed: int, training: Path) -> None:
     run, path = run_in(training), training / RECORD
     document = {"end": "steps", "steps": 100, "seconds": 3.5, "settings": {"stop": {}}}
     path.write_bytes(mutated_json(Random(seed), document).encode("utf-8", "surrogatepass"))
@@ -361,7 +361,9 @@ def _read_checkpoint(path: Path) -> None:
 
 @given(seed=SEEDS)
 @times(60)
-def test_bytes_of_checkpoints(seed: int, training: Path, content: tuple[bytes, dict[str, Any]]) -> None:
+def test_a_checkpoint_with_damaged_bytes_is_read_or_rejected(
+    seed: int, training: Path, content: tuple[bytes, dict[str, Any]]
+) -> None:
     path = training / CHECKPOINT
     path.write_bytes(mutated_bytes(Random(seed), content[0]))
     _read_checkpoint(path)
@@ -393,7 +395,9 @@ def _other_value(random: Random, value: Any) -> Any:
 
 @given(seed=SEEDS)
 @times(60)
-def test_values_in_checkpoints(seed: int, training: Path, content: tuple[bytes, dict[str, Any]]) -> None:
+def test_a_checkpoint_with_unusual_values_is_read_or_rejected(
+    seed: int, training: Path, content: tuple[bytes, dict[str, Any]]
+) -> None:
     path = training / CHECKPOINT
     torch.save(_other_value(Random(seed), content[1]), path)
     _read_checkpoint(path)
@@ -417,7 +421,7 @@ def _baseline() -> dict[str, Any]:
 
 @given(seed=SEEDS)
 @times(60)
-def test_baselines(seed: int, folder: Path) -> None:
+def test_a_damaged_baseline_is_read_or_rejected(seed: int, folder: Path) -> None:
     path = folder / "it.baseline.json"
     path.write_bytes(mutated_json(Random(seed), _baseline()).encode("utf-8", "surrogatepass"))
     check(lambda: read_baseline(path))
@@ -425,7 +429,7 @@ def test_baselines(seed: int, folder: Path) -> None:
 
 @given(seed=SEEDS)
 @times(60)
-def test_cached_results(seed: int, folder: Path) -> None:
+def test_a_damaged_cached_result_is_read_or_rejected(seed: int, folder: Path) -> None:
     path, explained = folder / "kept.json", _baseline()["references"][0]["accounts"][0]
     document = {"identity": "it", "content": explained}
     path.write_bytes(mutated_json(Random(seed), document).encode("utf-8", "surrogatepass"))

@@ -80,7 +80,7 @@ def test_an_artefact_of_another_name_is_rejected(tmp_path: Path) -> None:
         load_task(f"{path}:navigation")
 
 
-def test_a_task_over_infinite_traces(tmp_path: Path) -> None:
+def test_a_task_over_infinite_traces_is_judged_at_its_limit(tmp_path: Path) -> None:
     text = "signal a: bool\nspec s { semantics infinite limit 4 steps require G F a }"
     task = load_task(text)
     assert (task.fspa.semantics, task.fspa.judge) == ("infinite", "limit")

@@ -35,8 +35,11 @@ UPRIGHT = "signal cosine in [-1, 1]\nspec upright { limit 100 steps reach cosine
 Row = Mapping[str, float]
 
 
-class Played(gymnasium.Env[Any, int]):
-    """An environment that plays back a trace, one sample per step. ``ends`` is the step at which it ends, and how."""
+class Playback(gymnasium.Env[Any, int]):
+    """An environment that plays back a trace, one sample per step.
+
+    ``ends`` is the step at which the episode ends, and how: ``terminated`` or ``truncated``.
+    """
 
     action_space = spaces.Discrete(2)
 
@@ -82,12 +85,12 @@ def make_mountain_car() -> TltlEnv:
     return TltlEnv(gymnasium.make("MountainCar-v0"), SWING_UP, mountain_car)
 
 
-def played(rows: Sequence[Row], spec: Any, ends: tuple[int, str] | None = None, **options: Any) -> TltlEnv:
-    return TltlEnv(Played(rows, ends), spec, current, **options)
+def playback_env(rows: Sequence[Row], spec: Any, ends: tuple[int, str] | None = None, **options: Any) -> TltlEnv:
+    return TltlEnv(Playback(rows, ends), spec, current, **options)
 
 
 def episode(env: TltlEnv, most: int = 1000) -> list[tuple[float, bool, bool, dict[str, Any]]]:
-    """Reward, terminated, truncated and info of the steps of an episode."""
+    """Return the reward, terminated, truncated and info of each step of an episode."""
     env.reset(seed=0)
     steps: list[tuple[float, bool, bool, dict[str, Any]]] = []
     while len(steps) < most and not (steps and (steps[-1][1] or steps[-1][2])):
@@ -109,7 +112,7 @@ def total(steps: list[tuple[float, bool, bool, dict[str, Any]]]) -> float:
     ],
     ids=["cart_pole", "pendulum", "mountain_car"],
 )
-def test_gymnasium_finds_nothing_wrong(name: str, spec: str, signals: Any) -> None:
+def test_the_checker_of_gymnasium_finds_no_fault(name: str, spec: str, signals: Any) -> None:
     env = TltlEnv(gymnasium.make(name), spec, signals)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
@@ -122,7 +125,7 @@ def test_gymnasium_finds_nothing_wrong(name: str, spec: str, signals: Any) -> No
     assert copy.observation_space == env.observation_space
 
 
-def test_the_numbers_of_the_paper() -> None:
+def test_an_episode_has_the_progress_and_rewards_of_the_paper() -> None:
     changes: list[dict[str, float]] = [
         {},
         {"distance(s1)": 10.5},
@@ -132,7 +135,7 @@ def test_the_numbers_of_the_paper() -> None:
         {"distance(exit)": 10.5},
         {"distance(exit)": 0.0},
     ]
-    steps = episode(played([{**FAR, **change} for change in changes], cover_and_hide()))
+    steps = episode(playback_env([{**FAR, **change} for change in changes], cover_and_hide()))
     infos = [info for *_, info in steps]
     assert [info["state"] for info in infos] == [0, 0, 0, 1, 3, 3, 4]
     assert [info["progress"] for info in infos] == pytest.approx([0, 0.25 / 3, 0.25 / 3, 1 / 3, 2 / 3, 0.75, 1])
@@ -158,21 +161,21 @@ def test_the_numbers_of_the_paper() -> None:
 def test_the_level_size_changes_equation_2() -> None:
     """With b = 1 and B = 10, a distance of 5 gives -56/81."""
     near = [{**FAR, "distance(s1)": 5.0}]
-    (step, *_) = episode(played(near, cover_and_hide(), params={"level_size": 10.0}), most=1)
+    (step, *_) = episode(playback_env(near, cover_and_hide(), params={"level_size": 10.0}), most=1)
     assert step[3]["atoms"]["near(s1)"] == pytest.approx(-56 / 81)
 
-    class Sized(Played):
+    class Sized(Playback):
         def tltl_params(self) -> dict[str, float]:
             return {"level_size": 10.0, "other": 3.0}
 
     sized = episode(TltlEnv(Sized(near), cover_and_hide(), current), most=1)
     assert sized[0][3]["atoms"] == step[3]["atoms"]
     overridden = episode(TltlEnv(Sized(near), cover_and_hide(), current, params={"level_size": 20.0}), most=1)
-    assert overridden[0][3]["atoms"] == episode(played(near, cover_and_hide()), most=1)[0][3]["atoms"]
+    assert overridden[0][3]["atoms"] == episode(playback_env(near, cover_and_hide()), most=1)[0][3]["atoms"]
 
 
-def test_after_a_reset() -> None:
-    env = played([FAR], cover_and_hide())
+def test_a_reset_returns_the_initial_state_and_no_atoms() -> None:
+    env = playback_env([FAR], cover_and_hide())
     env.reset()
     env.step(0)
     observation, info = env.reset()
@@ -184,15 +187,15 @@ def test_after_a_reset() -> None:
 
 
 def test_a_violation_terminates_and_costs_the_unspent_steps() -> None:
-    steps = episode(played([{**FAR, "distance(s1)": 0.0}, {**FAR, "health": 0.0}], cover_and_hide()))
+    steps = episode(playback_env([{**FAR, "distance(s1)": 0.0}, {**FAR, "health": 0.0}], cover_and_hide()))
     assert steps[-1][1:3] == (True, False)
     assert (steps[-1][3]["verdict"], steps[-1][3]["success"]) == ("violated", False)
     assert (steps[-1][3]["unmet"], steps[-1][3]["state"]) == (steps[-2][3]["state"], 2)
     assert total(steps) == pytest.approx(1 / 3 - 1)
 
 
-def test_the_limit_truncates() -> None:
-    steps = episode(played([FAR], replace(cover_and_hide(), limit_steps=9)))
+def test_an_episode_is_truncated_at_the_limit_of_its_spec() -> None:
+    steps = episode(playback_env([FAR], replace(cover_and_hide(), limit_steps=9)))
     assert (len(steps), steps[-1][1:3], steps[-1][3]["success"]) == (9, (False, True), False)
     assert total(steps) == pytest.approx(-1)
 
@@ -200,18 +203,20 @@ def test_the_limit_truncates() -> None:
 def test_over_infinite_traces_goals_are_judged_at_entry_or_at_the_limit() -> None:
     signals = "signal a: bool\nsignal p: bool\n"
     rows = [{"a": 0.0, "p": 1.0}, {"a": 1.0, "p": 1.0}, {"a": 0.0, "p": 1.0}]
-    steps_of_reach = episode(played(rows, f"{signals}spec s {{ semantics infinite limit 8 steps reach a keep p }}"))
+    steps_of_reach = episode(
+        playback_env(rows, f"{signals}spec s {{ semantics infinite limit 8 steps reach a keep p }}")
+    )
     assert (len(steps_of_reach), steps_of_reach[-1][1:3], steps_of_reach[-1][3]["success"]) == (2, (True, False), True)
     assert total(steps_of_reach) == pytest.approx(1 - 2 / 8)
     recurring = f"{signals}spec s {{ semantics infinite limit 8 steps require G F a keep p }}"
-    steps = episode(played(rows, recurring))
+    steps = episode(playback_env(rows, recurring))
     assert (len(steps), steps[-1][3]["verdict"], steps[-1][3]["success"]) == (8, "holding", True)
     assert total(steps) == pytest.approx(0)
-    steps = episode(played([*rows, {"a": 0.0, "p": 0.0}], recurring))
+    steps = episode(playback_env([*rows, {"a": 0.0, "p": 0.0}], recurring))
     assert (len(steps), steps[-1][1:3], steps[-1][3]["success"]) == (4, (True, False), False)
     assert total(steps) == pytest.approx(3 / 8 - 1)
     late_spec = f"{signals}spec s {{ semantics infinite limit 8 steps reach a require G F !a }}"
-    steps = episode(played(rows[:1], late_spec))
+    steps = episode(playback_env(rows[:1], late_spec))
     assert (len(steps), steps[-1][3]["verdict"], steps[-1][3]["success"]) == (8, "pending", False)
 
 
@@ -227,7 +232,7 @@ SAMPLES = st.sampled_from(
     st.sampled_from(["goal", "limit"]),
 )
 def test_every_failed_episode_totals_progress_minus_one(rows: list[Row], ends: Any, judge: str) -> None:
-    steps = episode(played(rows, replace(cover_and_hide(), limit_steps=8, judge=judge), ends))
+    steps = episode(playback_env(rows, replace(cover_and_hide(), limit_steps=8, judge=judge), ends))
     progress = steps[-1][3]["progress"]
     assert 0 <= progress <= 1
     if steps[-1][3]["success"]:
@@ -241,42 +246,44 @@ def test_every_failed_episode_totals_progress_minus_one(rows: list[Row], ends: A
 @pytest.mark.parametrize("how", ["terminated", "truncated"])
 def test_the_end_of_the_environment_judges_a_spec_without_a_limit(how: str) -> None:
     survive = "signal seen: bool\nspec hide = G !seen\n"
-    steps = episode(played([{"seen": 0.0}], survive, (3, how)))
+    steps = episode(playback_env([{"seen": 0.0}], survive, (3, how)))
     assert (len(steps), steps[-1][3]["success"], total(steps)) == (3, True, 1.0)
     assert steps[-1][1:3] == (True, how == "truncated")
-    limited = episode(played([{"seen": 0.0}], survive.replace("= G !seen", "{ limit 4 steps keep !seen }"), (3, how)))
+    limited = episode(
+        playback_env([{"seen": 0.0}], survive.replace("= G !seen", "{ limit 4 steps keep !seen }"), (3, how))
+    )
     assert (limited[-1][3]["success"], limited[-1][3]["progress"]) == (False, 0.75)
     assert limited[-1][1:3] == (how == "terminated", how == "truncated")
 
 
-def test_the_sparse_reward_of_a_trace_that_the_environment_ends() -> None:
+def test_the_sparse_reward_is_given_where_the_environment_ends_the_episode() -> None:
     options = RewardOptions(mode="sparse")
     spec = "signal x in [-1, 1]\npredicate p in [-1, 1] = x\nspec s = F p\n"
-    steps = episode(played([{"x": -0.5}, {"x": -0.25}], spec, (2, "terminated"), reward=options))
+    steps = episode(playback_env([{"x": -0.5}, {"x": -0.25}], spec, (2, "terminated"), reward=options))
     assert [reward for reward, *_ in steps] == [0.0, -0.25]
 
 
-def test_the_termination_of_the_paper() -> None:
+def test_with_the_termination_of_the_paper_a_reached_goal_can_be_lost() -> None:
     spec = "signal a: bool\nsignal p: bool\nspec s { limit 10 steps reach a keep p }\n"
     rows = [{"a": 1.0, "p": 1.0}, {"a": 0.0, "p": 0.0}]
-    steps = episode(played(rows, spec, reward=RewardOptions(termination="paper")))
+    steps = episode(playback_env(rows, spec, reward=RewardOptions(termination="paper")))
     assert [(terminated, info["success"]) for _, terminated, _, info in steps] == [(False, False)] * 2 + [(True, False)]
 
 
-def test_spaces() -> None:
+def test_the_observation_space_gains_the_keys_of_the_automaton() -> None:
     inner = spaces.Dict({"map": spaces.Box(0, 1, (2, 2)), "kind": spaces.Discrete(3)})
-    env = TltlEnv(Played([FAR], space=inner), cover_and_hide(), current)
+    env = TltlEnv(Playback([FAR], space=inner), cover_and_hide(), current)
     assert set(env.observation_space) == {"map", "kind", "automaton", "progress"}
     observation, _ = env.reset()
     assert env.observation_space.contains(observation)
-    discrete = TltlEnv(Played([FAR], space=spaces.Discrete(3)), cover_and_hide(), current)
+    discrete = TltlEnv(Playback([FAR], space=spaces.Discrete(3)), cover_and_hide(), current)
     assert discrete.observation_space["observation"] == spaces.Discrete(3)
     with pytest.raises(ValueError, match="already has the key 'automaton'"):
         TltlEnv(env, cover_and_hide(), current)
 
 
 def test_changing_an_observation_changes_no_later_one() -> None:
-    env = played([FAR], cover_and_hide())
+    env = playback_env([FAR], cover_and_hide())
     observation, _ = env.reset()
     observation["automaton"][:] = 7
     assert env.reset()[0]["automaton"].max() == 1
@@ -285,7 +292,7 @@ def test_changing_an_observation_changes_no_later_one() -> None:
 def test_a_missing_signal_is_reported_at_the_reset() -> None:
     row = {("distance(exid)" if name == "distance(exit)" else name): value for name, value in FAR.items()}
     with pytest.raises(MonitorError) as error:
-        played([row], cover_and_hide()).reset()
+        playback_env([row], cover_and_hide()).reset()
     (diagnostic,) = error.value.diagnostics
     assert diagnostic.code == "TLT0611"
     signals = "`distance(s1)`, `distance(s2)`, `distance(exid)`, `health`"
@@ -294,7 +301,7 @@ def test_a_missing_signal_is_reported_at_the_reset() -> None:
 
 
 def test_a_signal_that_goes_missing_does_not_change_the_automaton() -> None:
-    env = played([FAR, {}], cover_and_hide())
+    env = playback_env([FAR, {}], cover_and_hide())
     env.reset()
     env.step(0)
     with pytest.raises(MonitorError, match=r"TLT0611: step 2: no value for `distance.*; `signals` gave none"):
@@ -307,9 +314,9 @@ def test_a_signal_that_goes_missing_does_not_change_the_automaton() -> None:
 @pytest.mark.parametrize("value", [float("nan"), float("inf"), "1", None, [1.0], 10**400])
 def test_a_signal_must_be_a_finite_number(value: Any) -> None:
     with pytest.raises(MonitorError, match="TLT0612: after the reset: the signal `health` is "):
-        played([{**FAR, "health": value}], cover_and_hide()).reset()
+        playback_env([{**FAR, "health": value}], cover_and_hide()).reset()
     if isinstance(value, float):
-        env = played([FAR, {**FAR, "health": value}], cover_and_hide())
+        env = playback_env([FAR, {**FAR, "health": value}], cover_and_hide())
         env.reset()
         env.step(0)
         with pytest.raises(MonitorError, match="TLT0612: step 2"):
@@ -318,11 +325,11 @@ def test_a_signal_must_be_a_finite_number(value: Any) -> None:
 
 def test_signals_must_be_a_mapping() -> None:
     with pytest.raises(TypeError, match=r"after the reset: `signals` must return a mapping .* not \[1\.0\]"):
-        played([[1.0]], cover_and_hide()).reset()  # type: ignore[list-item]
+        playback_env([[1.0]], cover_and_hide()).reset()  # type: ignore[list-item]
 
 
 def test_a_clamped_signal_causes_one_warning() -> None:
-    env = played([{**FAR, "health": 2.0}], cover_and_hide())
+    env = playback_env([{**FAR, "health": 2.0}], cover_and_hide())
     env.reset()
     with pytest.warns(UserWarning, match="TLT0615: step 1: the signal `health` is 2"):
         env.step(0)
@@ -339,12 +346,12 @@ def test_signals_may_be_a_method_of_a_running_game() -> None:
         def signals(self, env: gymnasium.Env[Any, Any]) -> Row:
             return current(env)
 
-    env = TltlEnv(Played([FAR]), cover_and_hide(), Game().signals)
+    env = TltlEnv(Playback([FAR]), cover_and_hide(), Game().signals)
     assert env.reset()[1]["verdict"] == "pending"
 
 
 def test_the_clock_must_match_the_environment() -> None:
-    class Clocked(Played):
+    class Clocked(Playback):
         tltl_clock_s = 0.15
 
     with pytest.raises(TltlError) as error:
@@ -389,17 +396,17 @@ def test_the_constructors_arguments_are_pickled_with_the_env_spec() -> None:
 
 def test_a_signal_must_be_one_number() -> None:
     with pytest.raises(MonitorError, match="TLT0612: after the reset: the signal `health` is an array, not a number"):
-        played([{**FAR, "health": np.ones(1)}], cover_and_hide()).reset()  # type: ignore[dict-item]
-    played([{**FAR, "health": np.float32(1)}], cover_and_hide()).reset()
+        playback_env([{**FAR, "health": np.ones(1)}], cover_and_hide()).reset()  # type: ignore[dict-item]
+    playback_env([{**FAR, "health": np.float32(1)}], cover_and_hide()).reset()
 
 
 def test_signals_are_a_function_or_a_method_of_the_environment() -> None:
     with pytest.raises(TypeError, match=r"`signals` is a function of the environment, not .*health"):
-        TltlEnv(Played([FAR]), cover_and_hide(), {"health": 1.0})  # type: ignore[arg-type]
+        TltlEnv(Playback([FAR]), cover_and_hide(), {"health": 1.0})  # type: ignore[arg-type]
     with pytest.raises(TypeError, match="give `signals`, a function of the environment"):
-        TltlEnv(Played([FAR]), cover_and_hide())
+        TltlEnv(Playback([FAR]), cover_and_hide())
 
-    class Own(Played):
+    class Own(Playback):
         def tltl_signals(self) -> Row:
             return current(self)
 

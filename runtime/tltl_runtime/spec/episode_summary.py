@@ -20,13 +20,14 @@ class EpisodeSummary:
 
     ``index`` numbers the episodes of an evaluation or a training, from 0.  ``seed`` is the seed of
     the environment's reset, or None if the episode continued the environment's random stream.
-    ``progress`` is the best value, in [0, 1].  ``reward`` is the sum of the rewards of the ``steps``;
-    training, which may use other rewards, computes it by :func:`progress_return`.  ``unmet`` is the
-    automaton state at the end, or the state before a violation.
+    ``progress`` is the best value, in [0, 1].  ``reward`` is the sum of the rewards of the ``steps``.
+    Training may use other rewards, so it computes this sum by :func:`progress_return`.  ``unmet`` is
+    the automaton state at the end, or the state before a violation.
 
-    ``verdict`` is the verdict of the last step, ``seconds`` are game time, ``state`` is the automaton
-    state at the end, and ``label`` says in English what remained to be done in the state ``unmet``.
-    These four are None in training and regression, whose files do not hold them.
+    ``verdict`` is the verdict of the last step.  ``seconds`` is the game time.  ``state`` is the
+    automaton state at the end.  ``label`` says in English what remained to be done in the state
+    ``unmet``.  These four are None in training and regression, because their files do not contain
+    them.
     """
 
     index: int
@@ -44,7 +45,7 @@ class EpisodeSummary:
 
 
 def settled_end(success: bool, verdict: str) -> End:
-    """Return how an episode ended that was played to its end; ``verdict`` is that of the last step."""
+    """Return how a completed episode ended; ``verdict`` is the verdict of its last step."""
     if success:
         return "success"
     return "violation" if verdict == "violated" else "limit"

@@ -13,10 +13,10 @@ def next_goals(
 ) -> tuple[str, ...]:
     """Return the entities to approach so that the automaton leaves ``state`` towards acceptance.
 
-    Only entities in ``places`` are returned. Each is an alternative; those that lead nearer to
-    acceptance come first. An edge is considered if its atoms that do not depend on a distance have,
-    in ``sample``, the truth values that its guard requires. ``sample`` and ``params`` are in SI
-    units.
+    The player may approach any one of them. Entities that lead nearer to acceptance come first. Only
+    entities in ``places`` are returned; none if the state is accepting or a trap. An edge counts
+    only if its other atoms, which do not depend on a distance, have in ``sample`` the truth values
+    that its guard requires. ``sample`` and ``params`` are in SI units.
     """
     current = fspa.states[state].distance
     if not current:
@@ -41,9 +41,9 @@ def next_goals(
 
 
 def _goals(implicant: Implicant, entities: list[str | None], settled: list[bool | None]) -> list[str]:
-    """The entities that an implicant requires to be near.
+    """Return the entities that an implicant requires to be near.
 
-    There are none if another of its atoms fails now.
+    The list is empty if another literal of the implicant fails now.
     """
     goals = []
     for atom, holds in implicant:
@@ -57,7 +57,7 @@ def _goals(implicant: Implicant, entities: list[str | None], settled: list[bool 
 
 
 def _entity(atom: Atom, distances: Mapping[str, str]) -> str | None:
-    """The entity whose distance an atom depends on, or None."""
+    """Return the entity whose distance an atom depends on, or None."""
     read = (node.name for node in expressions.nodes(atom.expression) if isinstance(node, expressions.SignalValue))
     return next((distances[name] for name in read if name in distances), None)
 

@@ -11,8 +11,8 @@ from tltlc.api import SourceFile, TltlError, fileio, specs, syntax
 def spec_files(spec: Path) -> Iterator[Path]:
     """Yield the file of a spec and all files that it imports, directly or indirectly, each once.
 
-    The files need not compile.  Paths that do not exist but would take precedence over an imported
-    file are included.
+    The files need not compile.  If a file at another path would be imported instead of an existing
+    one, that path is included, although it does not exist.
     """
     waiting, seen = [spec], {spec.resolve()}
     while waiting:
@@ -24,8 +24,8 @@ def spec_files(spec: Path) -> Iterator[Path]:
                 waiting.append(imported)
 
 
-def to_first_file(paths: Iterable[Path]) -> Iterator[Path]:
-    """Yield the paths up to the first existing file.  The paths before it would take precedence."""
+def up_to_first_file(paths: Iterable[Path]) -> Iterator[Path]:
+    """Yield the paths up to and including the first file that exists; all paths if none exists."""
     for path in paths:
         yield path
         if fileio.is_file(path):
@@ -46,7 +46,7 @@ def _imports(spec: Path) -> Iterator[Path]:
         return
     folder = spec.absolute().parent
     # The project file sets where imports are searched.
-    yield from to_first_file(place / fileio.PROJECT_FILE for place in (folder, *folder.parents))
+    yield from up_to_first_file(place / fileio.PROJECT_FILE for place in (folder, *folder.parents))
     try:
         libraries = fileio.project_for(str(spec)).libraries
     except TltlError:
@@ -58,4 +58,4 @@ def _imports(spec: Path) -> Iterator[Path]:
             yield spec.parent / declaration.target
         else:
             name = declaration.target.replace(".", "/") + ".tltl"
-            yield from to_first_file(folder / name for folder in (spec.parent, *libraries, specs.standard_library()))
+            yield from up_to_first_file(folder / name for folder in (spec.parent, *libraries, specs.standard_library()))

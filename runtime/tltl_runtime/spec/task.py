@@ -28,9 +28,10 @@ _FILE: Final = re.compile(r"(?s:.+)\.(tltl|json)(:[A-Za-z_][A-Za-z0-9_]*)?\Z")
 
 @record
 class Task:
-    """What judges an episode: the automaton, values that override its params' defaults (SI units), and the reward.
+    """What judges an episode: the automaton, the values of its params, and the options of its reward.
 
-    A task is plain data that can be pickled; a :class:`Monitor` cannot.
+    ``params`` are in SI units and override the defaults of the automaton. A task is plain data and
+    can be pickled; a :class:`Monitor` cannot.
     """
 
     fspa: Fspa
@@ -51,15 +52,22 @@ def load_task(
 ) -> Task:
     """Return the task that a spec describes.
 
-    ``spec`` is an automaton; a path ``FILE.tltl`` or ``FILE.fspa.json``, followed by ``:NAME`` if
-    the file has several specs; or a text, which has several lines, or has blanks and does not end
-    like a path. The file's project (``tltl.toml``) provides its libraries. ``params`` are values in
-    SI units. ``offered`` are values that a level provides; those that the spec has and ``params``
-    does not set are used.
+    ``spec`` is one of these:
+
+    - an automaton;
+    - a path ``FILE.tltl`` or ``FILE.fspa.json``, followed by ``:NAME`` if the file has several
+      specs. The file's project (``tltl.toml``) provides its libraries;
+    - the text of a spec or an artefact. A text has several lines, or has blanks and does not end
+      like a path.
+
+    ``params`` are values of the spec's params, in SI units. ``offered`` are values that a level
+    provides. An offered value is used if the spec has a param of that name and ``params`` does not
+    set it.
 
     Raises:
-        TltlError: errors of reading and compiling; TLT0720 no spec of that name, TLT0721 not
-            exactly one spec, TLT0307 and TLT0308 for params that do not fit.
+        TltlError: errors of reading and compiling; TLT0720, no spec has that name; TLT0721, there is
+            not exactly one spec; TLT0307 and TLT0308, a param has an invalid value or does not
+            exist.
         TypeError: ``spec``, ``params`` or ``reward`` is of another type.
     """
     if not isinstance(params, Mapping):
@@ -73,7 +81,10 @@ def load_task(
 
 
 def read_spec(spec: str | Path | Fspa) -> tuple[Fspa, Spec | None]:
-    """Return the automaton that ``spec`` describes, and its source if there is one; raises as :func:`load_task`."""
+    """Return the automaton that ``spec`` describes, and the resolved spec, or None without a source text.
+
+    ``spec`` and the errors are those of :func:`load_task`.
+    """
     if isinstance(spec, Fspa):
         return spec, None
     if not isinstance(spec, (str, os.PathLike)) or not str(spec).strip():
@@ -94,7 +105,7 @@ def read_spec(spec: str | Path | Fspa) -> tuple[Fspa, Spec | None]:
     compiled = compiler.compile_source(
         source, compiler.CompileOptions(library_dirs=libraries, specs=(name,) if name else ())
     )
-    fspa = _only(compiled.automata, path)
+    fspa = _only_automaton(compiled.automata, path)
     return fspa, next(candidate for candidate in compiled.program.specs if candidate.name == fspa.name)
 
 
@@ -106,11 +117,11 @@ def _is_text(spec: str) -> bool:
 
 
 def _is_artefact(text: str) -> bool:
-    """Whether this is the text of an artefact: no specification begins with a brace."""
+    """Whether this is the text of an artefact, not of a spec: no spec begins with a brace."""
     return text.lstrip().startswith("{")
 
 
-def _only(automata: tuple[Fspa, ...], file: str) -> Fspa:
+def _only_automaton(automata: tuple[Fspa, ...], file: str) -> Fspa:
     if len(automata) == 1:
         return automata[0]
     names = [fspa.name for fspa in automata]

@@ -30,35 +30,40 @@ class TltlEnv(gymnasium.Wrapper[Observation, Any, Any, Any], RecordConstructorAr
 
     ``spec`` is an argument of :func:`tltl_runtime.spec.task.load_task`. ``signals`` receives the
     wrapped environment after each step and returns the spec's signals by name, as numbers in SI
-    units or bools; the default is the environment's own method ``tltl_signals()``. It is also
-    called after a reset, where the automaton takes no step, so that a missing signal is noticed at
-    once. ``params`` are values of the spec's params, in SI units; they take precedence over those
-    of the environment's ``tltl_params()``, if it has that method.
+    units or bools. By default it is the environment's own method ``tltl_signals()``. ``signals`` is
+    also called after a reset, where the automaton takes no step, so that a missing signal is
+    noticed at once. ``params`` are values of the spec's params, in SI units. They take precedence
+    over those of the environment's ``tltl_params()``, if it has that method.
 
-    Observation: the keys ``automaton``, the state as a one-hot vector, and ``progress``, the best
-    so far, shape (1,), in [0, 1], both float32, are added to a Dict space. An observation of any
-    other space becomes the key ``observation`` beside them.
+    Observation: a Dict space gains two keys, both float32. ``automaton`` is the state as a one-hot
+    vector, shape (states,). ``progress`` is the best progress so far, shape (1,), in [0, 1]. An
+    observation of any other space becomes the key ``observation`` beside them.
 
     Reward: the reward of the chosen mode; the environment's own reward is ``info["env_reward"]``.
     The episode is ``terminated`` by success, by violation and by the environment, and ``truncated``
-    at the spec's limit and by the environment. If the environment ends it before the spec does, it
-    is a success iff the trace so far is accepted and the spec is not judged at a limit that is
-    still ahead. With a limit, a failure costs the step penalties that remained unspent, as a
-    violation does, so every failed episode has a total reward of progress - 1.
+    at the spec's limit and by the environment. If the environment ends an episode before the spec
+    does, the episode is a success iff two things hold: the trace so far is accepted, and the spec is
+    not judged at a limit that is still ahead. With a limit, a failure costs the step penalties that
+    remained unspent, as a violation does. So every failed episode has a total reward of
+    progress - 1.
 
-    ``info`` gains ``verdict``, ``state``, ``unmet`` (the state whose label names what was not met:
-    on a violation the state before the step, else the current one), ``label``, ``progress``,
-    ``success`` (the episode ended here, in success), ``limiting``, ``atoms`` (their values by name,
-    empty after a reset) and ``env_reward`` (0 after a reset). They replace entries of the
-    environment with the same names.
+    ``info`` gains these keys, which replace entries of the environment with the same names:
 
-    ``sample`` is the last result of ``signals``, and ``taken`` the monitor's
-    :class:`~tltlc.monitor.Step` for it, None after a reset. Together with ``task`` they are all
-    that a recording of the episode needs.
+    - ``verdict``, ``state``, ``label`` and ``progress``;
+    - ``unmet``: the state whose label names what was not met. After a violation this is the state
+      before the step, otherwise the current one;
+    - ``success``: whether the episode ended with this step, in success;
+    - ``limiting``: the name of the atom that bounds the nearest edge towards the goal, or None;
+    - ``atoms``: the values of the atoms by name, empty after a reset;
+    - ``env_reward``: 0 after a reset.
+
+    ``sample`` is the last result of ``signals``. ``taken`` is the monitor's
+    :class:`~tltlc.monitor.Step` for that sample, None after a reset. A recording of the episode
+    needs these two and ``task``, and nothing else of this wrapper.
 
     Raises:
-        TltlError: the errors of :func:`load_task`; TLT0617 if the environment has a
-            ``tltl_clock_s`` (seconds per step) that differs from the spec's clock.
+        TltlError: the errors of :func:`load_task`; TLT0617, the environment has a ``tltl_clock_s``
+            (seconds per step) that differs from the spec's clock.
         TypeError: an argument is of another type, or there are no ``signals``.
         ValueError: the observation space already has a key ``automaton`` or ``progress``.
     """
@@ -100,7 +105,8 @@ class TltlEnv(gymnasium.Wrapper[Observation, Any, Any, Any], RecordConstructorAr
         """Begin an episode in the automaton's initial state.
 
         Raises:
-            MonitorError: TLT0611 and TLT0612 if the signals are not those of the spec.
+            MonitorError: TLT0611, a signal of the spec is missing; TLT0612, a signal has no usable
+                value.
             TypeError: ``signals`` did not return a mapping.
         """
         observation, info = self.env.reset(seed=seed, options=options)
@@ -122,7 +128,7 @@ class TltlEnv(gymnasium.Wrapper[Observation, Any, Any, Any], RecordConstructorAr
             "atoms": {},
             "env_reward": 0.0,
         }
-        return self._observed(observation), info
+        return self._with_automaton_keys(observation), info
 
     def step(self, action: Any) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
         """Take a step in the environment, then one in the automaton.
@@ -142,20 +148,21 @@ class TltlEnv(gymnasium.Wrapper[Observation, Any, Any, Any], RecordConstructorAr
         terminated = terminated or settled
         truncated = truncated or (step.done and not terminated)
         info = {**info, **self._step_info(step, before), "env_reward": env_reward}
-        return self._observed(observation), step.reward, terminated, truncated, info
+        return self._with_automaton_keys(observation), step.reward, terminated, truncated, info
 
     def _sample(self, when: str) -> Mapping[str, SupportsFloat]:
-        """Return the result of ``signals`` after checking that it has every signal of the spec;
-        ``when`` is for messages.
+        """Return the result of ``signals``, which must have every signal of the spec.
+
+        ``when`` is for messages, such as "step 3".
         """
-        given = self._signals(self.env)
-        if not isinstance(given, Mapping):
-            raise TypeError(f"{when}: `signals` must return a mapping from names to numbers, not {given!r:.80}")
-        missing = [signal.name for signal in self._inputs if signal.name not in given]
+        sample = self._signals(self.env)
+        if not isinstance(sample, Mapping):
+            raise TypeError(f"{when}: `signals` must return a mapping from names to numbers, not {sample!r:.80}")
+        missing = [signal.name for signal in self._inputs if signal.name not in sample]
         if missing:
-            raise MonitorError([_missing(missing, [str(name) for name in given], when)])
-        self.sample = given
-        return given
+            raise MonitorError([_missing_signals(missing, [str(name) for name in sample], when)])
+        self.sample = sample
+        return sample
 
     def _step_info(self, step: Step, before: int) -> dict[str, Any]:
         """Return the entries of ``info`` for a step from the state ``before``."""
@@ -170,7 +177,7 @@ class TltlEnv(gymnasium.Wrapper[Observation, Any, Any, Any], RecordConstructorAr
             "atoms": dict(zip(self._names, self._monitor.values, strict=True)),
         }
 
-    def _observed(self, observation: Any) -> Observation:
+    def _with_automaton_keys(self, observation: Any) -> Observation:
         added = {
             "automaton": self._one_hot[self._monitor.state].copy(),
             "progress": np.array([self._monitor.progress], dtype=np.float32),
@@ -204,11 +211,13 @@ def _check_clock(fspa: Fspa, env: gymnasium.Env[Any, Any]) -> None:
         raise TltlError([Diagnostic("TLT0617", title, help=f"write `clock {clock_s:g} s` in the specification")])
 
 
-def _missing(missing: list[str], given: list[str], when: str) -> Diagnostic:
-    """Return TLT0611, with a list of the signals that were given."""
+def _missing_signals(missing: list[str], returned: list[str], when: str) -> Diagnostic:
+    """Return TLT0611 for ``missing`` signals, with a list of the signals that ``signals`` returned."""
     names = ", ".join(f"`{name}`" for name in missing)
-    listed = ", ".join(f"`{name}`" for name in given[:_MOST_LISTED]) + (", …" if len(given) > _MOST_LISTED else "")
-    close = get_close_matches(missing[0], given, n=1)
+    listed = ", ".join(f"`{name}`" for name in returned[:_MOST_LISTED]) + (
+        ", …" if len(returned) > _MOST_LISTED else ""
+    )
+    close = get_close_matches(missing[0], returned, n=1)
     advice = "supply every signal that the atoms use"
     if close:
         advice = f"is `{close[0]}` what the spec calls `{missing[0]}`?"

@@ -123,7 +123,7 @@ def test_a_tensor_and_a_mapping_of_signals_give_the_same_steps() -> None:
 
 
 @pytest.mark.parametrize("name", PAPER_SPECS)
-def test_recorded_traces_of_the_specs_of_the_paper(name: str) -> None:
+def test_a_batch_equals_scalar_monitors_on_recorded_traces_of_the_paper(name: str) -> None:
     """Run four environments, each of which starts at a different sample of the trace."""
     fspa = next(fspa for fspa in compile_file(source(name)) if fspa.name == name)
     samples = trace(name)
@@ -140,7 +140,7 @@ def test_recorded_traces_of_the_specs_of_the_paper(name: str) -> None:
     assert batch_step.success[0]
 
 
-def test_numbers_computed_by_hand() -> None:
+def test_values_progress_and_rewards_equal_numbers_computed_by_hand() -> None:
     """Check a distance halfway between b = 1 and B = 20.
 
     By equation 2 a distance of (b + B) / 2 gives -0.75. On the last edge, to the exit, the progress is
@@ -164,7 +164,7 @@ def test_numbers_computed_by_hand() -> None:
     assert (batch.state.tolist(), batch.steps.tolist(), batch.progress.tolist()) == ([0, 0], [0.0, 4.0], [0.0, 0.0])
 
 
-def test_eq_2_at_distance_5() -> None:
+def test_values_equal_equation_2_at_three_distances() -> None:
     fspa = cover_and_hide()
     batch = BatchMonitor(fspa, 3, params={"level_size": 10.0})
     rows = {name: tensor([value] * 3) for name, value in FAR.items()}
@@ -183,7 +183,7 @@ def test_later_steps_do_not_change_a_step() -> None:
     assert all(torch.equal(old, new) for old, new in zip(before, after, strict=True))
 
 
-def test_float32() -> None:
+def test_a_batch_in_float32_reaches_the_same_states() -> None:
     batch = BatchMonitor(cover_and_hide(), 2, dtype=torch.float32)
     step = batch.step({**{name: tensor([value] * 2) for name, value in FAR.items()}, "health": tensor([1.0, 0.0])})
     assert (step.reward.dtype, step.state.tolist()) == (torch.float32, [0, 2])

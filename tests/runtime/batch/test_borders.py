@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from tests.resolve.test_comparison_signs import FINITE, THREE, nearby_numbers, signal_quantity
 from tltl_runtime.spec.batch import BatchMonitor
-from tltl_runtime.spec.batch.float_formats import fits, narrowed
+from tltl_runtime.spec.batch.float_formats import fits, narrow
 from tltlc import compile_text
 from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
@@ -49,7 +49,7 @@ def truths(fspa: Fspa, samples: Sequence[Sequence[float]], dtype: torch.dtype, c
 
 @settings(max_examples=300, deadline=None)
 @given(THREE, FINITE)
-def test_a_threshold_in_float64(ends: Sequence[float], x: float) -> None:
+def test_a_comparison_with_a_threshold_is_exact_in_float64(ends: Sequence[float], x: float) -> None:
     low, threshold, high = ends
     side, fixed = signal_quantity("x", low, high), constant(threshold, units.PLAIN)
     samples = [[number] for number in (*nearby_numbers(threshold, low, high), min(max(x, low), high))]
@@ -63,7 +63,7 @@ def test_a_threshold_in_float64(ends: Sequence[float], x: float) -> None:
 
 @settings(max_examples=300, deadline=None)
 @given(THREE_NARROW)
-def test_numbers_of_32_bits_in_float32(ends: Sequence[float]) -> None:
+def test_a_comparison_of_float32_numbers_is_exact_in_float32(ends: Sequence[float]) -> None:
     """Thresholds and samples are float32 numbers, so nothing is rounded before the comparison."""
     low, threshold, high = ends
     if not threshold < high:
@@ -79,7 +79,7 @@ def test_numbers_of_32_bits_in_float32(ends: Sequence[float]) -> None:
 @pytest.mark.parametrize("dtype", FORMATS)
 @pytest.mark.parametrize("checked", [True, False])
 @pytest.mark.parametrize("border", EXTREMES, ids=lambda border: border.comparison(1))
-def test_extreme_ranges(border: Border, dtype: torch.dtype, checked: bool) -> None:
+def test_comparisons_in_extreme_ranges_are_exact(border: Border, dtype: torch.dtype, checked: bool) -> None:
     """If a number is too large or too small for the format, everything is computed in float64."""
     (fspa,) = compile_text(f"{border.declaration(1)} spec s = always eventually {border.comparison(1)}")
     numbers = [end for signal in fspa.signals for end in (signal.low, signal.high) if end is not None]
@@ -90,7 +90,7 @@ def test_extreme_ranges(border: Border, dtype: torch.dtype, checked: bool) -> No
     assert step.accepting.tolist() == [border.holds(*values) for values in samples]
 
 
-def test_a_small_number_scaled_by_a_large_range_in_float32() -> None:
+def test_a_small_number_in_a_large_range_is_not_rounded_to_zero() -> None:
     (fspa,) = compile_text("signal x in [0, 1e300] spec s = F x > 0")
     monitor = BatchMonitor(fspa, 3, dtype=torch.float32)
     step = monitor.step(torch.tensor([[1e-30], [0.0], [nextafter(0.0, 1.0)]], dtype=torch.float64))
@@ -100,7 +100,7 @@ def test_a_small_number_scaled_by_a_large_range_in_float32() -> None:
 
 def test_a_value_keeps_its_sign_in_a_smaller_format() -> None:
     values = torch.tensor([1e-60, -1e-60, 0.0, -0.0, 0.5, float("nan")], dtype=torch.float64)
-    smaller = narrowed(values, torch.float32)
+    smaller = narrow(values, torch.float32)
     assert smaller.dtype == torch.float32
     assert (smaller > 0.0).tolist() == (values > 0.0).tolist()
     assert (smaller < 0.0).tolist() == (values < 0.0).tolist()

@@ -112,7 +112,7 @@ def test_a_case_that_is_not_taken_cannot_fail() -> None:
     assert not failures.any()
 
 
-def test_closeness_at_its_borders() -> None:
+def test_closeness_equals_the_scalar_evaluator_at_its_borders() -> None:
     distances = [0.0, 0.5, 1.0, 5.0, 5.5, 10.0, 11.0]
     near_x = TensorExpressions([near("x")], ("x",), {"level_size": 10.0}, CPU, torch.float64)
     (values,), _ = near_x.run(torch.tensor([distances], dtype=torch.float64))

@@ -23,9 +23,9 @@ from tltlc.api import expressions
 
 
 class TensorExpressions:
-    """The expressions as one function of columns: from shape [signals, N] to values [expressions, N] and failures.
+    """Expressions as one function of columns [signals, N].
 
-    ``source`` is the Python text of the function.
+    ``source`` is the Python text of the function. ``params`` are in SI units.
     """
 
     def __init__(
@@ -38,12 +38,12 @@ class TensorExpressions:
     ) -> None:
         writer = TensorWriter(signals, params)
         terms = [writer.number(expression) for expression in expressions]
-        values = [term.name if term.constant is None else writer.filled(term.constant) for term in terms]
+        values = [term.name if term.constant is None else writer.constant_column(term.constant) for term in terms]
         failures = [term.fails for term in terms]
         self.source = "\n".join(
             [
                 "def values(columns):",
-                *(f"    {line}" for line in _released(writer.lines, {*values, *map(str, failures)})),
+                *(f"    {line}" for line in _release_tensors(writer.lines, {*values, *map(str, failures)})),
                 f"    return ({', '.join([*values, ''])}), ({', '.join([*map(str, failures), ''])})",
             ]
         )
@@ -55,8 +55,9 @@ class TensorExpressions:
         self._function: Callable[[Tensor], tuple[tuple[Tensor, ...], tuple[Tensor | None, ...]]] = space["values"]
 
     def run(self, columns: Tensor) -> tuple[Tensor, tuple[Tensor | None, ...]]:
-        """Return the values, shape [expressions, N], and per expression the mask [N] of failures
-        (None for no failures).
+        """Return the values, shape [expressions, N], and a mask [N] of failures for each expression.
+
+        The mask is None for an expression that cannot fail.
         """
         values, failures = self._function(columns)
         if not values:
@@ -64,15 +65,13 @@ class TensorExpressions:
         return torch.stack(values), failures
 
 
-def _released(lines: Sequence[str], outputs: Collection[str]) -> list[str]:
-    """Return the lines with each tensor deleted after its last use, so that the next one can reuse
-    its cached memory.
-    """
+def _release_tensors(lines: Sequence[str], outputs: Collection[str]) -> list[str]:
+    """Return the lines with a ``del`` for each tensor after its last use, so that torch reuses its memory."""
     seen: set[str] = set()
-    released: list[str] = []
+    lines_with_releases: list[str] = []
     for line in reversed(lines):
         names = {name for name in re.findall(r"\bt\d+\b", line) if name not in outputs} - seen
-        released += [f"del {', '.join(sorted(names))}"] if names else []
-        released.append(line)
+        lines_with_releases += [f"del {', '.join(sorted(names))}"] if names else []
+        lines_with_releases.append(line)
         seen |= names
-    return released[::-1]
+    return lines_with_releases[::-1]

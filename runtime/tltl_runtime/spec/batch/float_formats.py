@@ -14,7 +14,7 @@ def fits(numbers: Iterable[float], dtype: torch.dtype) -> bool:
     return all(number == 0.0 or format_.tiny <= abs(number) <= format_.max for number in numbers)
 
 
-def narrowed(values: Tensor, dtype: torch.dtype) -> Tensor:
+def narrow(values: Tensor, dtype: torch.dtype) -> Tensor:
     """Return the values in a format; a value that would round to 0 becomes the smallest normal number of its sign."""
     if values.dtype == dtype:
         return values

@@ -19,10 +19,11 @@ _LETTER_CELLS: Final = 1 << 22
 
 
 class PrimeSets:
-    """K sets of prime implicants. A set's robustness is the greatest one of its primes, ``empty`` if it has none.
+    """K sets of prime implicants, and their robustness for N environments.
 
-    ``values`` are the atoms' values, shape [atoms, N]. A choice is an int64 tensor [N] of set
-    numbers.
+    The robustness of a set is the greatest robustness of its primes, or ``empty`` if it has no
+    primes. ``values`` are the atoms' values, shape [atoms, N]. A choice is an int64 tensor [N] of
+    set numbers, one for each environment.
     """
 
     def __init__(self, sets: Sequence[Primes], atoms: int, device: torch.device, empty: float) -> None:
@@ -40,24 +41,25 @@ class PrimeSets:
         self._literals = self._table(self._literal_rows).to(device)
         self._limiting = self._table(self._limiting_atoms).to(device)
 
-    def all(self, values: Tensor) -> Tensor:
+    def all_robustness(self, values: Tensor) -> Tensor:
         """Return the robustness of every set, shape [K, N]."""
         return self._distinct_robustness(values).index_select(0, self._rows)
 
-    def of(self, choice: Tensor, values: Tensor) -> Tensor:
+    def robustness_of(self, choice: Tensor, values: Tensor) -> Tensor:
         """Return the robustness of the chosen sets, shape [N]."""
         rows = self._rows.index_select(0, choice)
         if self._dense:
             robustness = self._distinct_robustness(values)
             return robustness[0] if len(self._distinct) == 1 else robustness.gather(0, rows[None])[0]
-        return self._gathered(rows, values).amin(1).amax(0)
+        return self._literals_of(rows, values).amin(1).amax(0)
 
     def bounding_atom(self, choice: Tensor, values: Tensor) -> Tensor:
-        """Return the atom of the first least literal of the first best prime of the chosen sets,
-        int64 [N]; -1 for none.
+        """Return the atom that bounds the robustness of the chosen sets, int64 [N]; -1 for none.
+
+        It is the atom of the first least literal in the first best prime of the set.
         """
         rows = self._rows.index_select(0, choice)
-        literals = self._gathered(rows, values)
+        literals = self._literals_of(rows, values)
         best = literals.amin(1).argmax(0)
         least = literals.argmin(1).gather(0, best[None])[0]
         atoms = self._limiting.index_select(1, rows)
@@ -79,7 +81,7 @@ class PrimeSets:
             results.append(values.new_full((values.shape[1],), self._empty) if best is None else best)
         return torch.stack(results) if results else values.new_empty((0, values.shape[1]))
 
-    def _gathered(self, rows: Tensor, values: Tensor) -> Tensor:
+    def _literals_of(self, rows: Tensor, values: Tensor) -> Tensor:
         """Return the literals of the chosen sets, shape [primes, literals, N]."""
         ones, empty = (values.new_full((1, values.shape[1]), constant) for constant in (1.0, self._empty))
         signed = torch.cat([values, -values, ones, empty])
@@ -110,9 +112,9 @@ class PrimeSets:
 
 
 class Transitions:
-    """Finds the number of the edge taken: exactly one edge that leaves a state has a true guard.
+    """Finds the edges that N automata take; of the edges that leave a state, exactly one has a true guard.
 
-    If truth is not ``checked`` and exclusive atoms hold at once, some edge of the state is taken.
+    Unless ``checked``, exclusive atoms may hold at once. Then some edge of the state is taken.
     """
 
     def __init__(self, fspa: Fspa, device: torch.device, checked: bool) -> None:
@@ -126,10 +128,12 @@ class Transitions:
         self._guards = None if fits else PrimeSets([e.guard.primes for e in fspa.edges], self._atoms, device, -1.0)
 
     def edge(self, state: Tensor, truth: Tensor) -> Tensor:
-        """Return the edges taken from states [N], int64 [N]; ``truth`` of the atoms is bool [atoms, N].
+        """Return the numbers of the edges that are taken, int64 [N].
+
+        ``state`` has the states, int64 [N]; ``truth`` says which atoms hold, bool [atoms, N].
 
         Raises:
-            MonitorError: TLT0614 exclusive atoms that hold at once.
+            MonitorError: TLT0614 exclusive atoms hold at once; only if ``checked``.
         """
         if self._table is None:
             if self._checked:
@@ -152,7 +156,7 @@ class Transitions:
         leaving = self._leaving.index_select(1, state)
         taken = leaving[0]
         for edge in leaving[1:]:
-            taken = torch.where(self._guards.of(edge, signs) > 0.0, edge, taken)
+            taken = torch.where(self._guards.robustness_of(edge, signs) > 0.0, edge, taken)
         return taken
 
     def _leaving_table(self) -> Tensor:
@@ -164,9 +168,9 @@ class Transitions:
         return torch.tensor([row + row[:1] * (most - len(row)) for row in leaving], dtype=torch.int64).t().contiguous()
 
     def _edge_table(self) -> Tensor:
-        """Return the edge for each state and letter, int64 [states * letters]; bit 2^i of a letter is atom i.
+        """Return the edge for each state and letter, int64 [states * letters]; bit i of a letter is atom i.
 
-        If truth is checked, letters in which exclusive atoms hold at once have -1.
+        If checked, the edge is -1 for letters in which exclusive atoms hold at once.
         """
         letters = torch.arange(self._letters)
         table = torch.zeros((len(self._fspa.states), self._letters), dtype=torch.int64)

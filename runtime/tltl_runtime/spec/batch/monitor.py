@@ -22,7 +22,7 @@ class BatchStep:
     """The result of one sample in each of N environments; every tensor has shape [N] and is never modified.
 
     - ``state``: int64.
-    - ``done``: bool, the episode has ended, with this step or before.
+    - ``done``: bool, the episode has ended, in this step or before.
     - ``success``: bool, the episode has ended in success.
     - ``progress``: the best so far, in [0, 1].
     - ``reward``: the reward of this step, 0 after the end of the episode.
@@ -54,7 +54,7 @@ class BatchStep:
 
     @cached_property
     def truncated(self) -> Tensor:
-        """Whether an episode has ended at the spec's limit, neither in success nor in a violation, bool."""
+        """Whether the episode has ended at the spec's limit without success or violation, bool."""
         return self.done & ~self.success & (self.verdict != _VIOLATED)
 
     @cached_property
@@ -65,12 +65,13 @@ class BatchStep:
     @cached_property
     def robustness(self) -> Tensor:
         """The robustness of the edge taken, in [-1, 1]."""
-        return self._monitor.guards.of(self.edge, self.values) + 0.0
+        return self._monitor.guards.robustness_of(self.edge, self.values) + 0.0
 
     @cached_property
     def limiting(self) -> Tensor:
-        """The atom that bounds the nearest edge that would have improved, int64; -1 where the
-        scalar monitor has None.
+        """The atom that bounds the nearest edge that would have improved, int64.
+
+        It is -1 where the scalar monitor has None.
         """
         return self._monitor.outcomes.nearest.bounding_atom(self.edge, self.values)
 
@@ -78,14 +79,16 @@ class BatchStep:
 class BatchMonitor:
     """Runs ``count`` copies of an automaton; the environments may be in different states and episodes.
 
-    It equals ``count`` :class:`tltlc.monitor.Monitor` objects. On a CPU in float64 it is equal to
-    the last bit (except for the sign of zeros) where torch computes an operation as C does, else
-    within 1e-12 (``exp``, ``tanh``, ``sqrt``, powers other than 2 and 3, the discounted penalty).
-    An atom whose value is that close to 0, or to a border between cases, may be true in one monitor
-    and false in the other. In float32 all of this holds within 1e-6. If a number of the spec, such
-    as the end of a range, is too large or too small for ``dtype``, atoms are computed in float64.
-    As in the scalar monitor, an environment whose episode has ended continues with its automaton,
-    with reward 0, until it is reset.
+    The results equal those of ``count`` :class:`tltlc.monitor.Monitor` objects. On a CPU in float64
+    they are equal to the last bit, except for the sign of zeros, where torch computes an operation
+    as C does. The other operations (``exp``, ``tanh``, ``sqrt``, powers other than 2 and 3, the
+    discounted penalty) agree within 1e-12. An atom whose value is that close to 0, or to a border
+    between cases, may be true in one monitor and false in the other. In float32 all of this holds
+    within 1e-6. If a number of the spec, such as the end of a range, is too large or too small for
+    ``dtype``, atoms are computed in float64.
+
+    After the end of an episode, the automaton of its environment continues with reward 0 until it is
+    reset, as in the scalar monitor.
 
     ``state`` int64 [N], ``steps`` and ``progress`` [N] describe the last step. ``clamped`` counts
     values out of range, by the names of signals and atoms. ``signal_names`` is the order of signals
@@ -133,13 +136,19 @@ class BatchMonitor:
         self.reset()
 
     def reset(self, mask: ArrayLike | Tensor | None = None) -> None:
-        """Return the environments of a mask (bool [N]; None for all) to the state before the first sample."""
+        """Return the environments in ``mask`` to the state before their first sample.
+
+        ``mask`` is bool [N], or None for all environments.
+
+        Raises:
+            ValueError: ``mask`` has another shape or type.
+        """
         fresh = self._start()
         if mask is not None:
             chosen = torch.as_tensor(mask, device=self.device)
             if chosen.shape != (self.count,) or chosen.dtype != torch.bool:
-                wanted = f"{self.count} bools are needed, one for each environment"
-                raise ValueError(f"{wanted}, not {tuple(chosen.shape)} of {chosen.dtype}")
+                expected = f"{self.count} bools are needed, one for each environment"
+                raise ValueError(f"{expected}, not {tuple(chosen.shape)} of {chosen.dtype}")
             fresh = tuple(torch.where(chosen, new, old) for new, old in zip(fresh, self._episode(), strict=True))
         self.state, self.steps, self.progress, self._done, self._success, self._memory = fresh
 
@@ -150,24 +159,24 @@ class BatchMonitor:
         1. The order in a single array is ``signal_names``. Names that no atom uses are ignored.
 
         Raises:
-            MonitorError: TLT0611 missing signals, TLT0612 unusable signals, TLT0613 an atom without
-                a value, TLT0614 exclusive atoms that hold at once. No environment changes.
+            MonitorError: TLT0611 signals are missing; TLT0612 a signal has no usable value; TLT0613
+                an atom has no value; TLT0614 exclusive atoms hold at once. No environment changes.
             ValueError: an array has another shape.
         """
         return self._take(self._samples.atom_values(signals))
 
     def step_atoms(self, values: ArrayLike | Tensor) -> BatchStep:
-        """Take one sample given as the values of the atoms, shape [N, atoms], each in [-1, 1].
+        """Take one sample of each environment: the values of the atoms, [N, atoms], each in [-1, 1].
 
         Raises:
-            MonitorError: TLT0614 exclusive atoms that hold at once. No environment changes.
+            MonitorError: TLT0614 exclusive atoms hold at once. No environment changes.
             ValueError: a value is not in [-1, 1], or the shape is different.
         """
-        given = torch.as_tensor(values)
-        fits = given.shape == (self.count, len(self.fspa.atoms))
-        if not fits or (self._checked and not bool((given.abs() <= 1.0).all())):
+        rows = torch.as_tensor(values)
+        fits = rows.shape == (self.count, len(self.fspa.atoms))
+        if not fits or (self._checked and not bool((rows.abs() <= 1.0).all())):
             raise ValueError(f"values in [-1, 1] of shape {(self.count, len(self.fspa.atoms))} are needed")
-        return self._take(given.to(self.device, self.dtype).t().contiguous())
+        return self._take(rows.to(self.device, self.dtype).t().contiguous())
 
     def one_hot(self, dtype: torch.dtype = torch.float32) -> Tensor:
         """Return the states as one-hot rows, shape [N, states]."""

@@ -61,7 +61,7 @@ class Outcomes:
         if not self._approaches:
             return base
         # Without improving edges, the nearest robustness is -1, which adds 0.
-        return base.add_(approach(self.nearest.of(edge, values), self._size))
+        return base.add_(approach(self.nearest.robustness_of(edge, values), self._size))
 
     def done(self, edge: Tensor, steps: Tensor) -> Tensor:
         """Return whether an episode ends with this step."""

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 from torch import Tensor
 
 from tltl_runtime.spec.batch.expressions import TensorExpressions
-from tltl_runtime.spec.batch.float_formats import fits, narrowed
+from tltl_runtime.spec.batch.float_formats import fits, narrow
 from tltlc.api import Diagnostic, Fspa, MonitorError, expressions, monitors
 
 _NAMED = 5
@@ -19,9 +19,9 @@ _NAMED = 5
 class BatchSamples:
     """Computes the values of the atoms, shape [atoms, N], from the signals of N environments.
 
-    ``clamped`` counts the clamped values per name of a signal or atom, as the notices of the scalar
-    monitor report them (an atom's only if it is more than 1e-9 outside [-1, 1]). If values are not
-    ``checked``, they are clamped without counts or errors.
+    ``clamped`` counts the clamped values by the name of the signal or atom, as the notices of the
+    scalar monitor do. The value of an atom counts only if it is more than 1e-9 outside [-1, 1]. If
+    values are not ``checked``, they are clamped without counts or errors.
 
     If a number of the automaton is too large or too small for ``dtype``, atoms are computed in
     float64.
@@ -41,8 +41,8 @@ class BatchSamples:
         self.names = tuple(signal.name for signal in fspa.signals)
         self.clamped: dict[str, int] = {}
         values = monitors.param_values(fspa.params, params or {})
-        self._given = dtype
-        self._dtype = dtype = dtype if fits(_numbers(fspa, values), dtype) else torch.float64
+        self._result_dtype = dtype
+        self._dtype = dtype = dtype if fits(_constants(fspa, values), dtype) else torch.float64
         self._program = TensorExpressions([atom.expression for atom in fspa.atoms], self.names, values, device, dtype)
         # An open end is the greatest finite number: only infinite values are clamped to it.
         most = torch.finfo(dtype).max
@@ -54,8 +54,9 @@ class BatchSamples:
         self._bools = [row for row, signal in enumerate(fspa.signals) if signal.type == "bool"]
 
     def atom_values(self, signals: Mapping[str, ArrayLike | Tensor] | ArrayLike | Tensor) -> Tensor:
-        """Return the values of the atoms, each in [-1, 1], shape [atoms, N], with the signs that
-        they were computed with.
+        """Return the values of the atoms, each in [-1, 1], shape [atoms, N].
+
+        A value keeps its sign when it is converted to a smaller format.
 
         ``signals`` is an array [N] for each name (names that no atom uses are ignored), or one
         array [N, signals] in the order of ``names``.
@@ -68,7 +69,7 @@ class BatchSamples:
         columns = self._columns(signals)
         if not self._checked:
             values, _ = self._program.run(torch.clamp(columns, self._low, self._high))
-            return narrowed(torch.clamp(values, -1.0, 1.0), self._given)
+            return narrow(torch.clamp(values, -1.0, 1.0), self._result_dtype)
         if self.names and not self._in_range(columns):
             given, columns = columns, torch.clamp(columns, self._low, self._high)
             self._check_signals(given, columns)
@@ -76,12 +77,12 @@ class BatchSamples:
             self._check_truth(row, columns[row])
         values, failures = self._program.run(columns)
         if not self._fspa.atoms:
-            return values.to(self._given)
+            return values.to(self._result_dtype)
         failed = any(bool(mask.any()) for mask in failures if mask is not None)
         if failed or not (float(values.amin()) >= -1.0 and float(values.amax()) <= 1.0):
             raw, values = values, torch.clamp(values, -1.0, 1.0)
             self._check_atoms(columns, raw, values, failures)
-        return narrowed(values, self._given)
+        return narrow(values, self._result_dtype)
 
     def _columns(self, signals: Mapping[str, ArrayLike | Tensor] | ArrayLike | Tensor) -> Tensor:
         """Return the signals that the atoms use, shape [signals, N], with contiguous rows."""
@@ -108,8 +109,9 @@ class BatchSamples:
         return torch.stack(rows)
 
     def _in_range(self, columns: Tensor) -> bool:
-        """Whether no signal has to be clamped. A NaN makes both extremes of its row NaN, which
-        fails the comparison.
+        """Whether no signal has to be clamped.
+
+        A NaN makes both extremes of its row NaN, so that the comparison fails.
         """
         extremes = zip(columns.amin(1).tolist(), columns.amax(1).tolist(), self._ranges, strict=True)
         return all(least >= low and greatest <= high for least, greatest, (low, high) in extremes)
@@ -160,8 +162,8 @@ class BatchSamples:
         return _error("TLT0613", f"{_environments(indices)}: {title}")
 
 
-def _numbers(fspa: Fspa, params: Mapping[str, float]) -> Iterator[float]:
-    """Yield all numbers that the values of the atoms are computed from, except those of the samples."""
+def _constants(fspa: Fspa, params: Mapping[str, float]) -> Iterator[float]:
+    """Yield the numbers in the expressions of the atoms, in the ranges of the signals, and of the params."""
     for atom in fspa.atoms:
         yield from (node.value for node in expressions.nodes(atom.expression) if isinstance(node, expressions.Const))
     for signal in fspa.signals:
@@ -170,17 +172,17 @@ def _numbers(fspa: Fspa, params: Mapping[str, float]) -> Iterator[float]:
 
 
 def check_exclusive(fspa: Fspa, truth: Tensor) -> None:
-    """Raise MonitorError (TLT0614) if two atoms that a declaration calls exclusive hold at once.
+    """Raise MonitorError, TLT0614, if two atoms of an ``exclusive`` declaration hold at once.
 
     ``truth`` is bool [atoms, N].
     """
     for group in fspa.exclusive:
-        held = truth[list(group)]
-        wrong = held.sum(0) > 1
+        truths = truth[list(group)]
+        wrong = truths.sum(0) > 1
         if bool(wrong.any()):
             indices = _indices(wrong)
             names = [fspa.atoms[atom].name for atom in group]
-            holding = [name for name, holds in zip(names, held[:, indices[0]].tolist(), strict=True) if holds]
+            holding = [name for name, holds in zip(names, truths[:, indices[0]].tolist(), strict=True) if holds]
             both = monitors.name_list(holding)
             text = f"{_environments(indices)}: {both} hold at once, against `exclusive {', '.join(names)}`"
             raise _error("TLT0614", text)
@@ -191,7 +193,7 @@ def _indices(mask: Tensor) -> list[int]:
 
 
 def _environments(indices: Sequence[int]) -> str:
-    """``environment 3``, ``environments 3 and 7``, ``environments 0, 1, 2, 3, 4 and 12 more``."""
+    """Return ``environment 3``, ``environments 3 and 7`` or ``environments 0, 1, 2, 3, 4 and 12 more``."""
     if len(indices) == 1:
         return f"environment {indices[0]}"
     left_out = len(indices) - _NAMED

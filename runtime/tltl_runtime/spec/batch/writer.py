@@ -15,7 +15,11 @@ _FAILURES: Final = (ZeroDivisionError, OverflowError, ValueError)
 
 @record
 class TensorTerm:
-    """The name of a tensor, or a constant (number or truth value), and the name of the mask where it fails."""
+    """The name of a tensor or the text of a constant, the value of the constant, and the mask of failures.
+
+    ``constant`` is a number or a truth value, or None for a tensor. ``fails`` is the name of the
+    mask of the environments for which the term has no value, or None if it always has one.
+    """
 
     name: str
     constant: float | None = None
@@ -32,13 +36,13 @@ class TensorWriter:
     def __init__(self, signals: Sequence[str], params: Mapping[str, float]) -> None:
         self._columns = {name: index for index, name in enumerate(signals)}
         self._params = params
-        self._known: dict[str, str] = {}
+        self._names: dict[str, str] = {}
         self.lines: list[str] = []
         self.constants: dict[str, float] = {}
 
-    def filled(self, constant: float) -> str:
+    def constant_column(self, constant: float) -> str:
         """Return the name of a column filled with a constant."""
-        return self._line(f"columns.new_full((columns.shape[1],), {self._held(constant)}.item())")
+        return self._line(f"columns.new_full((columns.shape[1],), {self._constant_tensor(constant)}.item())")
 
     def number(self, node: expressions.Expression) -> TensorTerm:
         """Return the term of an expression."""
@@ -53,7 +57,7 @@ class TensorWriter:
         args = [self.number(argument) for argument in node.args]
         fails = self._any_of([term.fails for term in args])
         if all(term.constant is not None for term in args):
-            return self._folded(node, args, fails)
+            return self._fold_constants(node, args, fails)
         return self._operation(node, args, fails)
 
     def _operation(self, node: expressions.Op, args: list[TensorTerm], fails: str | None) -> TensorTerm:
@@ -113,7 +117,7 @@ class TensorWriter:
         return TensorTerm(result, None, self._any_of([fails, own_failure]))
 
     def _extreme(self, op: str, first: TensorTerm, second: TensorTerm) -> TensorTerm:
-        """Return ``min`` or ``max`` as in Python: the second term only if it is strictly beyond the first."""
+        """Return ``min`` or ``max`` as in Python: of two equal terms, the first."""
         if first.constant is not None and second.constant is not None:
             return self._constant((min if op == "min" else max)(first.constant, second.constant))
         if second.constant is not None:
@@ -153,10 +157,10 @@ class TensorWriter:
         return TensorTerm(self._line(f"{self._operand(left)} {node.op} {self._operand(right)}"), None, fails)
 
     def _connective(self, node: expressions.Condition) -> TensorTerm:
-        """Return ``and`` or ``or``, built from the last part to the first.
+        """Return the term of ``and`` or ``or``, built from the last part to the first.
 
-        A part after one that decides the result cannot fail: its failure counts only where the
-        parts before it are undecided.
+        As in Python, a part is not evaluated if an earlier part decides the result. So its failure
+        counts only where the parts before it leave the result open.
         """
         sign = "&" if node.op == "and" else "|"
         result = self._condition(node.args[-1])
@@ -168,7 +172,7 @@ class TensorWriter:
             result = TensorTerm(self._line(f"{truth} {sign} {rest}"), None, fails)
         return result
 
-    def _folded(self, node: expressions.Op, args: list[TensorTerm], fails: str | None) -> TensorTerm:
+    def _fold_constants(self, node: expressions.Op, args: list[TensorTerm], fails: str | None) -> TensorTerm:
         """Return the value of an operation on constants."""
         # The evaluator multiplies only where the exponent is a literal of the spec. A computed constant exponent must
         # stay a power, so it is not passed on as a literal.
@@ -197,12 +201,13 @@ class TensorWriter:
         return (f"({text})" if text.startswith("-") else text), value
 
     def _operand(self, term: TensorTerm) -> str:
-        """Return the term as a tensor. Torch handles tensors faster than numbers, and divides by
-        numbers less exactly.
-        """
-        return term.name if term.constant is None else self._held(term.constant)
+        """Return the name of the term's tensor.
 
-    def _held(self, constant: float) -> str:
+        Constants are tensors, too: torch is slower with numbers, and divides by numbers less exactly.
+        """
+        return term.name if term.constant is None else self._constant_tensor(term.constant)
+
+    def _constant_tensor(self, constant: float) -> str:
         for name, value in self.constants.items():
             if repr(value) == repr(constant):
                 return name
@@ -230,8 +235,8 @@ class TensorWriter:
         return result
 
     def _line(self, text: str) -> str:
-        if text not in self._known:
-            name = f"t{len(self._known)}"
-            self._known[text] = name
+        if text not in self._names:
+            name = f"t{len(self._names)}"
+            self._names[text] = name
             self.lines.append(f"{name} = {text}")
-        return self._known[text]
+        return self._names[text]

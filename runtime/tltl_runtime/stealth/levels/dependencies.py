@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from tltl_runtime.game.level_name import overlays_of
-from tltl_runtime.spec.spec_files import source_of, spec_files, to_first_file
+from tltl_runtime.spec.spec_files import source_of, spec_files, up_to_first_file
 from tltl_runtime.stealth.levels.made_for import LEVELS, SPECS
 from tltlc.api import SourceFile, TltlError, fileio
 
@@ -42,7 +42,7 @@ def level_dependencies(level: Path, variant: str) -> Iterator[Path]:
     yield from (Path(name) for name in added if name.endswith(".toml"))
     yield from _shared([name for name in added if not name.endswith(".toml")], "overlays", places, sure=True)
     for match in filter(None, map(_SPEC.match, specs)):
-        for path in to_first_file(folder / match[1] for folder in (level.parent, *SPECS)):
+        for path in up_to_first_file(folder / match[1] for folder in (level.parent, *SPECS)):
             yield from spec_files(path)
 
 
@@ -64,7 +64,7 @@ def _shared(names: Iterable[str], folder: str, places: Sequence[Path], *, sure: 
     for name in names:
         paths = [place / folder / f"{name}.toml" for place in places]
         if sure or any(map(fileio.is_file, paths)):
-            yield from to_first_file(paths)
+            yield from up_to_first_file(paths)
 
 
 def _table(text: SourceFile | None) -> dict[str, Any] | None:

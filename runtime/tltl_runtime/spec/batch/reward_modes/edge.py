@@ -27,4 +27,4 @@ class Reward:
 
     def reward(self, step: BatchTransition, memory: Tensor) -> tuple[Tensor, Tensor]:
         """Return the reward, in [-1, 1], and the same memory."""
-        return self._leaving.of(step.source, step.values) + 0.0, memory
+        return self._leaving.robustness_of(step.source, step.values) + 0.0, memory

@@ -28,7 +28,7 @@ class Reward:
 
     def reward(self, step: BatchTransition, memory: Tensor) -> tuple[Tensor, Tensor]:
         """Return the reward and the potential after the step."""
-        nearest = self._improving.of(step.target, step.values)
+        nearest = self._improving.robustness_of(step.target, step.values)
         potential = self._base.index_select(0, step.target) + approach(nearest, self._size)
         after = potential.masked_fill_(step.done, 0.0)
         return (step.success + self._gamma * after).sub_(memory), after

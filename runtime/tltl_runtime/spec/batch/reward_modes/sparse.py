@@ -35,7 +35,9 @@ class Reward:
 
     def reward(self, step: BatchTransition, memory: Tensor) -> tuple[Tensor, Tensor]:
         """Return the reward, in [-1, 1], and the widths after the step."""
-        widths_through_edges = torch.minimum(memory.index_select(0, self._sources), self._guards.all(step.values))
+        widths_through_edges = torch.minimum(
+            memory.index_select(0, self._sources), self._guards.all_robustness(step.values)
+        )
         after = torch.full_like(memory, -2.0)
         for state, edges in enumerate(self._incoming):
             if len(edges):
