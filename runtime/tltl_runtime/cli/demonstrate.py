@@ -11,7 +11,7 @@ from tltl_runtime.cli.support.film import FILMS, Film, write_film
 from tltl_runtime.cli.support.level_faults import level_faults
 from tltl_runtime.cli.support.notation import notation_option
 from tltl_runtime.cli.support.options import output_folder, seed_option
-from tltl_runtime.game.level_name import level_place
+from tltl_runtime.game.level_name import split_level
 from tltlc.api import cli
 
 if TYPE_CHECKING:
@@ -61,7 +61,7 @@ def command(
     from tltl_runtime.stealth.recording import RecordEpisode
 
     with cli.Report() as report:
-        file, variant = level_place(level)
+        file, variant = split_level(level)
         env = RecordEpisode(make_env(file, variant or "v0", spec), "careless expert" if careless else "expert")
         played = succeeded = 0
         try:

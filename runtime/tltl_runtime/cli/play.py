@@ -10,7 +10,7 @@ import click
 from tltl_runtime.cli.support.at_keyboard import keyboard_options, play_at_keyboard
 from tltl_runtime.cli.support.level_faults import level_faults
 from tltl_runtime.cli.support.recording_files import RecordingFiles
-from tltl_runtime.game.level_name import level_place
+from tltl_runtime.game.level_name import split_level
 from tltl_runtime.game.recording_path import SUFFIX
 from tltl_runtime.stealth.env import make_env
 from tltl_runtime.stealth.recording import RecordEpisode
@@ -54,7 +54,7 @@ def command(level: str, spec: str | None, seed: int | None, out: Path | None, vi
     The spec judges while you play: the screen shows what it still asks for.  Each episode is recorded to a file,
     those that you stop, too.  `tltlc replay FILE` shows a recording.
     """
-    _play(*level_place(level), spec, seed, out, view, crouch)
+    _play(*split_level(level), spec, seed, out, view, crouch)
 
 
 def _play(

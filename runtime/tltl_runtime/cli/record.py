@@ -13,7 +13,7 @@ from tltl_runtime.cli.support.closed_output import ignore_closed_pipe
 from tltl_runtime.cli.support.level_faults import level_faults
 from tltl_runtime.cli.support.options import output_folder
 from tltl_runtime.cli.support.printable import plain_text
-from tltl_runtime.game.level_name import level_place
+from tltl_runtime.game.level_name import split_level
 from tltlc.api import TltlError, cli
 
 if TYPE_CHECKING:
@@ -112,7 +112,7 @@ def command(
 def _level_and_variant(level: str | None, spec: str | None) -> tuple[str, str]:
     """Return the level and the variant that are named, or the level that the spec names."""
     if level is not None:
-        file, variant = level_place(level)
+        file, variant = split_level(level)
         return file, variant or "v0"
     if spec is None:
         raise click.UsageError("say what to play: a level, or a --spec that names one", click.get_current_context())

@@ -1,4 +1,4 @@
-"""What every game says about a recorded episode."""
+"""What the runtime needs to know about a recorded episode of any game."""
 
 from __future__ import annotations
 
@@ -17,12 +17,13 @@ from tltlc.api import Fspa, record
 class RecordedEpisode(Protocol):
     """An episode of n decisions.
 
-    Resetting the level with ``seed`` and playing ``actions`` gives the same episode, bit for bit.
+    If the level is reset with ``seed`` and ``actions`` are played, the same episode results, bit for
+    bit.
     """
 
     @property
     def level(self) -> Level:
-        """The level, as it was then."""
+        """The level, as it was when the episode was played."""
 
     @property
     def fspa(self) -> Fspa:
@@ -42,7 +43,7 @@ class RecordedEpisode(Protocol):
 
     @property
     def actions(self) -> NDArray[Any]:
-        """The choices of each branch, (n, branches)."""
+        """The number of the choice in each branch, (n, branches)."""
 
     @property
     def times(self) -> NDArray[np.float64]:
@@ -78,18 +79,18 @@ class RecordedEpisode(Protocol):
 
 
 Kind = Literal["success", "killed", "violated", "limit", "no way", "stopped"]
-"""Why an episode ended."""
+"""The kind of the end of an episode.  ``no way``: the expert found no route until the limit."""
 
 
 @record
 class Cause:
-    """Why an episode ended: the ``kind`` of end, its cause, time and place, and a ``text``.
+    """Why an episode ended: the ``kind`` of its end, the cause, the time and place, and a ``text`` for people.
 
-    ``by`` names the enemies and lasers that killed the player, those with the most damage first; or
-    the atoms that violated the spec; or the entities that cannot be reached. ``time`` is in seconds
-    since the reset; ``place`` is the position of the player's feet at that time. ``broke`` names
-    the atoms that violated the spec, whatever the ``kind``; it is empty if the spec was not
-    violated.
+    ``by`` depends on the kind: the enemies and lasers that killed the player, those with the most
+    damage first; the atoms that violated the spec; or the entities that cannot be reached. ``time``
+    is in seconds since the reset. ``place`` is the position of the player's feet at that time.
+    ``broke`` names the atoms that violated the spec, whatever the ``kind``. It is empty if the spec
+    was not violated.
     """
 
     kind: Kind
@@ -104,7 +105,7 @@ class Cause:
 class Trajectory:
     """The player's path, the automaton's states, and the end of an episode of n decisions.
 
-    It is small enough to keep hundreds of them in memory.  ``points`` is (n + 1, 2), in metres;
+    It is small: hundreds of trajectories fit into memory.  ``points`` is (n + 1, 2), in metres;
     ``states`` is (n + 1,).
     """
 

@@ -55,7 +55,7 @@ class Game(ABC, Generic[LevelT, EpisodeT]):
 
     @abstractmethod
     def level_hash(self, level: LevelT) -> str:
-        """Return the SHA-256, in hexadecimal, of everything in a level that changes episodes."""
+        """Return the SHA-256, in hexadecimal, of everything in a level that can change an episode."""
 
     @abstractmethod
     def params(self, level: LevelT) -> dict[str, float]:
@@ -78,7 +78,7 @@ class Game(ABC, Generic[LevelT, EpisodeT]):
 
     @abstractmethod
     def solids(self, level: LevelT) -> dict[str, Box]:
-        """Return the boxes that a player may run against, by name, without those that can open."""
+        """Return the boxes that stop a player and never open, by name."""
 
     @abstractmethod
     def barriers(self, level: LevelT) -> dict[str, Box]:
@@ -86,8 +86,9 @@ class Game(ABC, Generic[LevelT, EpisodeT]):
 
     @abstractmethod
     def reach_warnings(self, level: LevelT, fspa: Fspa) -> list[Diagnostic]:
-        """Return a warning for each entity of a spec that no player can reach, and TLT0006 for a
-        level that is too large to search.
+        """Return a warning for each entity of a spec that no player can reach.
+
+        If the level is too large to search, return TLT0006 instead, as a warning.
         """
 
     @abstractmethod
@@ -96,7 +97,7 @@ class Game(ABC, Generic[LevelT, EpisodeT]):
 
     @abstractmethod
     def level_fault(self, error: RuntimeError) -> TltlError | None:
-        """Return the fault of the level that caused an error while it was played; None for another error."""
+        """Return the fault of the level that caused ``error`` in play, or None if the level is not at fault."""
 
     # --- episodes ----------------------------------------------------------------------------------
 
@@ -112,18 +113,18 @@ class Game(ABC, Generic[LevelT, EpisodeT]):
         params: Mapping[str, float] | None = None,
         render_mode: str | None = None,
     ) -> TltlEnv:
-        """Make a level with a spec, by default the one that the level was made for.
+        """Make an environment of a level with a spec, by default the spec that the level is made for.
 
         Equal seeds of its reset and equal actions give equal episodes.
 
         Raises:
             TltlError: the errors of :meth:`load_level`, :meth:`check_fit` and ``TltlEnv``; the level
-                does not have the ``sensors``; TLT0721, there is no spec.
+                lacks something that ``sensors`` names; TLT0721, there is no spec.
         """
 
     @abstractmethod
     def recorder(self, env: gymnasium.Env[Any, Any], player: str = "unknown") -> EpisodeRecorder[EpisodeT]:
-        """Return an environment of :meth:`make_env` that records its episodes, as those of ``player``."""
+        """Wrap an environment of :meth:`make_env` to record its episodes, with ``player`` as the player's name."""
 
     @abstractmethod
     def expert_episodes(
@@ -131,12 +132,12 @@ class Game(ABC, Generic[LevelT, EpisodeT]):
     ) -> Iterator[EpisodeT]:
         """Yield an episode of the scripted expert for each seed.
 
-        An expert that is not ``careful`` plays as if nobody could see.
+        An expert that is not ``careful`` plays as if no enemy could see it.
         """
 
     @abstractmethod
     def read_episode(self, path: Path) -> EpisodeT:
-        """Read a recorded episode; raises TltlError if it cannot be read."""
+        """Read a recorded episode; raises TltlError if the file cannot be read."""
 
     @abstractmethod
     def episode_from_bytes(self, data: bytes, name: str) -> EpisodeT:
@@ -155,9 +156,9 @@ class Game(ABC, Generic[LevelT, EpisodeT]):
         """Find the cause of the end of an episode."""
 
     @abstractmethod
-    def seen_by(self, episode: EpisodeT, begin_s: float, end_s: float) -> tuple[str, ...]:
+    def observers(self, episode: EpisodeT, begin_s: float, end_s: float) -> tuple[str, ...]:
         """Return the enemies that saw the player in this interval of time, in the order of the level."""
 
     @abstractmethod
-    def shut(self, episode: EpisodeT) -> tuple[str, ...]:
+    def shut_barriers(self, episode: EpisodeT) -> tuple[str, ...]:
         """Return the barriers that were shut at the end and stop players, in the order of the level."""

@@ -1,4 +1,4 @@
-"""What every game says about a level."""
+"""What the runtime needs to know about a level of any game."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Level(Protocol):
 
     @property
     def files(self) -> tuple[tuple[str, str], ...]:
-        """The names of the files that the level was read from, with their SHA-256 in hexadecimal."""
+        """The name and the SHA-256, in hexadecimal, of each file that the level was read from."""
 
     @property
     def bounds(self) -> Box:
@@ -38,11 +38,15 @@ class Level(Protocol):
 
     @property
     def regions(self) -> tuple[Region, ...]:
-        """The named parts of the level.  Where they overlap, the first one gives a place its name."""
+        """The named parts of the level.  Where regions overlap, a place has the name of the first one."""
 
 
-def spec_of(level: Level) -> str:
-    """Return the path of a level's default spec; raises TltlError, TLT0721, if it has none."""
+def default_spec(level: Level) -> str:
+    """Return the spec that a level is made for, as ``FILE.tltl:NAME``.
+
+    Raises:
+        TltlError: TLT0721, the level is made for no spec.
+    """
     if not level.spec:
         title, help_ = f"the level `{level.name}` is made for no spec", "say which one: `FILE.tltl:NAME`"
         raise TltlError([Diagnostic("TLT0721", title, help=help_)])

@@ -26,7 +26,8 @@ class LevelFiles(ABC, Generic[LevelT]):
     def path(self, name: str) -> Path:
         """Return the path of a level's file, which may not exist.
 
-        Raises TltlError: TLT0800, no level of the game has that name.
+        Raises:
+            TltlError: TLT0800, no level of the game has that name.
         """
 
     @abstractmethod
@@ -39,7 +40,7 @@ class LevelFiles(ABC, Generic[LevelT]):
 
     @abstractmethod
     def load_with_changes(self, name: str, variant: str) -> tuple[LevelT, tuple[str, ...]]:
-        """Load a level in one of its variants; return it with the descriptions of the variant's overlays.
+        """Load a level in one of its variants; also return the descriptions of the variant's overlays.
 
         Raises:
             TltlError: there is no such level or variant, or its file is invalid.
@@ -49,10 +50,11 @@ class LevelFiles(ABC, Generic[LevelT]):
     def dependencies(self, name: str, variant: str) -> Iterator[Path]:
         """Yield the files that a level depends on, among them its spec.
 
-        The files need not load: from a file with errors, everything readable counts.  Paths that do
-        not exist but would take precedence over a file count, too.
+        The files need not load: from a file with errors, everything readable counts.  If a file at
+        another path would be used instead of an existing one, that path is included, although it
+        does not exist.
         """
 
     @abstractmethod
     def candidates(self, name: str, variant: str, file_name: str) -> Iterator[Path]:
-        """Yield the possible paths of ``file_name``, a name in the ``files`` of a level."""
+        """Yield the paths where the file may be that the ``files`` of a level call ``file_name``."""

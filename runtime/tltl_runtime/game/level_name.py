@@ -12,11 +12,11 @@ _PLACE: Final = re.compile(r"(.+?):([A-Za-z_][A-Za-z0-9_]*(?:\+.+)?)\Z", re.DOTA
 _OVERLAY: Final = re.compile(r"\+([^+/\\]*(?=\+|\Z)|.+?\.toml(?=\+|\Z)|[^+]*)", re.DOTALL)
 
 
-def level_place(argument: str) -> tuple[str, str | None]:
-    """Split an argument into level and variant.
+def split_level(argument: str) -> tuple[str, str | None]:
+    """Split an argument into a level and a variant, for :meth:`~tltl_runtime.game.game.Game.load_level`.
 
-    The result is for :meth:`~tltl_runtime.game.game.Game.load_level`. The variant is None if the
-    argument has none. A path that exists is never split, nor is a drive letter.
+    The variant is None if the argument has none. The path of an existing file is not split, and
+    neither is a drive letter of Windows.
     """
     match = _PLACE.match(argument)
     if not match or os.path.exists(argument):  # noqa: PTH110
@@ -28,9 +28,9 @@ def level_place(argument: str) -> tuple[str, str | None]:
 
 
 def with_overlays(variant: str, overlays: Iterable[str]) -> str:
-    """Add overlays to a variant: names, or paths of ``.toml`` files; see :func:`overlays_of`.
+    """Return a variant with added overlays, as :func:`split_overlays` takes it apart.
 
-    Paths that contain a ``+`` are made absolute.
+    An overlay is a name or the path of a ``.toml`` file. Paths that contain a ``+`` are made absolute.
     """
     has_plus = re.compile(r".*\+.*\.toml\Z", re.DOTALL).match
     return "+".join(
@@ -38,8 +38,8 @@ def with_overlays(variant: str, overlays: Iterable[str]) -> str:
     )
 
 
-def overlays_of(variant: str) -> tuple[str, tuple[str, ...]]:
-    """Return the variant without its added overlays, and these overlays in order.
+def split_overlays(variant: str) -> tuple[str, tuple[str, ...]]:
+    """Return the variant without its added overlays, and the overlays in order.
 
     A path may contain a ``+`` after its first part: ``v0+/home/c++/wider.toml`` is ``v0`` and one
     overlay.
@@ -48,15 +48,15 @@ def overlays_of(variant: str) -> tuple[str, tuple[str, ...]]:
     return base, tuple(_OVERLAY.findall(plus + added))
 
 
-def shown_variant(variant: str) -> str:
-    """Return the variant as reports show it, with the overlays' names without their folders."""
-    base, added = overlays_of(variant)
+def variant_text(variant: str) -> str:
+    """Return the variant as reports show it: overlays that are paths have only their names."""
+    base, added = split_overlays(variant)
     return "+".join((base, *(Path(overlay).stem if overlay.endswith(".toml") else overlay for overlay in added)))
 
 
 def absolute_variant(variant: str) -> str:
     """Return the variant with absolute overlay paths, for loading from another folder."""
-    base, added = overlays_of(variant)
+    base, added = split_overlays(variant)
     return "+".join(
         (base, *(str(Path(overlay).absolute()) if overlay.endswith(".toml") else overlay for overlay in added))
     )

@@ -10,11 +10,11 @@ from tltl_runtime.game.game import Game
 _MODULE: Final = "tltl_runtime.stealth.registration"
 """The module whose ``GAME`` is the game.
 
-It is imported by its name, so that no package that plays games depends on one of them.
+It is imported by its name. So no package that plays games has to import a particular game.
 """
 
 
 def registered_game() -> Game[Any, Any]:
-    """Return the game.  Its levels and recordings can be read without its physics."""
+    """Return the game.  Its levels and recordings can be read even if its physics are not installed."""
     game: Game[Any, Any] = import_module(_MODULE).GAME
     return game

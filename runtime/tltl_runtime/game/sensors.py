@@ -22,7 +22,7 @@ class MapSensor:
 
 @record
 class Sensors:
-    """The observations: vectors to ``entities``, values of ``variables`` (signals), the map."""
+    """What an agent senses: the vectors to ``entities``, the values of the signals ``variables``, and a map or none."""
 
     entities: tuple[str, ...]
     variables: tuple[str, ...]
@@ -30,4 +30,4 @@ class Sensors:
 
 
 SensorChoice = Sensors | Mapping[str, Any]
-"""A record, or a mapping with some of its fields; ``map`` may be a mapping, too."""
+"""A record, or a mapping with some of the fields of :class:`Sensors`; ``map`` may be a mapping, too."""

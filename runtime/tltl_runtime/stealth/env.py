@@ -14,7 +14,7 @@ from gymnasium import spaces
 from gymnasium.error import ClosedEnvironmentError
 from numpy.typing import NDArray
 
-from tltl_runtime.game.level import spec_of
+from tltl_runtime.game.level import default_spec
 from tltl_runtime.game.sensors import SensorChoice
 from tltl_runtime.spec.task import read_spec
 from tltl_runtime.spec.wrapper import TltlEnv
@@ -183,7 +183,7 @@ def make_env(
     """
     game = GameEnv(level, variant, sensors, **render)
     try:
-        chosen_spec = spec_of(game.level) if spec is None else spec
+        chosen_spec = default_spec(game.level) if spec is None else spec
         env = TltlEnv(game, chosen_spec, reward=reward, params=params)
         check_fit(game.level, env.task.fspa, chosen_spec)
         return env

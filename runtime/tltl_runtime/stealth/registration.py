@@ -176,13 +176,13 @@ class StealthGame(Game[Level, Episode]):
         """Find the cause of the end of an episode."""
         return cause(episode)
 
-    def seen_by(self, episode: Episode, begin_s: float, end_s: float) -> tuple[str, ...]:
+    def observers(self, episode: Episode, begin_s: float, end_s: float) -> tuple[str, ...]:
         """Return the enemies that saw the player in this interval of time."""
         shots = [shot for shot in episode.snapshots if begin_s <= shot.time <= end_s]
         enemies = enumerate(episode.level.enemies)
         return tuple(enemy.name for row, enemy in enemies if any(shot.sees[row] for shot in shots))
 
-    def shut(self, episode: Episode) -> tuple[str, ...]:
+    def shut_barriers(self, episode: Episode) -> tuple[str, ...]:
         """Return the solid barriers that were shut at the end."""
         barriers = zip(episode.level.barriers, episode.snapshots[-1].open, strict=True)
         return tuple(barrier.name for barrier, is_open in barriers if barrier.kind == "solid" and not is_open)

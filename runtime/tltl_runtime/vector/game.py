@@ -9,7 +9,7 @@ from typing import Any, Literal
 
 import gymnasium
 
-from tltl_runtime.game.level import spec_of
+from tltl_runtime.game.level import default_spec
 from tltl_runtime.game.registry import registered_game
 from tltl_runtime.game.sensors import SensorChoice
 from tltl_runtime.spec.task import read_spec
@@ -43,7 +43,7 @@ def make_vec(
         raise ValueError("render_mode 'human' shows one environment: with several, give 'rgb_array' and call render()")
     game = registered_game()
     loaded_level = game.load_level(level, variant)
-    chosen_spec = spec_of(loaded_level) if spec is None else spec
+    chosen_spec = default_spec(loaded_level) if spec is None else spec
     # Compile once here, not in each worker for each of its environments.
     fspa, _ = read_spec(chosen_spec)
     game.check_fit(loaded_level, fspa, chosen_spec)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tltl_runtime.game.level import spec_of
+from tltl_runtime.game.level import default_spec
 from tltl_runtime.policies.file import read_policy, to_bytes
 from tltl_runtime.policies.fit import check_policy
 from tltl_runtime.policies.shipped import shipped_policies, shipped_policy
@@ -33,7 +33,7 @@ def test_a_shipped_policy_fits_its_current_level(name: str) -> None:
     assert policy.card.level == name
     assert policy.card.variant == "v0"
     assert policy.card.level_hash == level_hash(level)
-    fspa = load_task(spec_of(level)).fspa
+    fspa = load_task(default_spec(level)).fspa
     for variant in variants(name):
         check_policy(policy.card, load_level(name, variant), fspa)
     assert to_bytes(policy) == Path(path).read_bytes()

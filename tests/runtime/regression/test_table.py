@@ -132,7 +132,7 @@ def test_the_expert_plays_again_when_the_spec_or_the_code_changes(
     spec = tmp_path / "bold.tltl"
     spec.write_text("import stealth\nentity exit\nspec bold { limit 400 steps\n reach near(exit) }\n", encoding="utf-8")
     with monkeypatch.context() as patched:
-        patched.setattr(table_cells, "spec_of", lambda level: str(spec))
+        patched.setattr(table_cells, "default_spec", lambda level: str(spec))
         assert count() == 3
 
 
@@ -141,6 +141,6 @@ def test_a_policy_for_another_spec_is_rejected(tmp_path: Path, monkeypatch: pyte
     write_policy(path, policy_of(card_of()))
     spec = tmp_path / "bold.tltl"
     spec.write_text("import stealth\nentity exit\nspec bold { limit 400 steps\n reach near(exit) }\n", encoding="utf-8")
-    monkeypatch.setattr(table_cells, "spec_of", lambda level: str(spec))
+    monkeypatch.setattr(table_cells, "default_spec", lambda level: str(spec))
     with pytest.raises(TltlError, match="TLT0843"):
         cell_episodes(tmp_path, "ours", "cover_and_hide", "v0", path, 1)

@@ -76,7 +76,7 @@ def test_another_level_spec_or_setting_is_another_training(tmp_path: Path, monke
         spec.write_text(
             "import stealth\nentity exit\nspec bold { limit 9 steps\n reach near(exit) }\n", encoding="utf-8"
         )
-        patched.setattr(table_trainings, "spec_of", lambda level: str(spec))
+        patched.setattr(table_trainings, "default_spec", lambda level: str(spec))
         folders.add(training(tmp_path).folder)
     with monkeypatch.context() as patched:
         settings = read_settings()

@@ -19,7 +19,7 @@ from gymnasium.utils.env_checker import check_env
 
 import tltl_runtime  # noqa: F401  (registers the environments)
 from tltl_runtime import load_task
-from tltl_runtime.game.level import spec_of
+from tltl_runtime.game.level import default_spec
 from tltl_runtime.stealth.env import GameEnv, make_env
 from tltl_runtime.stealth.level import MapSensor, Sensors
 from tltl_runtime.stealth.levels.file import load_level
@@ -204,7 +204,7 @@ def test_a_missing_entity_is_reported_at_its_place_in_the_spec(tmp_path: Path) -
 
 def test_a_level_without_a_spec_needs_one() -> None:
     with pytest.raises(TltlError, match="TLT0721: the level `bare` is made for no spec"):
-        spec_of(replace(load_level("navigation"), name="bare", spec=""))
+        default_spec(replace(load_level("navigation"), name="bare", spec=""))
 
 
 @pytest.mark.parametrize(

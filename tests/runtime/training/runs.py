@@ -13,7 +13,7 @@ from typing import Any
 
 import torch
 
-from tltl_runtime.game.level import spec_of
+from tltl_runtime.game.level import default_spec
 from tltl_runtime.spec.task import load_task
 from tltl_runtime.stealth.capabilities.vocabulary import params
 from tltl_runtime.stealth.levels.file import load_level
@@ -45,7 +45,7 @@ def run_in(folder: Path, spec: str | None = None, **changes: Any) -> TrainingRun
     spec that replaces the spec of the level.
     """
     level = load_level("cover_and_hide")
-    task = load_task(spec or spec_of(level), offered=params(level))
+    task = load_task(spec or default_spec(level), offered=params(level))
     settings = read_settings()
     for name, value in {**SMALL, **{name.replace("__", "."): value for name, value in changes.items()}}.items():
         table, _, key = name.rpartition(".")

@@ -9,7 +9,7 @@ from shlex import quote
 
 import click
 
-from tltl_runtime.game.level_name import level_place
+from tltl_runtime.game.level_name import split_level
 from tltl_runtime.spec.task import read_spec
 from tltl_runtime.stealth.levels.file import level_names, load_level
 from tltlc.api import Diagnostic, TltlError, fileio
@@ -17,12 +17,12 @@ from tltlc.api import Diagnostic, TltlError, fileio
 
 def names_level(text: str) -> bool:
     """Whether a text is ``LEVEL`` or ``LEVEL:VARIANT`` of a level of the package, and not an existing path."""
-    return not fileio.exists(text) and level_place(text)[0] in level_names()
+    return not fileio.exists(text) and split_level(text)[0] in level_names()
 
 
 def check_spelling(text: str) -> None:
     """Raise TltlError, TLT0001, if a plain name is not an existing path and resembles the name of a level."""
-    name = level_place(text)[0]
+    name = split_level(text)[0]
     close = get_close_matches(name, level_names(), n=1)
     if close and re.fullmatch(r"[\w-]+", name) and not fileio.exists(text):
         title = f"there is neither a file nor a level `{text}`"
@@ -39,7 +39,7 @@ def check_named(policy: Path | None, level: str | None) -> None:
         check_spelling(str(policy))
         fileio.read_bytes(policy, str(policy), 0)
     if level is not None:
-        name, variant = level_place(level)
+        name, variant = split_level(level)
         load_level(name, variant or "v0")
 
 

@@ -10,7 +10,7 @@ import click
 from gymnasium import spaces
 
 from tltl_runtime.cli.support.sensor_options import senses_options
-from tltl_runtime.game.level_name import level_place
+from tltl_runtime.game.level_name import split_level
 from tltl_runtime.stealth.capabilities.capabilities import check_supply, given_params, used_entities
 from tltl_runtime.stealth.capabilities.feasible import check_height, check_reach
 from tltl_runtime.stealth.capabilities.reach import Reach, reachable
@@ -43,7 +43,7 @@ def command(
         raise click.UsageError(f"--plan writes a .png, not `{plan}`", click.get_current_context())
     check = _Check(inputs, settings, report, sensors)
     checked: list[tuple[Level, Reach]] = []
-    for path, variant in map(level_place, levels):
+    for path, variant in map(split_level, levels):
         for name in level_names() if path == "all" else (path,):
             try:
                 checked += [check(name, variant_name) for variant_name in ((variant,) if variant else variants(name))]

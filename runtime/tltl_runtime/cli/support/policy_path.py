@@ -6,7 +6,7 @@ from pathlib import Path
 from shlex import quote
 
 from tltl_runtime.cli.support.level_argument import check_level_exists, check_spelling, names_level
-from tltl_runtime.game.level_name import level_place
+from tltl_runtime.game.level_name import split_level
 from tltl_runtime.policies.shipped import shipped_policy
 from tltl_runtime.stealth.levels.file import level_names, load_level
 from tltl_runtime.training.run.metrics import METRICS, read_metrics
@@ -26,9 +26,9 @@ def policy_place(policy: Path | None, level: str | None, command: str) -> tuple[
         TltlError: TLT0853, no policy comes with the level; TLT0800, the level does not exist; TLT0001,
             the file of the policy's level is missing; and the errors of :func:`policy_path`.
     """
-    name, variant = (None, None) if level is None else level_place(level)
+    name, variant = (None, None) if level is None else split_level(level)
     if policy is not None and names_level(str(policy)):
-        policy_level, policy_variant = level_place(str(policy))
+        policy_level, policy_variant = split_level(str(policy))
         return policy_file(policy), name or policy_level, variant if name else policy_variant
     if policy is None:
         assert name is not None
@@ -47,7 +47,7 @@ def policy_file(policy: Path) -> Path:
     Raises:
         TltlError: TLT0853, no policy comes with the level; and the errors of :func:`policy_path`.
     """
-    return _shipped_policy_file(level_place(str(policy))[0]) if names_level(str(policy)) else policy_path(policy)
+    return _shipped_policy_file(split_level(str(policy))[0]) if names_level(str(policy)) else policy_path(policy)
 
 
 def check_level_is_shipped(level: str, policy: Path, command: str) -> None:

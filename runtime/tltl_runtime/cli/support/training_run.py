@@ -22,8 +22,8 @@ from tltl_runtime.cli.support.level_argument import check_level_exists, check_sp
 from tltl_runtime.cli.support.sensor_options import option_of
 from tltl_runtime.cli.support.training_text import minutes
 from tltl_runtime.evaluation.evaluate import check_limit
-from tltl_runtime.game.level import spec_of
-from tltl_runtime.game.level_name import absolute_variant, level_place
+from tltl_runtime.game.level import default_spec
+from tltl_runtime.game.level_name import absolute_variant, split_level
 from tltl_runtime.policies.fit import differences
 from tltl_runtime.policies.identity import spec_hash
 from tltl_runtime.spec.task import load_task, read_spec
@@ -97,7 +97,7 @@ def new_run(options: TrainOptions, folder: Path | None) -> TrainingRun:
     _check_demonstrations(options.demonstrations, settings)
     level = load_level(path, variant)
     offered = params(level)
-    spec: str | Fspa = options.spec or (initial.card.fspa if initial else spec_of(level))
+    spec: str | Fspa = options.spec or (initial.card.fspa if initial else default_spec(level))
     # If the policy's spec is used, keep the policy's parameters, except for those that the level supplies.
     known = initial.card.params if initial and options.spec is None else {}
     own = {name: value for name, value in known.items() if name not in offered}
@@ -192,7 +192,7 @@ def _level_and_variant(options: TrainOptions, initial: InitialPolicyOptions | No
     They are from ``--level``, else from the spec, else from the policy.
     """
     if options.level is not None:
-        path, variant = level_place(options.level)
+        path, variant = split_level(options.level)
         return path, variant or "v0"
     if options.spec is not None:
         return own_level(options.spec), "v0"
@@ -209,7 +209,7 @@ def _with_level_path(run: TrainingRun, options: TrainOptions) -> TrainingRun:
     if options.level is None:
         check_level_exists(run.level, run.variant, resume_command(run.folder))
         return run
-    path, variant = level_place(options.level)
+    path, variant = split_level(options.level)
     if level_hash(load_level(path, variant or "v0")) != read_level_hash(run.folder):
         return run
     return replace(run, level=path, variant=variant or "v0")
@@ -284,7 +284,7 @@ def _differences(run: TrainingRun, options: TrainOptions, settings: TrainingSett
     """Yield a sentence for each difference between a training and the options."""
     where = f"the training in `{run.folder}`"
     if options.level is not None:
-        path, variant = level_place(options.level)
+        path, variant = split_level(options.level)
         ours = level_path(run.level).resolve(), absolute_variant(run.variant)
         if (level_path(path).resolve(), absolute_variant(variant or "v0")) != ours:
             yield f"{where} is on the level `{run.level}:{run.variant}`, not on `{path}:{variant or 'v0'}`"

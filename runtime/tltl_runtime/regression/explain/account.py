@@ -92,13 +92,13 @@ def explain_episode(summary: EpisodeSummary, episode: RecordedEpisode) -> Explai
         cause=cause.kind,
         by=cause.by,
         place=_rounded(cause.place),
-        seen_by=() if summary.success else game.seen_by(episode, cause.time - _SEEN_WITHIN_S, cause.time),
+        seen_by=() if summary.success else game.observers(episode, cause.time - _SEEN_WITHIN_S, cause.time),
         arrivals=_arrivals(episode, positions),
         nearest=None if summary.success else _nearest_miss(episode, summary.unmet, positions),
         way=simplified_trajectory(episode),
         broke=cause.broke,
         arrived=_has_arrived(episode, summary.unmet, cause.broke),
-        shut=game.shut(episode),
+        shut=game.shut_barriers(episode),
     )
 
 

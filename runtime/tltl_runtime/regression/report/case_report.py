@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from tltl_runtime.evaluation.figures import Figures, figures_of
-from tltl_runtime.game.level_name import shown_variant
+from tltl_runtime.game.level_name import variant_text
 from tltl_runtime.regression.explain.account import ExplainedEpisode, summaries_of
 from tltl_runtime.regression.explain.explain import Finding, findings, most_frequent_end
 from tltl_runtime.regression.explain.reasons import edits, obstacles, reasons
@@ -128,7 +128,7 @@ def report_on_broken(case: Case, error: TltlError) -> CaseReport:
     """Return the report on a case that cannot be played: a failure of the level, not of the suite."""
     causes = ("it cannot be played", *map(_one_line, error.diagnostics))
     # Name the variant as for a level that loads, without the paths of overlay files.
-    variant = shown_variant(case.variant)
+    variant = variant_text(case.variant)
     name = Path(case.level).stem
     return CaseReport(
         case.name, name, variant, "fail", causes, told=": ".join(causes[:2]), fault_at=_error_location(error)
@@ -137,7 +137,7 @@ def report_on_broken(case: Case, error: TltlError) -> CaseReport:
 
 def report_on_edited(case: Case, error: TltlError) -> CaseReport:
     """Return the report on a case whose level was edited while it was played.  It has no figures."""
-    variant = shown_variant(case.variant)
+    variant = variant_text(case.variant)
     causes = tuple(map(_one_line, error.diagnostics))
     return CaseReport(case.name, Path(case.level).stem, variant, "review", causes, certain=False)
 

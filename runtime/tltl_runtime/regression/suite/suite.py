@@ -7,7 +7,7 @@ from os.path import normpath
 from pathlib import Path
 from typing import Final
 
-from tltl_runtime.game.level_name import level_place, overlays_of, with_overlays
+from tltl_runtime.game.level_name import split_level, split_overlays, with_overlays
 from tltl_runtime.game.registry import registered_game
 from tltl_runtime.policies.file import SUFFIX
 from tltl_runtime.policies.shipped import shipped_policies, shipped_policy
@@ -236,7 +236,7 @@ def _level(table: CheckedTable, folder: Path) -> tuple[str, str]:
         level_files.path(level)
     except TltlError as error:
         (diagnostic,) = error.diagnostics
-        name, variant = level_place(level)
+        name, variant = split_level(level)
         exists = name in level_files.names() or fileio.is_file(folder / name)
         help_text = diagnostic.help
         if variant and exists:
@@ -249,7 +249,7 @@ def _level(table: CheckedTable, folder: Path) -> tuple[str, str]:
 
 def _separate_keys_help(level: str, variant: str) -> str:
     """Return a help text: how a suite writes ``LEVEL:VARIANT+OVERLAY``, the notation of the commands."""
-    base, overlays = overlays_of(variant)
+    base, overlays = split_overlays(variant)
     lines = [
         f'`level = "{level}"`',
         f'`variant = "{base}"`',

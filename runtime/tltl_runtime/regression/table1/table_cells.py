@@ -13,7 +13,7 @@ from tltl_runtime.evaluation.evaluate import Pool, evaluate, results_here
 from tltl_runtime.evaluation.play import episode_seed
 from tltl_runtime.evaluation.player import EpisodeRequest, PlayedEpisode
 from tltl_runtime.evaluation.statistics import spread_of
-from tltl_runtime.game.level import spec_of
+from tltl_runtime.game.level import default_spec
 from tltl_runtime.game.registry import registered_game
 from tltl_runtime.policies.identity import spec_hash
 from tltl_runtime.regression.suite.result_cache import cache_text, inputs_hash, read_cache
@@ -73,13 +73,13 @@ def _inputs(level: str, variant: str, policy: Path | None) -> str:
     """Return the hash of everything that a cell depends on."""
     game = registered_game()
     loaded_level = game.load_level(level, variant)
-    spec = load_task(spec_of(loaded_level), offered=game.params(loaded_level)).fspa
+    spec = load_task(default_spec(loaded_level), offered=game.params(loaded_level)).fspa
     player_hash = sha256(policy.read_bytes()).hexdigest() if policy else "expert"
     return inputs_hash([game.level_hash(loaded_level), spec_hash(spec), player_hash, EPISODES, SEED, versions()])
 
 
 def _policy_episodes(policy: Path, level: str, variant: str, pool: Pool) -> Iterator[EpisodeResult]:
-    spec = spec_of(registered_game().load_level(level, variant))
+    spec = default_spec(registered_game().load_level(level, variant))
     for episode in evaluate(policy, level, variant, episodes=EPISODES, seed=SEED, workers=pool, spec=spec):
         yield EpisodeResult(episode.success, episode.progress, episode.reward)
 

@@ -7,7 +7,7 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Final
 
-from tltl_runtime.game.level import spec_of
+from tltl_runtime.game.level import default_spec
 from tltl_runtime.game.registry import registered_game
 from tltl_runtime.policies.card import OBSERVATION, Card
 from tltl_runtime.policies.identity import spec_hash
@@ -82,7 +82,7 @@ def table_training(folder: Path, level: str, model: Model, limits: Limits) -> Ta
     settings = replace(read_settings(), method="imitation" if model == "imitation" else "automaton")
     game = registered_game()
     loaded_level = game.load_level(level, "v0")
-    task = load_task(spec_of(loaded_level), offered=game.params(loaded_level))
+    task = load_task(default_spec(loaded_level), offered=game.params(loaded_level))
     parts = [
         game.level_hash(loaded_level),
         spec_hash(task.fspa),

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any, Final
 
-from tltl_runtime.game.level_name import overlays_of
+from tltl_runtime.game.level_name import split_overlays
 from tltl_runtime.spec.spec_files import source_of, spec_files, up_to_first_file
 from tltl_runtime.stealth.levels.made_for import LEVELS, SPECS
 from tltlc.api import SourceFile, TltlError, fileio
@@ -23,7 +23,7 @@ def level_dependencies(level: Path, variant: str) -> Iterator[Path]:
     exist but would take precedence over a file are included.
     """
     yield level
-    base, added = overlays_of(variant)
+    base, added = split_overlays(variant)
     text = source_of(level)
     table = _table(text)
     if table is None:
@@ -54,7 +54,7 @@ def file_candidates(level: Path, variant: str, name: str) -> Iterator[Path]:
     if name == level.name:
         yield level
     yield from (level.parent / name, LEVELS / name)
-    for overlay in overlays_of(variant)[1]:
+    for overlay in split_overlays(variant)[1]:
         if overlay.endswith(".toml") and f"overlays/{Path(overlay).name}" == name:
             yield Path(overlay)
 

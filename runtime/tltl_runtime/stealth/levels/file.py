@@ -13,7 +13,7 @@ from itertools import chain
 from pathlib import Path
 from typing import Final
 
-from tltl_runtime.game.level_name import overlays_of, shown_variant
+from tltl_runtime.game.level_name import split_overlays, variant_text
 from tltl_runtime.stealth.enemies.grid import is_too_large
 from tltl_runtime.stealth.level import Box, EnemyKind, Level, Mover, Region, Solid, entity_names
 from tltl_runtime.stealth.levels import check, overlay, parts
@@ -66,7 +66,7 @@ def load_level(name_or_path: str, variant: str = "v0") -> Level:
 
     ``VARIANT+OVERLAY`` is a variant with one more overlay, and so on. The overlay is one that
     variants name, or the path of a ``.toml`` file
-    (:func:`~tltl_runtime.game.level_name.overlays_of`).
+    (:func:`~tltl_runtime.game.level_name.split_overlays`).
 
     :func:`read_level` also returns warnings.
 
@@ -134,7 +134,7 @@ class _Loading:
 
     def level(self, variant: str) -> Level:
         """Return the level in a variant, with the overlays that are added to it."""
-        base, added = overlays_of(variant)
+        base, added = split_overlays(variant)
         if base not in self.variants:
             title = f"the level `{self.path.stem}` has no variant `{base}`"
             label = self.table.label_of("variants")
@@ -163,7 +163,7 @@ class _Loading:
             raise TltlError([Diagnostic("TLT0006", title, (table.label_of("bounds"),), help_)])
         level = Level(
             name=self.path.stem,
-            variant=shown_variant(variant),
+            variant=variant_text(variant),
             doc=doc,
             bounds=bounds,
             start=parts.start(start if start is not None else CheckedTable(self.root, "the start", [])),

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tltl_runtime.game.level_name import absolute_variant, level_place, overlays_of, shown_variant, with_overlays
+from tltl_runtime.game.level_name import absolute_variant, split_level, split_overlays, variant_text, with_overlays
 from tltl_runtime.stealth.levels.file import changes, level_and_changes, load_level
 from tltl_runtime.stealth.levels.identity import level_hash
 from tltlc.diagnostics.diagnostic import TltlError
@@ -32,15 +32,15 @@ WIDER = 'doc = "The guard sees further."\n[change.guard]\nsight_range = 12.5\n'
         ("", ("", None)),
     ],
 )
-def test_an_argument_is_split(argument: str, place: tuple[str, str | None]) -> None:
-    assert level_place(argument) == place
+def test_an_argument_is_split_into_level_and_variant(argument: str, place: tuple[str, str | None]) -> None:
+    assert split_level(argument) == place
 
 
 def test_a_path_that_exists_is_not_split(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     (tmp_path / "odd:v0").touch()
-    assert level_place("odd:v0") == ("odd:v0", None)
-    assert level_place("odd:v1") == ("odd", "v1")
+    assert split_level("odd:v0") == ("odd:v0", None)
+    assert split_level("odd:v1") == ("odd", "v1")
 
 
 @pytest.mark.parametrize(
@@ -55,8 +55,8 @@ def test_a_path_that_exists_is_not_split(tmp_path: Path, monkeypatch: pytest.Mon
         ("v0++wide", ("", "wide")),
     ],
 )
-def test_a_variant_is_split(variant: str, overlays: tuple[str, ...]) -> None:
-    assert overlays_of(variant) == ("v0", overlays)
+def test_a_variant_is_split_into_its_base_and_overlays(variant: str, overlays: tuple[str, ...]) -> None:
+    assert split_overlays(variant) == ("v0", overlays)
     if "\\" not in variant:
         assert with_overlays("v0", overlays) == variant.replace("./a+b.toml", f"{Path.cwd()}/a+b.toml")
 
@@ -66,10 +66,10 @@ def test_the_path_of_an_overlay_may_contain_a_plus(tmp_path: Path, monkeypatch: 
     (tmp_path / "c++").mkdir()
     (tmp_path / "c++" / "a+b.toml").write_text(WIDER, encoding="utf-8")
     variant = with_overlays("v0", ["c++/a+b.toml", "guard_alert"])
-    assert overlays_of(variant) == ("v0", (str(tmp_path / "c++" / "a+b.toml"), "guard_alert"))
+    assert split_overlays(variant) == ("v0", (str(tmp_path / "c++" / "a+b.toml"), "guard_alert"))
     assert absolute_variant(variant) == variant
     loaded = load_level("branching", variant)
-    assert loaded.variant == shown_variant(variant) == "v0+a+b+guard_alert"
+    assert loaded.variant == variant_text(variant) == "v0+a+b+guard_alert"
     assert level_and_changes("branching", variant) == (loaded, changes("branching", variant))
     assert changes("branching", variant)[0] == "The guard sees further."
 
