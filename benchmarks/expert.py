@@ -21,7 +21,7 @@ from benchmarks.variants import measure_each, variants_of_all
 
 if TYPE_CHECKING:
     from tltl_runtime.spec.episode_summary import EpisodeSummary
-    from tltl_runtime.stealth.level import Level
+    from tltl_runtime.stealth.level import StealthLevel
 
 SECTION = "expert"
 KINDS_OF_CARE = ("careful", "careless")
@@ -81,7 +81,7 @@ def _cases() -> Iterator[Sequence[str]]:
             yield level, variant, care
 
 
-def _chance_barrier(level: Level, opened: Collection[str]) -> str:
+def _chance_barrier(level: StealthLevel, opened: Collection[str]) -> str:
     """Return the barrier that opened by chance; empty if there is none."""
     random_barriers = (name for unlock in level.unlocks for name in unlock.barriers)
     return next((name for name in random_barriers if name in opened), "")

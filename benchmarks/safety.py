@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     import numpy as np
 
     from tltl_runtime.stealth.env import GameEnv
-    from tltl_runtime.stealth.level import Level, Point
+    from tltl_runtime.stealth.level import Point, StealthLevel
 
 SECTION = "safety"
 STEPS = 112_000
@@ -83,7 +83,7 @@ def play_random_steps(level: str, variant: str, steps: int) -> Record:
     }
 
 
-def _begin_episode(env: GameEnv, own_level: Level, rng: np.random.Generator, *, anywhere: bool) -> None:
+def _begin_episode(env: GameEnv, own_level: StealthLevel, rng: np.random.Generator, *, anywhere: bool) -> None:
     """Begin an episode at the start of the level ``own_level``, or anywhere on a floor where there is room."""
     from tltl_runtime.stealth.level import Start
     from tltlc.core.record import replace
@@ -92,12 +92,12 @@ def _begin_episode(env: GameEnv, own_level: Level, rng: np.random.Generator, *, 
     world.level = own_level
     env.reset(seed=int(rng.integers(2**31)))
     if anywhere:
-        place = next(place for place in _places(own_level, rng) if world.room(place, world.kind.height))
+        place = next(place for place in _places(own_level, rng) if world.has_room(place, world.kind.height))
         world.level = replace(own_level, start=Start(place, own_level.start.yaw, 0.0))
         env.reset(seed=int(rng.integers(2**31)))
 
 
-def _places(level: Level, rng: np.random.Generator) -> Iterable[Point]:
+def _places(level: StealthLevel, rng: np.random.Generator) -> Iterable[Point]:
     """Yield random places on floors without end, at least 0.5 m from their edges."""
     floors = [solid.box for solid in level.solids if solid.kind == "floor"]
     areas = [(box.high[0] - box.low[0]) * (box.high[1] - box.low[1]) for box in floors]
@@ -128,7 +128,7 @@ def _check_step(env: GameEnv, observation: dict[str, Any]) -> float:
     return deep
 
 
-def _depth_in_boxes(kind: Any, player: Any, level: Level) -> float:
+def _depth_in_boxes(kind: Any, player: Any, level: StealthLevel) -> float:
     from tltl_runtime.stealth.world.geometry import depth
 
     x, y, z = player.position

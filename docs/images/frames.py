@@ -7,7 +7,7 @@ from pathlib import Path
 
 from PIL import Image
 
-from tltl_runtime.stealth.game import Game
+from tltl_runtime.stealth.game import Simulation
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.stealth.rendering.render import Renderer
 
@@ -25,7 +25,7 @@ ACTIONS = {"east": (0, 1), "west": (0, 2), "north": (1, 1), "south": (1, 2), "ju
 def main(folder: Path) -> None:
     """Write a picture of each level."""
     for name, played in MOMENTS.items():
-        game = Game(load_level(name))
+        game = Simulation(load_level(name))
         renderer = Renderer(game.level, *SIZE, samples=3)
         game.reset(1)
         for part in played:

@@ -35,7 +35,7 @@ from tltl_runtime.stealth.recording import RecordEpisode
 from tltl_runtime.stealth.recordings.check import check as check_episode
 from tltl_runtime.stealth.recordings.file import from_bytes as episode_from_bytes
 from tltl_runtime.stealth.recordings.file import to_bytes as episode_to_bytes
-from tltl_runtime.stealth.recordings.summary import judged_with, trace_csv
+from tltl_runtime.stealth.recordings.summary import monitor_command, trace_csv
 from tltl_runtime.stealth.recordings.summary import summary as episode_summary
 from tltl_runtime.stealth.recordings.summary import summary_text as episode_summary_text
 from tltl_runtime.training.exploration.search import SearchProgress
@@ -161,7 +161,7 @@ def _read_recording(data: bytes) -> None:
         summary = episode_summary(episode)
         episode_summary_text(summary)
         trace_csv(episode)
-        judged_with(episode, "it.csv")
+        monitor_command(episode, "it.csv")
         check_episode(episode)
 
     check(read)

@@ -112,7 +112,7 @@ def command(
     _check_usage(context, files, path, size)
     from tltl_runtime.stealth.recordings.check import check, check_replay
     from tltl_runtime.stealth.recordings.file import read_episode
-    from tltl_runtime.stealth.recordings.summary import judged_with, summary, summary_text
+    from tltl_runtime.stealth.recordings.summary import monitor_command, summary, summary_text
 
     film = Film(view or "third_person", speed or 1.0, rate, size or (640, 480), notation)
     summaries: list[dict[str, Any]] = []
@@ -127,7 +127,7 @@ def command(
                 _write(path, episode, _span(episode, start, stop), film, size)
                 report.say(f"wrote {path}")
                 if path.suffix.lower() == ".csv":
-                    report.say(f"judge it with: {judged_with(episode, str(path))}")
+                    report.say(f"judge it with: {monitor_command(episode, str(path))}")
             elif format == "text":
                 print(f"{name}\n{summary_text(fields)}{_check_text(fields)}")
             summaries.append(fields)

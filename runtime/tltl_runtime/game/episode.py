@@ -79,7 +79,7 @@ class RecordedEpisode(Protocol):
 
 
 Kind = Literal["success", "killed", "violated", "limit", "no way", "stopped"]
-"""The kind of the end of an episode.  ``no way``: the expert found no route until the limit."""
+"""The kind of an episode's end.  ``no way``: the limit came while the expert had no route to a goal."""
 
 
 @record

@@ -21,10 +21,10 @@ from tltl_runtime.spec.wrapper import TltlEnv
 from tltl_runtime.stealth.capabilities.capabilities import check_supply
 from tltl_runtime.stealth.capabilities.spec_places import SpecPlaces
 from tltl_runtime.stealth.capabilities.vocabulary import params as level_params
-from tltl_runtime.stealth.game import Game
-from tltl_runtime.stealth.level import Level
+from tltl_runtime.stealth.game import Simulation
+from tltl_runtime.stealth.level import StealthLevel
 from tltl_runtime.stealth.levels.file import load_level
-from tltl_runtime.stealth.observation.observation import Senses
+from tltl_runtime.stealth.observation.observation import Observer
 from tltl_runtime.stealth.rendering.camera import View
 from tltl_runtime.stealth.signals import Signals
 from tltl_runtime.stealth.snapshot import ACTIONS, BRANCHES
@@ -41,13 +41,13 @@ class GameEnv(gymnasium.Env[dict[str, Any], Any]):
 
     Action: MultiDiscrete([3, 3, 2, 2, 2]), see :data:`~tltl_runtime.stealth.snapshot.BRANCHES`;
     ``action`` is the last one that was played. Observation: see
-    :class:`~tltl_runtime.stealth.observation.observation.Senses`. ``level`` is the name of a
+    :class:`~tltl_runtime.stealth.observation.observation.Observer`. ``level`` is the name of a
     shipped level or a ``.toml`` file. ``sensors`` is passed to
-    :func:`~tltl_runtime.stealth.observation.sensors.chosen`.
+    :func:`~tltl_runtime.stealth.observation.sensors.choose_sensors`.
 
     ``reset(seed=...)`` reproduces an episode bit for bit. ``game.seed`` is the seed of the current
-    episode; a reset without a seed draws one. ``info["cell"]`` is the number of the cell, half a
-    metre wide in each direction, in which the player stands, or -1 in the air.
+    episode; a reset without a seed draws one. ``info["cell"]`` is the number of the cell in which
+    the player stands, or -1 in the air. A cell is half a metre wide in each direction.
 
     With ``render_mode`` ``rgb_array``, :meth:`render` returns pictures of ``render_size`` (width,
     height), each from 16 to 4096 pixels. With ``human``, a window shows the episode in real time.
@@ -78,16 +78,16 @@ class GameEnv(gymnasium.Env[dict[str, Any], Any]):
         self.level = load_level(os.fspath(level), variant)
         self._screen = Screen(self.level, render_mode, render_view, render_size)
         self.render_mode = render_mode
-        self.game = Game(self.level)
-        self._senses = Senses(self.level, sensors)
+        self.game = Simulation(self.level)
+        self._observer = Observer(self.level, sensors)
         self.action_space = spaces.MultiDiscrete(list(BRANCHES))
-        self.observation_space = self._senses.space
+        self.observation_space = self._observer.space
         self.tltl_clock_s = DECISION
         self.action: list[int] = []
         self._closed = False
 
     def tltl_params(self) -> dict[str, float]:
-        """The params of specs that the level defines.
+        """Return the params of specs that the level defines, in SI units.
 
         See :func:`tltl_runtime.stealth.capabilities.vocabulary.params`.
         """
@@ -105,21 +105,23 @@ class GameEnv(gymnasium.Env[dict[str, Any], Any]):
         super().reset(seed=seed)
         self.game.reset(int(self.np_random.integers(2**31)) if seed is None else seed)
         self._show()
-        return self._senses.look(self.game), {"cell": self._cell()}
+        return self._observer.look(self.game), {"cell": self._cell()}
 
     def step(self, action: Any) -> tuple[dict[str, Any], float, bool, bool, dict[str, Any]]:
         """Play one decision."""
         self._check_open()
-        self.action = _numbers(action)
+        self.action = _action_list(action)
         self.game.step(self.action)
         self._show()
-        return self._senses.look(self.game), 0.0, False, False, {"cell": self._cell()}
+        return self._observer.look(self.game), 0.0, False, False, {"cell": self._cell()}
 
     def render(self) -> NDArray[np.uint8] | None:
-        """Return the current picture, (height, width, 3), or None if it is shown in a window.
+        """Return the current picture, (height, width, 3), or None if a window shows it.
 
-        If there is no screen for the window, warn once. Raises TltlError: TLT0730, pygame is
-        missing.
+        If there is no screen for the window, warn once.
+
+        Raises:
+            TltlError: TLT0730, pygame is missing.
         """
         self._check_open()
         if self.render_mode is None:
@@ -151,8 +153,8 @@ class GameEnv(gymnasium.Env[dict[str, Any], Any]):
             self._screen.render(self.game.snapshot())
 
 
-def _numbers(action: Any) -> list[int]:
-    """Convert an action to a list; it must hold one whole number per branch, each in range."""
+def _action_list(action: Any) -> list[int]:
+    """Return an action as a list; raises ValueError unless it has a valid number for each branch."""
     array = np.asarray(action)
     numbers: list[int] = array.tolist()
     if array.dtype.kind not in "iub" or array.shape != (len(BRANCHES),) or tuple(numbers) not in ACTIONS:
@@ -171,7 +173,7 @@ def make_env(
     params: Mapping[str, float] | None = None,
     **render: Any,
 ) -> TltlEnv:
-    """Make a level with a spec, by default the one that the level was made for.
+    """Make an environment of a level with a spec, by default the spec that the level is made for.
 
     The function takes the options of :class:`GameEnv` and :class:`TltlEnv` and raises their errors.
     ``render`` takes the ``render_mode``, ``render_view`` and ``render_size`` of :class:`GameEnv`.
@@ -192,16 +194,16 @@ def make_env(
         raise
 
 
-def check_fit(level: Level, fspa: Fspa, spec: str | Path | Fspa) -> None:
+def check_fit(level: StealthLevel, fspa: Fspa, spec: str | Path | Fspa) -> None:
     """Raise one TltlError for everything that a spec needs and a level lacks.
 
-    Its labels point into the spec's source.
+    ``fspa`` is the automaton of ``spec``. The labels of the error point into the spec's source.
     """
-    if _unmet(level, fspa, SpecPlaces(None)):
-        raise TltlError(_unmet(level, fspa, SpecPlaces(read_spec(spec)[1])))
+    if _supply_errors(level, fspa, SpecPlaces(None)):
+        raise TltlError(_supply_errors(level, fspa, SpecPlaces(read_spec(spec)[1])))
 
 
-def _unmet(level: Level, fspa: Fspa, places: SpecPlaces) -> list[Diagnostic]:
+def _supply_errors(level: StealthLevel, fspa: Fspa, places: SpecPlaces) -> list[Diagnostic]:
     return [diagnostic for diagnostic in check_supply(level, fspa, places) if diagnostic.severity == "error"]
 
 

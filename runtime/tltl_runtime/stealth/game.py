@@ -1,4 +1,4 @@
-"""The game: one level, played decision by decision, without a spec, a reward or an end.
+"""The simulation of one level, decision by decision, without a spec, a reward or an end.
 
 The same level, seed and actions give the same episode, bit for bit.
 """
@@ -11,25 +11,25 @@ from math import dist
 import numpy as np
 
 from tltl_runtime.stealth.enemies.enemy import Enemies
-from tltl_runtime.stealth.level import Level
+from tltl_runtime.stealth.level import StealthLevel
 from tltl_runtime.stealth.signals import Signals, readers
 from tltl_runtime.stealth.snapshot import Snapshot, player_view, touches
 from tltl_runtime.stealth.world.physics import World
 from tltl_runtime.stealth.world.player import DECISION
 
 
-class Game:
-    """A level in play: call ``reset``, then ``step`` repeatedly.
+class Simulation:
+    """The simulation of a level: call ``reset``, then ``step`` repeatedly.
 
-    ``health`` is in [0, 1], ``time`` in seconds since the reset; ``active`` and ``open`` list which
-    switches are active and which barriers are open. The game continues at zero health: the spec
-    decides when an episode is over.
+    ``health`` is in [0, 1], ``time`` in seconds since the reset. ``active`` and ``open`` say for
+    each switch whether it is active, and for each barrier whether it is open, in the order of the
+    level. The simulation continues at zero health: the spec decides when an episode is over.
 
     Raises:
         WorldError: the level leaves the player no room, or a body leaves the level.
     """
 
-    def __init__(self, level: Level) -> None:
+    def __init__(self, level: StealthLevel) -> None:
         self.level = level
         self.world = World(level)
         self.enemies = Enemies(level)
@@ -40,11 +40,11 @@ class Game:
         self.reset(0)
 
     def close(self) -> None:
-        """Release the physics; the game cannot be used afterwards."""
+        """Release the physics; the simulation cannot be used afterwards."""
         self.world.close()
 
     def reset(self, seed: int) -> None:
-        """Begin the episode of this seed."""
+        """Begin the episode that ``seed`` determines."""
         self.seed = seed
         # Separate random streams: the barrier that opens must not depend on how often the guards drew.
         start, patrols, self._unlocking = np.random.default_rng(seed).spawn(3)
@@ -58,7 +58,8 @@ class Game:
     def step(self, action: Sequence[int]) -> None:
         """Play one decision, :data:`~tltl_runtime.stealth.world.player.DECISION` seconds long.
 
-        ``action`` has one number per branch.
+        ``action`` has the number of the choice for each branch, see
+        :data:`~tltl_runtime.stealth.snapshot.CHOICES`.
         """
         self.world.step(action)
         self.enemies.step(DECISION, player_view(self.world.player), self.world.mover_boxes())

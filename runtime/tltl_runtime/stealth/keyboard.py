@@ -11,8 +11,8 @@ from tltl_runtime.stealth.recording import RecordEpisode
 from tltl_runtime.stealth.recordings.cause import cause
 from tltl_runtime.stealth.recordings.episode import Episode
 from tltl_runtime.stealth.rendering.camera import VIEWS, View
-from tltl_runtime.stealth.rendering.hud import Hud, beginning, ending, hud
-from tltl_runtime.stealth.rendering.interpolation import between
+from tltl_runtime.stealth.rendering.hud import Hud, end_screen, hud, start_screen
+from tltl_runtime.stealth.rendering.interpolation import interpolate
 from tltl_runtime.stealth.rendering.render import Renderer
 from tltl_runtime.stealth.snapshot import Snapshot
 from tltl_runtime.stealth.window.window import Keys, Window
@@ -23,26 +23,26 @@ class Recordings(Protocol):
     """Where the episodes are stored."""
 
     def keep(self, episode: Episode) -> None:
-        """Write an unfinished episode; it is overwritten until the episode is saved."""
+        """Write an unfinished episode, in place of its last version."""
 
     def save(self, episode: Episode) -> str:
         """Write a finished episode and return the name of its file."""
 
 
 _IDLE: Final = (0, 0, 0, 0, 0)
-_STANDING: Final = 0.05
+_STILL_WAIT: Final = 0.05
 """Seconds between two reads of the keys while the game stands still."""
-_KEPT: Final = 33
-"""The unfinished episode is written every this many decisions, about every five seconds."""
-_SOON: Final = 1 / 60
+_KEEP_INTERVAL: Final = 33
+"""An unfinished episode is written every 33 decisions, about every five seconds."""
+_FRAME_TIME: Final = 1 / 60
 """The shortest time between two frames, in seconds."""
 
 
 class KeyboardPlayer:
     """Plays episodes of ``env`` in ``window`` and passes them to ``recordings``.
 
-    ``renderer`` draws the frames. Play ends when the player stops, or when ``enough()`` is true
-    after an episode.
+    ``renderer`` draws the frames, from ``view`` at first. Play ends when the player stops, or when
+    ``enough()`` is true after an episode.
 
     Each episode is saved once: at its end, when the player restarts, or when play stops for any
     reason, including an exception such as KeyboardInterrupt. An unfinished episode is also kept
@@ -79,16 +79,16 @@ class KeyboardPlayer:
         """Play one episode; return whether the player wants another."""
         _, info = self._env.reset(seed=seed)
         snapshot, fspa = self._game.snapshot(), self._env.episode.fspa
-        keys = self._still(snapshot, beginning(hud(snapshot, info, fspa), self._game.level, fspa), begins=True)
+        keys = self._show_still(snapshot, start_screen(hud(snapshot, info, fspa), self._game.level, fspa), begins=True)
         over = False
         due = monotonic()
         while not (keys.stop or keys.restart or over):
             _, _, terminated, truncated, info = self._env.step(list(keys.action))
             self._unsaved, over = True, terminated or truncated
             before, snapshot = snapshot, self._game.snapshot()
-            if self._game.steps % _KEPT == 0 and not over:
+            if self._game.steps % _KEEP_INTERVAL == 0 and not over:
                 self._recordings.keep(self._env.episode)
-            keys = self._move(before, snapshot, hud(snapshot, info, fspa), due)
+            keys = self._animate(before, snapshot, hud(snapshot, info, fspa), due)
             # After a short delay the game catches up. If the machine is too slow, the delay is dropped.
             due = max(due + DECISION, monotonic() - DECISION)
         if over:
@@ -96,38 +96,38 @@ class KeyboardPlayer:
         self._save()
         return keys.restart and not keys.stop
 
-    def _move(self, before: Snapshot, after: Snapshot, shown: Hud, began: float) -> Keys:
+    def _animate(self, before: Snapshot, after: Snapshot, display: Hud, start: float) -> Keys:
         """Draw the motion between two snapshots until the current decision is over.
 
-        The decision started at ``began``. Return the keys that are then held. At least one frame is
-        shown, however long it takes.
+        The decision started at the time ``start``. Return the keys that the player holds at its
+        end. At least one frame is drawn, however long that takes.
         """
         while True:
-            self._show(between(before, after, min(1.0, (monotonic() - began) / DECISION)), shown)
-            self._window.wait(_SOON)
-            if monotonic() - began >= DECISION:
+            self._show(interpolate(before, after, min(1.0, (monotonic() - start) / DECISION)), display)
+            self._window.wait(_FRAME_TIME)
+            if monotonic() - start >= DECISION:
                 return self._keys()
 
     def _end(self, snapshot: Snapshot, info: dict[str, Any]) -> Keys:
         """Show the end screen until the player stops or plays again."""
         episode = self._env.episode
         file = self._save() or ""
-        return self._still(snapshot, ending(hud(snapshot, info, episode.fspa), cause(episode), file))
+        return self._show_still(snapshot, end_screen(hud(snapshot, info, episode.fspa), cause(episode), file))
 
-    def _still(self, snapshot: Snapshot, shown: Hud, begins: bool = False) -> Keys:
-        """Show a still frame until the player stops or restarts.
+    def _show_still(self, snapshot: Snapshot, display: Hud, begins: bool = False) -> Keys:
+        """Show a still frame until the player stops or restarts; return the keys of that moment.
 
-        If ``begins``, holding the key of any action ends it, too.
+        If ``begins``, the key of any action also ends the still frame.
         """
         view = None
         while True:
             if view != self._view:
-                self._show(snapshot, shown)
+                self._show(snapshot, display)
                 view = self._view
             keys = self._keys()
             if keys.stop or keys.restart or (begins and keys.action != _IDLE):
                 return Keys(keys.action, keys.restart and not begins, keys.stop)
-            self._window.wait(_STANDING)
+            self._window.wait(_STILL_WAIT)
 
     def _keys(self) -> Keys:
         keys = self._window.keys()
@@ -135,9 +135,9 @@ class KeyboardPlayer:
             self._view = VIEWS[(VIEWS.index(self._view) + 1) % len(VIEWS)]
         return keys
 
-    def _show(self, snapshot: Snapshot, shown: Hud) -> None:
+    def _show(self, snapshot: Snapshot, display: Hud) -> None:
         names = self._renderer.names(snapshot, self._view)
-        self._window.show(self._renderer.frame(snapshot, self._view), shown, names)
+        self._window.show(self._renderer.frame(snapshot, self._view), display, names)
 
     def _save(self) -> str | None:
         """Save the episode if it has unsaved decisions; return the name of the file."""

@@ -59,7 +59,7 @@ class Barrier:
 class Unlock:
     """A rule: when ``switch`` becomes active, one of ``barriers`` opens at random.
 
-    All are equally likely. These barriers have no switches of their own.
+    All barriers are equally likely. They have no switches of their own.
     """
 
     switch: str
@@ -140,7 +140,7 @@ class Start:
 
 
 @record
-class Level:
+class StealthLevel:
     """One variant of a level.
 
     ``bounds`` enclose everything; the length of their diagonal is the param ``level_size`` of
@@ -165,13 +165,13 @@ class Level:
     """The spec that the level is made for, as ``FILE.tltl:NAME``."""
     files: tuple[tuple[str, str], ...]
     signals: tuple[tuple[str, str], ...] = ()
-    """Aliases of signals, for specs that use other names: (``open_right``, ``open(right)``)."""
+    """Aliases of signals, for specs that use other names, such as (``open_right``, ``open(right)``)."""
     regions: tuple[Region, ...] = ()
     """The regions that the level names, followed by the parts that it uses."""
 
 
-def entity_names(level: Level) -> tuple[str, ...]:
-    """The names of the switches, barriers, exits, enemies and movers, in this order."""
+def entity_names(level: StealthLevel) -> tuple[str, ...]:
+    """Return the names of the switches, barriers, exits, enemies and movers, in this order."""
     return (
         *(switch.name for switch in level.switches),
         *(barrier.name for barrier in level.barriers),
@@ -181,8 +181,8 @@ def entity_names(level: Level) -> tuple[str, ...]:
     )
 
 
-def fixed_places(level: Level) -> dict[str, Point]:
-    """The positions of the entities that do not move, by name.
+def fixed_places(level: StealthLevel) -> dict[str, Point]:
+    """Return the positions of the entities that do not move, by name.
 
     The position of a barrier is the middle of its base.
     """

@@ -14,7 +14,7 @@ from tltl_runtime.game.recorder import EpisodeRecorder
 from tltl_runtime.spec.episode_summary import End, settled_end
 from tltl_runtime.spec.wrapper import TltlEnv
 from tltl_runtime.stealth.env import GameEnv
-from tltl_runtime.stealth.level import Level
+from tltl_runtime.stealth.level import StealthLevel
 from tltl_runtime.stealth.recordings.episode import Episode
 from tltl_runtime.stealth.recordings.versions import versions
 from tltl_runtime.stealth.snapshot import BRANCHES, Snapshot
@@ -22,12 +22,12 @@ from tltlc.api import Diagnostic, Step, TltlError, fileio
 
 
 class RecordEpisode(EpisodeRecorder[Episode], RecordConstructorArgs):
-    """Record the current episode; observations, rewards and infos pass through unchanged.
+    """Records the current episode; observations, rewards and infos pass through unchanged.
 
     ``env`` is a :class:`TltlEnv` over a :class:`GameEnv`, or wrappers around one. ``player`` is the
-    name of the player in the recording. With ``folder``, each finished episode is written there as
-    ``LEVEL-VARIANT-SEED.episode.npz``; if that file exists, a number follows the seed. A missing
-    folder is created.
+    name of the player in the recording. If ``folder`` is given, each finished episode is written
+    into it as ``LEVEL-VARIANT-SEED.episode.npz``. If that file exists, a number follows the seed. A
+    missing folder is created.
 
     Raises:
         TypeError: ``env`` has no spec or is not the game.
@@ -39,8 +39,8 @@ class RecordEpisode(EpisodeRecorder[Episode], RecordConstructorArgs):
     ) -> None:
         RecordConstructorArgs.__init__(self, player=player, folder=folder)
         gymnasium.Wrapper.__init__(self, env)
-        self._played = _game_env(env)
-        self._game = self._played.game
+        self._game_env = _unwrapped_game(env)
+        self._game = self._game_env.game
         self._judge = _judge(env)
         self._player = player
         self._folder = None if folder is None else writable_folder(Path(folder))
@@ -72,10 +72,10 @@ class RecordEpisode(EpisodeRecorder[Episode], RecordConstructorArgs):
             raise RuntimeError("there is no episode before the first reset")
         observation, reward, terminated, truncated, info = self.env.step(action)
         if not self._over:
-            taken = self._judge.taken
-            assert taken is not None
+            step = self._judge.taken
+            assert step is not None
             atoms = tuple(info["atoms"].values())
-            self._rows.add(self._played.action, self._game.snapshot(), self._signals(), atoms, taken, info["success"])
+            self._rows.add(self._game_env.action, self._game.snapshot(), self._signals(), atoms, step, info["success"])
             self._over = terminated or truncated
             if self._over and self._folder is not None:
                 _write(self._folder, self.episode)
@@ -87,9 +87,9 @@ class RecordEpisode(EpisodeRecorder[Episode], RecordConstructorArgs):
 
 
 class _Rows:
-    """The data of an episode that is still growing."""
+    """The data of an episode that is still being played."""
 
-    def __init__(self, level: Level, seed: int, snapshot: Snapshot, signals: list[float]) -> None:
+    def __init__(self, level: StealthLevel, seed: int, snapshot: Snapshot, signals: list[float]) -> None:
         self.level, self.seed = level, seed
         self.snapshots, self.signals = [snapshot], [signals]
         self.actions: list[list[int]] = []
@@ -139,13 +139,13 @@ class _Rows:
 
 
 def _end(last: Step | None, success: bool) -> End:
-    """Classify how an episode ended, from its last step."""
+    """Return how an episode ended; ``last`` is its last step, or None if it has no steps."""
     if last is None or not last.done:
         return "stopped"
     return settled_end(success, last.verdict)
 
 
-def _game_env(env: gymnasium.Env[Any, Any]) -> GameEnv:
+def _unwrapped_game(env: gymnasium.Env[Any, Any]) -> GameEnv:
     inner = env.unwrapped
     if not isinstance(inner, GameEnv):
         raise TypeError(f"only the stealth game can be recorded, not {type(inner).__name__}: make_env(LEVEL) makes one")
@@ -153,7 +153,7 @@ def _game_env(env: gymnasium.Env[Any, Any]) -> GameEnv:
 
 
 def _judge(env: gymnasium.Env[Any, Any]) -> TltlEnv:
-    """Return the wrapper that holds the spec."""
+    """Return the wrapper with the spec, the outermost one; raises TypeError if there is none."""
     layer: gymnasium.Env[Any, Any] = env
     while not isinstance(layer, TltlEnv):
         if not isinstance(layer, gymnasium.Wrapper):
@@ -170,7 +170,11 @@ def _write(folder: Path, episode: Episode) -> None:
 
 
 def writable_folder(folder: Path) -> Path:
-    """Return the folder, created if missing; raises TLT0005 now, before an hour of play is lost."""
+    """Return the folder, after creating it if it is missing and writing a file into it as a test.
+
+    Raises:
+        TltlError: TLT0005, the folder is not writable. It is better to know before an hour of play.
+    """
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with TemporaryFile(dir=folder):

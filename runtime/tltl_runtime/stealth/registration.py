@@ -1,6 +1,7 @@
-"""The stealth game as one game among others.
+"""The stealth game as a :class:`~tltl_runtime.game.game.Game`.
 
-What plays or draws is imported when it is used: levels and recordings can be read without pybullet.
+Modules that play or draw are imported only when they are used. So levels and recordings can be read
+without pybullet.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltl_runtime.spec.wrapper import TltlEnv
 from tltl_runtime.stealth.capabilities.feasible import is_infeasible, reach_warnings
 from tltl_runtime.stealth.capabilities.vocabulary import params
-from tltl_runtime.stealth.level import Level, fixed_places
+from tltl_runtime.stealth.level import StealthLevel, fixed_places
 from tltl_runtime.stealth.levels import file
 from tltl_runtime.stealth.levels.dependencies import file_candidates, level_dependencies
 from tltl_runtime.stealth.levels.identity import level_hash
@@ -40,7 +41,7 @@ if TYPE_CHECKING:
     from tltl_runtime.stealth.recording import RecordEpisode
 
 
-class StealthLevelFiles(LevelFiles[Level]):
+class StealthLevelFiles(LevelFiles[StealthLevel]):
     """The ``.toml`` files of the levels."""
 
     def names(self) -> tuple[str, ...]:
@@ -59,7 +60,7 @@ class StealthLevelFiles(LevelFiles[Level]):
         """Return the names of the overlays beside a level's file and in the package."""
         return file.shared_names(file.level_path(name), "overlays")
 
-    def load_with_changes(self, name: str, variant: str) -> tuple[Level, tuple[str, ...]]:
+    def load_with_changes(self, name: str, variant: str) -> tuple[StealthLevel, tuple[str, ...]]:
         """Load a level; return it with the descriptions of the variant's overlays."""
         return file.level_and_changes(name, variant)
 
@@ -72,7 +73,7 @@ class StealthLevelFiles(LevelFiles[Level]):
         return file_candidates(file.level_path(name), variant, file_name)
 
 
-class StealthGame(Game[Level, Episode]):
+class StealthGame(Game[StealthLevel, Episode]):
     """The stealth game."""
 
     choices = CHOICES
@@ -80,45 +81,45 @@ class StealthGame(Game[Level, Episode]):
     level_files = StealthLevelFiles()
     modules = (__name__, "tltl_runtime.stealth.recording")
 
-    def load_level(self, name: str, variant: str = "v0") -> Level:
+    def load_level(self, name: str, variant: str = "v0") -> StealthLevel:
         """Load a shipped level, by name, or one from a ``.toml`` file, in one of its variants."""
         return file.load_level(name, variant)
 
-    def level_hash(self, level: Level) -> str:
+    def level_hash(self, level: StealthLevel) -> str:
         """Return the hash of the content of a level."""
         return level_hash(level)
 
-    def params(self, level: Level) -> dict[str, float]:
+    def params(self, level: StealthLevel) -> dict[str, float]:
         """Return a level's params."""
         return params(level)
 
-    def check_fit(self, level: Level, fspa: Fspa, spec: str | Path | Fspa) -> None:
+    def check_fit(self, level: StealthLevel, fspa: Fspa, spec: str | Path | Fspa) -> None:
         """Raise one TltlError for everything that a spec needs and a level lacks."""
         from tltl_runtime.stealth.env import check_fit
 
         check_fit(level, fspa, spec)
 
-    def missing_sensors(self, level: Level, sensors: Sensors) -> Iterator[str]:
+    def missing_sensors(self, level: StealthLevel, sensors: Sensors) -> Iterator[str]:
         """Yield the entities and signals that the sensors refer to and a level does not have."""
         return missing_sensors(level, sensors)
 
-    def landmarks(self, level: Level) -> dict[str, Point]:
+    def landmarks(self, level: StealthLevel) -> dict[str, Point]:
         """Return the positions of switches, exits and barriers, by name."""
         return fixed_places(level)
 
-    def solids(self, level: Level) -> dict[str, Box]:
+    def solids(self, level: StealthLevel) -> dict[str, Box]:
         """Return the boxes of the solids but the floor, by name."""
         return {solid.name: solid.box for solid in level.solids if solid.kind != "floor"}
 
-    def barriers(self, level: Level) -> dict[str, Box]:
+    def barriers(self, level: StealthLevel) -> dict[str, Box]:
         """Return the boxes of the barriers, by name."""
         return {barrier.name: barrier.box for barrier in level.barriers}
 
-    def reach_warnings(self, level: Level, fspa: Fspa) -> list[Diagnostic]:
+    def reach_warnings(self, level: StealthLevel, fspa: Fspa) -> list[Diagnostic]:
         """Return warnings for the entities of a spec that no player can reach."""
         return reach_warnings(level, fspa)
 
-    def is_infeasible(self, level: Level, fspa: Fspa) -> bool:
+    def is_infeasible(self, level: StealthLevel, fspa: Fspa) -> bool:
         """Return whether no player can meet the spec."""
         return is_infeasible(level, fspa)
 

@@ -1,4 +1,4 @@
-"""The signals of the game: values in SI units for specs, computed when they are read."""
+"""The signals of the game: values in SI units that specs can read, computed when they are read."""
 
 from __future__ import annotations
 
@@ -6,17 +6,17 @@ from collections.abc import Callable, Iterator, Mapping
 from math import atan2, dist, pi
 from typing import TYPE_CHECKING, Final
 
-from tltl_runtime.stealth.level import Level, Point, fixed_places
+from tltl_runtime.stealth.level import Point, StealthLevel, fixed_places
 from tltlc.api import record, specs
 
 if TYPE_CHECKING:
-    from tltl_runtime.stealth.game import Game
+    from tltl_runtime.stealth.game import Simulation
 
 _EYES: Final = 0.15
 """Metres from the top of the body down to the eyes."""
 
-Reader = Callable[["Game"], float]
-_Place = Callable[["Game"], Point]
+Reader = Callable[["Simulation"], float]
+_PositionReader = Callable[["Simulation"], Point]
 
 AXES: Final = {"position.x": 0, "position.y": 1, "position.z": 2}
 """The axis of each coordinate of the player, by the name of its signal."""
@@ -24,7 +24,7 @@ AXES: Final = {"position.x": 0, "position.y": 1, "position.z": 2}
 
 @record
 class LevelSignal:
-    """A signal of a level: its name, without and with arguments, and the function that reads it from a game."""
+    """A signal of a level: its name, its arguments, and the function that reads its value from a simulation."""
 
     base: str
     arguments: tuple[str, ...]
@@ -32,7 +32,7 @@ class LevelSignal:
 
 
 class Signals(Mapping[str, float]):
-    """The current signals of a game, by name.
+    """The current signals of a simulation, by name.
 
     ``health stamina time position.x position.y position.z visible seen crouching grounded``; for
     each entity ``distance bearing line_of_sight``; ``active(SWITCH)``, ``open(BARRIER)``; and the
@@ -41,7 +41,7 @@ class Signals(Mapping[str, float]):
 
     __slots__ = ("_game", "_readers")
 
-    def __init__(self, game: Game) -> None:
+    def __init__(self, game: Simulation) -> None:
         self._game = game
         self._readers = game.readers
 
@@ -58,13 +58,13 @@ class Signals(Mapping[str, float]):
         return len(self._readers)
 
 
-def readers(level: Level) -> dict[str, Reader]:
-    """Return the functions that read the signals of a level from a game, by signal name."""
+def readers(level: StealthLevel) -> dict[str, Reader]:
+    """Return the functions that read the signals of a level from a simulation, by signal name."""
     return {name: signal.read for name, signal in level_signals(level).items()}
 
 
-def level_signals(level: Level) -> dict[str, LevelSignal]:
-    """Return the signals of a level, by name; an alias has the signal that it stands for."""
+def level_signals(level: StealthLevel) -> dict[str, LevelSignal]:
+    """Return the signals of a level, by name; an alias maps to the signal that it stands for."""
     plain: dict[str, Reader] = {
         "health": lambda game: game.health,
         "stamina": lambda game: game.world.player.stamina,
@@ -78,23 +78,23 @@ def level_signals(level: Level) -> dict[str, LevelSignal]:
         "grounded": lambda game: game.world.player.grounded,
     }
     signals = [LevelSignal(name, (), read) for name, read in plain.items()]
-    for entity, place in entities(level).items():
-        signals += _of_entity(entity, place)
-    signals += [LevelSignal("active", (switch.name,), _active(row)) for row, switch in enumerate(level.switches)]
-    signals += [LevelSignal("open", (barrier.name,), _open(row)) for row, barrier in enumerate(level.barriers)]
+    for entity, place in position_readers(level).items():
+        signals += _entity_signals(entity, place)
+    signals += [LevelSignal("active", (switch.name,), _active_reader(row)) for row, switch in enumerate(level.switches)]
+    signals += [LevelSignal("open", (barrier.name,), _open_reader(row)) for row, barrier in enumerate(level.barriers)]
     by_name = {specs.full_name(signal.base, signal.arguments): signal for signal in signals}
     for alias, name in level.signals:
         by_name[alias] = by_name[name]
     return by_name
 
 
-def described(level: Level) -> str:
+def signal_list(level: StealthLevel) -> str:
     """List the names of a level's signals in words, for messages."""
     aliases = dict(level.signals)
     plain = [name for name, signal in level_signals(level).items() if name in aliases or not signal.arguments]
     plain_names = ", ".join(f"`{name}`" for name in plain)
     entities_of = {
-        "`distance(…)`, `bearing(…)`, `line_of_sight(…)`": list(entities(level)),
+        "`distance(…)`, `bearing(…)`, `line_of_sight(…)`": list(position_readers(level)),
         "`active(…)`": [switch.name for switch in level.switches],
         "`open(…)`": [barrier.name for barrier in level.barriers],
     }
@@ -103,53 +103,50 @@ def described(level: Level) -> str:
     )
 
 
-def entities(level: Level) -> dict[str, _Place]:
-    """Functions that read the position of each entity, by name.
+def position_readers(level: StealthLevel) -> dict[str, _PositionReader]:
+    """Return the functions that read the positions of the entities, by the names of the entities.
 
     Enemies are located at their feet, barriers at the middle of their base.
     """
-    places: dict[str, _Place] = {name: _at(place) for name, place in fixed_places(level).items()}
-    places |= {enemy.name: _enemy(index) for index, enemy in enumerate(level.enemies)}
-    places |= {mover.name: _mover(index) for index, mover in enumerate(level.movers)}
+    places: dict[str, _PositionReader] = {name: _fixed_position(place) for name, place in fixed_places(level).items()}
+    places |= {enemy.name: _enemy_position(index) for index, enemy in enumerate(level.enemies)}
+    places |= {mover.name: _mover_position(index) for index, mover in enumerate(level.movers)}
     return places
 
 
 # --- readers of single signals and positions --------------------------------------------------------
 
 
-def _of_entity(name: str, place: _Place) -> list[LevelSignal]:
+def _entity_signals(name: str, place: _PositionReader) -> list[LevelSignal]:
     return [
         LevelSignal("distance", (name,), lambda game: dist(game.world.player.position, place(game))),
         LevelSignal("bearing", (name,), lambda game: _bearing(game, place(game))),
-        LevelSignal("line_of_sight", (name,), lambda game: _in_sight(game, place(game))),
+        LevelSignal("line_of_sight", (name,), lambda game: _has_line_of_sight(game, place(game))),
     ]
 
 
-def _active(switch: int) -> Reader:
+def _active_reader(switch: int) -> Reader:
     return lambda game: game.active[switch]
 
 
-def _open(barrier: int) -> Reader:
+def _open_reader(barrier: int) -> Reader:
     return lambda game: game.open[barrier]
 
 
-def _at(place: Point) -> _Place:
+def _fixed_position(place: Point) -> _PositionReader:
     return lambda game: place
 
 
-def _enemy(index: int) -> _Place:
+def _enemy_position(index: int) -> _PositionReader:
     return lambda game: game.enemies.guards[index].position
 
 
-def _mover(index: int) -> _Place:
+def _mover_position(index: int) -> _PositionReader:
     return lambda game: game.world.movers[index].place
 
 
-def _bearing(game: Game, place: Point) -> float:
-    """The angle from the player's yaw to a place, in [-pi, pi).
-
-    It is 0 if the player stands on the place.
-    """
+def _bearing(game: Simulation, place: Point) -> float:
+    """Return the angle from the player's yaw to a place, in [-pi, pi); 0 if the player stands there."""
     player = game.world.player
     x, y = place[0] - player.position[0], place[1] - player.position[1]
     if x == y == 0.0:
@@ -157,7 +154,7 @@ def _bearing(game: Game, place: Point) -> float:
     return (atan2(y, x) - player.yaw + pi) % (2 * pi) - pi
 
 
-def _in_sight(game: Game, place: Point) -> bool:
+def _has_line_of_sight(game: Simulation, place: Point) -> bool:
     """Whether the line from the player's eyes to the point 0.5 m above ``place`` is free."""
     player, kind = game.world.player, game.world.kind
     x, y, z = player.position

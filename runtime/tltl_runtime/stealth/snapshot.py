@@ -1,4 +1,4 @@
-"""The action space and the visible state of the game; this module does not load the physics."""
+"""The actions and the visible state of the game; importing this module does not load the physics."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from itertools import product
 from typing import Final
 
 from tltl_runtime.stealth.enemies.enemy import CROUCHED_HEAD, STANDING_HEAD, PlayerView
-from tltl_runtime.stealth.level import Box, Level, Point, fixed_places
+from tltl_runtime.stealth.level import Box, Point, StealthLevel, fixed_places
 from tltl_runtime.stealth.world.player import PlayerState
 from tltlc.api import record
 
@@ -32,10 +32,13 @@ ACTIONS: Final = frozenset(product(*map(range, BRANCHES)))
 
 @record
 class Snapshot:
-    """The visible state at one moment, for logs and pictures; tuples are in the order of the level.
+    """The visible state at one moment, for recordings and pictures; tuples are in the order of the level.
 
-    ``modes`` are the modes of the enemies (``patrol``, ``chase``, ``search``, ``return``); ``sees``
-    is whether each enemy sees the player.
+    ``time`` is in seconds since the reset, ``health`` in [0, 1]. ``enemies`` are the positions of
+    the enemies' feet, ``yaws`` their yaws, ``modes`` their modes (``patrol``, ``chase``,
+    ``search``, ``return``), and ``sees`` says which of them see the player. ``movers`` are the
+    centres of the movers. ``active`` and ``open`` say which switches are active and which barriers
+    are open.
     """
 
     time: float
@@ -50,15 +53,15 @@ class Snapshot:
     open: tuple[bool, ...]
 
 
-def places(level: Level, shot: Snapshot) -> dict[str, Point]:
-    """Return the position of each entity of a level at that moment, by name."""
+def places(level: StealthLevel, shot: Snapshot) -> dict[str, Point]:
+    """Return the positions of the entities of a level in a snapshot, by name."""
     enemies = {enemy.name: place for enemy, place in zip(level.enemies, shot.enemies, strict=True)}
     movers = {mover.name: place for mover, place in zip(level.movers, shot.movers, strict=True)}
     return fixed_places(level) | enemies | movers
 
 
 def player_view(player: PlayerState) -> PlayerView:
-    """The part of the player's state that enemies can perceive."""
+    """Return the part of the player's state that enemies can perceive."""
     head = CROUCHED_HEAD if player.crouching else STANDING_HEAD
     return PlayerView(player.position, head)
 

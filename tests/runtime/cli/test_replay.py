@@ -25,7 +25,7 @@ from tltl_runtime.stealth.env import make_env
 from tltl_runtime.stealth.recording import RecordEpisode
 from tltl_runtime.stealth.recordings.episode import Episode
 from tltl_runtime.stealth.recordings.file import write_episode
-from tltl_runtime.stealth.recordings.summary import judged_with
+from tltl_runtime.stealth.recordings.summary import monitor_command
 from tltl_runtime.stealth.rendering.camera import VIEWS
 from tltl_runtime.stealth.rendering.film import STRIP, frames
 from tltl_runtime.stealth.rendering.film_file import write_gif
@@ -226,7 +226,7 @@ def test_positions_are_interpolated_between_decisions(episode: Episode) -> None:
 
 def test_the_exported_trace_gives_the_same_judgement(tltlc, recorded: Path, episode: Episode) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     written: Outcome = tltlc("replay", FILE, "-o", "run.csv")
-    assert (written.status, written.err.splitlines()[1]) == (0, f"judge it with: {judged_with(episode, 'run.csv')}")
+    assert (written.status, written.err.splitlines()[1]) == (0, f"judge it with: {monitor_command(episode, 'run.csv')}")
     lines = BytesIO(Path("run.csv").read_bytes())
     monitor = Monitor(episode.fspa, episode.params)
     for row, sample in enumerate(read_trace(lines, "run.csv", episode.fspa.signals), start=1):
@@ -234,7 +234,7 @@ def test_the_exported_trace_gives_the_same_judgement(tltlc, recorded: Path, epis
         assert (step.state, step.progress) == (episode.states[row], episode.progress[row])
         assert step.reward == episode.rewards[row - 1]
     assert row == STEPS
-    program, *words = shlex.split(judged_with(episode, "run.csv"))
+    program, *words = shlex.split(monitor_command(episode, "run.csv"))
     assert program == "tltlc" and words[1] == "SPEC.tltl:branching"
     judged: Outcome = tltlc(words[0], ROOT / "examples/branching.tltl:branching", *words[2:])
     rows = [record for record in csv.DictReader(StringIO(judged.out)) if record["step"].isdecimal()]
@@ -271,14 +271,14 @@ def test_invalid_options_are_rejected(tltlc, recorded: Path, arguments: tuple[st
 
 
 def test_ctrl_c_leaves_no_partial_file(tltlc, recorded: Path, monkeypatch: pytest.MonkeyPatch) -> None:  # type: ignore[no-untyped-def] # noqa: F811
-    calls, framed = count(), film._framed
+    calls, framed = count(), film._add_strip
 
     def interrupted(*arguments: object) -> object:
         if next(calls) % 6 == 5:
             raise KeyboardInterrupt
         return framed(*arguments)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(film, "_framed", interrupted)
+    monkeypatch.setattr(film, "_add_strip", interrupted)
     for name in ("run.gif", "run.mp4"):
         Path(name).write_bytes(b"older")
         result: Outcome = tltlc("replay", FILE, "-o", name, "--view", "plan")

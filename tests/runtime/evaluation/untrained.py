@@ -9,7 +9,7 @@ from tltl_runtime.policies.network import Network
 from tltl_runtime.policies.policy import Policy, new_actor
 from tltl_runtime.spec.wrapper import TltlEnv
 from tltl_runtime.stealth.env import make_env
-from tltl_runtime.stealth.level import Level
+from tltl_runtime.stealth.level import StealthLevel
 from tltlc.monitor import RewardOptions
 
 SOON = """\
@@ -40,7 +40,7 @@ def untrained(spec: str | None = SOON, level: str = "cover_and_hide", variant: s
 
 
 def card_of(env: TltlEnv) -> Card:
-    level: Level = env.unwrapped.level  # type: ignore[attr-defined]
+    level: StealthLevel = env.unwrapped.level  # type: ignore[attr-defined]
     return Card(
         level=level.name,
         variant=level.variant,

@@ -9,7 +9,7 @@ import pytest
 from tests.runtime.regression.handmade import ROOM, an_episode, changed
 from tltl_runtime.regression.explain.account import ExplainedEpisode, NearestMiss
 from tltl_runtime.regression.explain.explain import findings
-from tltl_runtime.stealth.level import Level, Point
+from tltl_runtime.stealth.level import Point, StealthLevel
 from tltl_runtime.stealth.levels.file import load_level
 from tltlc import compile_text
 from tltlc.automaton.fspa import Fspa
@@ -28,7 +28,7 @@ NORTH, MIDDLE = (5.0, 9.0, 0.0), (5.0, 5.0, 0.0)
 
 
 @pytest.fixture(name="level", scope="module")
-def _level(tmp_path_factory: pytest.TempPathFactory) -> Level:
+def _level(tmp_path_factory: pytest.TempPathFactory) -> StealthLevel:
     path = tmp_path_factory.mktemp("levels") / "room.toml"
     path.write_text(ROOM + HALL + SWITCHES, encoding="utf-8")
     return load_level(str(path))
@@ -51,26 +51,26 @@ def successes(fspa: Fspa, count: int = 25) -> list[ExplainedEpisode]:
 
 
 def sentences(
-    level: Level, fspa: Fspa, now: Sequence[ExplainedEpisode], before: Sequence[ExplainedEpisode] = ()
+    level: StealthLevel, fspa: Fspa, now: Sequence[ExplainedEpisode], before: Sequence[ExplainedEpisode] = ()
 ) -> list[str]:
     return [finding.text for finding in findings(level, fspa, now, before or successes(fspa))]
 
 
-def test_equal_episodes_are_as_before(level: Level, fspa: Fspa) -> None:
+def test_equal_episodes_are_as_before(level: StealthLevel, fspa: Fspa) -> None:
     (only,) = findings(level, fspa, successes(fspa), successes(fspa))
     assert only.text == "reaches `s1`, `s2`, `exit` as before"
     assert only.episodes == ()
 
 
 @pytest.mark.parametrize(("fewer", "said"), [(1, "`s2`, `exit` as before"), (2, "then reaches `exit` in 38 of 40")])
-def test_one_failure_in_twenty_is_not_as_before(level: Level, fspa: Fspa, fewer: int, said: str) -> None:
+def test_one_failure_in_twenty_is_not_as_before(level: StealthLevel, fspa: Fspa, fewer: int, said: str) -> None:
     now = successes(fspa, 40)
     for index in range(fewer):
         now[index] = an_episode(index, False, states=states_after(fspa, 2))
     assert said in sentences(level, fspa, now, successes(fspa, 40))[0]
 
 
-def test_the_first_changed_stage_and_the_ends_in_it_are_described(level: Level, fspa: Fspa) -> None:
+def test_the_first_changed_stage_and_the_ends_in_it_are_described(level: StealthLevel, fspa: Fspa) -> None:
     near = NearestMiss("near(exit)", -0.2, NORTH, "exit", 3.2)
     died = {"cause": "killed", "by": ("guard",), "seen_by": ("guard",), "place": NORTH, "nearest": near}
     now = successes(fspa)
@@ -90,14 +90,14 @@ def test_the_first_changed_stage_and_the_ends_in_it_are_described(level: Level, 
     )
 
 
-def test_a_share_is_added_for_many_episodes(level: Level, fspa: Fspa) -> None:
+def test_a_share_is_added_for_many_episodes(level: StealthLevel, fspa: Fspa) -> None:
     now = successes(fspa, 40)
     now[:14] = deaths(fspa, 14)[:14]
     (stage, *_) = sentences(level, fspa, now, successes(fspa, 40))
     assert stage.endswith("then reaches `exit` in 26 of 40 episodes (65%); before: in 40 of 40 episodes")
 
 
-def test_ends_are_grouped_by_kind_and_place_most_frequent_first(level: Level, fspa: Fspa) -> None:
+def test_ends_are_grouped_by_kind_and_place_most_frequent_first(level: StealthLevel, fspa: Fspa) -> None:
     now = successes(fspa)
     for index in range(5):
         now[index] = an_episode(
@@ -129,19 +129,21 @@ def deaths(fspa: Fspa, count: int, **changed: object) -> list[ExplainedEpisode]:
         (1, ""),
     ],
 )
-def test_an_enemy_that_saw_the_player_in_most_episodes_is_named(level: Level, fspa: Fspa, saw: int, words: str) -> None:
+def test_an_enemy_that_saw_the_player_in_most_episodes_is_named(
+    level: StealthLevel, fspa: Fspa, saw: int, words: str
+) -> None:
     now = deaths(fspa, 14, seen_by=("guard",))
     now[:saw] = [replace(explained, seen_by=("guard", "camera")) for explained in now[:saw]]
     assert sentences(level, fspa, now)[1].startswith(f"dies in the north hall by `guard`{words} in 14 of 25 episodes")
 
 
-def test_a_death_names_the_broken_atom(level: Level, fspa: Fspa) -> None:
+def test_a_death_names_the_broken_atom(level: StealthLevel, fspa: Fspa) -> None:
     now = deaths(fspa, 14, broke=("alive",), seen_by=("guard", "camera"))
     end = sentences(level, fspa, now)[1]
     assert end.startswith("dies in the north hall by `guard`, breaking `alive`, seen by `camera`, in 14 of 25")
 
 
-def test_ends_in_two_stages_have_separate_sentences(level: Level, fspa: Fspa) -> None:
+def test_ends_in_two_stages_have_separate_sentences(level: StealthLevel, fspa: Fspa) -> None:
     now = [an_episode(index, False, states=states_after(fspa, 1 if index < 14 else 2)) for index in range(25)]
     ends = [finding for finding in findings(level, fspa, now, successes(fspa)) if "runs out of time" in finding.text]
     prefix = "runs out of time in the middle before it reaches"
@@ -160,12 +162,12 @@ def died(fspa: Fspa, index: int, stage: int, place: Point = MIDDLE) -> Explained
 
 
 def last_sentence(
-    level: Level, fspa: Fspa, now: Sequence[ExplainedEpisode], before: Sequence[ExplainedEpisode] = ()
+    level: StealthLevel, fspa: Fspa, now: Sequence[ExplainedEpisode], before: Sequence[ExplainedEpisode] = ()
 ) -> str:
     return sentences(level, fspa, now, before or successes(fspa, 40))[-1]
 
 
-def test_rare_ends_share_one_sentence(level: Level, fspa: Fspa) -> None:
+def test_rare_ends_share_one_sentence(level: StealthLevel, fspa: Fspa) -> None:
     now = successes(fspa, 40)
     now[:3] = [timed_out(fspa, index, 1) for index in range(3)]
     assert "; in state" in last_sentence(level, fspa, now)
@@ -179,7 +181,7 @@ def test_rare_ends_share_one_sentence(level: Level, fspa: Fspa) -> None:
     assert last_sentence(level, fspa, now) == "fails in 3 of 40 episodes; before: in 0 of 40 episodes"
 
 
-def test_remaining_ends_with_a_known_cause_name_it(level: Level, fspa: Fspa) -> None:
+def test_remaining_ends_with_a_known_cause_name_it(level: StealthLevel, fspa: Fspa) -> None:
     now = successes(fspa, 40)
     now[:4] = [died(fspa, index, 2, NORTH) for index in range(4)]
     now[4:7] = [died(fspa, index, 1, (2.0 + 4.0 * (index % 2), 5.0, 0.0)) for index in range(4, 7)]
@@ -194,7 +196,7 @@ def test_remaining_ends_with_a_known_cause_name_it(level: Level, fspa: Fspa) -> 
     )
 
 
-def test_a_single_remaining_cause_is_named(level: Level, fspa: Fspa) -> None:
+def test_a_single_remaining_cause_is_named(level: StealthLevel, fspa: Fspa) -> None:
     now = successes(fspa, 40)
     now[0] = died(fspa, 0, 2, NORTH)
     assert last_sentence(level, fspa, now) == (
@@ -209,21 +211,21 @@ def test_a_single_remaining_cause_is_named(level: Level, fspa: Fspa) -> None:
     assert last_sentence(level, fspa, now).startswith("dies in the north hall by `guard` at other stages in 2 of 40")
 
 
-def test_rare_causes_share_one_sentence(level: Level, fspa: Fspa) -> None:
+def test_rare_causes_share_one_sentence(level: StealthLevel, fspa: Fspa) -> None:
     now = successes(fspa, 40)
     now[:4] = [died(fspa, index, 2, NORTH) for index in range(4)]
     now[4:6] = [died(fspa, 4, 1), timed_out(fspa, 5, 1)]
     assert last_sentence(level, fspa, now, now) == "fails otherwise in 2 of 40 episodes; before: in 2 of 40 episodes"
 
 
-def test_ends_show_the_counts_of_the_baseline(level: Level, fspa: Fspa) -> None:
+def test_ends_show_the_counts_of_the_baseline(level: StealthLevel, fspa: Fspa) -> None:
     now = [an_episode(index, index >= 10, states=states_after(fspa, 3 if index >= 10 else 2)) for index in range(25)]
     texts = sentences(level, fspa, now, now)
     assert texts[0] == "reaches `s1`, `s2` as before"
     assert texts[1].startswith("runs out of time in the middle in 10 of 25 episodes; before: in 10 of 25 episodes; ")
 
 
-def test_the_state_of_failure_is_described_with_what_remained(level: Level, fspa: Fspa) -> None:
+def test_the_state_of_failure_is_described_with_what_remained(level: StealthLevel, fspa: Fspa) -> None:
     first, other = states_after(fspa, 1)
     now = [
         an_episode(index, False, states=states_after(fspa, 0), unmet=first if index < 14 else other)
@@ -253,7 +255,7 @@ def after(fspa: Fspa, *reached: str) -> list[int]:
     return states
 
 
-def test_stages_in_any_order_are_described_by_what_was_reached(level: Level) -> None:
+def test_stages_in_any_order_are_described_by_what_was_reached(level: StealthLevel) -> None:
     (fspa,) = compile_text(ANY_ORDER)
     ways = [("s1", "s2", "exit"), ("s1", "s2")]
     before = [an_episode(index, states=after(fspa, *ways[0])) for index in range(25)]
@@ -262,7 +264,7 @@ def test_stages_in_any_order_are_described_by_what_was_reached(level: Level) -> 
     assert stage.endswith("as before, then reaches `exit` in 10 of 25 episodes; before: in 25 of 25 episodes")
 
 
-def test_stages_that_differ_between_episodes_are_described_by_distance(level: Level) -> None:
+def test_stages_that_differ_between_episodes_are_described_by_distance(level: StealthLevel) -> None:
     (fspa,) = compile_text(ANY_ORDER)
     ways = [("s1", "s2", "exit"), ("exit", "s1", "s2")]
     before = [an_episode(index, states=after(fspa, *ways[index % 2])) for index in range(25)]
@@ -277,7 +279,7 @@ def test_stages_that_differ_between_episodes_are_described_by_distance(level: Le
     )
 
 
-def test_a_limit_of_less_than_half_is_called_most_often(level: Level, fspa: Fspa) -> None:
+def test_a_limit_of_less_than_half_is_called_most_often(level: StealthLevel, fspa: Fspa) -> None:
     near = [
         NearestMiss("alive", -0.5, MIDDLE),
         *(NearestMiss(f"near({name})", -0.4, MIDDLE, name, 2.5) for name in ("s1", "s2")),
@@ -286,13 +288,13 @@ def test_a_limit_of_less_than_half_is_called_most_often(level: Level, fspa: Fspa
     assert "; most often the limit is `alive`, -0.50 at best; in state 0, " in sentences(level, fspa, now)[1]
 
 
-def test_a_limit_that_is_no_distance_names_the_atom(level: Level, fspa: Fspa) -> None:
+def test_a_limit_that_is_no_distance_names_the_atom(level: StealthLevel, fspa: Fspa) -> None:
     near = [NearestMiss("alive", value, MIDDLE) for value in (-0.75, -0.25, -0.5)]
     now = [an_episode(index, False, states=states_after(fspa, 0), nearest=near[index % 3]) for index in range(25)]
     assert sentences(level, fspa, now)[1].partition("; in state")[0].endswith("; the limit is `alive`, -0.25 at best")
 
 
-def test_the_limit_of_most_episodes_is_named(level: Level, fspa: Fspa) -> None:
+def test_the_limit_of_most_episodes_is_named(level: StealthLevel, fspa: Fspa) -> None:
     best, most = NearestMiss("alive", 0.0, MIDDLE), NearestMiss("near(s1)", -0.4, MIDDLE, "s1", 2.5)
     now = [
         an_episode(index, False, states=states_after(fspa, 0), nearest=best if index == 7 else most)
@@ -312,13 +314,13 @@ def test_the_limit_of_most_episodes_is_named(level: Level, fspa: Fspa) -> None:
         (1.0, "1.00 m (`near(s1)` is the limit, less would do); "),
     ],
 )
-def test_near_misses_have_enough_decimals(level: Level, fspa: Fspa, came: float, said: str) -> None:
+def test_near_misses_have_enough_decimals(level: StealthLevel, fspa: Fspa, came: float, said: str) -> None:
     near = NearestMiss("near(s1)", -0.01, MIDDLE, "s1", came)
     now = [an_episode(index, False, states=states_after(fspa, 0), nearest=near) for index in range(25)]
     assert f"; closest approach to `s1`: {said}" in sentences(level, fspa, now)[1]
 
 
-def test_a_distance_that_depends_on_a_param_has_no_threshold(level: Level) -> None:
+def test_a_distance_that_depends_on_a_param_has_no_threshold(level: StealthLevel) -> None:
     (fspa,) = compile_text(
         SPEC.replace("near(s1)", "near(s1, close=arm)").replace("spec", "param arm: length = 2 m\nspec")
     )
@@ -330,7 +332,7 @@ def test_a_distance_that_depends_on_a_param_has_no_threshold(level: Level) -> No
     )
 
 
-def test_episodes_at_the_target_when_the_spec_broke_are_counted(level: Level, fspa: Fspa) -> None:
+def test_episodes_at_the_target_when_the_spec_broke_are_counted(level: StealthLevel, fspa: Fspa) -> None:
     not_yet = NearestMiss("near(s1)", -0.4, MIDDLE, "s1", 2.5)
     account_fields = {"cause": "killed", "broke": ("alive",), "nearest": not_yet}
     now = [
@@ -344,7 +346,7 @@ def test_episodes_at_the_target_when_the_spec_broke_are_counted(level: Level, fs
     assert f"; 3 of them were at `s1` when it broke; {approach}" in sentences(level, fspa, few)[1]
 
 
-def test_an_atom_that_must_not_hold_is_described_as_such(level: Level, fspa: Fspa) -> None:
+def test_an_atom_that_must_not_hold_is_described_as_such(level: StealthLevel, fspa: Fspa) -> None:
     near = NearestMiss("visible", -1.0, MIDDLE, wanted=False)
     now = [an_episode(index, False, states=states_after(fspa, 0), nearest=near) for index in range(25)]
     assert "; the limit is that `visible` holds; " in sentences(level, fspa, now)[1]
@@ -352,7 +354,7 @@ def test_an_atom_that_must_not_hold_is_described_as_such(level: Level, fspa: Fsp
     assert "; the limit is `open`; " in sentences(level, fspa, with_open)[1]
 
 
-def test_the_order_of_killers_does_not_count(level: Level, fspa: Fspa) -> None:
+def test_the_order_of_killers_does_not_count(level: StealthLevel, fspa: Fspa) -> None:
     now = deaths(fspa, 14)
     now[:14] = [
         replace(explained, by=("b", "a") if explained.summary.index % 2 else ("a", "b")) for explained in now[:14]
@@ -360,7 +362,7 @@ def test_the_order_of_killers_does_not_count(level: Level, fspa: Fspa) -> None:
     assert sentences(level, fspa, now)[1].startswith("dies in the north hall by `a` and `b` in 14 of 25")
 
 
-def test_an_obstacle_is_named(level: Level, fspa: Fspa) -> None:
+def test_an_obstacle_is_named(level: StealthLevel, fspa: Fspa) -> None:
     now = [an_episode(index, False, states=states_after(fspa, 0), place=(9.5, 5.0, 0.0)) for index in range(25)]
     assert "runs out of time in the east, at `outer_east`, in 25 of 25" in sentences(level, fspa, now)[1]
 
@@ -373,12 +375,14 @@ def test_an_obstacle_is_named(level: Level, fspa: Fspa) -> None:
         (110, None),
     ],
 )
-def test_longer_and_shorter_successes_are_described(level: Level, fspa: Fspa, steps: int, text: str | None) -> None:
+def test_longer_and_shorter_successes_are_described(
+    level: StealthLevel, fspa: Fspa, steps: int, text: str | None
+) -> None:
     now = [changed(explained, steps=steps) for explained in successes(fspa)]
     assert sentences(level, fspa, now)[1:] == ([text] if text else [])
 
 
-def test_a_new_route_of_successes_is_described(level: Level, fspa: Fspa) -> None:
+def test_a_new_route_of_successes_is_described(level: StealthLevel, fspa: Fspa) -> None:
     through = ((2.0, 2.0, 0, 0.0), (5.0, 9.0, 1, 2.0), (8.0, 8.0, 2, 4.0))
     now = [
         replace(explained, way=through) if explained.summary.index < 20 else explained for explained in successes(fspa)
@@ -390,7 +394,7 @@ def test_a_new_route_of_successes_is_described(level: Level, fspa: Fspa) -> None
     ]
 
 
-def test_findings_refer_to_existing_episodes(level: Level, fspa: Fspa) -> None:
+def test_findings_refer_to_existing_episodes(level: StealthLevel, fspa: Fspa) -> None:
     now = [an_episode(index, index % 3 > 0, states=states_after(fspa, index % 4)) for index in range(30)]
     indices = {explained.summary.index for explained in now}
     for finding in findings(level, fspa, now, successes(fspa)):

@@ -6,7 +6,7 @@ import pytest
 
 from tests.runtime.regression.handmade import ROOM
 from tltl_runtime.regression.explain.places import blocking_solids, nearest_entity, place_name
-from tltl_runtime.stealth.level import Box, Level, Point
+from tltl_runtime.stealth.level import Box, Point, StealthLevel
 from tltl_runtime.stealth.levels.file import load_level
 from tltlc.core.record import replace
 
@@ -34,7 +34,7 @@ def ends(*feet: Point) -> list[tuple[Point, tuple[str, ...]]]:
 
 
 @pytest.fixture(name="level", scope="module")
-def _level(tmp_path_factory: pytest.TempPathFactory) -> Level:
+def _level(tmp_path_factory: pytest.TempPathFactory) -> StealthLevel:
     path = tmp_path_factory.mktemp("levels") / "room.toml"
     path.write_text(ROOM + MORE, encoding="utf-8")
     return load_level(str(path))
@@ -53,16 +53,16 @@ def _level(tmp_path_factory: pytest.TempPathFactory) -> Level:
         ((9.4, 5.0, 0.0), "in the east"),
     ],
 )
-def test_a_place_is_named_by_region_then_entity_then_direction(level: Level, point: Point, name: str) -> None:
+def test_a_place_is_named_by_region_then_entity_then_direction(level: StealthLevel, point: Point, name: str) -> None:
     assert place_name(level, point) == name
 
 
-def test_the_nearest_entity_is_within_two_and_a_half_metres(level: Level) -> None:
+def test_the_nearest_entity_is_within_two_and_a_half_metres(level: StealthLevel) -> None:
     assert nearest_entity(level, (5.0, 4.4, 0.0)) == "lever"
     assert nearest_entity(level, (5.0, 4.6, 0.0)) is None
 
 
-def test_an_obstacle_of_most_players_is_in_the_way(level: Level) -> None:
+def test_an_obstacle_of_most_players_is_in_the_way(level: StealthLevel) -> None:
     at_pillar = [(6.2, 4.8 + row / 10, 0.0) for row in range(5)]
     assert blocking_solids(level, ends(*at_pillar)) == ["pillar"]
     assert blocking_solids(level, ends((4.0, 5.0, 0.0), (4.0, 5.0, 0.0))) == []
@@ -71,13 +71,13 @@ def test_an_obstacle_of_most_players_is_in_the_way(level: Level) -> None:
     assert blocking_solids(level, []) == []
 
 
-def test_in_a_corner_all_touched_walls_are_named_most_frequent_first(level: Level) -> None:
+def test_in_a_corner_all_touched_walls_are_named_most_frequent_first(level: StealthLevel) -> None:
     corner, wall = (9.6, 0.4, 0.0), (9.6, 4.0, 0.0)
     assert blocking_solids(level, ends(corner, corner, wall)) == ["outer_east", "outer_south"]
     assert blocking_solids(level, ends(corner, wall, wall)) == ["outer_east"]
 
 
-def test_a_solid_below_the_feet_is_not_in_the_way(level: Level) -> None:
+def test_a_solid_below_the_feet_is_not_in_the_way(level: StealthLevel) -> None:
     assert blocking_solids(level, ends((7.0, 5.0, 3.0))) == []
 
 
@@ -89,7 +89,7 @@ def test_a_gate_is_in_the_way_while_it_is_closed() -> None:
     assert gate.name not in blocking_solids(level, [(at_gate, ())])
 
 
-def test_a_solid_behind_another_one_is_not_in_the_way(level: Level) -> None:
+def test_a_solid_behind_another_one_is_not_in_the_way(level: StealthLevel) -> None:
     pillar = next(solid for solid in level.solids if solid.name == "pillar")
     low = (pillar.box.high[0], pillar.box.low[1], 0.0)
     behind = replace(pillar, name="behind", box=Box(low, (low[0] + 1.0, pillar.box.high[1], 3.0)))

@@ -12,13 +12,13 @@ from tltl_runtime.stealth.level import (
     Enemy,
     EnemyKind,
     Exit,
-    Level,
     MapSensor,
     Mover,
     Point,
     Sensors,
     Solid,
     Start,
+    StealthLevel,
     Switch,
 )
 
@@ -64,9 +64,9 @@ def level(
     switches: tuple[Switch, ...] = (),
     size: tuple[float, float] = (10.0, 8.0),
     map_sensor: MapSensor | None = None,
-) -> Level:
+) -> StealthLevel:
     floor = Solid("floor", "floor", box(0.0, 0.0, *size, -0.2, 0.0))
-    return Level(
+    return StealthLevel(
         name="test",
         variant="v0",
         doc="",

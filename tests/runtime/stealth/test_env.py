@@ -30,7 +30,7 @@ NAMES = ("tltl/Navigation-v0", "tltl/CoverAndHide-v0", "tltl/Branching-v0")
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_gymnasium_finds_nothing_wrong(name: str) -> None:
+def test_the_checker_of_gymnasium_finds_no_fault(name: str) -> None:
     env = gymnasium.make(name, variant="v1")
     check_env(env.unwrapped, skip_render_check=True)
     env.close()
@@ -208,7 +208,7 @@ def test_a_level_without_a_spec_needs_one() -> None:
 
 
 @pytest.mark.parametrize(
-    ("options", "said"),
+    ("options", "text"),
     [
         ({"level": 3}, "a level is named by a text, not by 3"),
         ({"variant": 1}, "a variant is named by a text, not by 1"),
@@ -219,8 +219,8 @@ def test_a_level_without_a_spec_needs_one() -> None:
         ({"spec": ()}, "a spec is a path, a text or an automaton, not"),
     ],
 )
-def test_options_of_the_wrong_type_are_rejected(options: dict[str, Any], said: str) -> None:
-    with pytest.raises(TypeError, match=said):
+def test_options_of_the_wrong_type_are_rejected(options: dict[str, Any], text: str) -> None:
+    with pytest.raises(TypeError, match=text):
         make_env(**{"level": "navigation", **options})
 
 

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import tltlc
-from tltl_runtime.stealth.game import Game
-from tltl_runtime.stealth.level import Level, Point
+from tltl_runtime.stealth.game import Simulation
+from tltl_runtime.stealth.level import Point, StealthLevel
 from tltl_runtime.stealth.levels.file import level_names, load_level, variants
 from tltl_runtime.stealth.snapshot import BRANCHES
 
@@ -21,8 +21,8 @@ ALL = [(name, variant) for name in level_names() for variant in variants(name)]
 
 
 @pytest.fixture(params=ALL, ids=lambda pair: "-".join(pair))
-def game(request: pytest.FixtureRequest) -> Iterator[Game]:
-    game = Game(load_level(*request.param))
+def game(request: pytest.FixtureRequest) -> Iterator[Simulation]:
+    game = Simulation(load_level(*request.param))
     yield game
     game.close()
 
@@ -32,7 +32,7 @@ def random_actions(seed: int, count: int) -> list[list[int]]:
     return [[int(rng.integers(size)) for size in BRANCHES] for _ in range(count)]
 
 
-def test_random_play_stays_within_all_bounds(game: Game) -> None:
+def test_random_play_stays_within_all_bounds(game: Simulation) -> None:
     low, high = game.level.bounds.low, game.level.bounds.high
     for seed in range(2):
         game.reset(seed)
@@ -44,7 +44,7 @@ def test_random_play_stays_within_all_bounds(game: Game) -> None:
             assert 0.0 <= game.health <= 1.0 and 0.0 <= signals["stamina"] <= 1.0
 
 
-def test_a_seed_reproduces_an_episode(game: Game) -> None:
+def test_a_seed_reproduces_an_episode(game: Simulation) -> None:
     runs = []
     for _ in range(2):
         game.reset(7)
@@ -59,11 +59,11 @@ def test_a_seed_reproduces_an_episode(game: Game) -> None:
     assert runs[0] == runs[1]
 
 
-def game_at(level: Level, place: Point) -> Game:
+def game_at(level: StealthLevel, place: Point) -> Simulation:
     """Return a game whose player starts at a place."""
     from tltlc.core.record import replace
 
-    return Game(replace(level, start=replace(level.start, position=place, spread=0.0)))
+    return Simulation(replace(level, start=replace(level.start, position=place, spread=0.0)))
 
 
 def test_a_switch_opens_its_barrier() -> None:
@@ -111,6 +111,6 @@ def test_each_level_supplies_the_signals_of_its_spec(name: str) -> None:
     level = load_level(name)
     file, _, spec = level.spec.partition(":")
     (fspa,) = (automaton for automaton in tltlc.compile_file(ROOT / "examples" / file) if automaton.name == spec)
-    game = Game(level)
+    game = Simulation(level)
     assert {signal.name for signal in fspa.signals} <= set(game.signals())
     game.close()

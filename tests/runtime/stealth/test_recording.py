@@ -98,7 +98,7 @@ def test_an_episode_is_a_copy_and_a_reset_starts_a_new_one(recorder: RecordEpiso
         (CLIMB, "success", True, 3),
     ],
 )
-def test_how_episodes_end(spec: str, end: str, success: bool, steps: int) -> None:
+def test_a_recording_says_how_the_episode_ended(spec: str, end: str, success: bool, steps: int) -> None:
     env = RecordEpisode(make_env("navigation", spec=spec))
     env.reset(seed=1)
     for _ in range(6):  # steps after the end are not recorded

@@ -14,8 +14,8 @@ from tltl_runtime.policies.card import Card
 from tltl_runtime.policies.file import read_policy
 from tltl_runtime.policies.fit import check_policy
 from tltl_runtime.policies.policy import Policy
-from tltl_runtime.stealth.level import Level, Sensors
-from tltl_runtime.stealth.observation.sensors import chosen
+from tltl_runtime.stealth.level import Sensors, StealthLevel
+from tltl_runtime.stealth.observation.sensors import choose_sensors
 from tltl_runtime.training.run.initial_policy import weights_hash
 from tltl_runtime.training.run.run_file import TrainingRun
 from tltl_runtime.training.run.settings import TrainingSettings
@@ -80,7 +80,7 @@ def with_policy_network(
 
 
 def check_initial_policy(
-    initial: InitialPolicyOptions, level: Level, fspa: Fspa, sensor_options: Mapping[str, Any]
+    initial: InitialPolicyOptions, level: StealthLevel, fspa: Fspa, sensor_options: Mapping[str, Any]
 ) -> Sensors:
     """Check the initial policy; return its sensors, which the agent uses.
 
@@ -114,10 +114,10 @@ def with_policy_path(run: TrainingRun, named: Path) -> TrainingRun:
 
 
 def _sensor_differences(
-    initial: InitialPolicyOptions, level: Level, sensor_options: Mapping[str, Any]
+    initial: InitialPolicyOptions, level: StealthLevel, sensor_options: Mapping[str, Any]
 ) -> Iterator[str]:
     """Yield a sentence for each option that asks for other sensors than those of the policy."""
-    own, sensors = initial.card.sensors, chosen(level, sensor_options) if sensor_options else initial.card.sensors
+    own, sensors = initial.card.sensors, choose_sensors(level, sensor_options) if sensor_options else initial.card.sensors
     for key in sensor_options:
         if getattr(sensors, key) != getattr(own, key):
             yield f"`{initial.path}` senses as `{option_of(key, own)}` says, not as `{option_of(key, sensors)}`"

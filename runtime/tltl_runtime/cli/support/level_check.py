@@ -11,13 +11,13 @@ from gymnasium import spaces
 
 from tltl_runtime.cli.support.sensor_options import senses_options
 from tltl_runtime.game.level_name import split_level
-from tltl_runtime.stealth.capabilities.capabilities import check_supply, given_params, used_entities
+from tltl_runtime.stealth.capabilities.capabilities import check_supply, params_from_level, used_entities
 from tltl_runtime.stealth.capabilities.feasible import check_height, check_reach
 from tltl_runtime.stealth.capabilities.reach import Reach, reachable
 from tltl_runtime.stealth.capabilities.spec_places import SpecPlaces
-from tltl_runtime.stealth.level import Level
+from tltl_runtime.stealth.level import StealthLevel
 from tltl_runtime.stealth.levels.file import level_names, read_level, variants
-from tltl_runtime.stealth.observation.observation import Senses
+from tltl_runtime.stealth.observation.observation import Observer
 from tltl_runtime.support.shown_path import path_text
 from tltlc.api import Diagnostic, Fspa, TltlError, cli, fileio
 
@@ -42,7 +42,7 @@ def command(
     if plan is not None and plan.suffix.lower() != ".png":
         raise click.UsageError(f"--plan writes a .png, not `{plan}`", click.get_current_context())
     check = _Check(inputs, settings, report, sensors)
-    checked: list[tuple[Level, Reach]] = []
+    checked: list[tuple[StealthLevel, Reach]] = []
     for path, variant in map(split_level, levels):
         for name in level_names() if path == "all" else (path,):
             try:
@@ -62,10 +62,10 @@ class _Check:
         self._inputs, self._settings, self._report, self._sensors = inputs, settings, report, sensors
         self._reported: set[object] = set()
 
-    def __call__(self, path: str, variant: str) -> tuple[Level, Reach]:
+    def __call__(self, path: str, variant: str) -> tuple[StealthLevel, Reach]:
         """Check one variant of a level and report the messages; return the level and what can be reached in it."""
         level, remarks = read_level(path, variant)
-        senses, reach = Senses(level, self._sensors), reachable(level)
+        senses, reach = Observer(level, self._sensors), reachable(level)
         warnings = [*remarks, *check_height(level, reach)]
         self._add(warnings)
         inputs = self._inputs or self._compile_own_spec(level)
@@ -83,7 +83,7 @@ class _Check:
         self._say(f"{level.name}: the agent senses {_sensor_text(senses)}")
         return level, reach
 
-    def _compile_own_spec(self, level: Level) -> list[cli.Input]:
+    def _compile_own_spec(self, level: StealthLevel) -> list[cli.Input]:
         """Compile the spec that a level is made for."""
         if not level.spec:
             advice = 'name one before --level, or in the level: `spec = "FILE.tltl:NAME"`'
@@ -104,7 +104,7 @@ class _Check:
             self._report.say(line)
 
 
-def _draw(path: Path, checked: list[tuple[Level, Reach]]) -> None:
+def _draw(path: Path, checked: list[tuple[StealthLevel, Reach]]) -> None:
     if len(checked) != 1:
         expected = "one level and variant, e.g. `--level navigation:v2`"
         raise click.UsageError(f"--plan is for {expected}; there are {len(checked)}", click.get_current_context())
@@ -120,15 +120,15 @@ def _specs(opened: cli.Input) -> Iterator[tuple[Fspa, SpecPlaces]]:
         yield fspa, SpecPlaces(specs.get(fspa.name))
 
 
-def _supply_text(level: Level, fspa: Fspa) -> str:
+def _supply_text(level: StealthLevel, fspa: Fspa) -> str:
     """Return, as text, the entities, other signals and params that a level supplies to a spec."""
     names = list(used_entities(level, fspa))
     names += [signal.name for signal in fspa.signals if "(" not in signal.name]
-    names += [f"{name} = {value:.4g} m" for name, value in given_params(level, fspa).items()]
+    names += [f"{name} = {value:.4g} m" for name, value in params_from_level(level, fspa).items()]
     return ", ".join(names) or "all that it needs, which is nothing,"
 
 
-def _sensor_text(senses: Senses) -> str:
+def _sensor_text(senses: Observer) -> str:
     """Return, as text, the parts of the observation that depend on the level, with their sizes."""
     sensors = senses.sensors
     names = {

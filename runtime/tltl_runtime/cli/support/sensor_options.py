@@ -24,7 +24,7 @@ def senses_options(command: Function) -> Function:
     """Add the options ``--entities``, ``--variables``, ``--map`` and their ``--no-`` forms to a command.
 
     The command gets ``sensors``, a mapping for
-    :func:`tltl_runtime.stealth.observation.sensors.chosen`.  Without options, it is empty: the level's
+    :func:`tltl_runtime.stealth.observation.sensors.choose_sensors`.  Without options, it is empty: the level's
     own sensors apply.
     """
 

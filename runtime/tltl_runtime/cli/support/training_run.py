@@ -31,7 +31,7 @@ from tltl_runtime.stealth.capabilities.vocabulary import params
 from tltl_runtime.stealth.env import check_fit
 from tltl_runtime.stealth.levels.file import level_path, load_level
 from tltl_runtime.stealth.levels.identity import level_hash
-from tltl_runtime.stealth.observation.sensors import chosen
+from tltl_runtime.stealth.observation.sensors import choose_sensors
 from tltl_runtime.support.number_text import duration
 from tltl_runtime.support.record_json import to_json
 from tltl_runtime.training.imitation.demonstrations import recordings
@@ -106,7 +106,7 @@ def new_run(options: TrainOptions, folder: Path | None) -> TrainingRun:
     check_limit(task.fspa)
     seed = options.seed or 0
     sensors = (
-        chosen(level, options.sensors or None)
+        choose_sensors(level, options.sensors or None)
         if initial is None
         else check_initial_policy(initial, level, task.fspa, options.sensors)
     )
@@ -301,7 +301,7 @@ def _differences(run: TrainingRun, options: TrainOptions, settings: TrainingSett
         yield f"{where} is by the method `{run.settings.method}`, not by `{options.method}`"
     if options.policy is not None and (difference := policy_difference(run, options.policy)):
         yield difference
-    sensors = chosen(load_level(run.level, run.variant), options.sensors) if options.sensors else run.sensors
+    sensors = choose_sensors(load_level(run.level, run.variant), options.sensors) if options.sensors else run.sensors
     # Sensors without an option stay as they are in the training, whatever the level's own sensors are.
     for key in options.sensors:
         if getattr(sensors, key) != getattr(run.sensors, key):

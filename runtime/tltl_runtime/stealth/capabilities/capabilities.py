@@ -7,10 +7,10 @@ from math import inf, isclose
 from typing import Final
 
 from tltl_runtime.stealth.capabilities.spec_places import SpecPlaces
-from tltl_runtime.stealth.capabilities.vocabulary import OfferedSignal, offers, params
-from tltl_runtime.stealth.level import Level, entity_names
-from tltl_runtime.stealth.levels.made_for import comes_with_the_package
-from tltl_runtime.stealth.signals import described
+from tltl_runtime.stealth.capabilities.vocabulary import OfferedSignal, offered_signals, params
+from tltl_runtime.stealth.level import StealthLevel, entity_names
+from tltl_runtime.stealth.levels.made_for import is_packaged
+from tltl_runtime.stealth.signals import signal_list
 from tltl_runtime.stealth.world.player import DECISION
 from tltl_runtime.support.suggestion import suggestion
 from tltlc.api import Diagnostic, Fspa, Signal, TltlError, monitors, specs
@@ -21,19 +21,20 @@ _KIND_OF: Final = {"active": "switch", "open": "barrier"}
 _ARTICLE: Final = {"angle": "an angle"}
 
 
-def check_supply(level: Level, fspa: Fspa, places: SpecPlaces) -> list[Diagnostic]:
+def check_supply(level: StealthLevel, fspa: Fspa, places: SpecPlaces) -> list[Diagnostic]:
     """Return diagnostics for everything that a spec uses and a level does not supply.
 
-    TLT0810, an entity is missing; TLT0811, a signal is missing; TLT0812, a signal has another type
-    (a warning: another range); TLT0813, a warning: the spec is made for another level; TLT0617,
-    another clock; TLT0307, the level's value of a param is outside the param's range.
+    Errors: TLT0810, an entity is missing; TLT0811, a signal is missing; TLT0812, a signal has
+    another type; TLT0617, the spec has another clock; TLT0307, the level's value of a param is
+    outside the param's range. Warnings: TLT0812, a signal has another range; TLT0813, the spec is
+    made for another level.
     """
-    diagnostics = [*_signals(level, fspa, places)]
+    diagnostics = [*_check_signals(level, fspa, places)]
     if fspa.level is not None and fspa.level != level.name:
         title = f"`{fspa.name}` is made for the level `{fspa.level}`, not for `{level.name}`"
         help_ = f"write `level {level.name}` in the spec, where it is made for that one"
         labels = places.level()
-        if labels and comes_with_the_package(labels[0].source.name):
+        if labels and is_packaged(labels[0].source.name):
             help_ = (
                 f"this spec comes with tltlc: `tltlc new FOLDER --level {fspa.level}` copies it with its level; "
                 f"write `level {level.name}` in the copy, and put that beside `{level.name}.toml`"
@@ -44,26 +45,26 @@ def check_supply(level: Level, fspa: Fspa, places: SpecPlaces) -> list[Diagnosti
         help_ = f"write `clock {DECISION:g} s` in the specification"
         diagnostics.append(Diagnostic("TLT0617", title, places.clock(), help_))
     try:
-        monitors.param_values(fspa.params, given_params(level, fspa))
+        monitors.param_values(fspa.params, params_from_level(level, fspa))
     except TltlError as error:
         diagnostics += error.diagnostics
     return diagnostics
 
 
-def given_params(level: Level, fspa: Fspa) -> dict[str, float]:
+def params_from_level(level: StealthLevel, fspa: Fspa) -> dict[str, float]:
     """Return the values, in SI units, of the spec's params that the level defines."""
     declared = {param.name for param in fspa.params}
     return {name: value for name, value in params(level).items() if name in declared}
 
 
-def used_entities(level: Level, fspa: Fspa) -> tuple[str, ...]:
+def used_entities(level: StealthLevel, fspa: Fspa) -> tuple[str, ...]:
     """Return the entities of the level that the signals of a spec name, in the spec's order."""
     entities = entity_names(level)
     return tuple(dict.fromkeys(name for signal in fspa.signals for name in signal.arguments if name in entities))
 
 
-def _signals(level: Level, fspa: Fspa, places: SpecPlaces) -> Iterator[Diagnostic]:
-    offered, entities = offers(level), entity_names(level)
+def _check_signals(level: StealthLevel, fspa: Fspa, places: SpecPlaces) -> Iterator[Diagnostic]:
+    offered, entities = offered_signals(level), entity_names(level)
     missing: set[str] = set()
     for signal in fspa.signals:
         unknown = [name for name in signal.arguments if name not in entities]
@@ -75,16 +76,18 @@ def _signals(level: Level, fspa: Fspa, places: SpecPlaces) -> Iterator[Diagnosti
         if unknown:
             continue
         if signal.name in offered:
-            yield from _mismatch(signal, offered[signal.name], level, places)
+            yield from _check_declaration(signal, offered[signal.name], level, places)
         else:
             title = f"the level `{level.name}` has no signal `{signal.name}`"
             yield Diagnostic("TLT0811", title, places.signal(signal.name), _hint(signal, level, offered))
 
 
-def _mismatch(signal: Signal, offer: OfferedSignal, level: Level, places: SpecPlaces) -> Iterator[Diagnostic]:
-    """Report differences between a signal as the spec declares it and as the level supplies it."""
-    bool_wanted = signal.type == "bool" and offer.type != "bool"
-    if bool_wanted or specs.TYPES[signal.type] != specs.TYPES[offer.type]:
+def _check_declaration(
+    signal: Signal, offer: OfferedSignal, level: StealthLevel, places: SpecPlaces
+) -> Iterator[Diagnostic]:
+    """Yield TLT0812 if the level supplies a signal with another type or range than the spec declares."""
+    needs_bool = signal.type == "bool" and offer.type != "bool"
+    if needs_bool or specs.TYPES[signal.type] != specs.TYPES[offer.type]:
         title = (
             f"`{signal.name}` is {_with_article(signal.type)} in the spec, "
             f"and the level `{level.name}` gives {_with_article(offer.type)}"
@@ -97,18 +100,18 @@ def _mismatch(signal: Signal, offer: OfferedSignal, level: Level, places: SpecPl
     if least < low or most > high:
         title = (
             f"`{signal.name}` is in {monitors.range_text(signal.low, signal.high)} in the spec, "
-            f"and in {monitors.range_text(*_rounded(offer))} in the level `{level.name}`"
+            f"and in {monitors.range_text(*_rounded_range(offer))} in the level `{level.name}`"
         )
         help_ = "widen its range: a value outside counts as the nearest one inside"
         yield Diagnostic("TLT0812", title, places.declaration(signal.name), help_, "warning")
 
 
-def _hint(signal: Signal, level: Level, offered: dict[str, OfferedSignal]) -> str:
+def _hint(signal: Signal, level: StealthLevel, offered: dict[str, OfferedSignal]) -> str:
     if signal.arguments and signal.base in _KIND_OF:
         kind = _KIND_OF[signal.base]
         known = [entity.name for entity in (level.switches if kind == "switch" else level.barriers)]
         return f"it is for a {kind}: {suggestion(', '.join(signal.arguments), known)}"
-    known_names = suggestion(signal.name, offered, described(level))
+    known_names = suggestion(signal.name, offered, signal_list(level))
     return f"{known_names}\nunder `[signals]` a level gives its signals further names"
 
 
@@ -116,7 +119,7 @@ def _ends(low: float | None, high: float | None) -> tuple[float, float]:
     return -inf if low is None else low - 1e-6, inf if high is None else high + 1e-6
 
 
-def _rounded(offer: OfferedSignal) -> tuple[float | None, float | None]:
+def _rounded_range(offer: OfferedSignal) -> tuple[float | None, float | None]:
     return (None if offer.low is None else round(offer.low, 3)), (None if offer.high is None else round(offer.high, 3))
 
 

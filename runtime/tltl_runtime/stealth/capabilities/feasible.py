@@ -1,4 +1,4 @@
-"""Check whether a spec can be met in a level, as far as that depends on what can be reached."""
+"""Check whether a player can reach enough of a level to meet a spec."""
 
 from __future__ import annotations
 
@@ -6,44 +6,41 @@ from collections.abc import Iterable, Mapping
 from math import inf
 from typing import Final
 
-from tltl_runtime.stealth.capabilities.capabilities import given_params, used_entities
+from tltl_runtime.stealth.capabilities.capabilities import params_from_level, used_entities
 from tltl_runtime.stealth.capabilities.reach import Reach, highest_jump, highest_lift, reachable
 from tltl_runtime.stealth.capabilities.space import Budget, SpaceBudgetError
 from tltl_runtime.stealth.capabilities.spec_places import SpecPlaces
-from tltl_runtime.stealth.capabilities.vocabulary import offers
-from tltl_runtime.stealth.level import Level
+from tltl_runtime.stealth.capabilities.vocabulary import offered_signals
+from tltl_runtime.stealth.level import StealthLevel
 from tltl_runtime.stealth.world.player import PlayerKind
 from tltlc.api import Diagnostic, Fspa, Severity, TltlError, expressions, fileio, ranges, replace
 
-_TALLER: Final = 0.25
-"""The step, in metres, by which jumps are raised in search of the obstacle that is too high."""
+_LIFT_STEP: Final = 0.25
+"""The search for an obstacle that is too high raises the jumps in steps of this height, in metres."""
 
 
-def check_reach(level: Level, reach: Reach, fspa: Fspa, places: SpecPlaces) -> list[Diagnostic]:
-    """Return TLT0814 for each entity of a spec that cannot be reached.
+def check_reach(level: StealthLevel, reach: Reach, fspa: Fspa, places: SpecPlaces) -> list[Diagnostic]:
+    """Return TLT0814 for each entity of a spec that no player can reach.
 
-    It is an error if the spec cannot be met without the entity, else a warning. The level must
-    supply everything that the spec uses.
+    The diagnostics are errors if the spec cannot be met for this reason, else warnings. The level
+    must supply everything that the spec uses.
     """
-    unreached = [name for name in used_entities(level, fspa) if not reach.reaches(name)]
-    if not unreached:
+    unreachable = [name for name in used_entities(level, fspa) if not reach.reaches(name)]
+    if not unreachable:
         return []
-    feasible = _may_accept(fspa, _impossible(level, reach, fspa))
-    ways = _Ways(level, reach)
+    feasible = _may_accept(fspa, _impossible_atoms(level, reach, fspa))
+    obstacle_search = _ObstacleSearch(level, reach)
     diagnostics = []
-    for name in unreached:
+    for name in unreachable:
         title = f"nobody reaches `{name}` in `{level.name}:{level.variant}`"
         title += "" if feasible else f", so nobody can do what `{fspa.name}` asks"
         severity: Severity = "warning" if feasible else "error"
-        diagnostics.append(Diagnostic("TLT0814", title, places.entity(name), ways.end(name), severity))
+        diagnostics.append(Diagnostic("TLT0814", title, places.entity(name), obstacle_search.describe(name), severity))
     return diagnostics
 
 
-def check_height(level: Level, reach: Reach) -> list[Diagnostic]:
-    """Return a warning, TLT0806, if a jump may lead out of a level.
-
-    Leaving the level would end the episode with an error.
-    """
+def check_height(level: StealthLevel, reach: Reach) -> list[Diagnostic]:
+    """Return a warning, TLT0806, if a jump may lead out of a level, which ends an episode with an error."""
     jump = reach.highest + highest_jump(PlayerKind())
     top = level.bounds.high[2]
     if jump <= top:
@@ -54,11 +51,10 @@ def check_height(level: Level, reach: Reach) -> list[Diagnostic]:
     return [Diagnostic("TLT0806", title, help=f"let them end above {jump + 0.01:.2f} m", severity="warning")]
 
 
-def reach_warnings(level: Level, fspa: Fspa) -> list[Diagnostic]:
-    """Return the results of :func:`check_reach` as warnings, for play.
+def reach_warnings(level: StealthLevel, fspa: Fspa) -> list[Diagnostic]:
+    """Return the results of :func:`check_reach` as warnings, because one may play a level whose spec cannot be met.
 
-    A level may be played even if its spec cannot be met. If a level is too large to search, the
-    result is a warning, too, TLT0006.
+    If the level is too large to search, return TLT0006 as a warning.
     """
     try:
         diagnostics: Iterable[Diagnostic] = check_reach(level, reachable(level), fspa, SpecPlaces(None))
@@ -67,10 +63,10 @@ def reach_warnings(level: Level, fspa: Fspa) -> list[Diagnostic]:
     return [replace(diagnostic, severity="warning") for diagnostic in diagnostics]
 
 
-def is_infeasible(level: Level, fspa: Fspa) -> bool:
-    """Return whether no player can meet the spec; :func:`reach_warnings` say why.
+def is_infeasible(level: StealthLevel, fspa: Fspa) -> bool:
+    """Return whether no player can meet the spec; :func:`reach_warnings` says why.
 
-    False if the level is too large to be searched.
+    Return False if the level is too large to search.
     """
     try:
         diagnostics = check_reach(level, reachable(level), fspa, SpecPlaces(None))
@@ -79,9 +75,9 @@ def is_infeasible(level: Level, fspa: Fspa) -> bool:
     return any(diagnostic.severity == "error" for diagnostic in diagnostics)
 
 
-def _impossible(level: Level, reach: Reach, fspa: Fspa) -> frozenset[int]:
-    """The indices of the atoms that cannot hold at any reachable place."""
-    offered = offers(level)
+def _impossible_atoms(level: StealthLevel, reach: Reach, fspa: Fspa) -> frozenset[int]:
+    """Return the indices of the atoms that cannot hold at any reachable place."""
+    offered = offered_signals(level)
     box: dict[ranges.Variable, ranges.Interval] = {}
     for signal in fspa.signals:
         offer = offered[signal.name]
@@ -91,19 +87,19 @@ def _impossible(level: Level, reach: Reach, fspa: Fspa) -> frozenset[int]:
         # A sample outside the declared range is clamped to it.
         least, most = _ends(signal.low, signal.high)
         box[expressions.SignalValue(signal.name)] = (min(max(low, least), most), min(max(high, least), most))
-    known_params = given_params(level, fspa)
+    known_params = params_from_level(level, fspa)
     for param in fspa.params:
         value = known_params.get(param.name, param.value)
         box[expressions.ParamValue(param.name)] = (value, value)
-    return frozenset(index for index, atom in enumerate(fspa.atoms) if _highest(atom.expression, box) <= 0.0)
+    return frozenset(index for index, atom in enumerate(fspa.atoms) if _upper_bound(atom.expression, box) <= 0.0)
 
 
 def _ends(low: float | None, high: float | None) -> ranges.Interval:
     return -inf if low is None else low, inf if high is None else high
 
 
-def _highest(expression: expressions.Expression, box: Mapping[ranges.Variable, ranges.Interval]) -> float:
-    """An upper bound of an expression in a box."""
+def _upper_bound(expression: expressions.Expression, box: Mapping[ranges.Variable, ranges.Interval]) -> float:
+    """Return an upper bound of an expression in a box; infinity if the bound is unknown."""
     highest = -inf
     try:
         for case in ranges.cases(expression):
@@ -135,25 +131,25 @@ def _may_accept(fspa: Fspa, impossible: frozenset[int]) -> bool:
 # --- what is in the way ------------------------------------------------------------------------------
 
 
-class _Ways:
-    """Finds the obstacle before an entity, by searching changed versions of the level."""
+class _ObstacleSearch:
+    """Finds the obstacle in the way to an entity, by searching changed versions of the level."""
 
-    def __init__(self, level: Level, reach: Reach) -> None:
+    def __init__(self, level: StealthLevel, reach: Reach) -> None:
         self._level, self._reach = level, reach
-        self._higher: dict[float, Reach] = {highest_lift(PlayerKind()): reach}
-        self._without: dict[str, Reach] = {}
+        self._by_lift: dict[float, Reach] = {highest_lift(PlayerKind()): reach}
+        self._by_removed: dict[str, Reach] = {}
         self._budget = Budget(fileio.limits.WORK["cells of reachable space"])
 
-    def end(self, entity: str) -> str:
-        """Describe what blocks the way to an unreachable entity, as far as the budget allows."""
+    def describe(self, entity: str) -> str:
+        """Describe what blocks the way to an unreachable entity; if the budget is spent, how near the player gets."""
         nearest = f"one gets no nearer to it than {self._reach.distances[entity]:.1f} m"
         try:
-            return self._shut(entity) or self._too_high(entity) or nearest
+            return self._describe_barrier(entity) or self._describe_high_solid(entity) or nearest
         except SpaceBudgetError:
             return nearest
 
-    def _shut(self, entity: str) -> str:
-        """Describe the barrier in the way and why it stays shut; empty if there is none."""
+    def _describe_barrier(self, entity: str) -> str:
+        """Describe the barrier in the way and why it stays shut; return an empty text if there is none."""
         shut = [barrier for barrier in self._level.barriers if barrier.name not in self._reach.barriers]
         unlocked_by = {name: (unlock.switch,) for unlock in self._level.unlocks for name in unlock.barriers}
         for barrier in shut:
@@ -164,28 +160,28 @@ class _Ways:
                 return f"`{barrier.name}` stays shut: it is opened by `{missing}`, {location}"
         return ""
 
-    def _too_high(self, entity: str) -> str:
-        """Describe the solid that is too high to jump over, or return an empty text.
+    def _describe_high_solid(self, entity: str) -> str:
+        """Describe the solid that is too high to jump over; return an empty text if there is none.
 
-        It is found by trying ever higher jumps.
+        The search tries ever higher jumps.
         """
         lift = normal = highest_lift(PlayerKind())
-        while lift < self._level.bounds.high[2] and not self._jumping(lift).reaches(entity):
-            lift += _TALLER
-        if self._jumping(lift).reaches(entity):
+        while lift < self._level.bounds.high[2] and not self._reach_with_lift(lift).reaches(entity):
+            lift += _LIFT_STEP
+        if self._reach_with_lift(lift).reaches(entity):
             for solid in self._level.solids:
                 height = solid.box.high[2] - solid.box.low[2]
                 if normal < height <= lift and self._is_behind(entity, solid.name):
                     return f"the way ends at `{solid.name}`, which is {height:g} m high"
         return ""
 
-    def _jumping(self, lift: float) -> Reach:
-        if lift not in self._higher:
-            self._higher[lift] = reachable(self._level, lift=lift, budget=self._budget)
-        return self._higher[lift]
+    def _reach_with_lift(self, lift: float) -> Reach:
+        if lift not in self._by_lift:
+            self._by_lift[lift] = reachable(self._level, lift=lift, budget=self._budget)
+        return self._by_lift[lift]
 
     def _is_behind(self, entity: str, obstacle: str) -> bool:
         """Whether an entity could be reached if a solid or barrier were removed."""
-        if obstacle not in self._without:
-            self._without[obstacle] = reachable(self._level, without=[obstacle], budget=self._budget)
-        return self._without[obstacle].reaches(entity)
+        if obstacle not in self._by_removed:
+            self._by_removed[obstacle] = reachable(self._level, without=[obstacle], budget=self._budget)
+        return self._by_removed[obstacle].reaches(entity)

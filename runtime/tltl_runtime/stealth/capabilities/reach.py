@@ -5,14 +5,14 @@ physics and :class:`~tltl_runtime.stealth.world.player.PlayerKind` err on the si
 much (tests check some of them in the physics):
 
 - The body is always crouched, 0.9 m high, and extends 0.25 m to each side, not 0.3 m.
-- The top of any box is ground. So is the space up to 0.28 m beside it and 0.16 m below it, where
-  contact with its edge counts as ground.
+- The top of any box is ground. So is the space up to 0.28 m beside the top and 0.16 m below it, where
+  contact with the edge of the box counts as ground.
 - From ground, the feet can get to tops that are at most 1.27 m higher: a jump lifts them by 0.97 m
   (in steps of 1/60 s), and an edge more than 0.3 m above them hits the side of the body, not its
   round end, which would slide up. (In tests, a top of 1.1 m is nearly always reached, one of 1.2 m
   in one of a hundred tries, one of 1.24 m never.)
-- Until the next ground, the player moves at most at the speed of a sprint, 5 m/s, whatever the
-  stamina. A fall lasts no longer than one that goes on at 8 m/s once it is that fast.
+- In the air, the player moves at most at the speed of a sprint, 5 m/s, whatever the stamina. A fall
+  gets no faster than 8 m/s, so it lasts longer than in the physics.
 - Movers block nothing. Their tops are ground along their whole path, and they throw a player who
   stands on them upwards with their own speed plus 3 m/s.
 - Lasers and enemies stop nobody. Barriers are shut until their switches have been reached; if one
@@ -37,7 +37,7 @@ from tltl_runtime.stealth.capabilities.space import (
     flood,
     span,
 )
-from tltl_runtime.stealth.level import Box, Level, Mover, fixed_places
+from tltl_runtime.stealth.level import Box, Mover, StealthLevel, fixed_places
 from tltl_runtime.stealth.world.player import PlayerKind
 from tltlc.api import Diagnostic, TltlError, fileio, record
 
@@ -82,16 +82,16 @@ class Reach:
 
 
 def reachable(
-    level: Level, *, lift: float | None = None, without: Collection[str] = (), budget: Budget | None = None
+    level: StealthLevel, *, lift: float | None = None, without: Collection[str] = (), budget: Budget | None = None
 ) -> Reach:
     """Compute everything that a player may reach from any start of an episode.
 
     ``lift`` is how much higher than the last ground the next ground may be, in metres, by default
-    :func:`highest_lift`; the solids and barriers in ``without`` are removed.
+    :func:`highest_lift`. ``without`` names solids and barriers that are removed before the search.
 
     Raises:
         TltlError: TLT0006, the level is too large or too complex to search.
-        SpaceBudgetError: the same, if ``budget`` is given.
+        SpaceBudgetError: the search exceeds ``budget``; only if one is given, in place of TLT0006.
     """
     if budget is not None:
         return _reachable(level, lift, without, budget)
@@ -103,7 +103,7 @@ def reachable(
         raise TltlError([Diagnostic("TLT0006", title, help=help_)]) from None
 
 
-def _reachable(level: Level, lift: float | None, without: Collection[str], budget: Budget) -> Reach:
+def _reachable(level: StealthLevel, lift: float | None, without: Collection[str], budget: Budget) -> Reach:
     kind = PlayerKind()
     search = _Search(level, kind, highest_lift(kind) if lift is None else lift, without, budget)
     switches: set[str] = set()
@@ -138,10 +138,7 @@ def _reachable(level: Level, lift: float | None, without: Collection[str], budge
 
 
 def highest_lift(kind: PlayerKind) -> float:
-    """Return the greatest rise from ground to ground, in metres.
-
-    It is the height of a jump plus the radius of the capsule's round end.
-    """
+    """Return the greatest rise from ground to ground, in metres: a jump plus the radius of the capsule's end."""
     return highest_jump(kind) + kind.radius
 
 
@@ -157,7 +154,9 @@ def highest_jump(kind: PlayerKind) -> float:
 class _Search:
     """The reached ground, by height, and the space around it."""
 
-    def __init__(self, level: Level, kind: PlayerKind, lift: float, without: Collection[str], budget: Budget) -> None:
+    def __init__(
+        self, level: StealthLevel, kind: PlayerKind, lift: float, without: Collection[str], budget: Budget
+    ) -> None:
         self._kind, self._lift = kind, lift
         self._solids = [solid.box for solid in level.solids if solid.name not in without]
         self._barriers = {
@@ -167,7 +166,7 @@ class _Search:
         }
         barriers = self._barriers.values()
         tops = [_Top(box, box.high[2], box.high[2]) for box in (*self._solids, *barriers)]
-        tops += [_ride(mover, kind.gravity) for mover in level.movers]
+        tops += [_mover_top(mover, kind.gravity) for mover in level.movers]
         start = level.start.position
         heights = {z for top in tops for z in (top.lowest, top.height)} | {start[2]}
         cuts = [z for height in heights for z in (height - _EDGE_DEPTH, height + _TOUCH, height + lift)]
@@ -178,9 +177,9 @@ class _Search:
             if top.lowest < level.bounds.high[2] - _TOUCH:
                 key = round(top.lowest, 6), round(top.height, 6)
                 near = self._tops.setdefault(key, np.zeros(self.grid.shape[1:], dtype=np.bool_))
-                near |= self.grid.over(top.box, _EDGE)
+                near |= self.grid.cells_near(top.box, _EDGE)
         x, y, z = start
-        around = self.grid.over(Box((x, y, z), (x, y, z)), level.start.spread)
+        around = self.grid.cells_near(Box((x, y, z), (x, y, z)), level.start.spread)
         self._ground: dict[float, Field] = {z: around}
         self._space: Space = np.zeros(self.grid.shape, dtype=np.bool_)
 
@@ -196,7 +195,7 @@ class _Search:
     def spread(self, opened: Collection[str]) -> Space:
         """Extend the reached ground while these barriers are open; return the space of the feet."""
         shut = [box for name, box in self._barriers.items() if name not in opened]
-        free = self.grid.free([*self._solids, *shut])
+        free = self.grid.free_space([*self._solids, *shut])
         pending = {height: ground.copy() for height, ground in self._ground.items() if ground.any()}
         while pending:
             height, fresh = pending.popitem()
@@ -241,9 +240,9 @@ class _Search:
         return (rows, columns), flood(allowed, seeds, grid.budget)
 
     def _time(self, drop: float) -> float:
-        """The longest time from ground to ``drop`` metres below it.
+        """Return the longest time, in seconds, from ground to ``drop`` metres below it.
 
-        It starts with a jump that lifts the feet by the full lift.
+        The flight starts with a jump that lifts the feet by the full lift.
         """
         speed, gravity, fastest = sqrt(2 * self._kind.gravity * self._lift), self._kind.gravity, self._kind.fall_speed
         until_fastest = (speed + fastest) / gravity
@@ -262,8 +261,8 @@ class _Top:
     height: float
 
 
-def _ride(mover: Mover, gravity: float) -> _Top:
-    """The surface of a mover, swept along its whole path."""
+def _mover_top(mover: Mover, gravity: float) -> _Top:
+    """Return the top of a mover, swept along its whole path."""
     lows = [min(point[axis] for point in mover.path) - mover.size[axis] / 2 for axis in range(3)]
     highs = [max(point[axis] for point in mover.path) + mover.size[axis] / 2 for axis in range(3)]
     swept = Box((lows[0], lows[1], lows[2]), (highs[0], highs[1], highs[2]))

@@ -1,8 +1,9 @@
-"""The free space of a level for the player's feet, cut into boxes; no free space is left out.
+"""The space of a level where the player's feet can be, cut into boxes.
 
-The level is cut into square cells and, in height, at every value where an obstacle starts or stops
-being in the way, so that heights are exact. A box of space is free if the body fits with its feet
-anywhere in it. The body is the crouched one, 5 cm narrower than in the game, with two round ends.
+The level is cut into square cells and, by height, into slabs. A slab ends at every height where an
+obstacle begins or ceases to be in the way, so that heights are exact. A box of space counts as free
+unless it is certain that the body fits nowhere in it, so no free space is left out. The body is the
+crouched one, 5 cm narrower than in the game, with two round ends.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from tltl_runtime.stealth.level import Box, Point
 from tltl_runtime.stealth.world.player import PlayerKind
 
 CELL: Final = 0.25
-"""The side of a cell, in metres; doubled until there are at most ``_MOST_BOXES`` boxes."""
+"""The side of a cell, in metres; it is doubled until there are at most ``_MOST_BOXES`` boxes."""
 
 _MOST_BOXES: Final = 30_000_000
 """The most boxes of space, over all slabs."""
@@ -26,9 +27,9 @@ _MOST_BOXES: Final = 30_000_000
 _WIDTHS: Final = (0.25, 0.15)
 """Distances from the body's axis within which a box is in the way, in metres.
 
-The body is 5 cm narrower here, because no contact in the physics is deeper. Its round ends are
-shorter away from the axis, so nearer boxes are in the way at more heights; two widths approximate
-this well enough.
+The body is 5 cm narrower here, because no contact in the physics is deeper. Its ends are round, so
+the body is shorter farther from its axis, and nearer boxes are in the way at more heights. Two widths
+approximate this well enough.
 """
 
 _ROUNDING: Final = 1e-5
@@ -41,19 +42,19 @@ Space = NDArray[np.bool_]
 
 
 class SpaceBudgetError(Exception):
-    """A search has examined more cells of space than its budget allows."""
+    """A search would examine more cells of space than its budget allows."""
 
 
 class Budget:
     """Counts the cells of space that a search examines; raises SpaceBudgetError beyond ``most``."""
 
     def __init__(self, most: int) -> None:
-        self._left = most
+        self._remaining = most
 
     def spend(self, cells: int) -> None:
         """Count cells as examined."""
-        self._left -= cells
-        if self._left < 0:
+        self._remaining -= cells
+        if self._remaining < 0:
             raise SpaceBudgetError
 
 
@@ -74,9 +75,9 @@ class SpaceGrid:
         (x0, y0, z0), (x1, y1, z1) = bounds.low, bounds.high
         self.origin = (x0, y0)
         self._widths = [(width, kind.radius - sqrt(kind.radius**2 - width**2)) for width in _WIDTHS]
-        """For each width, how much shorter the body is at each end, that far from its axis."""
+        """Each width, with how much shorter the body is at each end, that far from its axis."""
         self._height = kind.crouched_height
-        ends = {z for box in boxes for _, shorter in self._widths for z in self._in_the_way(box, shorter)}
+        ends = {z for box in boxes for _, shorter in self._widths for z in self._blocked_heights(box, shorter)}
         inside = sorted({round(z, 6) for z in (*ends, *cuts) if z0 < z < z1})
         self.lows, self.highs = np.array([z0, *inside]), np.array([*inside, z1])
         self.cell = CELL
@@ -86,7 +87,7 @@ class SpaceGrid:
         self.south = y0 + self.cell * np.arange(int(np.ceil((y1 - y0) / self.cell - 1e-6)))
         self.shape = (len(self.lows), len(self.south), len(self.west))
 
-    def free(self, boxes: Iterable[Box]) -> Space:
+    def free_space(self, boxes: Iterable[Box]) -> Space:
         """Return the space that boxes leave free."""
         self.budget.spend(prod(self.shape))
         free: Space = np.ones(self.shape, dtype=np.bool_)
@@ -98,13 +99,13 @@ class SpaceGrid:
             rows, columns = span(dy < max(_WIDTHS)), span(dx < max(_WIDTHS))
             apart = dx[None, columns] ** 2 + dy[rows, None] ** 2
             for width, shorter in self._widths:
-                low, high = self._in_the_way(box, shorter)
+                low, high = self._blocked_heights(box, shorter)
                 slabs = span((self.lows >= low - _ROUNDING) & (self.highs <= high + _ROUNDING))
                 self.budget.spend((slabs.stop - slabs.start) * apart.size)
                 free[slabs, rows, columns] &= apart >= width * width
         return free
 
-    def over(self, box: Box, reach: float) -> Field:
+    def cells_near(self, box: Box, reach: float) -> Field:
         """Return the cells that have a point within ``reach`` of a box, seen from above."""
         self.budget.spend(self.shape[1] * self.shape[2])
         dx = np.maximum(np.maximum(box.low[0] - self.west - self.cell, self.west - box.high[0]), 0.0)
@@ -119,35 +120,41 @@ class SpaceGrid:
 
     def distance(self, space: Space, point: Point, most: float = inf) -> float:
         """Return the least distance from a space to a point; infinite if more than ``most``."""
-        away = [_away(lows, highs, value) for (lows, highs), value in zip(self._ends(), point[::-1], strict=True)]
+        offsets_by_axis = [
+            _interval_distances(lows, highs, value)
+            for (lows, highs), value in zip(self._ends(), point[::-1], strict=True)
+        ]
         radius = min(self.cell, most)
         while True:
             # Search only the part of the space within the radius first; most searches end in a small part.
-            part = tuple(span(offsets <= radius) for offsets in away)
-            slabs, rows, columns = (offsets[within] ** 2 for offsets, within in zip(away, part, strict=True))
+            part = tuple(span(offsets <= radius) for offsets in offsets_by_axis)
+            slabs, rows, columns = (offsets[within] ** 2 for offsets, within in zip(offsets_by_axis, part, strict=True))
             self.budget.spend(slabs.size * rows.size * columns.size)
             apart = slabs[:, None, None] + rows[:, None] + columns
             nearest = float(np.sqrt(np.min(apart, where=space[part], initial=inf)))
             if nearest <= radius:
                 return nearest
-            if radius >= min(most, max(float(offsets.max()) for offsets in away)):
+            if radius >= min(most, max(float(offsets.max()) for offsets in offsets_by_axis)):
                 return nearest if nearest <= most else inf
             radius = min(4 * radius, most)
 
     def _ends(self) -> list[tuple[NDArray[np.float64], NDArray[np.float64]]]:
-        """The low and high ends of slabs, rows and columns."""
+        """Return the low and high ends of slabs, rows and columns, in metres."""
         rows, columns = (self.south, self.south + self.cell), (self.west, self.west + self.cell)
         return [(self.lows, self.highs), rows, columns]
 
-    def _in_the_way(self, box: Box, shorter: float) -> tuple[float, float]:
-        """The heights of the feet at which a near box blocks a body shortened at both ends."""
+    def _blocked_heights(self, box: Box, shorter: float) -> tuple[float, float]:
+        """Return the least and greatest height of the feet at which a box near the body's axis blocks it.
+
+        The body is shortened by ``shorter`` metres at both ends.
+        """
         return box.low[2] - self._height + shorter, box.high[2] - shorter
 
 
-def _away(lows: NDArray[np.float64], highs: NDArray[np.float64], value: float) -> NDArray[np.float64]:
-    """The distances of a value from intervals."""
-    away: NDArray[np.float64] = np.maximum(np.maximum(lows - value, value - highs), 0.0)
-    return away
+def _interval_distances(lows: NDArray[np.float64], highs: NDArray[np.float64], value: float) -> NDArray[np.float64]:
+    """Return the distance of a value from each interval; 0 inside."""
+    offsets_by_axis: NDArray[np.float64] = np.maximum(np.maximum(lows - value, value - highs), 0.0)
+    return offsets_by_axis
 
 
 def flood(free: Space, seeds: Space, budget: Budget) -> Space:
@@ -170,7 +177,10 @@ def flood(free: Space, seeds: Space, budget: Budget) -> Space:
 
 
 def _runs(free: Space) -> tuple[NDArray[np.int32], int]:
-    """Number the runs of free boxes along the last axis: free neighbours have the same number."""
+    """Number the runs of free boxes along the last axis, so that free neighbours have the same number.
+
+    Return the numbers and their count.
+    """
     starts = ~free
     starts[..., 0] = True
     ids = np.cumsum(starts.reshape(-1), dtype=np.int32).reshape(free.shape) - 1
@@ -178,10 +188,10 @@ def _runs(free: Space) -> tuple[NDArray[np.int32], int]:
 
 
 def distances(field: Field, most: int) -> NDArray[np.float64]:
-    """The distance in cells from each cell to the nearest cell of a field.
+    """Return the distance, in cells, from each cell to the nearest cell of a field.
 
-    It is measured between the nearest points of the two cells. The distance is infinite if it is
-    ``most`` or more.
+    It is measured between the nearest points of the two cells. A distance of ``most`` or more is
+    infinite in the result.
     """
     rows, columns = field.shape
     places = np.arange(columns, dtype=np.float64)

@@ -8,34 +8,35 @@ from tltlc.api import Label, Span, Spec, expressions, syntax
 
 
 class SpecPlaces:
-    """The labels of things in the source of a spec; the default is the label of the spec's name.
+    """The labels of things in the source of a spec, for diagnostics.
 
-    Without a ``spec``, for an artefact, there are no labels.
+    A thing that the source does not mention has the label of the spec's name. An artefact has no
+    source: then ``spec`` is None, and there are no labels.
     """
 
     def __init__(self, spec: Spec | None) -> None:
         self._spec = spec
-        self._all: Sequence[syntax.Declaration] = syntax.parse(spec.source)[0].declarations if spec else ()
-        self._own = [
+        self._declarations: Sequence[syntax.Declaration] = syntax.parse(spec.source)[0].declarations if spec else ()
+        self._declarations_of_spec = [
             declaration
-            for declaration in self._all
+            for declaration in self._declarations
             if isinstance(declaration, syntax.SpecDecl) and spec and declaration.name == spec.name
         ]
 
     def entity(self, name: str) -> tuple[Label, ...]:
-        """Return the first use of an entity in the spec, else in another declaration.
+        """Return the first use of an entity in the spec, else its first use in another declaration.
 
         If nothing uses the entity, return its declaration.
         """
         declared = (
             entity
-            for declaration in self._all
+            for declaration in self._declarations
             if isinstance(declaration, syntax.EntityDecl)
             for entity in declaration.names
         )
         return self._label(
-            _use(self._own, name)
-            or _use(self._all, name)
+            _first_use(self._declarations_of_spec, name)
+            or _first_use(self._declarations, name)
             or _first(entity.span for entity in declared if entity.name == name)
         )
 
@@ -44,57 +45,59 @@ class SpecPlaces:
 
         If the spec does not use the signal, return its declaration.
         """
-        users = [self._base(name), *self._atoms_of(name)]
-        used = (_use(self._own, user) for user in users)
-        return self._label(self._written(name) or next(filter(None, used), None) or self._declared(name))
+        users = [self._base_name(name), *self._atoms_of(name)]
+        spans = (_first_use(self._declarations_of_spec, user) for user in users)
+        return self._label(self._text_span(name) or next(filter(None, spans), None) or self._declaration_span(name))
 
     def declaration(self, signal: str) -> tuple[Label, ...]:
         """Return the declaration of a signal if it is in the spec's file, else its first use."""
-        place = self._declared(signal)
+        place = self._declaration_span(signal)
         return self._label(place) if place else self.signal(signal)
 
     def level(self) -> tuple[Label, ...]:
         """Return the clause that names the spec's level."""
-        clauses = (clause for declaration in self._own for clause in declaration.clauses)
+        clauses = (clause for declaration in self._declarations_of_spec for clause in declaration.clauses)
         return self._label(_first(clause.span for clause in clauses if clause.kind == "level"))
 
     def clock(self) -> tuple[Label, ...]:
         """Return the declaration of the clock."""
         return self._label(
-            _first(declaration.span for declaration in self._all if isinstance(declaration, syntax.ClockDecl))
+            _first(declaration.span for declaration in self._declarations if isinstance(declaration, syntax.ClockDecl))
         )
 
     def _atoms_of(self, signal: str) -> list[str]:
-        """The atoms that are computed from a signal."""
+        """Return the names of the atoms that are computed from a signal."""
         atoms = self._spec.atoms if self._spec else ()
         return [atom.base for atom in atoms if expressions.SignalValue(signal) in expressions.nodes(atom.expression)]
 
-    def _base(self, signal: str) -> str:
-        """The name of a signal without its arguments."""
+    def _base_name(self, signal: str) -> str:
+        """Return the name of a signal without its arguments."""
         signals = self._spec.signals if self._spec else ()
-        return next((used.base for used in signals if used.name == signal), signal)
+        return next((declared.base for declared in signals if declared.name == signal), signal)
 
-    def _declared(self, signal: str) -> Span | None:
-        base = self._base(signal)
+    def _declaration_span(self, signal: str) -> Span | None:
+        base = self._base_name(signal)
         return _first(
             declaration.name_span
-            for declaration in self._all
+            for declaration in self._declarations
             if isinstance(declaration, syntax.SignalDecl) and declaration.name == base
         )
 
-    def _written(self, text: str) -> Span | None:
-        """The first part of the spec's expressions with this text, ignoring blanks."""
+    def _text_span(self, text: str) -> Span | None:
+        """Return the span of the first part of the spec's expressions with this text, ignoring blanks."""
         if self._spec is None:
             return None
         source, bare = self._spec.source, "".join(text.split())
-        return _first(part.span for part in _parts(self._own) if "".join(source.slice(part.span).split()) == bare)
+        return _first(
+            part.span for part in _parts(self._declarations_of_spec) if "".join(source.slice(part.span).split()) == bare
+        )
 
     def _label(self, span: Span | None) -> tuple[Label, ...]:
         return (Label(self._spec.source, span or self._spec.name_span),) if self._spec else ()
 
 
-def _use(declarations: Iterable[syntax.Declaration], name: str) -> Span | None:
-    """The first name or call of that name in the expressions of some declarations."""
+def _first_use(declarations: Iterable[syntax.Declaration], name: str) -> Span | None:
+    """Return the span of the first name or call of that name in the expressions of some declarations."""
     for part in _parts(declarations):
         if isinstance(part, syntax.CallExpr) and part.name == name:
             return part.name_span

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from typing import Any, Final
 
 FAILURE: Final = 0
-"""Not possible now: a selector tries its next child."""
+"""The node cannot run now: a selector tries its next child."""
 SUCCESS: Final = 1
 RUNNING: Final = 2
 """The node continues at the next tick."""

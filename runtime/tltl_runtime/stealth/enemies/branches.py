@@ -16,15 +16,12 @@ if TYPE_CHECKING:
     from tltl_runtime.stealth.enemies.enemy import EnemyGuard
 
 _CLOSE: Final = 0.55
-"""A chase stops at this fraction of the attack range.
-
-A player who walks away then stays in reach.
-"""
+"""A chase stops at this fraction of the attack range, so that a player who walks away stays in reach."""
 
 
 @record
 class Branch:
-    """A branch of the behaviour tree; of the branches that can run, the lowest ``rank`` runs."""
+    """A branch of the behaviour tree; of the branches that can run, the one with the lowest ``rank`` runs."""
 
     name: str
     rank: int
@@ -37,9 +34,9 @@ _BRANCHES: Final[dict[str, Branch]] = {}
 
 
 def branch(name: str, *, rank: int, added: bool = False) -> Callable[[Callable[[], Node]], Callable[[], Node]]:
-    """Register a function that makes the node of a branch; nothing else is needed for a new branch.
+    """Register the decorated function, which makes the node of a branch. A new branch needs nothing else.
 
-    Raises ValueError for a name that is taken.
+    ``rank`` and ``added`` are those of :class:`Branch`. Raises ValueError for a name that is taken.
     """
 
     def register(make: Callable[[], Node]) -> Callable[[], Node]:
@@ -70,7 +67,7 @@ def tree(branches: tuple[str, ...]) -> Node:
 
 @branch("chase", rank=10)
 def chase() -> Node:
-    """Run to the player while its position is known, and stop within reach of it."""
+    """Run to the player while the guard knows the player's position, and stop within reach."""
 
     def knows(guard: EnemyGuard) -> bool:
         return guard.knows
@@ -115,8 +112,8 @@ def search() -> Node:
             guard.go((x + distance * cos(angle), y + distance * sin(angle)), guard.kind.walk_speed)
         if guard.search_left <= 0.0:
             guard.search_left = 0.0
-            guard.back = True
-        return guard.back
+            guard.is_off_route = True
+        return guard.is_off_route
 
     return sequence(condition(lost), selector(condition(arrived), action(go_there)), action(look_around))
 
@@ -126,14 +123,14 @@ def return_to_route() -> Node:
     """Walk back to the nearest point of the route."""
 
     def is_off(guard: EnemyGuard) -> bool:
-        return guard.back
+        return guard.is_off_route
 
     def walk(guard: EnemyGuard) -> bool:
         if guard.mode != "return":
             guard.mode = "return"
             guard.leg = guard.nearest_leg()
         guard.go(guard.route[guard.leg], guard.kind.walk_speed)
-        guard.back = not guard.arrived
+        guard.is_off_route = not guard.arrived
         return False
 
     return sequence(condition(is_off), action(walk))

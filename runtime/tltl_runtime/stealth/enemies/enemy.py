@@ -15,8 +15,8 @@ import numpy as np
 
 from tltl_runtime.stealth.enemies.branches import tree
 from tltl_runtime.stealth.enemies.grid import Floor, Grid, Place, grid_of
-from tltl_runtime.stealth.enemies.segments import Corners, blocked, corners, distance_to_segment
-from tltl_runtime.stealth.level import Enemy, Level, Point
+from tltl_runtime.stealth.enemies.segments import Corners, corners, distance_to_segment, is_blocked
+from tltl_runtime.stealth.level import Enemy, Point, StealthLevel
 from tltl_runtime.stealth.world.geometry import Bounds
 from tltlc.api import record
 
@@ -49,7 +49,7 @@ class PlayerView:
 class Enemies:
     """All enemies of a level. ``reset`` begins an episode, ``step`` advances it."""
 
-    def __init__(self, level: Level, grid: Grid | None = None) -> None:
+    def __init__(self, level: StealthLevel, grid: Grid | None = None) -> None:
         self.level = level
         self.grid = grid_of(level) if grid is None else grid
         self.guards: tuple[EnemyGuard, ...] = ()
@@ -76,7 +76,7 @@ class Enemies:
         floor = self._update_floor()
         for guard in self.guards:
             guard.floor = floor
-            guard.forget_way()
+            guard.forget_path()
 
     def step(self, dt: float, player: PlayerView, movers: Sequence[Bounds] = ()) -> None:
         """Advance by ``dt`` seconds; ``movers`` are further boxes that block sight."""
@@ -125,7 +125,7 @@ class EnemyGuard:
         self.floor = floor
         self.rng = rng
         self.route: tuple[Place, ...] = tuple(point[:2] for point in enemy.route)
-        self.x, self.y = floor.stand(self.route[0])
+        self.x, self.y = floor.standing_place(self.route[0])
         self.leg = min(1, len(self.route) - 1)
         dx, dy = self.route[self.leg][0] - self.x, self.route[self.leg][1] - self.y
         self.yaw = atan2(dy, dx)
@@ -139,7 +139,7 @@ class EnemyGuard:
         self.search_left = 0.0
         self.searching = False
         """Whether the search has reached the player's last known position."""
-        self.back = False
+        self.is_off_route = False
         """Whether the guard is off its route and has to return to it."""
         self.gap: Place | None = None
         self._visited: set[Place] = set()
@@ -155,16 +155,16 @@ class EnemyGuard:
         self._anchor: Place = (self.x, self.y)
         """The last position from which a path was found.
 
-        The guard can walk there in a straight line; this frees it from narrow corners.
+        The guard can walk back there in a straight line, if it is stuck in a narrow corner.
         """
         self._half_angle_cosine = cos(min(enemy.kind.sight_angle, 2 * pi) / 2)
 
     def fork(self, rng: np.random.Generator) -> EnemyGuard:
-        """Return a copy of the guard that continues on its own and draws from ``rng``."""
-        other = copy(self)
-        other.rng = rng
-        other._visited = set(self._visited)
-        return other
+        """Return an independent copy of the guard that draws random numbers from ``rng``."""
+        copy_of_guard = copy(self)
+        copy_of_guard.rng = rng
+        copy_of_guard._visited = set(self._visited)
+        return copy_of_guard
 
     def step(self, dt: float, player: PlayerView, boxes: Sequence[Corners]) -> float:
         """Look, decide and move; return the health that the player loses."""
@@ -179,10 +179,10 @@ class EnemyGuard:
     def state(self) -> tuple[object, ...]:
         """The guard's pose and current task.
 
-        They decide how a guard without optional branches moves on while it sees no player, unless
-        it searches.
+        Guards in equal states move equally while they see no player. Guards that search, or that
+        have optional branches, are exceptions, because they draw random numbers.
         """
-        return (self.x, self.y, self.yaw, self.mode, self.leg, self.back, self.search_left > 0.0)
+        return (self.x, self.y, self.yaw, self.mode, self.leg, self.is_off_route, self.search_left > 0.0)
 
     @property
     def position(self) -> Point:
@@ -208,7 +208,7 @@ class EnemyGuard:
         return self._next_waypoint() == (self.x, self.y)
 
     def nearest_leg(self) -> int:
-        """The index of the nearest point of the route."""
+        """Return the index of the nearest point of the route."""
         return min(range(len(self.route)), key=lambda i: hypot(self.route[i][0] - self.x, self.route[i][1] - self.y))
 
     def next_gap(self) -> Place | None:
@@ -227,7 +227,7 @@ class EnemyGuard:
         self._visited.add(chosen)
         return chosen
 
-    def forget_way(self) -> None:
+    def forget_path(self) -> None:
         """Discard the path, because the floor has changed."""
         self._waypoint = None
 
@@ -251,9 +251,9 @@ class EnemyGuard:
             in_cone = self.knows or dx * cos(self.yaw) + dy * sin(self.yaw) >= flat * self._half_angle_cosine
             near = flat <= kind.attack_range and self.knows
             if in_cone and sqrt(flat**2 + (head[2] - EYES) ** 2) <= kind.sight_range:
-                self.sees = not blocked(eyes, head, boxes) or not blocked(eyes, chest, boxes)
+                self.sees = not is_blocked(eyes, head, boxes) or not is_blocked(eyes, chest, boxes)
             if near and abs(pz) < 1.0:
-                self.in_reach = self.sees or not blocked(eyes, chest, boxes)
+                self.in_reach = self.sees or not is_blocked(eyes, chest, boxes)
         if self.sees:
             self._in_sight += dt
             self._out_of_sight = 0.0
@@ -265,16 +265,16 @@ class EnemyGuard:
             if self.knows and self._out_of_sight > kind.memory_time + 1e-9:
                 self.knows, self.searching = False, False
                 self.search_left = kind.search_time
-                self.back = kind.search_time <= 0.0
+                self.is_off_route = kind.search_time <= 0.0
         if self.knows:
             self.last_known = player.position
             self.search_left = 0.0
-            self.back = True
+            self.is_off_route = True
 
     def _next_waypoint(self) -> Place:
         if self._waypoint is None:
             here = (self.x, self.y)
-            waypoint = self.floor.towards(here, self._goal)
+            waypoint = self.floor.next_point(here, self._goal)
             if waypoint is not None:
                 self._anchor = here
             self._waypoint = self._anchor if waypoint is None else waypoint
@@ -283,7 +283,7 @@ class EnemyGuard:
     def _move(self, dt: float) -> None:
         """Walk towards the goal for ``dt`` seconds, around corners.
 
-        If the goal is too far aside, only turn.
+        If the way there is more than 45 degrees to the side, only turn.
         """
         left = self._speed * dt
         turned = False

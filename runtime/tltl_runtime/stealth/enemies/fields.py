@@ -10,20 +10,17 @@ from numpy.typing import NDArray
 GOALS: Final = 512
 """The number of goals for which paths are searched at once."""
 ARRIVED: Final = 8
-"""The code in place of a move where the cell is the goal.
-
-A greater code means that the goal cannot be reached.
-"""
+"""The code in place of a move where the cell is the goal; a greater code means that there is no path."""
 
 _MOVES: Final = ((1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (1, -1), (-1, 1), (-1, -1))
-_NO_WAY: Final = 255
+_NO_PATH: Final = 255
 
 
 def neighbours(number: NDArray[np.int64]) -> NDArray[np.int64]:
-    """For each move and cell, the cell that the move leads to, int64 [8, cells].
+    """Return the cell that each move leads to from each cell, int64 [8, cells].
 
-    The value is the number of cells if the move is impossible. ``number`` [rows, columns] is -1
-    where there is no cell; the other cells are numbered row by row.
+    ``number`` [rows, columns] numbers the cells row by row; it is -1 where there is no cell. For a
+    move that is impossible, the result is ``cells``, one more than the greatest number.
     """
     rows, columns = np.nonzero(number >= 0)
     padded = np.pad(number, 1, constant_values=-1)
@@ -36,10 +33,11 @@ def neighbours(number: NDArray[np.int64]) -> NDArray[np.int64]:
 
 
 def steps_to(neighbours: NDArray[np.int64], first: int) -> NDArray[np.uint8]:
-    """The first move of a shortest path from each cell to up to 512 goals from ``first`` on.
+    """Return the first move of a shortest path from each cell to each of up to 512 goals.
 
-    The result is uint8 [512 or fewer, cells]. One breadth-first search runs from all goals at once,
-    with one bit per goal; among equally short paths, straight moves are preferred.
+    The goals are the cells from number ``first`` on. The result is uint8 [512 or fewer, cells]. One
+    breadth-first search runs from all goals at once, with one bit per goal. Among equally short
+    paths, straight moves are preferred.
     """
     cells = neighbours.shape[1]
     goals = np.arange(first, min(first + GOALS, cells))
@@ -58,21 +56,21 @@ def steps_to(neighbours: NDArray[np.int64], first: int) -> NDArray[np.uint8]:
                 if move >> bit & 1:
                     bits[bit] |= new
         frontier = reached
-    packed = _unpacked(bits[0]) | _unpacked(bits[1]) << 1 | _unpacked(bits[2]) << 2
-    packed[_unpacked(unseen) > 0] = _NO_WAY
+    packed = _unpack_bits(bits[0]) | _unpack_bits(bits[1]) << 1 | _unpack_bits(bits[2]) << 2
+    packed[_unpack_bits(unseen) > 0] = _NO_PATH
     moves: NDArray[np.uint8] = np.ascontiguousarray(packed.T[: len(goals)])
     moves[goals - first, goals] = ARRIVED
     return moves
 
 
-def _unpacked(words: NDArray[np.uint64]) -> NDArray[np.uint8]:
+def _unpack_bits(words: NDArray[np.uint64]) -> NDArray[np.uint8]:
     return np.unpackbits(words.view(np.uint8), axis=1, bitorder="little")
 
 
 def nearest_numbers(number: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Return each cell's nearest numbered cell.
+    """Return the number of the numbered cell that is nearest to each cell, like ``number`` [rows, columns].
 
-    Numbers spread by one cell per round, straight before diagonal.
+    Numbers spread by one cell per round, straight before diagonal, so the result is approximate.
     """
     number = number.copy()
     while (number < 0).any():
@@ -87,7 +85,7 @@ def nearest_numbers(number: NDArray[np.int64]) -> NDArray[np.int64]:
 
 
 def middles(cells: NDArray[np.bool_], most: int) -> NDArray[np.bool_]:
-    """The middle cell of each run of at most ``most`` cells in a row of the grid."""
+    """Return a mask of the middle cells of all runs of at most ``most`` cells along the rows of ``cells``."""
     middle = np.zeros_like(cells)
     for row, line in enumerate(cells):
         edges = np.flatnonzero(np.diff(np.concatenate(([0], line.astype(np.int8), [0]))))

@@ -6,10 +6,9 @@ neighbouring cell can jump over it: a step that crosses the obstacle has an end 
 is diagonal, a cell beside it. Therefore a step between walkable neighbours is free along its whole
 length, provided that a diagonal step passes between two walkable cells.
 
-The next step from every cell to every goal is computed for 512 goals at once, one bit each, in 10
-to 100 ms, when one of these goals is first needed. A cache of at most 64 MB per level keeps the
-most recently used results; all pairs of 8,000 cells fit. Processes that fork after
-``Floor.prepare`` share it.
+When a goal is first needed, the next step from every cell is computed for 512 goals at once, with one
+bit per goal, in 10 to 100 ms. A cache of at most 64 MB per level keeps the most recently used
+results; all pairs of 8,000 cells fit. Processes that fork after ``Floor.prepare`` share the cache.
 """
 
 from __future__ import annotations
@@ -25,7 +24,7 @@ from numpy.typing import NDArray
 
 from tltl_runtime.stealth.enemies.fields import ARRIVED, GOALS, middles, nearest_numbers, neighbours, steps_to
 from tltl_runtime.stealth.enemies.segments import Rectangle, crosses
-from tltl_runtime.stealth.level import Box, Level
+from tltl_runtime.stealth.level import Box, StealthLevel
 from tltlc.api import fileio
 
 CELL: Final = 0.25
@@ -46,7 +45,7 @@ _TOUCH: Final = 1e-6
 
 
 @lru_cache(maxsize=16)
-def grid_of(level: Level) -> Grid:
+def grid_of(level: StealthLevel) -> Grid:
     """Return the grid of a level, cached per process."""
     return Grid(level)
 
@@ -60,13 +59,13 @@ def is_too_large(bounds: Box) -> bool:
 class Grid:
     """The floors of a level, one for each set of shut barriers."""
 
-    def __init__(self, level: Level) -> None:
+    def __init__(self, level: StealthLevel) -> None:
         self.level = level
         self._floors: dict[frozenset[int], Floor] = {}
-        self._answers: OrderedDict[tuple[frozenset[int], int], NDArray[np.uint8]] = OrderedDict()
+        self._steps_to_goals: OrderedDict[tuple[frozenset[int], int], NDArray[np.uint8]] = OrderedDict()
 
     def floor(self, shut: Collection[int]) -> Floor:
-        """Return the floor while the given barriers are shut.
+        """Return the floor while the barriers with these indices are shut.
 
         Lasers count as barriers: no enemy walks into one.
         """
@@ -78,15 +77,17 @@ class Grid:
             self._floors[key] = Floor(self.level.bounds, boxes, starts, self, key)
         return self._floors[key]
 
-    def answers(self, floor: Floor, chunk: int) -> NDArray[np.uint8]:
-        """Return the steps towards goals ``chunk * 512`` and following, uint8 [512, cells]."""
+    def steps_to_goals(self, floor: Floor, chunk: int) -> NDArray[np.uint8]:
+        """Return the first steps from all cells to the 512 goals from ``chunk * 512`` on, uint8 [512, cells]."""
         key = (floor.key, chunk)
-        if key in self._answers:
-            self._answers.move_to_end(key)
-            return self._answers[key]
-        steps = self._answers[key] = steps_to(floor.neighbours, chunk * GOALS)
-        while sum(answer.nbytes for answer in self._answers.values()) > _BUDGET and len(self._answers) > 1:
-            self._answers.popitem(last=False)
+        if key in self._steps_to_goals:
+            self._steps_to_goals.move_to_end(key)
+            return self._steps_to_goals[key]
+        steps = self._steps_to_goals[key] = steps_to(floor.neighbours, chunk * GOALS)
+        while (
+            sum(answer.nbytes for answer in self._steps_to_goals.values()) > _BUDGET and len(self._steps_to_goals) > 1
+        ):
+            self._steps_to_goals.popitem(last=False)
         return steps
 
 
@@ -100,7 +101,7 @@ class Floor:
         self, bounds: Box, boxes: Sequence[Box], starts: Sequence[Place], grid: Grid, key: frozenset[int]
     ) -> None:
         self.key = key
-        self.obstacles = tuple(_grown(box) for box in boxes if box.low[2] < HEIGHT and box.high[2] > STEP)
+        self.obstacles = tuple(_grow(box) for box in boxes if box.low[2] < HEIGHT and box.high[2] > STEP)
         self._grid = grid
         self._bounds = bounds
         self._columns = max(1, int((bounds.high[0] - bounds.low[0]) / CELL + 1e-9))
@@ -132,41 +133,41 @@ class Floor:
             return True
         return not any(a < x < c and b < y < d for a, b, c, d in self.obstacles)
 
-    def clear(self, a: Place, b: Place) -> bool:
+    def is_clear(self, a: Place, b: Place) -> bool:
         """Whether an enemy can walk straight from a to b; both are inside the bounds."""
         return not crosses(*a, *b, self.obstacles)
 
-    def towards(self, a: Place, b: Place) -> Place | None:
-        """Return the next point on the way from a, a free place, to b; the walk to it is straight.
+    def next_point(self, a: Place, b: Place) -> Place | None:
+        """Return the next point on the path from a, a free place, to b; the line from a to it is free.
 
-        If b cannot be reached, the way leads to the reachable place nearest to b. The result is b
-        if the straight line is free, and a if no path leads nearer. It is None if no cell's centre
-        can be reached straight from a.
+        If b cannot be reached, the path leads to the reachable place nearest to b. The result is b
+        if the straight line to b is free, and a if no path leads nearer. It is None if no cell's
+        centre can be reached straight from a.
         """
         entry = self.entry(a)
         if entry is None:
             return None
-        if self.is_free(*b) and self.clear(a, b):
+        if self.is_free(*b) and self.is_clear(a, b):
             return b
-        return self._furthest(a, self._way(entry, self.nearest(b, self._area[entry])))
+        return self._furthest_straight(a, self._cell_path(entry, self.nearest(b, self._area[entry])))
 
-    def way(self, a: Place, b: Place) -> list[Place]:
+    def path(self, a: Place, b: Place) -> list[Place]:
         """Return the centres of the cells on a path from a to b; empty if there is no path."""
         entry = self.entry(a)
         goal = self.entry(b)
         if entry is None or goal is None or self._area[entry] != self._area[goal]:
             return []
-        return [self.centres[cell] for cell in self._way(entry, goal)]
+        return [self.centres[cell] for cell in self._cell_path(entry, goal)]
 
     def entry(self, place: Place) -> int | None:
-        """The nearest cell whose centre can be reached straight from a place.
+        """Return the nearest cell whose centre can be reached straight from a place, or None.
 
-        It is at most two columns and rows away.
+        The cell is at most two columns and rows away.
         """
         x, y = place
         column, row = self._cell(x, y)
         own: int = self._numbers[row][column]
-        if self._roomy[own] or (own >= 0 and self.clear(place, self.centres[own])):
+        if self._roomy[own] or (own >= 0 and self.is_clear(place, self.centres[own])):
             return own
         near = []
         for line in self._numbers[max(0, row - 2) : row + 3]:
@@ -175,17 +176,17 @@ class Floor:
                     cx, cy = self.centres[cell]
                     near.append((hypot(cx - x, cy - y), cell))
         near.sort()
-        return next((cell for _, cell in near if self.clear(place, self.centres[cell])), None)
+        return next((cell for _, cell in near if self.is_clear(place, self.centres[cell])), None)
 
     def nearest(self, place: Place, area: int = 0) -> int:
-        """The cell of an area that is approximately nearest to a place.
+        """Return the cell of an area that is approximately nearest to a place.
 
-        The cells of an area are connected by steps.
+        An area is a set of cells that are connected by steps.
         """
         column, row = self._cell(*place)
         return int(self._nearest[area][row, column])
 
-    def stand(self, place: Place) -> Place:
+    def standing_place(self, place: Place) -> Place:
         """Return the place if an enemy can stand and move there, else the nearest cell's centre.
 
         Raises ValueError if there is no cell.
@@ -199,13 +200,10 @@ class Floor:
     def prepare(self) -> None:
         """Compute the steps between all pairs of cells now, as far as the cache can hold them."""
         for chunk in range(-(-len(self.centres) // GOALS)):
-            self._grid.answers(self, chunk)
+            self._grid.steps_to_goals(self, chunk)
 
     def gaps(self, area: int = 0) -> tuple[Place, ...]:
-        """Return the middles of an area's passages that are at most 2 m wide.
-
-        They are at least 2 m apart.
-        """
+        """Return the middles of an area's passages that are at most 2 m wide; they are at least 2 m apart."""
         if area not in self._gaps:
             self._gaps[area] = self._find_gaps(area)
         return self._gaps[area]
@@ -225,38 +223,38 @@ class Floor:
         return tuple(gaps)
 
     def area(self, place: Place) -> int:
-        """The number of the area that contains a place, or 0 if no area does."""
+        """Return the number of the area that contains a place, or 0 if no area does."""
         entry = self.entry(place)
         return 0 if entry is None else self._area[entry]
 
-    def _way(self, entry: int, goal: int) -> list[int]:
-        """The cells from entry to goal, both included; only the entry if there is no path."""
+    def _cell_path(self, entry: int, goal: int) -> list[int]:
+        """Return the cells from entry to goal, both included; only the entry if there is no path."""
         if self._last[0] != goal:
-            steps = self._grid.answers(self, goal // GOALS)
+            steps = self._grid.steps_to_goals(self, goal // GOALS)
             self._last = (goal, steps[goal % GOALS].tobytes())
         field = self._last[1]
-        way = [entry]
+        path = [entry]
         cell = entry
         while (move := field[cell]) < ARRIVED:
             cell = self._next[move][cell]
-            way.append(cell)
-        return way
+            path.append(cell)
+        return path
 
-    def _furthest(self, a: Place, way: Sequence[int]) -> Place:
-        """Return a cell's centre far along the way that can be reached straight from a.
+    def _furthest_straight(self, a: Place, path: Sequence[int]) -> Place:
+        """Return the centre of a cell far along a path that can be reached straight from a.
 
         The search doubles its stride, so it needs few tests.
         """
         reach, stride = 0, 1
-        while stride and reach < len(way) - 1:
-            ahead = min(reach + stride, len(way) - 1)
-            if self.clear(a, self.centres[way[ahead]]):
+        while stride and reach < len(path) - 1:
+            ahead = min(reach + stride, len(path) - 1)
+            if self.is_clear(a, self.centres[path[ahead]]):
                 reach, stride = ahead, stride * 2
             else:
                 stride = min(stride, ahead - reach) // 2
-        if reach == 0 and a == self.centres[way[0]] and len(way) > 1:
+        if reach == 0 and a == self.centres[path[0]] and len(path) > 1:
             reach = 1
-        return self.centres[way[reach]]
+        return self.centres[path[reach]]
 
     def _cell(self, x: float, y: float) -> tuple[int, int]:
         column = int((x - self._bounds.low[0]) / CELL)
@@ -279,7 +277,7 @@ class Floor:
         return free
 
     def _areas(self, free: NDArray[np.bool_], starts: Sequence[Place]) -> NDArray[np.int64]:
-        """For each cell, the number of its area, or -1 if no enemy can reach the cell."""
+        """Return the number of each cell's area [rows, columns]; -1 if no enemy can reach the cell."""
         areas = np.full(free.shape, -1, dtype=np.int64)
         rows, columns = np.nonzero(free)
         if not len(rows):
@@ -304,10 +302,10 @@ class Floor:
         return areas
 
     def _roomy_cells(self, rows: NDArray[Any], columns: NDArray[Any]) -> list[bool]:
-        """For each cell, whether no obstacle overlaps it.
+        """Return for each cell whether no obstacle overlaps it.
 
-        The last element stands for index -1, which is no cell, and is False. Cells of the last row
-        and column are False, too: positions beyond them, up to the bounds, are assigned to them.
+        The last element, for the index -1, which is no cell, is False. Cells of the last row and
+        column are also False, because positions beyond them, up to the bounds, count as in them.
         """
         x, y = self._bounds.low[0] + columns * CELL, self._bounds.low[1] + rows * CELL
         roomy = (columns < self._columns - 1) & (rows < self._rows - 1)
@@ -316,6 +314,6 @@ class Floor:
         return [*map(bool, roomy), False]
 
 
-def _grown(box: Box) -> Rectangle:
+def _grow(box: Box) -> Rectangle:
     grow = RADIUS - _TOUCH
     return (box.low[0] - grow, box.low[1] - grow, box.high[0] + grow, box.high[1] + grow)

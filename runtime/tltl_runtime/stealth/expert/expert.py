@@ -13,11 +13,11 @@ import gymnasium
 
 from tltl_runtime.game.recorder import EpisodeRecorder, EpisodeT
 from tltl_runtime.spec.goals import next_goals
-from tltl_runtime.stealth.expert.movers import reach_of
-from tltl_runtime.stealth.expert.routes import Leg, routes_of, shut_of
+from tltl_runtime.stealth.expert.movers import swept_bounds
+from tltl_runtime.stealth.expert.routes import Leg, routes_of, shut_barriers
 from tltl_runtime.stealth.expert.sneaker import Sneaker
 from tltl_runtime.stealth.expert.walker import STAY, Walker
-from tltl_runtime.stealth.level import Box, Level, Point
+from tltl_runtime.stealth.level import Box, Point, StealthLevel
 from tltl_runtime.stealth.snapshot import Snapshot, places
 from tltl_runtime.stealth.world.player import Action
 
@@ -26,23 +26,23 @@ _ROOM: Final = 0.5
 
 
 class Expert:
-    """Plays ``env``, a TltlEnv over a GameEnv, or wrappers around one.
+    """A scripted player of ``env``, which is a TltlEnv over a GameEnv, or wrappers around one.
 
     Call ``reset`` after each reset of the environment, then ``act`` for each action. The expert
-    reads its goal from the automaton, and its route from the level and the snapshot; if a shut
-    barrier is in the way, it goes to a switch first. A ``careful`` expert avoids the sight of
-    enemies while its route is on the floor; elsewhere it ignores enemies.
+    reads its goal from the automaton, and finds its route with the level and the snapshot. If a shut
+    barrier is in the way, the expert goes to a switch first. A ``careful`` expert avoids the sight
+    of enemies while its route is on the floor; elsewhere it ignores enemies.
     """
 
     def __init__(self, env: gymnasium.Env[Any, Any], careful: bool = True) -> None:
         self._env = env
         self._task = env.get_wrapper_attr("task")
         self._game = env.get_wrapper_attr("game")
-        self.level: Level = self._game.level
+        self.level: StealthLevel = self._game.level
         self.careful = careful
         self._walker = Walker(self.level)
         self._sneaker = Sneaker(self.level)
-        self._movers = [reach_of(mover) for mover in self.level.movers]
+        self._movers = [swept_bounds(mover) for mover in self.level.movers]
         self.reset()
 
     def reset(self) -> None:
@@ -50,7 +50,7 @@ class Expert:
         self._walker.reset()
         self._sneaker.reset()
         self._chosen_for: object = None
-        self._next: Point | None = None
+        self._destination: Point | None = None
         self._sneaks = False
 
     def act(self) -> Action:
@@ -59,23 +59,23 @@ class Expert:
         goal = self.goal(snapshot)
         if goal is None:
             return STAY
-        if self._next is None or (goal, snapshot.open, snapshot.active) != self._chosen_for:
+        if self._destination is None or (goal, snapshot.open, snapshot.active) != self._chosen_for:
             self._chosen_for = (goal, snapshot.open, snapshot.active)
-            self._next = self._on_the_way(snapshot, goal)
-            self._sneaks = self.careful and bool(self.level.enemies) and self._is_plain(snapshot, self._next)
-        return (self._sneaker if self._sneaks else self._walker).act(snapshot, self._next)
+            self._destination = self._next_place(snapshot, goal)
+            self._sneaks = self.careful and bool(self.level.enemies) and self._is_on_floor(snapshot, self._destination)
+        return (self._sneaker if self._sneaks else self._walker).act(snapshot, self._destination)
 
     def goal(self, snapshot: Snapshot) -> Point | None:
-        """Return the place that the automaton sends the player to, or None."""
+        """Return the place that the automaton sends the player to, or None if it has no goal."""
         taken, sample = (self._env.get_wrapper_attr(name) for name in ("taken", "sample"))
         state = 0 if taken is None else taken.state
         positions = places(self.level, snapshot)
         goals = next_goals(self._task.fspa, state, sample, self._task.params, positions)
         return positions[goals[0]] if goals else None
 
-    def _on_the_way(self, snapshot: Snapshot, goal: Point) -> Point:
-        """Return the goal if it can be reached, else the nearest useful switch that can."""
-        here, routes = snapshot.player.position, routes_of(self.level, shut_of(snapshot))
+    def _next_place(self, snapshot: Snapshot, goal: Point) -> Point:
+        """Return the goal if it can be reached, else the nearest useful switch that can be reached."""
+        here, routes = snapshot.player.position, routes_of(self.level, shut_barriers(snapshot))
         if routes.leads(here, goal):
             return goal
         useful = {unlock.switch for unlock in self.level.unlocks}
@@ -88,11 +88,11 @@ class Expert:
         ]
         return min(candidates, key=lambda place: dist(here, place), default=goal)
 
-    def _is_plain(self, snapshot: Snapshot, goal: Point) -> bool:
+    def _is_on_floor(self, snapshot: Snapshot, goal: Point) -> bool:
         """Whether the route to a goal is on the floor and passes no mover."""
         here = snapshot.player.position
-        way = routes_of(self.level, shut_of(snapshot)).field_from(here, goal).way(here)
-        return all(leg.kind in ("walk", "crouch") and not self._meets_mover(leg) for leg in way)
+        legs = routes_of(self.level, shut_barriers(snapshot)).field_from(here, goal).legs(here)
+        return all(leg.kind in ("walk", "crouch") and not self._meets_mover(leg) for leg in legs)
 
     def _meets_mover(self, leg: Leg) -> bool:
         return any(_is_within(leg.place, box, _ROOM) for box in self._movers)
@@ -101,7 +101,7 @@ class Expert:
 def expert_episodes(
     env: EpisodeRecorder[EpisodeT], seeds: Iterable[int], *, careful: bool = True
 ) -> Iterator[EpisodeT]:
-    """Yield an episode of the expert for each seed; ``careful`` is passed to :class:`Expert`."""
+    """Yield an episode of the expert for each seed; ``careful`` is that of :class:`Expert`."""
     expert = Expert(env, careful)
     for seed in seeds:
         play_episode(env, expert, seed)

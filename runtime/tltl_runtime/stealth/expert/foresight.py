@@ -1,7 +1,7 @@
-"""Plan the next seconds: a beam search over decisions, with a prediction of their motion.
+"""Plan the next seconds: a beam search over decisions, with a prediction of the resulting motion.
 
-Bodies on the ground are compared by the time that has passed and the time left on their route. A
-jump or a fall is one move, simulated to its end before it is evaluated.
+The search compares bodies on the ground by the time that has passed and the time left on their
+route. A jump or a fall is one move, which is simulated to its end before it is compared.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from tltl_runtime.stealth.expert.motion import Floats, Motion, Poses, joined, poses_of
+from tltl_runtime.stealth.expert.motion import Floats, Motion, Poses, concatenate, poses_of
 from tltl_runtime.stealth.expert.routes import Field
 from tltl_runtime.stealth.level import Box, Point
 from tltl_runtime.stealth.world.player import DECISION, Action, PlayerState
@@ -25,13 +25,13 @@ _STAMINA: Final = 0.3
 """The worth of a full stamina, in seconds."""
 _TOUCHED: Final = 3.0
 """The cost of touching a mover, in seconds."""
-_THERE: Final = 0.1
+_ARRIVED: Final = 0.1
 """A body at most this many seconds from the goal has arrived."""
 
 
 @record
 class HeldAction:
-    """An action; in the air, a body keeps its direction for ``hold`` decisions in all."""
+    """An action that a body repeats in the air, for ``hold`` decisions in all; then it falls straight down."""
 
     action: Action
     hold: int = LONGEST_FALL
@@ -39,7 +39,7 @@ class HeldAction:
 
 @record
 class ActionPlan:
-    """A sequence of actions, and the predicted position of the feet after each."""
+    """A sequence of actions, and the predicted position of the feet after each action."""
 
     actions: tuple[Action, ...]
     places: tuple[Point, ...]
@@ -47,7 +47,7 @@ class ActionPlan:
 
 @record
 class _Bodies:
-    """Bodies [n] on the ground at one time, their costs, and the moves that led to them."""
+    """Bodies [n] that stand on the ground at the same time, their costs, and the moves that led to them."""
 
     poses: Poses
     costs: Floats
@@ -67,8 +67,8 @@ class _Bodies:
         """Return the bodies with these indices."""
         return _Bodies(self.poses.take(indices), *(getattr(self, name)[indices] for name in _COLUMNS))
 
-    def judged(self) -> Floats:
-        """Return the score of each body; among bodies of the same time, less is better."""
+    def scores(self) -> Floats:
+        """Return the score of each body, in seconds; among bodies of the same time, less is better."""
         return self.costs + self.left - _STAMINA * self.poses.stamina
 
 
@@ -76,10 +76,10 @@ _COLUMNS: Final = ("costs", "left", "began", "parents", "moves", "trails")
 
 
 class Foresight:
-    """The search over the next ``ahead`` decisions; after each, the ``kept`` best bodies continue.
+    """The search over the next ``ahead`` decisions; after each decision, the ``kept`` best bodies continue.
 
-    ``movers`` are the boxes swept by movers in each decision, for LONGEST_FALL decisions more than
-    ``ahead``.
+    ``field`` has the routes to the goal, ``moves`` are the moves to choose from. ``movers`` are the
+    boxes that movers sweep in each decision, for ``ahead + LONGEST_FALL`` decisions.
     """
 
     def __init__(
@@ -100,24 +100,24 @@ class Foresight:
     def plan(self, player: PlayerState) -> ActionPlan:
         """Return the best plan; it is empty if no move leads to a place with a route."""
         due: list[list[_Bodies]] = [[] for _ in range(self._ahead + LONGEST_FALL)]
-        due[0] = [_root(player)]
+        due[0] = [_root_body(player)]
         passed: dict[int, _Bodies] = {}
         best, end = inf, (0, 0)
         for time, groups in enumerate(due):
             if not groups:
                 continue
-            bodies = passed[time] = self._best(_merged(groups))
-            judged = bodies.judged() + time * DECISION
-            judged[(bodies.left > _THERE) & (time < self._ahead)] = inf
-            if time and judged.size and judged.min() < best:
-                best, end = float(judged.min()), (time, int(judged.argmin()))
+            bodies = passed[time] = self._best(_merge(groups))
+            scores = bodies.scores() + time * DECISION
+            scores[(bodies.left > _ARRIVED) & (time < self._ahead)] = inf
+            if time and scores.size and scores.min() < best:
+                best, end = float(scores.min()), (time, int(scores.argmin()))
             if time < self._ahead and bodies.left.size:
                 for later, landed in self._apply_moves(bodies, time):
                     due[time + later].append(landed)
         return self._trace(passed, *end)
 
     def _apply_moves(self, bodies: _Bodies, time: int) -> list[tuple[int, _Bodies]]:
-        """Apply every move to every body; group the results by the decisions that they took."""
+        """Apply every move to every body; return the bodies that land, grouped by the number of decisions."""
         count, choices = bodies.costs.size, len(self._moves)
         parents, moves = np.repeat(np.arange(count), choices), np.tile(np.arange(choices), count)
         poses, costs = bodies.poses.take(parents), bodies.costs[parents]
@@ -134,7 +134,7 @@ class Foresight:
             down = np.flatnonzero(poses.grounded)
             if down.size:
                 landed_poses = poses.take(down)
-                left = self._field.at(landed_poses.x, landed_poses.y, landed_poses.z)
+                left = self._field.seconds_from(landed_poses.x, landed_poses.y, landed_poses.z)
                 began = np.full(down.size, time)
                 ends = _Bodies(landed_poses, costs[down], left, began, parents[down], moves[down], trails[down])
                 landed.append((step + 1, self._best(ends.take(np.flatnonzero(np.isfinite(left))))))
@@ -148,13 +148,13 @@ class Foresight:
     def _best(self, bodies: _Bodies) -> _Bodies:
         """Keep the best body of each quarter of a metre, and of these the ``kept`` best."""
         poses = bodies.poses
-        order = bodies.judged().argsort(kind="stable")
+        order = bodies.scores().argsort(kind="stable")
         cells = np.floor(np.stack([poses.x * 4, poses.y * 4, poses.z * 4 + 0.5, poses.crouching], axis=1))[order]
         _, first = np.unique(cells, axis=0, return_index=True)
         return bodies.take(order[np.sort(first)[: self._kept]])
 
     def _trace(self, passed: Mapping[int, _Bodies], time: int, row: int) -> ActionPlan:
-        """Trace back the plan that led to a body."""
+        """Return the plan that led to the body in this row of ``passed[time]``."""
         actions: list[Action] = []
         places: list[Point] = []
         while time:
@@ -170,12 +170,12 @@ class Foresight:
         return ActionPlan(tuple(reversed(actions)), tuple(reversed(places)))
 
 
-def _root(player: PlayerState) -> _Bodies:
-    """The body of the player now, from which all others descend."""
+def _root_body(player: PlayerState) -> _Bodies:
+    """Return the body of the player now, from which all others descend."""
     none, zero = np.array([-1]), np.zeros(1)
     return _Bodies(poses_of(player), zero, np.array([inf]), none, none, none, np.zeros((1, LONGEST_FALL, 3)))
 
 
-def _merged(groups: Sequence[_Bodies]) -> _Bodies:
-    poses = joined([group.poses for group in groups])
+def _merge(groups: Sequence[_Bodies]) -> _Bodies:
+    poses = concatenate([group.poses for group in groups])
     return _Bodies(poses, *(np.concatenate([getattr(group, name) for group in groups]) for name in _COLUMNS))

@@ -1,8 +1,8 @@
 """The floor as a lattice of places, and the effect of each action in one decision.
 
-Places are 0.4 m apart, where the player fits between the things on the floor. An action moves
-the player by its exact displacement, which ends between places; values there are interpolated from
-the four places around.
+Places are 0.4 m apart, where the player fits between the things on the floor. An action moves the
+player by its exact displacement. The displacement ends between places, so values there are
+interpolated from the four places around.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tltl_runtime.stealth.enemies.segments import Rectangle
-from tltl_runtime.stealth.level import Box, Level, Point
+from tltl_runtime.stealth.level import Box, Point, StealthLevel
 from tltl_runtime.stealth.world.player import DECISION, SIGN, Action, PlayerKind
 
 _SPACING: Final = 0.4
@@ -32,7 +32,7 @@ Costs = NDArray[np.float32]
 
 
 def _actions() -> tuple[tuple[Action, ...], NDArray[np.float64]]:
-    """The distinct actions without a jump, and their displacements in metres [actions, 2]."""
+    """Return the distinct actions without a jump, and their displacements [actions, 2] in metres."""
     kind = PlayerKind()
     actions: list[Action] = []
     displacements: list[tuple[float, float]] = []
@@ -45,39 +45,39 @@ def _actions() -> tuple[tuple[Action, ...], NDArray[np.float64]]:
     return tuple(actions), np.array(displacements)
 
 
-ACTIONS, WAYS = _actions()
+ACTIONS, DISPLACEMENTS = _actions()
 CROUCHED: Final = np.array([crouch == 1 for *_, crouch, _ in ACTIONS])
 SPRINTS: Final = np.array([sprint == 1 for *_, sprint in ACTIONS])
 
 
 @lru_cache(maxsize=64)
-def lattice_of(level: Level, shut: frozenset[int]) -> Lattice:
-    """Return the lattice of a level while the given barriers are shut, cached per process."""
+def lattice_of(level: StealthLevel, shut: frozenset[int]) -> Lattice:
+    """Return the lattice of a level while the barriers with these indices are shut, cached per process."""
     return Lattice(level, shut)
 
 
 class Lattice:
     """The places of a floor. ``places`` float64 [n, 2] are their x and y, in metres."""
 
-    def __init__(self, level: Level, shut: Collection[int]) -> None:
+    def __init__(self, level: StealthLevel, shut: Collection[int]) -> None:
         boxes = [solid.box for solid in level.solids] + [level.barriers[index].box for index in sorted(shut)]
         kind = PlayerKind()
         self._obstacles = (
-            _grown(boxes, kind.radius + _MARGIN, kind.step_height, kind.height),
-            _grown(boxes, kind.radius + _MARGIN, kind.step_height, kind.crouched_height),
+            _grow(boxes, kind.radius + _MARGIN, kind.step_height, kind.height),
+            _grow(boxes, kind.radius + _MARGIN, kind.step_height, kind.crouched_height),
         )
         (x0, y0, _), (x1, y1, _) = level.bounds.low, level.bounds.high
         self._low = np.array((x0, y0)) + _SPACING / 2
         columns, rows = int((x1 - x0) / _SPACING), int((y1 - y0) / _SPACING)
         cells = np.stack(np.meshgrid(np.arange(columns), np.arange(rows), indexing="ij"), -1).reshape(-1, 2)
         centres = self._low + cells * _SPACING
-        free = ~_crossed(centres, centres, self._obstacles[1])
+        free = ~_crosses(centres, centres, self._obstacles[1])
         self.places: NDArray[np.float64] = centres[free]
         # Three extra columns and rows at each side hold no places, for moves that leave the bounds.
         self._number = np.full((columns + 6, rows + 6), -1, dtype=np.int64)
         self._number[cells[free, 0] + 3, cells[free, 1] + 3] = np.arange(len(self.places))
-        ends = self.places[None] + WAYS[:, None]
-        self._corners, self._shares = self._between(ends.reshape(-1, 2))
+        ends = self.places[None] + DISPLACEMENTS[:, None]
+        self._corners, self._shares = self._interpolation(ends.reshape(-1, 2))
         shape = (len(ACTIONS), len(self.places), 4)
         count = len(self.places)
         self._corners = (self._corners.reshape(shape) + CROUCHED[:, None, None] * count).astype(np.int32)
@@ -91,8 +91,8 @@ class Lattice:
         for crouched in (0, 1):
             actions = np.flatnonzero(crouched == CROUCHED)
             starts = np.broadcast_to(places[None], (len(actions), *places.shape)).reshape(-1, 2)
-            ends = (places[None] + WAYS[actions, None]).reshape(-1, 2)
-            feasible[actions] = ~_crossed(starts, ends, self._obstacles[crouched]).reshape(len(actions), -1)
+            ends = (places[None] + DISPLACEMENTS[actions, None]).reshape(-1, 2)
+            feasible[actions] = ~_crosses(starts, ends, self._obstacles[crouched]).reshape(len(actions), -1)
         return feasible
 
     def values(self, value: Costs, places: NDArray[Any]) -> Costs:
@@ -100,16 +100,16 @@ class Lattice:
 
         The value is FAR where no place of the lattice is near.
         """
-        corners, shares = self._between(places)
+        corners, shares = self._interpolation(places)
         values: Costs = (value[corners] * shares).sum(-1)
         values[shares.sum(-1) == 0] = FAR
         return values
 
-    def best(self, standing: Costs, crouched: Costs, extra: Costs) -> Costs:
-        """Return the least cost over all actions at each place.
+    def least_costs(self, standing: Costs, crouched: Costs, extra: Costs) -> Costs:
+        """Return the least cost over all actions at each place [places].
 
-        The cost of an action is the value, for its stance, at the place where it ends, plus
-        ``extra``.
+        The cost of an action is the value at the point where the action ends, plus ``extra``
+        [actions]. The value is that of ``standing`` or ``crouched`` [places], by the action's stance.
         """
         both = np.concatenate((standing, crouched))
         costs: Costs = np.einsum("anc,anc->an", both[self._corners], self._shares)
@@ -118,8 +118,8 @@ class Lattice:
         least: Costs = costs.min(axis=0)
         return least
 
-    def way_to(self, goal: Point, within: float) -> Costs:
-        """The decisions of a walk from each place to within a distance of the goal.
+    def decisions_to(self, goal: Point, within: float) -> Costs:
+        """Return the number of decisions of a walk from each place to within ``within`` metres of the goal.
 
         The value is FAR where there is no path.
         """
@@ -128,17 +128,17 @@ class Lattice:
         extra = np.where(SPRINTS, FAR, np.float32(1))
         for _ in range(10_000):
             updated: Costs = np.where(
-                at_goal, np.float32(0), np.minimum(decisions, self.best(decisions, decisions, extra))
+                at_goal, np.float32(0), np.minimum(decisions, self.least_costs(decisions, decisions, extra))
             )
             if np.abs(updated - decisions).max() < 0.01:
                 break
             decisions = updated
         return decisions
 
-    def _between(self, ends: NDArray[Any]) -> tuple[NDArray[np.int64], Costs]:
-        """The four places around each point [m, 2], and their weights.
+    def _interpolation(self, ends: NDArray[Any]) -> tuple[NDArray[np.int64], Costs]:
+        """Return the four places around each point [m, 2], and their weights, [m, 4] each.
 
-        Free places are weighted by nearness, the others by 0.
+        Free places are weighted by nearness; the others have the weight 0.
         """
         position = (ends - self._low) / _SPACING
         base = np.floor(position).astype(np.int64)
@@ -156,7 +156,7 @@ class Lattice:
         return corners, np.where(total > 0.05, shares / np.maximum(total, 1e-9), 0).astype(np.float32)
 
 
-def _grown(boxes: list[Box], grow: float, step: float, height: float) -> list[Rectangle]:
+def _grow(boxes: list[Box], grow: float, step: float, height: float) -> list[Rectangle]:
     return [
         (box.low[0] - grow, box.low[1] - grow, box.high[0] + grow, box.high[1] + grow)
         for box in boxes
@@ -164,8 +164,8 @@ def _grown(boxes: list[Box], grow: float, step: float, height: float) -> list[Re
     ]
 
 
-def _crossed(starts: NDArray[Any], ends: NDArray[Any], rectangles: list[Rectangle]) -> NDArray[np.bool_]:
-    """Whether the segments between points [m, 2] pass through the inside of a rectangle."""
+def _crosses(starts: NDArray[Any], ends: NDArray[Any], rectangles: list[Rectangle]) -> NDArray[np.bool_]:
+    """Return for each segment between points [m, 2] whether it passes through the inside of a rectangle."""
     crossed: NDArray[np.bool_] = np.zeros(len(starts), dtype=bool)
     enter: Any
     leave: Any

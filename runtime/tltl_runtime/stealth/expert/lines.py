@@ -1,4 +1,4 @@
-"""Lines of sight: which places of a lattice an enemy sees, for a standing and a crouched player."""
+"""Lines of sight: at which places of a lattice an enemy sees a standing or a crouched player."""
 
 from __future__ import annotations
 
@@ -11,25 +11,25 @@ from numpy.typing import NDArray
 
 from tltl_runtime.stealth.enemies.enemy import CHEST, CROUCHED_HEAD, EYES, STANDING_HEAD
 from tltl_runtime.stealth.expert.lattice import lattice_of
-from tltl_runtime.stealth.level import Level
+from tltl_runtime.stealth.level import StealthLevel
 
 ROUNDED: Final = 0.2
 """The positions of enemies are rounded to multiples of this, in metres."""
-_KEPT: Final = 4096
+_MOST_CACHED: Final = 4096
 _ASIDE: Final = 0.15
 """A place is tested at five points: its middle, and this far to each side, in metres."""
 
 
 @lru_cache(maxsize=64)
-def lines_of(level: Level, shut: frozenset[int]) -> LinesOfSight:
-    """Return the lines of sight while the given barriers are shut, cached per process."""
+def lines_of(level: StealthLevel, shut: frozenset[int]) -> LinesOfSight:
+    """Return the lines of sight while the barriers with these indices are shut, cached per process."""
     return LinesOfSight(level, shut)
 
 
 class LinesOfSight:
     """Lines of sight to the places of a lattice, computed on demand; movers do not block them."""
 
-    def __init__(self, level: Level, shut: frozenset[int]) -> None:
+    def __init__(self, level: StealthLevel, shut: frozenset[int]) -> None:
         boxes = [solid.box for solid in level.solids if solid.box.high[2] > 0.0]
         boxes += [level.barriers[index].box for index in sorted(shut) if level.barriers[index].kind == "solid"]
         self._low = np.array([box.low for box in boxes], dtype=np.float32).reshape(-1, 3, 1)
@@ -37,19 +37,19 @@ class LinesOfSight:
         places = lattice_of(level, shut).places
         steps = np.array(((0, 0), (1, 0), (-1, 0), (0, 1), (0, -1))) * _ASIDE
         self._targets = (places[None] + steps[:, None]).astype(np.float32).reshape(-1, 2)
-        self._kept: OrderedDict[tuple[int, int], NDArray[np.float32]] = OrderedDict()
+        self._cache: OrderedDict[tuple[int, int], NDArray[np.float32]] = OrderedDict()
 
-    def seen_from(self, x: float, y: float) -> NDArray[np.float32]:
-        """The share of each place that eyes at x, y can see.
+    def visible_shares(self, x: float, y: float) -> NDArray[np.float32]:
+        """Return the share of each place, in [0, 1], where eyes at x, y see the player.
 
         The result is float32 [2, places], for a standing and a crouched player.
         """
         key = (round(x / ROUNDED), round(y / ROUNDED))
-        shares = self._kept.get(key)
+        shares = self._cache.get(key)
         if shares is None:
-            shares = self._kept[key] = self._look(key[0] * ROUNDED, key[1] * ROUNDED)
-            if len(self._kept) > _KEPT:
-                self._kept.popitem(last=False)
+            shares = self._cache[key] = self._look(key[0] * ROUNDED, key[1] * ROUNDED)
+            if len(self._cache) > _MOST_CACHED:
+                self._cache.popitem(last=False)
         return shares
 
     def _look(self, x: float, y: float) -> NDArray[np.float32]:

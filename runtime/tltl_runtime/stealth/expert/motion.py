@@ -1,7 +1,7 @@
 """A prediction of :mod:`~tltl_runtime.stealth.world.physics` for thousands of bodies at once.
 
-It is a model of the player's body, not the game itself: boxes push a capsule out as in the physics,
-to within a few centimetres, and movers count as touched if they pass in the same decision.
+The model of the player's body agrees with the physics to within a few centimetres. Boxes push a
+capsule out. A mover counts as touched if it passes the capsule in the same decision.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ def poses_of(state: PlayerState) -> Poses:
     return Poses(*(np.array([value]) for value in values))
 
 
-def joined(parts: Sequence[Poses]) -> Poses:
+def concatenate(parts: Sequence[Poses]) -> Poses:
     """Concatenate groups of bodies."""
     return Poses(*(np.concatenate([getattr(part, name) for part in parts]) for name in _FIELDS))
 
@@ -81,8 +81,8 @@ class Motion:
         ``actions`` is [n, 5]. ``movers`` are the boxes swept by movers in this decision.
         """
         kind = self.kind
-        boxes = self._reached(poses)
-        crouching = (actions[:, 3] > 0) | (poses.crouching & ~self._room(poses, boxes))
+        boxes = self._boxes_near(poses)
+        crouching = (actions[:, 3] > 0) | (poses.crouching & ~self._has_room(poses, boxes))
         vx, vy, stamina = self._wish(poses, actions, crouching)
         jumps = (actions[:, 2] > 0) & poses.grounded & ~crouching
         height = np.where(crouching, kind.crouched_height, kind.height)
@@ -107,7 +107,7 @@ class Motion:
         return Poses(x, y, z, vz, crouching, grounded, stamina), touched
 
     def _wish(self, poses: Poses, actions: NDArray[np.int64], crouching: Truths) -> tuple[Floats, Floats, Floats]:
-        """The requested speeds along x and y, and the stamina left (see ``player.control``)."""
+        """Return the requested speeds along x and y, and the stamina left (see ``player.control``)."""
         kind = self.kind
         sign = np.array(SIGN)
         dx, dy = sign[actions[:, 0]], sign[actions[:, 1]]
@@ -118,8 +118,8 @@ class Motion:
         refilled = np.minimum(1.0, poses.stamina + DECISION / kind.refill_time)
         return dx * speed, dy * speed, np.where(sprints, np.maximum(0.0, poses.stamina - spent), refilled)
 
-    def _reached(self, poses: Poses) -> _Boxes:
-        """The boxes that any of the bodies can touch in one decision."""
+    def _boxes_near(self, poses: Poses) -> _Boxes:
+        """Return the boxes that any of the bodies can touch in one decision."""
         reach = self.kind.radius + self.kind.sprint_speed * DECISION + _TOUCH
         low, high = self._boxes.low, self._boxes.high
         near = (low[0] < poses.x.max() + reach) & (high[0] > poses.x.min() - reach)
@@ -127,7 +127,7 @@ class Motion:
         return _Boxes(low[:, near], high[:, near])
 
     def _stairs(self, poses: Poses, vx: Floats, vy: Floats, height: Floats, boxes: _Boxes) -> Floats:
-        """How high a stair in its way lifts each body; 0 if there is none."""
+        """Return how high a stair in its way lifts each body, in metres; 0 if there is none."""
         lift = np.zeros(poses.x.shape)
         kind = self.kind
         low, high = boxes.low, boxes.high
@@ -158,8 +158,8 @@ class Motion:
                 undecided &= ~first
         return lift
 
-    def _room(self, poses: Poses, boxes: _Boxes) -> Truths:
-        """Whether each body has room to stand."""
+    def _has_room(self, poses: Poses, boxes: _Boxes) -> Truths:
+        """Return for each body whether it has room to stand."""
         depth, _ = self._contacts(poses.x, poses.y, poses.z, np.full(poses.x.shape, self.kind.height), boxes)
         free: Truths = np.logical_and.reduce(depth <= _TOUCH, axis=1)
         return free
@@ -187,7 +187,7 @@ class Motion:
         vx[touched], vy[touched], vz[touched] = speed
 
     def _contacts(self, x: Floats, y: Floats, z: Floats, height: Floats, boxes: _Boxes) -> tuple[Floats, Floats]:
-        """The overlap of each capsule with each box, and the directions out of the boxes.
+        """Return the overlap of each capsule with each box, in metres, and the unit vectors out of the boxes.
 
         The shapes are [n, boxes] and [3, n, boxes].
         """
@@ -205,7 +205,7 @@ class Motion:
 
 
 def _meets(x: Floats, y: Floats, z: Floats, height: Floats, radius: float, box: Box) -> Truths:
-    """Whether capsules of ``radius`` overlap a box."""
+    """Return for each capsule of ``radius`` whether it overlaps a box."""
     dx = np.maximum(np.maximum(box.low[0] - x, x - box.high[0]), 0.0)
     dy = np.maximum(np.maximum(box.low[1] - y, y - box.high[1]), 0.0)
     dz = np.maximum(np.maximum(box.low[2] - (z + height - radius), z + radius - box.high[2]), 0.0)

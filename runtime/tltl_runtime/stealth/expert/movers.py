@@ -1,7 +1,4 @@
-"""Predict where movers will be.
-
-Their paths are known, and their clocks are derived from snapshots.
-"""
+"""Predict where movers will be: their paths are known, and their clocks follow from snapshots."""
 
 from __future__ import annotations
 
@@ -9,22 +6,22 @@ from collections.abc import Sequence
 from math import dist
 from typing import Final
 
-from tltl_runtime.stealth.level import Box, Level, Mover, Point
+from tltl_runtime.stealth.level import Box, Mover, Point, StealthLevel
 from tltl_runtime.stealth.snapshot import Snapshot
-from tltl_runtime.stealth.world.geometry import around
+from tltl_runtime.stealth.world.geometry import box_around
 from tltl_runtime.stealth.world.mover_path import MoverPath
 from tltl_runtime.stealth.world.player import DECISION, SUBSTEPS
 
-_SEEN: Final = 1e-6
-"""A mover farther than this from its predicted position, in metres, is somewhere else."""
+_TOLERANCE: Final = 1e-6
+"""A mover may be this far from its predicted position, in metres; otherwise the prediction is wrong."""
 
 
 class Clocks:
     """The clock of each mover, in its own seconds; it stops while the player blocks the mover."""
 
-    def __init__(self, level: Level) -> None:
+    def __init__(self, level: StealthLevel) -> None:
         self._movers = level.movers
-        self._ways = [MoverPath(mover) for mover in level.movers]
+        self._paths = [MoverPath(mover) for mover in level.movers]
         self._clocks = [mover.offset for mover in level.movers]
         self._time = 0.0
 
@@ -32,31 +29,33 @@ class Clocks:
         """Update the clocks from a snapshot; call this after each decision."""
         passed = snapshot.time - self._time
         self._time = snapshot.time
-        for index, (way, place) in enumerate(zip(self._ways, snapshot.movers, strict=True)):
+        for index, (path, place) in enumerate(zip(self._paths, snapshot.movers, strict=True)):
             lags = [passed - step * DECISION / SUBSTEPS for step in range(round(passed / DECISION * SUBSTEPS) + 1)]
-            elapsed = next((lag for lag in lags if dist(way.at(self._clocks[index] + lag), place) < _SEEN), passed)
+            elapsed = next(
+                (lag for lag in lags if dist(path.position_at(self._clocks[index] + lag), place) < _TOLERANCE), passed
+            )
             self._clocks[index] += elapsed
 
-    def swept(self, first: int, last: int | None = None) -> list[Box]:
+    def swept_boxes(self, first: int, last: int | None = None) -> list[Box]:
         """Return the box that each mover sweeps from decision ``first`` to the end of ``last``.
 
         Decisions are counted from now.
         """
         boxes = []
-        for mover, way, clock in zip(self._movers, self._ways, self._clocks, strict=True):
+        for mover, path, clock in zip(self._movers, self._paths, self._clocks, strict=True):
             steps = range(first, (first if last is None else last) + 2)
-            corners = [around(way.at(clock + step * DECISION), mover.size) for step in steps]
+            corners = [box_around(path.position_at(clock + step * DECISION), mover.size) for step in steps]
             boxes.append(_hull(corners))
         return boxes
 
 
-def reach_of(mover: Mover) -> Box:
-    """Return the bounding box of all positions of a mover."""
-    return _hull([around(place, mover.size) for place in mover.path])
+def swept_bounds(mover: Mover) -> Box:
+    """Return the bounding box of all positions that a mover takes on its path."""
+    return _hull([box_around(place, mover.size) for place in mover.path])
 
 
 def _hull(boxes: Sequence[tuple[Point, Point]]) -> Box:
-    """The bounding box of boxes that are given by their corners."""
+    """Return the bounding box of boxes that are given by their corners."""
     lows, highs = [box[0] for box in boxes], [box[1] for box in boxes]
     return Box(
         (min(low[0] for low in lows), min(low[1] for low in lows), min(low[2] for low in lows)),

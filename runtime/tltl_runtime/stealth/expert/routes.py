@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tltl_runtime.stealth.expert.surfaces import CELL, Cells, Surfaces
-from tltl_runtime.stealth.level import Level, Point
+from tltl_runtime.stealth.level import Point, StealthLevel
 from tltl_runtime.stealth.snapshot import Snapshot
 from tltlc.api import record
 
@@ -62,8 +62,8 @@ class Field:
     towards: NDArray[np.int64]
     kinds: NDArray[np.uint8]
 
-    def way(self, start: Point, metres: float = inf) -> tuple[Leg, ...]:
-        """Return the route from the place nearest to ``start``, up to about ``metres``."""
+    def legs(self, start: Point, metres: float = inf) -> tuple[Leg, ...]:
+        """Return the legs of the route from the place nearest to ``start``, up to about ``metres`` long."""
         place = self.surfaces.nearest(start)
         legs = []
         point, length = self.surfaces.point(place), 0.0
@@ -75,8 +75,8 @@ class Field:
             point = next_point
         return tuple(legs)
 
-    def at(self, x: Seconds, y: Seconds, z: Seconds) -> Seconds:
-        """Return the seconds from points [n] on the ground, by the best of the places nearby."""
+    def seconds_from(self, x: Seconds, y: Seconds, z: Seconds) -> Seconds:
+        """Return the seconds [n] to the goal from points [n] on the ground, by the best of the places nearby."""
         surfaces, speed = self.surfaces, self.surfaces.kind.walk_speed
         _, rows, columns = self.seconds.shape
         column = np.floor((x - surfaces.origin[0]) / CELL).astype(np.intp)
@@ -86,7 +86,7 @@ class Field:
         for layer in np.flatnonzero(near.any(axis=1)):
             for dy in (-1, 0, 1):
                 for dx in (-1, 0, 1):
-                    r, c = _within(row + dy, rows), _within(column + dx, columns)
+                    r, c = _clamp(row + dy, rows), _clamp(column + dx, columns)
                     away = np.hypot(surfaces.xs[c] - x, surfaces.ys[r] - y) / speed
                     seconds = np.where(near[layer], self.seconds[layer, r, c] + away, np.inf)
                     best = np.minimum(best, seconds)
@@ -96,7 +96,7 @@ class Field:
 class Routes:
     """The routes of a level while some barriers are shut."""
 
-    def __init__(self, level: Level, shut: Collection[int]) -> None:
+    def __init__(self, level: StealthLevel, shut: Collection[int]) -> None:
         self.surfaces = Surfaces(level, shut)
         self._roomy = Surfaces(level, shut, margin=0.2).crouched
         self._into: list[list[tuple[int, float, int]]] = [[] for _ in range(self.surfaces.places.size)]
@@ -127,12 +127,14 @@ class Routes:
             return field
         key = (goal, place)
         if key not in self._fields:
-            reached = min(self._reached(place), key=lambda candidate: dist(self.surfaces.point(candidate), goal))
+            reached = min(
+                self._reachable_places(place), key=lambda candidate: dist(self.surfaces.point(candidate), goal)
+            )
             self._fields[key] = self._field(np.array([reached]))
         return self._fields[key]
 
     def _field(self, goals: NDArray[np.intp]) -> Field:
-        """The shortest times to any of ``goals`` (Dijkstra's algorithm, backwards)."""
+        """Return the shortest times to any of ``goals``, by Dijkstra's algorithm from the goals backwards."""
         seconds: Any = [inf] * self.surfaces.places.size
         towards, kinds = [-1] * len(seconds), [0] * len(seconds)
         queue = [(0.0, goal) for goal in goals.tolist()]
@@ -150,8 +152,8 @@ class Routes:
         columns = np.array(seconds).reshape(shape), np.array(towards), np.array(kinds, dtype=np.uint8)
         return Field(self.surfaces, *columns)
 
-    def _reached(self, start: int) -> set[int]:
-        """The places that can be reached from ``start``."""
+    def _reachable_places(self, start: int) -> set[int]:
+        """Return the places that can be reached from the place ``start``, as flat indices."""
         successors: dict[int, list[int]] = {}
         for target, sources in enumerate(self._into):
             for source, _, _ in sources:
@@ -186,7 +188,7 @@ class Routes:
 
     def _walks(self, layer: int, target: int, direction: tuple[int, int]) -> _Edges:
         surfaces, kind = self.surfaces, self.surfaces.kind
-        sources, targets = self._joined(layer, target, direction, surfaces.places[layer])
+        sources, targets = self._place_pairs(layer, target, direction, surfaces.places[layer])
         upright = surfaces.standing.ravel()[sources] & surfaces.standing.ravel()[targets]
         roomy = self._roomy.ravel()[targets]
         length = CELL * hypot(*direction)
@@ -195,65 +197,69 @@ class Routes:
         return sources, targets, np.where(roomy, seconds, seconds * _CLOSE_TO_WALL), kinds
 
     def _climbs(self, layer: int, target: int, direction: tuple[int, int]) -> Iterator[_Edges]:
-        """Jumps up to a higher place, from at least two cells away."""
+        """Yield the edges of jumps up to a higher place, from at least two cells away."""
         surfaces = self.surfaces
         begin = surfaces.places[layer] & surfaces.standing[layer] & surfaces.standing[target]
         for steps, length in _reaches(direction, 2, _CLIMB_REACH):
-            begin = begin & _shifted(surfaces.standing[target], direction, steps - 1)
-            yield self._timed(self._joined(layer, target, direction, begin, steps), length, _JUMP_TIME, "climb")
+            begin = begin & _shift(surfaces.standing[target], direction, steps - 1)
+            yield self._edges_between(
+                self._place_pairs(layer, target, direction, begin, steps), length, _JUMP_TIME, "climb"
+            )
 
     def _drops(self, layer: int, target: int, direction: tuple[int, int]) -> Iterator[_Edges]:
-        """Steps off an edge, down to a lower place."""
+        """Yield the edges of steps off a ledge, down to a lower place."""
         surfaces = self.surfaces
         fall = sqrt(2 * float(surfaces.heights[layer] - surfaces.heights[target]) / surfaces.kind.gravity)
         column: Cells = np.logical_and.reduce(surfaces.standing[target : layer + 1])
         begin = surfaces.places[layer] & surfaces.standing[layer]
         for steps, length in _reaches(direction, 2, _DROP_REACH):
-            begin = begin & _shifted(surfaces.standing[layer], direction, steps - 1)
-            lands = begin & _shifted(column, direction, steps)
-            yield self._timed(self._joined(layer, target, direction, lands, steps), length, fall, "drop")
+            begin = begin & _shift(surfaces.standing[layer], direction, steps - 1)
+            lands = begin & _shift(column, direction, steps)
+            yield self._edges_between(self._place_pairs(layer, target, direction, lands, steps), length, fall, "drop")
 
     def _leaps(self, layer: int, target: int, direction: tuple[int, int]) -> Iterator[_Edges]:
-        """Jumps across what cannot be walked on, to a place that is not higher."""
+        """Yield the edges of jumps across a gap, to a place that is not higher."""
         surfaces = self.surfaces
         column: Cells = np.logical_and.reduce(surfaces.standing[target : layer + 1])
         begin = surfaces.places[layer] & surfaces.leaping[layer]
         walkable = begin
         for steps, length in _reaches(direction, 2, _LEAP_REACH):
-            begin = begin & _shifted(surfaces.leaping[layer], direction, steps - 1)
-            walkable = walkable & _shifted(surfaces.places[layer], direction, steps - 1)
-            lands = begin & ~walkable & _shifted(column, direction, steps)
-            yield self._timed(self._joined(layer, target, direction, lands, steps), length, _JUMP_TIME, "leap")
+            begin = begin & _shift(surfaces.leaping[layer], direction, steps - 1)
+            walkable = walkable & _shift(surfaces.places[layer], direction, steps - 1)
+            lands = begin & ~walkable & _shift(column, direction, steps)
+            yield self._edges_between(
+                self._place_pairs(layer, target, direction, lands, steps), length, _JUMP_TIME, "leap"
+            )
 
-    def _joined(
+    def _place_pairs(
         self, layer: int, target: int, direction: tuple[int, int], begin: Cells, steps: int = 1
     ) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-        """The places in ``begin`` [rows, columns] and the places of ``target``, ``steps`` away.
+        """Return the places in ``begin`` [rows, columns] and the places of ``target`` that are ``steps`` away.
 
-        Both are returned as flat indices.
+        Both are flat indices, in pairs.
         """
         _, rows, columns = self.surfaces.places.shape
-        places = begin & _shifted(self.surfaces.places[target], direction, steps)
+        places = begin & _shift(self.surfaces.places[target], direction, steps)
         row, column = np.nonzero(places)
         sources = (layer * rows + row) * columns + column
         targets = (target * rows + row + steps * direction[0]) * columns + column + steps * direction[1]
         return sources, targets
 
-    def _timed(
-        self, joined: tuple[NDArray[np.intp], NDArray[np.intp]], length: float, extra: float, kind: Kind
+    def _edges_between(
+        self, pairs: tuple[NDArray[np.intp], NDArray[np.intp]], length: float, extra: float, kind: Kind
     ) -> _Edges:
-        sources, targets = joined
+        sources, targets = pairs
         seconds = np.full(sources.shape, length / self.surfaces.kind.walk_speed + extra)
         return sources, targets, seconds, np.full(sources.shape, _KINDS.index(kind))
 
 
 @lru_cache(maxsize=32)
-def routes_of(level: Level, shut: frozenset[int]) -> Routes:
-    """Return the routes of a level while the given barriers are shut, cached per process."""
+def routes_of(level: StealthLevel, shut: frozenset[int]) -> Routes:
+    """Return the routes of a level while the barriers with these indices are shut, cached per process."""
     return Routes(level, shut)
 
 
-def shut_of(snapshot: Snapshot) -> frozenset[int]:
+def shut_barriers(snapshot: Snapshot) -> frozenset[int]:
     """Return the indices of the barriers that are shut."""
     return frozenset(index for index, is_open in enumerate(snapshot.open) if not is_open)
 
@@ -265,13 +271,13 @@ def _reaches(direction: tuple[int, int], least: int, reach: float) -> Iterator[t
         yield steps, steps * length
 
 
-def _within(index: NDArray[np.intp], count: int) -> NDArray[np.intp]:
-    """Clamp indices to the range of ``count``."""
+def _clamp(index: NDArray[np.intp], count: int) -> NDArray[np.intp]:
+    """Return indices, clamped to 0 to ``count`` - 1."""
     return np.minimum(np.maximum(index, 0), count - 1)
 
 
-def _shifted(cells: Cells, direction: tuple[int, int], steps: int) -> Cells:
-    """Shift cells: each gets the value of the cell ``steps`` away, False beyond the border."""
+def _shift(cells: Cells, direction: tuple[int, int], steps: int) -> Cells:
+    """Return a mask in which each cell has the value of the cell ``steps`` away; False beyond the border."""
     dy, dx = direction[0] * steps, direction[1] * steps
     rows, columns = cells.shape
     shifted = np.zeros_like(cells)

@@ -1,9 +1,9 @@
 """Walk to a place on the floor, unseen.
 
-Every few decisions the poses of the enemies are predicted (``watch.py``). Dynamic programming
-backwards from the end of that time gives the cost of the best route from each place: decisions that
-pass, and a price for each decision in sight. The chosen action is the one whose exact displacement
-leads to the least remaining cost.
+Every few decisions, ``watch.py`` predicts the poses of the enemies. Dynamic programming backwards from
+the end of that time then gives the cost of the best route from each place. The cost is the number of
+decisions, plus a price for each decision in sight. The player takes the action whose exact
+displacement leads to the least remaining cost.
 """
 
 from __future__ import annotations
@@ -15,11 +15,20 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from tltl_runtime.stealth.expert.lattice import ACTIONS, CROUCHED, FAR, SPRINTS, WAYS, Costs, Lattice, lattice_of
+from tltl_runtime.stealth.expert.lattice import (
+    ACTIONS,
+    CROUCHED,
+    DISPLACEMENTS,
+    FAR,
+    SPRINTS,
+    Costs,
+    Lattice,
+    lattice_of,
+)
 from tltl_runtime.stealth.expert.lines import LinesOfSight, lines_of
-from tltl_runtime.stealth.expert.routes import shut_of
+from tltl_runtime.stealth.expert.routes import shut_barriers
 from tltl_runtime.stealth.expert.watch import Outlook, Watch
-from tltl_runtime.stealth.level import Level, Point
+from tltl_runtime.stealth.level import Point, StealthLevel
 from tltl_runtime.stealth.snapshot import Snapshot
 from tltl_runtime.stealth.world.player import DECISION, Action, PlayerKind
 
@@ -39,18 +48,18 @@ _NEAR: Final = 1.6
 """Being within this distance of an enemy, in metres, is as bad as being seen."""
 _EXTRA: Final = np.where(SPRINTS, np.float32(1.3), np.float32(1.0))
 """The cost of a decision with each action: sprinting costs more, because it uses stamina."""
-_WAYS_KEPT: Final = 32
+_MOST_CACHED: Final = 32
 
 
 class Sneaker:
     """Walks on the floor of a level, unseen where possible; ``act`` returns the next action."""
 
-    def __init__(self, level: Level) -> None:
+    def __init__(self, level: StealthLevel) -> None:
         self.level = level
         self._watch = Watch(level)
         self._angles = [min(enemy.kind.sight_angle / 2 + _WIDER, pi) for enemy in level.enemies]
         self._ranges = [enemy.kind.sight_range + _FURTHER for enemy in level.enemies]
-        self._ways: dict[tuple[frozenset[int], Point], Costs] = {}
+        self._decisions_to_goals: dict[tuple[frozenset[int], Point], Costs] = {}
         self.reset()
 
     def reset(self) -> None:
@@ -58,26 +67,26 @@ class Sneaker:
         self._watch.reset()
         self._plan: list[tuple[Costs, Costs]] = []
         self._age = 0
-        self._for: tuple[object, ...] = ()
+        self._situation: tuple[object, ...] = ()
 
     def act(self, snapshot: Snapshot, goal: Point) -> Action:
         """Return the next action on the way to ``goal``."""
         surprised = self._watch.see(snapshot)
-        shut = shut_of(snapshot)
+        shut = shut_barriers(snapshot)
         lattice = lattice_of(self.level, shut)
         situation = (goal, shut, snapshot.modes)
         self._age += 1
-        if surprised or situation != self._for or self._age >= _REPLAN:
-            self._plan = self._make_plan(lattice, lines_of(self.level, shut), self._way(lattice, shut, goal))
-            self._age, self._for = 0, situation
+        if surprised or situation != self._situation or self._age >= _REPLAN:
+            self._plan = self._make_plan(lattice, lines_of(self.level, shut), self._decisions_to(lattice, shut, goal))
+            self._age, self._situation = 0, situation
         return self._choose(lattice, snapshot)
 
     def _choose(self, lattice: Lattice, snapshot: Snapshot) -> Action:
-        """The best action by the plan, from the player's exact position."""
+        """Return the best action by the plan, from the player's exact position."""
         player, kind = snapshot.player, PlayerKind()
         place = np.array([player.position[:2]])
         free = lattice.feasible(place)[:, 0]
-        ends = place + WAYS
+        ends = place + DISPLACEMENTS
         standing, crouched = self._plan[self._age]
         costs = np.where(CROUCHED, lattice.values(crouched, ends), lattice.values(standing, ends)) + _EXTRA
         costs[~free] += FAR
@@ -85,23 +94,23 @@ class Sneaker:
             costs[SPRINTS] += FAR
         return ACTIONS[int(costs.argmin())]
 
-    def _make_plan(self, lattice: Lattice, lines: LinesOfSight, way: Costs) -> list[tuple[Costs, Costs]]:
-        """Return the cost of ending each decision at each place, standing and crouched.
+    def _make_plan(self, lattice: Lattice, lines: LinesOfSight, decisions: Costs) -> list[tuple[Costs, Costs]]:
+        """Return, for each decision, the cost of ending it at each place, standing and crouched.
 
         The cost includes the rest of the route.
         """
         seen = self._sight_prices(lattice, lines, self._watch.outlook(_HORIZON))
-        at_goal = way <= 0.0
+        at_goal = decisions <= 0.0
         plan: list[tuple[Costs, Costs]] = []
-        rest = way
+        rest = decisions
         for decision in reversed(range(_HORIZON)):
             standing, crouched = rest + seen[decision, 0], rest + seen[decision, 1]
             plan.append((standing, crouched))
-            rest = np.where(at_goal, np.float32(0), lattice.best(standing, crouched, _EXTRA))
+            rest = np.where(at_goal, np.float32(0), lattice.least_costs(standing, crouched, _EXTRA))
         return plan[::-1]
 
     def _sight_prices(self, lattice: Lattice, lines: LinesOfSight, outlooks: Sequence[Outlook]) -> NDArray[np.float32]:
-        """The price of being at each place at the end of each decision.
+        """Return the price of being at each place at the end of each decision, standing and crouched.
 
         The result is float32 [decisions, 2, places].
         """
@@ -114,17 +123,17 @@ class Sneaker:
                 distance = np.hypot(dx, dy)
                 least_cosine = np.where(knows > 0, np.float32(-1), np.float32(cos(angle)))
                 cone = (dx * np.cos(yaw) + dy * np.sin(yaw) >= distance * least_cosine) & (distance <= reach)
-                free = np.stack([lines.seen_from(a, b) for a, b, *_ in poses])
+                free = np.stack([lines.visible_shares(a, b) for a, b, *_ in poses])
                 danger = free * cone[:, None]
                 danger += (distance < _NEAR)[:, None]
                 price += danger * np.float32(share * _PRICE)
         return price
 
-    def _way(self, lattice: Lattice, shut: frozenset[int], goal: Point) -> Costs:
-        """Decisions from each place to the goal, ignoring enemies."""
+    def _decisions_to(self, lattice: Lattice, shut: frozenset[int], goal: Point) -> Costs:
+        """Return the number of decisions from each place to the goal, ignoring enemies."""
         key = (shut, goal)
-        if key not in self._ways:
-            if len(self._ways) >= _WAYS_KEPT:
-                self._ways.clear()
-            self._ways[key] = lattice.way_to(goal, _ARRIVED)
-        return self._ways[key]
+        if key not in self._decisions_to_goals:
+            if len(self._decisions_to_goals) >= _MOST_CACHED:
+                self._decisions_to_goals.clear()
+            self._decisions_to_goals[key] = lattice.decisions_to(goal, _ARRIVED)
+        return self._decisions_to_goals[key]

@@ -14,7 +14,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from tltl_runtime.stealth.level import Box, Level, Point
+from tltl_runtime.stealth.level import Box, Point, StealthLevel
 from tltl_runtime.stealth.world.player import PlayerKind
 
 CELL: Final = 0.25
@@ -36,7 +36,7 @@ class Surfaces:
     stair are not obstacles.
     """
 
-    def __init__(self, level: Level, shut: Collection[int] = (), *, margin: float = 0.04) -> None:
+    def __init__(self, level: StealthLevel, shut: Collection[int] = (), *, margin: float = 0.04) -> None:
         self.kind = PlayerKind()
         (x0, y0, _), (x1, y1, ceiling) = level.bounds.low, level.bounds.high
         self.origin = (x0, y0)
@@ -71,7 +71,7 @@ class Surfaces:
         return float(self.xs[column]), float(self.ys[row]), float(self.heights[layer])
 
     def _squares(self, point: Point) -> NDArray[np.float64]:
-        """The squared distances of all places from a point."""
+        """Return the squared distances of all places from a point."""
         squares: NDArray[np.float64] = ((self._points - np.array(point)) ** 2).sum(axis=1)
         return squares
 
@@ -84,7 +84,7 @@ class Surfaces:
         return supported
 
     def _free(self, boxes: list[Box], height: float, margin: float) -> Cells:
-        """Mark where no box touches a cylinder of this height, above the height of a stair."""
+        """Return a mask of where no box touches a cylinder of this height, above the height of a stair."""
         taken = self._nothing()
         radius = self.kind.radius + margin
         for box in boxes:
@@ -98,7 +98,7 @@ class Surfaces:
         return ~taken
 
     def _buried(self, boxes: list[Box]) -> Cells:
-        """Mark where the centre itself is inside a box, however low the box is."""
+        """Return a mask of where the centre of the cell is inside a box, however low the box is."""
         buried = self._nothing()
         for box in boxes:
             rows, columns = self._over(box)
@@ -107,7 +107,7 @@ class Surfaces:
         return buried
 
     def _over(self, box: Box) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-        """The rows and columns whose centres are above a box."""
+        """Return masks of the rows and columns whose centres are above a box."""
         rows = (self.ys >= box.low[1]) & (self.ys <= box.high[1])
         columns = (self.xs >= box.low[0]) & (self.xs <= box.high[0])
         return rows, columns

@@ -14,8 +14,8 @@ from typing import Final
 from tltl_runtime.stealth.expert.foresight import LONGEST_FALL, ActionPlan, Foresight, HeldAction
 from tltl_runtime.stealth.expert.motion import Motion
 from tltl_runtime.stealth.expert.movers import Clocks
-from tltl_runtime.stealth.expert.routes import Field, routes_of, shut_of
-from tltl_runtime.stealth.level import Box, Level, Point
+from tltl_runtime.stealth.expert.routes import Field, routes_of, shut_barriers
+from tltl_runtime.stealth.level import Box, Point, StealthLevel
 from tltl_runtime.stealth.snapshot import Snapshot
 from tltl_runtime.stealth.world.player import SIGN, Action, PlayerKind
 
@@ -34,7 +34,7 @@ _BOXES: Final = 5.0
 _SHORT: Final = (8, 16)
 _LONG: Final = (14, 32)
 """Decisions searched ahead, and bodies kept after each, in simple and in difficult places."""
-_FOLLOWED: Final = 6
+_REPLAN: Final = 6
 """The search is repeated after this many decisions."""
 _ASTRAY: Final = 0.08
 """The search is repeated when the player is this far from its prediction, in metres."""
@@ -43,7 +43,7 @@ _ASTRAY: Final = 0.08
 class Walker:
     """Walks to a goal, ignoring enemies; ``act`` returns the next action, decision by decision."""
 
-    def __init__(self, level: Level) -> None:
+    def __init__(self, level: StealthLevel) -> None:
         self.level = level
         self.reset()
 
@@ -51,57 +51,60 @@ class Walker:
         """Forget the previous episode."""
         self._clocks = Clocks(self.level)
         self._plan = ActionPlan((), ())
-        self._for: object = None
-        self._followed = 0
+        self._purpose: object = None
+        self._age = 0
 
     def act(self, snapshot: Snapshot, goal: Point) -> Action:
         """Return the next action towards ``goal``, or towards the reachable place nearest to it."""
         self._clocks.see(snapshot)
         purpose = (goal, snapshot.open)
-        if purpose != self._for or self._is_played() or self._is_astray(snapshot):
+        if purpose != self._purpose or self._is_played() or self._is_astray(snapshot):
             self._plan = self._search(snapshot, goal)
-            self._for, self._followed = purpose, 0
+            self._purpose, self._age = purpose, 0
         if not self._plan.actions:
             return STAY
-        self._followed += 1
-        return self._plan.actions[self._followed - 1]
+        self._age += 1
+        return self._plan.actions[self._age - 1]
 
     def _is_played(self) -> bool:
-        return self._followed >= min(_FOLLOWED, len(self._plan.actions))
+        return self._age >= min(_REPLAN, len(self._plan.actions))
 
     def _is_astray(self, snapshot: Snapshot) -> bool:
-        return dist(self._plan.places[self._followed - 1], snapshot.player.position) > _ASTRAY
+        return dist(self._plan.places[self._age - 1], snapshot.player.position) > _ASTRAY
 
     def _search(self, snapshot: Snapshot, goal: Point) -> ActionPlan:
         here = snapshot.player.position
-        shut = shut_of(snapshot)
+        shut = shut_barriers(snapshot)
         field = routes_of(self.level, shut).field_from(here, goal)
         boxes = [solid.box for solid in self.level.solids] + [self.level.barriers[index].box for index in sorted(shut)]
-        motion = Motion(PlayerKind(), [box for box in boxes if _away(box, here) <= _BOXES])
+        motion = Motion(PlayerKind(), [box for box in boxes if _horizontal_distance(box, here) <= _BOXES])
         moves = self._moves(field, snapshot)
         ahead, kept = _LONG if len(moves) > len(_WALKS) else _SHORT
-        swept = [self._clocks.swept(step) for step in range(ahead + LONGEST_FALL)]
+        swept = [self._clocks.swept_boxes(step) for step in range(ahead + LONGEST_FALL)]
         return Foresight(motion, field, moves, swept, ahead, kept).plan(snapshot.player)
 
     def _moves(self, field: Field, snapshot: Snapshot) -> list[HeldAction]:
-        """The moves to choose from at this place."""
+        """Return the moves to choose from at the player's position."""
         player = snapshot.player
-        way = field.way(player.position, _NEAR)
-        movers = any(_away(box, player.position) <= _NEAR for box in self._clocks.swept(0, 8))
+        legs = field.legs(player.position, _NEAR)
+        movers = any(_horizontal_distance(box, player.position) <= _NEAR for box in self._clocks.swept_boxes(0, 8))
         moves = [HeldAction(action) for action in _WALKS]
-        if movers or player.crouching or any(leg.kind == "crouch" for leg in way):
+        if movers or player.crouching or any(leg.kind == "crouch" for leg in legs):
             moves += [HeldAction(action) for action in _CROUCHES]
         # Near movers, jumps are allowed everywhere on the route, else only where the route needs them.
-        headings = _headings(player.position, [(movers or leg.kind in ("climb", "leap"), leg.place) for leg in way])
+        headings = _headings(player.position, [(movers or leg.kind in ("climb", "leap"), leg.place) for leg in legs])
         for x, y in sorted(headings):
             moves += [HeldAction((x, y, 1, 0, sprint), hold) for sprint in (0, 1) for hold in _HOLDS]
-        if any(leg.kind == "drop" for leg in way) or not player.grounded:
+        if any(leg.kind == "drop" for leg in legs) or not player.grounded:
             moves += [HeldAction((x, y, 0, 0, 0), hold) for x, y in _DIRECTIONS for hold in (1, 2)]
         return moves
 
 
 def _headings(start: Point, legs: list[tuple[bool, Point]]) -> set[tuple[int, int]]:
-    """The directions of actions within 45 degrees of the directions of the legs that count."""
+    """Return the directions of actions that are within 45 degrees of a leg.
+
+    A leg is whether it counts, and its end. Legs that do not count are ignored.
+    """
     headings = set()
     for (counts, place), before in zip(legs, [start, *(place for _, place in legs)], strict=False):
         dx, dy = place[0] - before[0], place[1] - before[1]
@@ -112,6 +115,6 @@ def _headings(start: Point, legs: list[tuple[bool, Point]]) -> set[tuple[int, in
     return headings
 
 
-def _away(box: Box, point: Point) -> float:
-    """The horizontal distance from a box to a point, in metres."""
+def _horizontal_distance(box: Box, point: Point) -> float:
+    """Return the horizontal distance from a box to a point, in metres."""
     return hypot(*(max(box.low[axis] - point[axis], 0.0, point[axis] - box.high[axis]) for axis in (0, 1)))

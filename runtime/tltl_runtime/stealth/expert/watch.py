@@ -1,9 +1,9 @@
 """Predict what the enemies will do, from what a player can see of them.
 
-The belief about each enemy is a set of models that have behaved as the enemy was seen to behave. A
-model is one of the game's own guards with a random generator of the watcher. It starts from what is
-known: the enemy's route and parameters. If an enemy does what none of its models did, all models
-are moved to its pose, and their intentions are guessed again.
+The belief about each enemy is a set of models. A model is one of the game's own guards, with the
+enemy's route and parameters, but with a random generator of the watcher. Only models that have done
+what the enemy did are kept. If the enemy does what none of its models did, all models are moved to
+its pose, and their intentions are guessed again.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from tltl_runtime.stealth.enemies.enemy import EnemyGuard, Mode, PlayerView
 from tltl_runtime.stealth.enemies.grid import Floor, grid_of
 from tltl_runtime.stealth.enemies.segments import Corners, corners
-from tltl_runtime.stealth.level import Level
+from tltl_runtime.stealth.level import StealthLevel
 from tltl_runtime.stealth.snapshot import Snapshot, player_view
 from tltl_runtime.stealth.world.player import DECISION
 from tltlc.api import record
@@ -28,7 +28,7 @@ _MODELS: Final = 12
 _SAME: Final = 0.02
 """The greatest difference between a model and its enemy, in metres and in radians."""
 _GUESSED: Final = 0.7
-"""The share of models that get a new guess if none was right."""
+"""The probability that a model gets a new intention if no model was right."""
 _BURIED: Final = -1000.0
 """The height of the feet of a player whom no enemy can see, in metres."""
 
@@ -37,8 +37,9 @@ _BURIED: Final = -1000.0
 class Outlook:
     """The predictions for an enemy: ``poses`` float64 [models, decisions, 4].
 
-    ``shares`` are the probabilities of the models. A pose is x, y, yaw, and 1 while the enemy knows
-    the player's position, because it then sees in all directions.
+    A pose is x, y and yaw, and 1 while the enemy knows the player's position, otherwise 0. An enemy
+    that knows the position sees in all directions. ``shares`` [models] are the probabilities of the
+    models.
     """
 
     poses: NDArray[np.float64]
@@ -48,7 +49,7 @@ class Outlook:
 class Watch:
     """Watches the enemies of a level from the reset on; pass each snapshot to ``see`` once."""
 
-    def __init__(self, level: Level, seed: int = 0) -> None:
+    def __init__(self, level: StealthLevel, seed: int = 0) -> None:
         self.level = level
         self._seed = seed
         self.reset()
@@ -78,7 +79,7 @@ class Watch:
             self.floor = self._update_floor()
             for model in (model for models in self.models for model in models):
                 model.floor = self.floor
-                model.forget_way()
+                model.forget_path()
         for index, models in enumerate(self.models):
             x, y, _ = snapshot.enemies[index]
             pose, mode = (x, y, snapshot.yaws[index]), cast("Mode", snapshot.modes[index])
@@ -117,14 +118,14 @@ class Watch:
         """Move a model to its enemy's pose, with a task that fits the enemy's mode."""
         before = model.mode
         model.x, model.y, model.yaw = pose
-        model.forget_way()
+        model.forget_path()
         if mode == before:
             if mode == "patrol" and self._rng.random() < _GUESSED:
                 self._guess(model)
             return model
         model.mode = mode
         model.knows = mode == "chase"
-        model.back = mode == "return"
+        model.is_off_route = mode == "return"
         model.search_left = model.kind.search_time if mode == "search" else 0.0
         model.searching = False
         if mode == "return":

@@ -6,9 +6,9 @@ from collections.abc import Iterator
 from typing import Final
 
 from tltl_runtime.stealth.enemies.grid import RADIUS
-from tltl_runtime.stealth.level import Box, Level, Point
+from tltl_runtime.stealth.level import Box, Point, StealthLevel
 from tltl_runtime.stealth.levels.parts import Places
-from tltl_runtime.stealth.world.geometry import around
+from tltl_runtime.stealth.world.geometry import box_around
 from tltl_runtime.stealth.world.mover_path import MoverPath
 from tltl_runtime.stealth.world.player import PlayerKind
 from tltlc.api import Diagnostic, Label
@@ -19,93 +19,100 @@ _EPSILON: Final = 1e-6
 _Boxes = list[tuple[str, Box]]
 
 
-def check_room(level: Level, places: Places, start: Label) -> list[Diagnostic]:
-    """Return TLT0806 for what is outside the bounds, TLT0807 for what stands inside an obstacle."""
+def check_room(level: StealthLevel, places: Places, start: Label) -> list[Diagnostic]:
+    """Return TLT0806 for things outside the bounds, and TLT0807 for things inside an obstacle.
+
+    ``start`` is the label of the player's start.
+    """
     solids = [(solid.name, solid.box) for solid in level.solids]
     barriers = [(barrier.name, barrier.box) for barrier in level.barriers]
     goals = [(switch.name, switch.position) for switch in level.switches]
     goals += [(exit_.name, exit_.position) for exit_ in level.exits]
     return [
-        *_outside(level, [*solids, *barriers], goals, places, start),
-        *_start(level, [*solids, *barriers], places, start),
-        *_goals(goals, solids, places),
-        *_routes(level, solids, places),
+        *_check_bounds(level, [*solids, *barriers], goals, places, start),
+        *_check_start(level, [*solids, *barriers], places, start),
+        *_check_goals(goals, solids, places),
+        *_check_routes(level, solids, places),
     ]
 
 
-def _outside(
-    level: Level, boxes: _Boxes, goals: list[tuple[str, Point]], places: Places, start: Label
+def _check_bounds(
+    level: StealthLevel, boxes: _Boxes, goals: list[tuple[str, Point]], places: Places, start: Label
 ) -> Iterator[Diagnostic]:
-    """Report what is outside the bounds, each thing once."""
-    moving = [(mover.name, Box(*around(point, mover.size))) for mover in level.movers for point in mover.path]
+    """Yield TLT0806 for each thing that is outside the bounds."""
+    moving = [(mover.name, Box(*box_around(point, mover.size))) for mover in level.movers for point in mover.path]
     points = [*goals, *((enemy.name, point) for enemy in level.enemies for point in enemy.route)]
     spots = [(name, Box(point, point)) for name, point in points]
-    bounds = f"the level from {shown(level.bounds.low)} to {shown(level.bounds.high)}"
-    for name, box in {name: box for name, box in (*boxes, *moving, *spots) if not _inside(box, level.bounds)}.items():
-        help_ = f"it reaches from {shown(box.low)} to {shown(box.high)}, {bounds}"
-        yield Diagnostic("TLT0806", f"`{name}` is outside the level's bounds", places.at(name), help_)
-    player = _player(level)
-    if not _inside(player, level.bounds):
-        help_ = f"the player takes from {shown(player.low)} to {shown(player.high)}, {bounds}"
+    bounds = f"the level from {point_text(level.bounds.low)} to {point_text(level.bounds.high)}"
+    for name, box in {
+        name: box for name, box in (*boxes, *moving, *spots) if not _is_inside(box, level.bounds)
+    }.items():
+        help_ = f"it reaches from {point_text(box.low)} to {point_text(box.high)}, {bounds}"
+        yield Diagnostic("TLT0806", f"`{name}` is outside the level's bounds", places.position_labels(name), help_)
+    player = _player_box(level)
+    if not _is_inside(player, level.bounds):
+        help_ = f"the player takes from {point_text(player.low)} to {point_text(player.high)}, {bounds}"
         yield Diagnostic("TLT0806", "the start is outside the level's bounds", (start,), help_)
 
 
-def _start(level: Level, boxes: _Boxes, places: Places, start: Label) -> Iterator[Diagnostic]:
-    """Report what overlaps the player's start, including movers at their initial positions."""
-    begins = [(mover.name, Box(*around(MoverPath(mover).at(mover.offset), mover.size))) for mover in level.movers]
+def _check_start(level: StealthLevel, boxes: _Boxes, places: Places, start: Label) -> Iterator[Diagnostic]:
+    """Yield TLT0807 for each thing that overlaps the player's start, also movers at their initial positions."""
+    begins = [
+        (mover.name, Box(*box_around(MoverPath(mover).position_at(mover.offset), mover.size))) for mover in level.movers
+    ]
     for name, box in (*boxes, *begins):
-        if _overlap(_player(level), box):
+        if _overlaps(_player_box(level), box):
             help_ = "move one of them, or lessen the start's `spread`: the player is 0.6 m wide and 1.8 m high"
-            yield Diagnostic("TLT0807", f"the start is inside `{name}`", (start, *places.at(name)), help_)
+            yield Diagnostic("TLT0807", f"the start is inside `{name}`", (start, *places.position_labels(name)), help_)
 
 
-def _goals(goals: list[tuple[str, Point]], solids: _Boxes, places: Places) -> Iterator[Diagnostic]:
-    """Report the goals that are inside a solid, with the first such solid."""
+def _check_goals(goals: list[tuple[str, Point]], solids: _Boxes, places: Places) -> Iterator[Diagnostic]:
+    """Yield TLT0807 for each goal that is inside a solid; it names the first such solid."""
     for goal, point in goals:
-        if name := _first_around(_body(point, 0.01, 0.1), solids):
+        if name := _first_overlap(_body_box(point, 0.01, 0.1), solids):
             title = f"`{goal}` is inside `{name}`, where nobody reaches it"
-            yield Diagnostic("TLT0807", title, places.at(goal, name), "move one of them")
+            yield Diagnostic("TLT0807", title, places.position_labels(goal, name), "move one of them")
 
 
-def _routes(level: Level, solids: _Boxes, places: Places) -> Iterator[Diagnostic]:
-    """Report the points of routes that are blocked, with the first solid there."""
+def _check_routes(level: StealthLevel, solids: _Boxes, places: Places) -> Iterator[Diagnostic]:
+    """Yield TLT0807 for each point of a route that is blocked; it names the first solid there."""
     for enemy in level.enemies:
         for point in enemy.route:
-            if name := _first_around(_body(point, RADIUS), solids):
-                title = f"`{enemy.name}` cannot walk to {shown(point)}: `{name}` is there"
+            if name := _first_overlap(_body_box(point, RADIUS), solids):
+                title = f"`{enemy.name}` cannot walk to {point_text(point)}: `{name}` is there"
                 help_ = f"points of a route keep {RADIUS} m away from what stands in the level"
-                yield Diagnostic("TLT0807", title, places.at(enemy.name, name), help_)
+                yield Diagnostic("TLT0807", title, places.position_labels(enemy.name, name), help_)
 
 
-def _first_around(body: Box, solids: _Boxes) -> str | None:
-    """The name of the first solid that overlaps a body, or None."""
-    return next((name for name, box in solids if _overlap(body, box)), None)
+def _first_overlap(body: Box, solids: _Boxes) -> str | None:
+    """Return the name of the first solid that overlaps a body, or None."""
+    return next((name for name, box in solids if _overlaps(body, box)), None)
 
 
-def _player(level: Level) -> Box:
-    """The space that the player may take at the start, including the spread."""
-    return _body(level.start.position, _PLAYER.radius + level.start.spread)
+def _player_box(level: StealthLevel) -> Box:
+    """Return the space that the player may take at the start, including the spread."""
+    return _body_box(level.start.position, _PLAYER.radius + level.start.spread)
 
 
-def _body(feet: Point, radius: float, height: float = _PLAYER.height) -> Box:
-    """The bounding box of a body, raised slightly, so that standing on something is no overlap."""
+def _body_box(feet: Point, radius: float, height: float = _PLAYER.height) -> Box:
+    """Return the bounding box of a body, raised by 1 cm, so that standing on something is no overlap."""
     x, y, z = feet
     return Box((x - radius, y - radius, z + 0.01), (x + radius, y + radius, z + height))
 
 
-def _inside(box: Box, bounds: Box) -> bool:
+def _is_inside(box: Box, bounds: Box) -> bool:
     return all(
         bounds.low[axis] - _EPSILON <= box.low[axis] and box.high[axis] <= bounds.high[axis] + _EPSILON
         for axis in range(3)
     )
 
 
-def _overlap(one: Box, other: Box) -> bool:
+def _overlaps(box: Box, other: Box) -> bool:
     return all(
-        one.low[axis] < other.high[axis] - _EPSILON and other.low[axis] < one.high[axis] - _EPSILON for axis in range(3)
+        box.low[axis] < other.high[axis] - _EPSILON and other.low[axis] < box.high[axis] - _EPSILON for axis in range(3)
     )
 
 
-def shown(point: Point) -> str:
-    """Format a point as level files write it."""
+def point_text(point: Point) -> str:
+    """Return a point as level files write it, such as ``[1, 2.5, 0]``."""
     return f"[{', '.join(f'{value:g}' for value in point)}]"

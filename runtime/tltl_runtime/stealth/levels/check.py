@@ -6,7 +6,7 @@ import re
 from collections import Counter
 from collections.abc import Iterable
 
-from tltl_runtime.stealth.level import Level, entity_names
+from tltl_runtime.stealth.level import StealthLevel, entity_names
 from tltl_runtime.stealth.levels.parts import CELL_TYPES, Places
 from tltl_runtime.stealth.signals import readers
 from tltl_runtime.support.suggestion import MOST_SUGGESTIONS, suggestion
@@ -24,15 +24,14 @@ def check_names(names: Iterable[str], places: Places) -> list[Diagnostic]:
         )
         if not valid:
             help_ = "a name is one word of letters, digits and _, and no word of the language, e.g. `north_door`"
-            diagnostics.append(Diagnostic("TLT0804", f"no spec could speak of `{name}`", places.named(name), help_))
+            diagnostics.append(
+                Diagnostic("TLT0804", f"no spec could speak of `{name}`", places.name_labels(name), help_)
+            )
     return diagnostics
 
 
-def check_references(level: Level, places: Places) -> list[Diagnostic]:
-    """Return TLT0805 for names that refer to nothing.
-
-    Also for barriers that nothing opens, or that two things open.
-    """
+def check_references(level: StealthLevel, places: Places) -> list[Diagnostic]:
+    """Return TLT0805 for names that refer to nothing, and for barriers that nothing or two things open."""
     # Leave out the aliases: their targets are among the names to check.
     signals = readers(replace(level, signals=()))
     known = {
@@ -50,9 +49,9 @@ def check_references(level: Level, places: Places) -> list[Diagnostic]:
             diagnostics.append(Diagnostic("TLT0805", f"there is no {kind} `{name}`", (label,), hint))
     unlocked = Counter(name for unlock in level.unlocks for name in unlock.barriers)
     for barrier in level.barriers:
-        ways = bool(barrier.opened_by) + unlocked[barrier.name]
-        if ways != 1:
-            title = f"{'two things open' if ways else 'nothing opens'} the barrier `{barrier.name}`"
+        openers = bool(barrier.opened_by) + unlocked[barrier.name]
+        if openers != 1:
+            title = f"{'two things open' if openers else 'nothing opens'} the barrier `{barrier.name}`"
             help_ = "name its switches in `opened_by`, or the barrier in one `[[unlock]]`"
-            diagnostics.append(Diagnostic("TLT0805", title, places.named(barrier.name), help_))
+            diagnostics.append(Diagnostic("TLT0805", title, places.name_labels(barrier.name), help_))
     return diagnostics

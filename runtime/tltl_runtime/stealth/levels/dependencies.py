@@ -19,8 +19,9 @@ _SPEC: Final = re.compile(r"(.+\.tltl)(?::\w+)?\Z")
 def level_dependencies(level: Path, variant: str) -> Iterator[Path]:
     """Yield the files of the level, the assets and overlays of the variant, and the level's spec.
 
-    The files need not load: from a file with errors, everything readable counts.  Paths that do not
-    exist but would take precedence over a file are included.
+    The files need not load: from a file with errors, everything readable counts.  If a file at
+    another path would be used instead of an existing one, that path is included, although it does
+    not exist.
     """
     yield level
     base, added = split_overlays(variant)
@@ -32,24 +33,24 @@ def level_dependencies(level: Path, variant: str) -> Iterator[Path]:
     else:
         asset_names = [use.get("asset") for use in _tables(table.get("use"))]
         asset_names += [enemy.get("kind") for enemy in _tables(table.get("enemy"))]
-        named = table.get("variants")
-        listed = named.get(base) if isinstance(named, dict) else None
+        variants = table.get("variants")
+        variant_overlays = variants.get(base) if isinstance(variants, dict) else None
         assets, specs = _texts(asset_names), _texts([table.get("spec")])
-        overlays = _texts(listed if isinstance(listed, list) else [])
+        overlays = _texts(variant_overlays if isinstance(variant_overlays, list) else [])
     places = (level.parent, LEVELS)
-    yield from _shared(assets, "assets", places, sure=table is not None)
-    yield from _shared(overlays, "overlays", places, sure=table is not None)
+    yield from _shared_files(assets, "assets", places, sure=table is not None)
+    yield from _shared_files(overlays, "overlays", places, sure=table is not None)
     yield from (Path(name) for name in added if name.endswith(".toml"))
-    yield from _shared([name for name in added if not name.endswith(".toml")], "overlays", places, sure=True)
+    yield from _shared_files([name for name in added if not name.endswith(".toml")], "overlays", places, sure=True)
     for match in filter(None, map(_SPEC.match, specs)):
         for path in up_to_first_file(folder / match[1] for folder in (level.parent, *SPECS)):
             yield from spec_files(path)
 
 
 def file_candidates(level: Path, variant: str, name: str) -> Iterator[Path]:
-    """Yield the possible paths of a level's file.
+    """Yield the paths where the file may be that the ``files`` of a level call ``name``.
 
-    They are the level itself, a file beside it or in the package, or an added overlay.
+    It is the file of the level itself, a file beside it or in the package, or an added overlay.
     """
     if name == level.name:
         yield level
@@ -59,8 +60,11 @@ def file_candidates(level: Path, variant: str, name: str) -> Iterator[Path]:
             yield Path(overlay)
 
 
-def _shared(names: Iterable[str], folder: str, places: Sequence[Path], *, sure: bool) -> Iterator[Path]:
-    """The files of assets or overlays.  Unless ``sure``, a name may be something else: only existing files count."""
+def _shared_files(names: Iterable[str], folder: str, places: Sequence[Path], *, sure: bool) -> Iterator[Path]:
+    """Yield the files of the assets or overlays with these names.
+
+    Unless ``sure``, a name may be something else. Then it counts only if a file of that name exists.
+    """
     for name in names:
         paths = [place / folder / f"{name}.toml" for place in places]
         if sure or any(map(fileio.is_file, paths)):

@@ -7,7 +7,7 @@ from typing import Final
 
 from tltl_runtime.stealth.enemies.branches import added_branches
 from tltl_runtime.stealth.enemies.grid import is_too_large
-from tltl_runtime.stealth.level import Box, Level, Point
+from tltl_runtime.stealth.level import Box, Point, StealthLevel
 from tltl_runtime.stealth.signals import readers
 from tltl_runtime.support.checked_table import FARTHEST
 from tltlc.api import replace
@@ -16,15 +16,15 @@ _THINNEST: Final = 1e-3
 """The smallest side of a box, in metres."""
 
 
-def fault(level: Level) -> str | None:
-    """Return the first fault of a level, or None if it is fit.
+def fault(level: StealthLevel) -> str | None:
+    """Return a description of the first fault of a level, or None if it can be drawn and played.
 
-    Names and room are checked for level files only.
+    Names, and the room that things need, are checked for level files only.
     """
     return next(_faults(level), None)
 
 
-def _faults(level: Level) -> Iterator[str]:
+def _faults(level: StealthLevel) -> Iterator[str]:
     boxes = [("the bounds", level.bounds)]
     boxes += [(f"the solid `{solid.name}`", solid.box) for solid in level.solids]
     boxes += [(f"the barrier `{barrier.name}`", barrier.box) for barrier in level.barriers]
@@ -47,7 +47,7 @@ def _faults(level: Level) -> Iterator[str]:
     yield from _wrong_references(level)
 
 
-def _wrong_references(level: Level) -> Iterator[str]:
+def _wrong_references(level: StealthLevel) -> Iterator[str]:
     switches, barriers = {switch.name for switch in level.switches}, {barrier.name for barrier in level.barriers}
     opening = {name for barrier in level.barriers for name in barrier.opened_by}
     opening |= {unlock.switch for unlock in level.unlocks}

@@ -15,11 +15,11 @@ from typing import Final
 
 from tltl_runtime.game.level_name import split_overlays, variant_text
 from tltl_runtime.stealth.enemies.grid import is_too_large
-from tltl_runtime.stealth.level import Box, EnemyKind, Level, Mover, Region, Solid, entity_names
+from tltl_runtime.stealth.level import Box, EnemyKind, Mover, Region, Solid, StealthLevel, entity_names
 from tltl_runtime.stealth.levels import check, overlay, parts
 from tltl_runtime.stealth.levels.bounds_check import check_room
-from tltl_runtime.stealth.levels.made_for import LEVELS, made_for
-from tltl_runtime.stealth.levels.path_check import check_ways
+from tltl_runtime.stealth.levels.made_for import LEVELS, read_default_spec
+from tltl_runtime.stealth.levels.path_check import check_paths
 from tltl_runtime.stealth.levels.regions import named_regions, part_regions
 from tltl_runtime.support.checked_table import CheckedTable, wrong_value
 from tltl_runtime.support.shown_path import path_text
@@ -54,18 +54,18 @@ def changes(name_or_path: str, variant: str) -> tuple[str, ...]:
 
 
 @fileio.resource_limits()
-def level_and_changes(name_or_path: str, variant: str) -> tuple[Level, tuple[str, ...]]:
-    """Return a level as :func:`load_level` reads it, and its :func:`changes`."""
+def level_and_changes(name_or_path: str, variant: str) -> tuple[StealthLevel, tuple[str, ...]]:
+    """Return a level and the descriptions of its overlays: the results of :func:`load_level` and :func:`changes`."""
     loading = _Loading(level_path(name_or_path))
     return loading.level(variant), tuple(loading.changes)
 
 
 @fileio.resource_limits()
-def load_level(name_or_path: str, variant: str = "v0") -> Level:
+def load_level(name_or_path: str, variant: str = "v0") -> StealthLevel:
     """Load a shipped level, by name, or one from a ``.toml`` file, in one of its variants.
 
-    ``VARIANT+OVERLAY`` is a variant with one more overlay, and so on. The overlay is one that
-    variants name, or the path of a ``.toml`` file
+    ``VARIANT+OVERLAY`` is a variant with one more overlay, ``VARIANT+A+B`` with two more. An overlay
+    is a name, as in the list of a variant, or the path of a ``.toml`` file
     (:func:`~tltl_runtime.game.level_name.split_overlays`).
 
     :func:`read_level` also returns warnings.
@@ -83,14 +83,14 @@ def load_level(name_or_path: str, variant: str = "v0") -> Level:
 
 
 @fileio.resource_limits()
-def read_level(name_or_path: str, variant: str = "v0") -> tuple[Level, tuple[Diagnostic, ...]]:
+def read_level(name_or_path: str, variant: str = "v0") -> tuple[StealthLevel, tuple[Diagnostic, ...]]:
     """Return a level as :func:`load_level` does, and warnings.
 
-    TLT0809: a mover or an enemy has an odd path.
+    The warnings are TLT0809: the path of a mover or an enemy looks like a mistake.
     """
     loading = _Loading(level_path(name_or_path))
     level = loading.level(variant)
-    return level, check_ways(level, loading.places)
+    return level, check_paths(level, loading.places)
 
 
 def level_path(name_or_path: str) -> Path:
@@ -132,7 +132,7 @@ class _Loading:
         self.table = CheckedTable(self.root, f"the level `{path.stem}`", self.log)
         self.variants = self._variants()
 
-    def level(self, variant: str) -> Level:
+    def level(self, variant: str) -> StealthLevel:
         """Return the level in a variant, with the overlays that are added to it."""
         base, added = split_overlays(variant)
         if base not in self.variants:
@@ -140,7 +140,7 @@ class _Loading:
             label = self.table.label_of("variants")
             raise TltlError([Diagnostic("TLT0800", title, (label,), suggestion(base, self.variants))])
         table, places = self.table, self.places
-        doc, spec = table.text("doc"), made_for(table, self.path)
+        doc, spec = table.text("doc"), read_default_spec(table, self.path)
         bounds = self._bounds()
         start = table.table("start")
         uses, assets = self._assets(base, added)
@@ -149,7 +149,7 @@ class _Loading:
             for name, part in assets.items()
             if part.text("type", one_of=("enemy", "part")) == "enemy"
         }
-        used_solids, used_movers, used_regions = self._used(uses, assets, kinds)
+        used_solids, used_movers, used_regions = self._read_parts(uses, assets, kinds)
         switches = parts.switches(table, places)
         barriers = parts.barriers(table, places)
         exits = parts.exits(table, places)
@@ -161,7 +161,7 @@ class _Loading:
             title = f"the bounds of the level `{self.path.stem}` are too large for enemies"
             help_ = "let them hold 250 m by 250 m at most, or leave the enemies out"
             raise TltlError([Diagnostic("TLT0006", title, (table.label_of("bounds"),), help_)])
-        level = Level(
+        level = StealthLevel(
             name=self.path.stem,
             variant=variant_text(variant),
             doc=doc,
@@ -248,17 +248,17 @@ class _Loading:
         """Return the level's uses of parts, and its assets by name, with all overlays applied."""
         uses = self.table.tables("use")
         references = [(use, "asset") for use in uses]
-        references += [(CheckedTable(enemy, "`[[enemy]]`", []), "kind") for enemy in self._listed("enemy")]
+        references += [(CheckedTable(enemy, "`[[enemy]]`", []), "kind") for enemy in self._tables_under("enemy")]
         entries: dict[str, Entry] = {}
         for table, key in references:
             name = table.text(key)
-            if name and name not in entries and (path := self._shared("assets", name, table.label_of(key))):
+            if name and name not in entries and (path := self._find_shared("assets", name, table.label_of(key))):
                 entries[name] = self._read(path, f"assets/{name}.toml")
         trees: dict[str, Tree] = {name: entry.value for name, entry in entries.items()}
         named = self.table.entries["variants"].value[variant].label if self.variants[variant] else self.table.label
         names = self.variants[variant]
-        overlays = [(name, self._shared("overlays", name, named)) for name in names[: fileio.limits.OVERLAYS + 1]]
-        overlays += [(name, self._added(name)) for name in added[: fileio.limits.OVERLAYS + 1]]
+        overlays = [(name, self._find_shared("overlays", name, named)) for name in names[: fileio.limits.OVERLAYS + 1]]
+        overlays += [(name, self._overlay_path(name)) for name in added[: fileio.limits.OVERLAYS + 1]]
         if len(overlays) > fileio.limits.OVERLAYS:
             title = f"a variant of the level `{self.path.stem}` has more than {fileio.limits.OVERLAYS} overlays"
             raise TltlError([Diagnostic("TLT0006", title, (named,), "put their changes together in one overlay")])
@@ -276,20 +276,21 @@ class _Loading:
             table.text("doc")
         return uses, assets
 
-    def _listed(self, key: str) -> list[Entry]:
+    def _tables_under(self, key: str) -> list[Entry]:
         """Return the tables under a key, or an empty list."""
         entry = self.root.value.get(key)
         items = entry.value if entry is not None and isinstance(entry.value, list) else []
         return [item for item in items if isinstance(item, Entry)]
 
-    def _added(self, name: str) -> Path | None:
-        """Return the file of an overlay that is added to a variant."""
-        return Path(name) if name.endswith(".toml") else self._shared("overlays", name)
+    def _overlay_path(self, name: str) -> Path | None:
+        """Return the file of an overlay that an argument adds to a variant; log TLT0800 if there is none."""
+        return Path(name) if name.endswith(".toml") else self._find_shared("overlays", name)
 
-    def _shared(self, folder: str, name: str, label: Label | None = None) -> Path | None:
-        """Find the file of an asset or overlay, beside the level or in the package.
+    def _find_shared(self, folder: str, name: str, label: Label | None = None) -> Path | None:
+        """Find the file of an asset or overlay, beside the level or in the package; log an error if there is none.
 
-        ``label`` is where the name stands in a file; without one, the name is an argument.
+        ``label`` is the label of the name in a file: the error is TLT0805. Without a label, the name
+        is part of an argument: the error is TLT0800.
         """
         for place in (self.path.parent / folder, LEVELS / folder):
             if fileio.is_file(path := place / f"{name}.toml") and path.parent == place:
@@ -300,7 +301,7 @@ class _Loading:
         self.log.append(Diagnostic(code, title, labels, suggestion(name, known) if known else None))
         return None
 
-    def _used(
+    def _read_parts(
         self, uses: list[CheckedTable], assets: dict[str, CheckedTable], kinds: dict[str, EnemyKind]
     ) -> tuple[list[Solid], list[Mover], list[Region]]:
         """Return the solids, movers and regions of the parts that the level uses."""
@@ -331,7 +332,7 @@ class _Loading:
             if len(self.log) > _MOST_FAULTS:
                 self.check()
             regions += part_regions(prefix[:-1], still, moving)
-        for enemy in self._listed("enemy"):
+        for enemy in self._tables_under("enemy"):
             kind = enemy.value.get("kind")
             if kind is not None and kind.value in [name for name in assets if name not in kinds]:
                 self.log.append(wrong_value(kind, "kind", 'the name of an asset with `type = "enemy"`'))
@@ -348,6 +349,6 @@ class _Loading:
 
 
 def _first_line(source: SourceFile) -> Span:
-    """The first line with content; diagnostics about the whole file point to it."""
+    """Return the span of the first line with content; diagnostics about the whole file point to it."""
     match = re.search(r"^[ \t]*[^#\s].*$", source.text, re.MULTILINE)
     return Span(*match.span()) if match else Span(0, 0)

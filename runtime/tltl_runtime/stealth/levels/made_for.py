@@ -17,11 +17,12 @@ SPECS: Final = (LEVELS.parent / "examples", LEVELS.parents[2] / "examples")
 """The folders of the levels' specs: in an installed package, and in a checkout."""
 
 
-def made_for(table: CheckedTable, level: Path) -> str:
+def read_default_spec(table: CheckedTable, level: Path) -> str:
     """Return the spec under the key ``spec`` of a level as ``FILE:NAME``.
 
-    The file is beside the level or in the package. Return an empty text if there is no spec, or if
-    it is wrong (TLT0803, TLT0805).
+    ``level`` is the path of the level's file. The spec is beside that file or in the package. Return
+    an empty text if the level names no spec, or if it names one that does not exist; then TLT0803
+    or TLT0805 is logged.
     """
     text = table.text("spec", "")
     file, _, name = text.rpartition(":")
@@ -36,19 +37,19 @@ def made_for(table: CheckedTable, level: Path) -> str:
         help_ = f"put it beside `{level.name}`"
         table.log.append(Diagnostic("TLT0805", f"there is no spec file `{file}`", (label,), help_))
         return ""
-    specs = _specs(path)
+    specs = _spec_names(path)
     if name not in specs:
         title = f"`{file}` holds no spec `{name}`"
         table.log.append(Diagnostic("TLT0805", title, (label,), suggestion(name, specs)))
     return f"{path}:{name}"
 
 
-def comes_with_the_package(spec: str) -> bool:
+def is_packaged(spec: str) -> bool:
     """Whether a spec file is one that shipped levels are made for."""
     return Path(spec).resolve().parent in [folder.resolve() for folder in SPECS]
 
 
-def _specs(path: Path) -> list[str]:
+def _spec_names(path: Path) -> list[str]:
     """Return the names of the specs in a file, even if the file has other errors."""
     from tltlc.api import syntax
 

@@ -13,12 +13,11 @@ from tltlc.api import Diagnostic, Label
 
 
 def apply(overlay: Tree, assets: dict[str, Tree], log: list[Diagnostic]) -> dict[str, Tree]:
-    """Apply the changes of an overlay to the assets, by name.
+    """Return the assets, by name, with the changes of an overlay.
 
-    Changes to things that do not exist are reported in ``log``. ``[change.ASSET]`` replaces values
-    of keys of an asset, ``[change.ASSET.THING]`` values of a thing in it, and ``[add.ASSET]``
-    appends to its lists. Neither creates a key that the asset does not have (TLT0808), so that a
-    misspelled change cannot pass unnoticed.
+    ``[change.ASSET]`` replaces the values of keys of an asset, ``[change.ASSET.THING]`` those of a
+    thing in the asset. ``[add.ASSET]`` appends to lists of the asset. Neither creates a key that the
+    asset does not have, so that a misspelled change cannot pass unnoticed: ``log`` gets TLT0808.
     """
     changed = dict(assets)
     for key, entry in overlay.items():
@@ -30,14 +29,14 @@ def apply(overlay: Tree, assets: dict[str, Tree], log: list[Diagnostic]) -> dict
             continue
         for name, part in entry.value.items():
             if name not in assets or not isinstance(part.value, dict):
-                log.append(_missing(f"the level uses no asset `{name}`", part.label, name, assets))
+                log.append(_missing_error(f"the level uses no asset `{name}`", part.label, name, assets))
             else:
-                apply_part = _with_changes if key == "change" else _with_additions
+                apply_part = _apply_changes if key == "change" else _apply_additions
                 changed[name] = apply_part(changed[name], part.value, f"the asset `{name}`", log)
     return changed
 
 
-def _with_changes(target: Tree, changes: Tree, description: str, log: list[Diagnostic]) -> Tree:
+def _apply_changes(target: Tree, changes: Tree, description: str, log: list[Diagnostic]) -> Tree:
     things = {
         item.value["name"].value: (key, number)
         for key, entry in target.items()
@@ -50,24 +49,26 @@ def _with_changes(target: Tree, changes: Tree, description: str, log: list[Diagn
         if key in things and isinstance(entry.value, dict):
             kind, number = things[key]
             items = list(result[kind].value)
-            inside = _with_changes(items[number].value, entry.value, f"`{key}` of {description}", log)
-            items[number] = Entry(inside, items[number].label)
+            changed_thing = _apply_changes(items[number].value, entry.value, f"`{key}` of {description}", log)
+            items[number] = Entry(changed_thing, items[number].label)
             result[kind] = Entry(items, result[kind].label)
         elif key in target and key != "name" and not _is_tables(target[key].value):
             result[key] = entry
         else:
             known = [known for known in (*target, *things) if known != "name"]
-            log.append(_missing(f"{description} has no `{key}` to change", entry.label, key, known))
+            log.append(_missing_error(f"{description} has no `{key}` to change", entry.label, key, known))
     return result
 
 
-def _with_additions(target: Tree, additions: Tree, description: str, log: list[Diagnostic]) -> Tree:
+def _apply_additions(target: Tree, additions: Tree, description: str, log: list[Diagnostic]) -> Tree:
     result = dict(target)
     for key, entry in additions.items():
         old = target[key].value if key in target else None
         if not isinstance(old, list) or not isinstance(entry.value, list) or _is_tables(old) != _is_tables(entry.value):
             lists = [known for known in target if isinstance(target[known].value, list)]
-            log.append(_missing(f"{description} has no list `{key}` of this kind to add to", entry.label, key, lists))
+            log.append(
+                _missing_error(f"{description} has no list `{key}` of this kind to add to", entry.label, key, lists)
+            )
         else:
             result[key] = Entry([*old, *entry.value], entry.label)
     return result
@@ -77,5 +78,5 @@ def _is_tables(value: Any) -> bool:
     return isinstance(value, list) and bool(value) and isinstance(value[0], Entry)
 
 
-def _missing(title: str, label: Label, name: str, known: Any) -> Diagnostic:
+def _missing_error(title: str, label: Label, name: str, known: Any) -> Diagnostic:
     return Diagnostic("TLT0808", title, (label,), suggestion(name, known))

@@ -31,7 +31,7 @@ _MAX_RISE: Final = 0.25
 """The highest step of stairs that the player can walk up, in metres."""
 
 CELL_TYPES: Final = ("floor", "platform", "low", "wall", "switch", "exit", "barrier", "laser", "mover", "enemy")
-"""What a cell of the semantic map can contain; where several meet, the last one wins."""
+"""The types of the cells of a semantic map; a cell with several types has the last one in this order."""
 
 _SOLIDS: Final[tuple[Literal["wall", "low", "platform"], ...]] = ("wall", "low", "platform")
 
@@ -50,26 +50,29 @@ class Places:
     """Labels of names, positions and references in the level's files, for later checks."""
 
     names: dict[str, Label]
-    spots: dict[str, Label]
+    positions: dict[str, Label]
     references: list[tuple[str, str, Label]]
     """The kind of thing that a reference names, the name, and the label of the reference."""
 
-    def put(self, name: str, table: CheckedTable, spot: str) -> None:
-        """Record the labels of a thing; a name that is already taken is an error (TLT0804)."""
+    def add(self, name: str, table: CheckedTable, position_key: str) -> None:
+        """Record the labels of a thing's name and position; log TLT0804 if the name is taken.
+
+        ``position_key`` is the key of ``table`` that has the position.
+        """
         label = table.label_of("name")
         if name in self.names:
             title = f"two things are called `{name}`"
             table.log.append(Diagnostic("TLT0804", title, (label, self.names[name]), "give one another `name`"))
         self.names.setdefault(name, label)
-        self.spots.setdefault(name, table.label_of(spot))
+        self.positions.setdefault(name, table.label_of(position_key))
 
-    def named(self, name: str) -> tuple[Label, ...]:
-        """Return the label of a thing's name, if there is one."""
+    def name_labels(self, name: str) -> tuple[Label, ...]:
+        """Return the label of a thing's name, or an empty tuple if the name is not in a file."""
         return (self.names[name],) if name in self.names else ()
 
-    def at(self, *names: str) -> tuple[Label, ...]:
-        """Return the labels of the positions of things; the outer walls have none."""
-        return tuple(self.spots[name] for name in names if name in self.spots)
+    def position_labels(self, *names: str) -> tuple[Label, ...]:
+        """Return the labels of the positions of things, except the outer walls, which have none."""
+        return tuple(self.positions[name] for name in names if name in self.positions)
 
     def refer(self, kind: str, table: CheckedTable, key: str, names: tuple[str, ...]) -> None:
         """Record that a key refers to things of a kind."""
@@ -83,27 +86,27 @@ def solids(table: CheckedTable, places: Places, shift: Point = (0.0, 0.0, 0.0), 
         for number, item in enumerate(table.tables(kind), 1):
             name = prefix + item.text("name", f"{kind}_{number}")
             solids.append(Solid(name, kind, box(item, shift)))
-            places.put(name, item, "at")
+            places.add(name, item, "at")
             item.report_unknown_keys()
     for number, item in enumerate(table.tables("stairs"), 1):
         name = prefix + item.text("name", f"stairs_{number}")
         steps = _stairs(item, name, shift)
         solids += steps
-        places.put(name, item, "from")
-        places.spots.update({solid.name: item.label_of("from") for solid in steps})
+        places.add(name, item, "from")
+        places.positions.update({solid.name: item.label_of("from") for solid in steps})
         item.report_unknown_keys()
     return solids
 
 
 def box(table: CheckedTable, shift: Point = (0.0, 0.0, 0.0)) -> Box:
     """Read a box from ``at``, the middle of its base, and ``size``."""
-    (x, y, z), (dx, dy, dz) = _moved(table.point("at"), shift), table.size()
-    return Box(_rounded((x - dx / 2, y - dy / 2, z)), _rounded((x + dx / 2, y + dy / 2, z + dz)))
+    (x, y, z), (dx, dy, dz) = _shift(table.point("at"), shift), table.size()
+    return Box(_round((x - dx / 2, y - dy / 2, z)), _round((x + dx / 2, y + dy / 2, z + dz)))
 
 
 def _stairs(table: CheckedTable, name: str, shift: Point) -> list[Solid]:
-    """Return one box per step, each reaching down to the height at which the stairs begin."""
-    foot, top = _moved(table.point("from"), shift), _moved(table.point("to"), shift)
+    """Return one box per step; each box reaches down to the height at which the stairs begin."""
+    foot, top = _shift(table.point("from"), shift), _shift(table.point("to"), shift)
     width = table.number("width", low=0.7, high=50.0)
     steps = table.whole("steps", low=1, high=40)
     rise = (top[2] - foot[2]) / steps
@@ -126,7 +129,7 @@ def _stairs(table: CheckedTable, name: str, shift: Point) -> list[Solid]:
         low[1 - axis] -= width / 2
         high[1 - axis] += width / 2
         high[2] = foot[2] + rise * (number + 1)
-        boxes.append(Solid(f"{name}_{number + 1}", "platform", Box(_rounded(low), _rounded(high))))
+        boxes.append(Solid(f"{name}_{number + 1}", "platform", Box(_round(low), _round(high))))
     return boxes
 
 
@@ -136,12 +139,12 @@ def movers(table: CheckedTable, places: Places, shift: Point = (0.0, 0.0, 0.0), 
     for item in table.tables("mover"):
         name, size = prefix + item.text("name"), item.size()
         up = (shift[0], shift[1], shift[2] + size[2] / 2)
-        path = tuple(_rounded(_moved(point, up)) for point in item.points("path", 2))
+        path = tuple(_round(_shift(point, up)) for point in item.points("path", 2))
         speed = item.number("speed", low=0.01, high=10.0, unit="m/s")
         pause = item.number("pause", 0.0, low=0.0, high=600.0, unit="s")
         offset = item.number("offset", 0.0, low=0.0, high=600.0, unit="s")
         movers.append(Mover(name, size, path, speed, pause, offset, item.flag("closed")))
-        places.put(name, item, "path")
+        places.add(name, item, "path")
         item.report_unknown_keys()
     return movers
 
@@ -152,7 +155,7 @@ def switches(table: CheckedTable, places: Places) -> list[Switch]:
     for item in table.tables("switch"):
         name = item.text("name")
         switches.append(Switch(name, item.point("at"), item.number("radius", 1.0, low=0.1, high=10.0)))
-        places.put(name, item, "at")
+        places.add(name, item, "at")
         item.report_unknown_keys()
     return switches
 
@@ -165,7 +168,7 @@ def barriers(table: CheckedTable, places: Places) -> list[Barrier]:
             name, opened_by = item.text("name"), item.names("opened_by", ())
             damage = item.number("damage", 0.5, low=0.0, high=100.0, unit="a second") if kind == "laser" else 0.0
             barriers.append(Barrier(name, cast(Literal["solid", "laser"], kind), box(item), opened_by, damage))
-            places.put(name, item, "at")
+            places.add(name, item, "at")
             places.refer("switch", item, "opened_by", opened_by)
             item.report_unknown_keys({"damage": "[[laser]]"})
     return barriers
@@ -193,7 +196,7 @@ def exits(table: CheckedTable, places: Places) -> list[Exit]:
     for item in table.tables("exit"):
         name = item.text("name")
         exits.append(Exit(name, item.point("at")))
-        places.put(name, item, "at")
+        places.add(name, item, "at")
         item.report_unknown_keys()
     return exits
 
@@ -205,7 +208,7 @@ def enemies(table: CheckedTable, kinds: dict[str, EnemyKind], places: Places) ->
         name, kind, route = item.text("name"), item.text("kind"), item.points("route", 1)
         if kind in kinds:
             enemies.append(Enemy(name, kinds[kind], route))
-        places.put(name, item, "route")
+        places.add(name, item, "route")
         item.report_unknown_keys()
     return enemies
 
@@ -248,7 +251,7 @@ def start(table: CheckedTable) -> Start:
 
 
 def sensors(table: CheckedTable | None, entities: tuple[str, ...], places: Places) -> Sensors:
-    """Read the agent's sensors; by default every entity, `_VARIABLES` and no map."""
+    """Read the agent's sensors; by default all ``entities``, ``_VARIABLES`` and no map."""
     if table is None:
         return Sensors(entities, _VARIABLES, None)
     map_sensor = None
@@ -284,12 +287,12 @@ def enclosure(bounds: Box) -> list[Solid]:
     ]
 
 
-def _moved(point: Point, shift: Point) -> Point:
-    """Shift a point of a part to the position of the part."""
+def _shift(point: Point, shift: Point) -> Point:
+    """Return a point of a part in the level; ``shift`` is the position of the part."""
     return (point[0] + shift[0], point[1] + shift[1], point[2] + shift[2])
 
 
-def _rounded(point: list[float] | Point) -> Point:
+def _round(point: list[float] | Point) -> Point:
     """Round to the micrometre, so that boxes that should touch do touch."""
     x, y, z = (round(value, 6) + 0.0 for value in point)
     return (x, y, z)

@@ -8,63 +8,68 @@ from math import dist
 from typing import Final, cast
 
 from tltl_runtime.stealth.enemies.grid import grid_of
-from tltl_runtime.stealth.enemies.segments import Corners, blocked
-from tltl_runtime.stealth.level import Enemy, Level, Mover, Point
-from tltl_runtime.stealth.levels.bounds_check import shown
+from tltl_runtime.stealth.enemies.segments import Corners, is_blocked
+from tltl_runtime.stealth.level import Enemy, Mover, Point, StealthLevel
+from tltl_runtime.stealth.levels.bounds_check import point_text
 from tltl_runtime.stealth.levels.parts import Places
 from tltlc.api import Diagnostic
 
 _EPSILON: Final = 1e-6
-_MOST_EACH: Final = 10
+_MOST_WARNINGS: Final = 10
 """The most warnings about one mover or enemy."""
 
 
-def check_ways(level: Level, places: Places) -> tuple[Diagnostic, ...]:
-    """Return warnings about movers and enemies.
+def check_paths(level: StealthLevel, places: Places) -> tuple[Diagnostic, ...]:
+    """Return warnings about movers and enemies (TLT0809).
 
-    A mover is reported if two neighbouring points of its path are equal, or if it passes through a
-    solid; an enemy, if it begins within reach of the player or cannot reach a point of its route.
+    There is a warning if two neighbouring points of a mover's path are equal, or if the mover passes
+    through a solid. There is one if an enemy begins within reach of the player, or cannot reach a
+    point of its route.
     """
-    warnings = [warning for mover in level.movers for warning in islice(_mover(mover, level, places), _MOST_EACH)]
-    warnings += [warning for enemy in level.enemies for warning in islice(_enemy(enemy, level, places), _MOST_EACH)]
+    warnings = [
+        warning for mover in level.movers for warning in islice(_mover_warnings(mover, level, places), _MOST_WARNINGS)
+    ]
+    warnings += [
+        warning for enemy in level.enemies for warning in islice(_enemy_warnings(enemy, level, places), _MOST_WARNINGS)
+    ]
     return tuple(warnings)
 
 
-def _mover(mover: Mover, level: Level, places: Places) -> Iterator[Diagnostic]:
+def _mover_warnings(mover: Mover, level: StealthLevel, places: Places) -> Iterator[Diagnostic]:
     stops = [*mover.path, mover.path[0]] if mover.closed else mover.path
     if any(dist(start, end) < _EPSILON for start, end in pairwise(stops)):
         title = f"two neighbouring points in the path of `{mover.name}` are the same"
         yield _warning(title, places, mover.name, help_="for a rest, give a `pause`; else move one of the points")
     for solid in level.solids:
         # The box meets the solid if its centre is inside the solid grown by half the box's size.
-        larger = (
+        grown = (
             *(a - side / 2 + _EPSILON for a, side in zip(solid.box.low, mover.size, strict=True)),
             *(b + side / 2 - _EPSILON for b, side in zip(solid.box.high, mover.size, strict=True)),
         )
         # Only the player stops a mover, so a door may slide into a wall; more often this is a mistake.
-        if any(blocked(start, end, [cast(Corners, larger)]) for start, end in pairwise(stops)):
+        if any(is_blocked(start, end, [cast(Corners, grown)]) for start, end in pairwise(stops)):
             help_ = "where that is not meant, shorten its `path`, or move one of them"
             yield _warning(f"`{mover.name}` runs into `{solid.name}`", places, mover.name, solid.name, help_=help_)
 
 
-def _enemy(enemy: Enemy, level: Level, places: Places) -> Iterator[Diagnostic]:
-    apart = max(0.0, dist(enemy.route[0], level.start.position) - level.start.spread)
-    if apart <= enemy.kind.attack_range:
-        title = f"`{enemy.name}` begins where it can hit the player at once, {apart:.2g} m from the start"
+def _enemy_warnings(enemy: Enemy, level: StealthLevel, places: Places) -> Iterator[Diagnostic]:
+    distance = max(0.0, dist(enemy.route[0], level.start.position) - level.start.spread)
+    if distance <= enemy.kind.attack_range:
+        title = f"`{enemy.name}` begins where it can hit the player at once, {distance:.2g} m from the start"
         help_ = "let its `route` begin elsewhere, out of its sight"
         yield _warning(title, places, enemy.name, help_=help_)
     for point in enemy.route[1:]:
-        if not _way(level, enemy.route[0], point, shut=False):
-            title = f"`{enemy.name}` has no way to {shown(point)}"
+        if not _can_walk(level, enemy.route[0], point, shut=False):
+            title = f"`{enemy.name}` has no way to {point_text(point)}"
             help_ = "it would walk as near as it can; leave the point out, or give it a way 0.7 m wide"
             yield _warning(title, places, enemy.name, help_=help_)
-        elif not _way(level, enemy.route[0], point, shut=True):
-            title = f"`{enemy.name}` has no way to {shown(point)} until a barrier opens"
+        elif not _can_walk(level, enemy.route[0], point, shut=True):
+            title = f"`{enemy.name}` has no way to {point_text(point)} until a barrier opens"
             help_ = "it walks as near as it can; where that is not meant, leave the point out"
             yield _warning(title, places, enemy.name, help_=help_)
 
 
-def _way(level: Level, start: Point, end: Point, *, shut: bool) -> bool:
+def _can_walk(level: StealthLevel, start: Point, end: Point, *, shut: bool) -> bool:
     """Whether an enemy can walk between two points, with all barriers shut or all open."""
     floor = grid_of(level).floor(range(len(level.barriers)) if shut else ())
     stands = floor.entry(start[:2]) is not None and floor.entry(end[:2]) is not None
@@ -72,4 +77,4 @@ def _way(level: Level, start: Point, end: Point, *, shut: bool) -> bool:
 
 
 def _warning(title: str, places: Places, *names: str, help_: str) -> Diagnostic:
-    return Diagnostic("TLT0809", title, places.at(*names), help_, "warning")
+    return Diagnostic("TLT0809", title, places.position_labels(*names), help_, "warning")

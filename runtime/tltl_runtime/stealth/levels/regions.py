@@ -20,13 +20,13 @@ def named_regions(table: CheckedTable) -> tuple[Region, ...]:
 
 def part_regions(name: str, solids: Sequence[Solid], movers: Sequence[Mover]) -> Iterator[Region]:
     """Yield the region of a part: the bounding box of its solids and movers, if it has any."""
-    boxes = [solid.box for solid in solids] + [_at(mover, point) for mover in movers for point in mover.path]
+    boxes = [solid.box for solid in solids] + [_mover_box(mover, point) for mover in movers for point in mover.path]
     if boxes:
         lows, highs = zip(*(box.low for box in boxes), strict=True), zip(*(box.high for box in boxes), strict=True)
         (x, y, z), (east, north, top) = map(min, lows), map(max, highs)
         yield Region(name, Box((x, y, z), (east, north, top)))
 
 
-def _at(mover: Mover, centre: Point) -> Box:
+def _mover_box(mover: Mover, centre: Point) -> Box:
     (x, y, z), (dx, dy, dz) = centre, mover.size
     return Box((x - dx / 2, y - dy / 2, z - dz / 2), (x + dx / 2, y + dy / 2, z + dz / 2))

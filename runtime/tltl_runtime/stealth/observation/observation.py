@@ -9,23 +9,23 @@ import numpy as np
 from gymnasium import spaces
 
 from tltl_runtime.game.sensors import SensorChoice
-from tltl_runtime.stealth.level import Level
+from tltl_runtime.stealth.level import StealthLevel
 from tltl_runtime.stealth.observation.semantic_map import SemanticMap
-from tltl_runtime.stealth.observation.sensors import chosen
-from tltl_runtime.stealth.signals import AXES, LevelSignal, Reader, entities, level_signals
+from tltl_runtime.stealth.observation.sensors import choose_sensors
+from tltl_runtime.stealth.signals import AXES, LevelSignal, Reader, level_signals, position_readers
 
 if TYPE_CHECKING:
-    from tltl_runtime.stealth.game import Game
+    from tltl_runtime.stealth.game import Simulation
 
 _HALF_TIME_S: Final = 60.0
 """The time that is observed as 0.5; time is unbounded, but the observation must be bounded."""
 
 
-class Senses:
-    """Computes the observations that a level declares, or that ``sensors`` selects instead.
+class Observer:
+    """Computes the observations of the sensors that a level declares, or that ``sensors`` selects instead.
 
-    Call ``look`` with a game of that level. ``space`` is a Dict; it omits keys for which nothing is
-    declared:
+    Call ``look`` with a simulation of that level. ``space`` is a Dict with these keys; a key is
+    missing if its sensors are empty:
 
     - ``entities`` float32 (3 n,), the vectors from the player's feet, divided by the diagonal of
       the bounds, in [-1, 1];
@@ -39,13 +39,14 @@ class Senses:
         TltlError: TLT0815, ``sensors`` names something that the level does not have.
     """
 
-    def __init__(self, level: Level, sensors: SensorChoice | None = None) -> None:
-        self.sensors = sensors = chosen(level, sensors)
-        places, signals, aliases = entities(level), level_signals(level), dict(level.signals)
+    def __init__(self, level: StealthLevel, sensors: SensorChoice | None = None) -> None:
+        self.sensors = sensors = choose_sensors(level, sensors)
+        places, signals, aliases = position_readers(level), level_signals(level), dict(level.signals)
         self._places = [places[name] for name in sensors.entities]
         # The value of an alias is not scaled.
         self._variables = [
-            signals[name].read if name in aliases else _scaled(signals[name], level) for name in sensors.variables
+            signals[name].read if name in aliases else _scaled_reader(signals[name], level)
+            for name in sensors.variables
         ]
         diagonal = dist(level.bounds.low, level.bounds.high)
         sizes = [diagonal] * 3 * len(self._places) + [1.0] * len(self._variables)
@@ -56,7 +57,7 @@ class Senses:
         self._open: list[bool] = []
         self.space = spaces.Dict(self._spaces())
 
-    def look(self, game: Game) -> dict[str, Any]:
+    def look(self, game: Simulation) -> dict[str, Any]:
         """Return the current observation, an element of ``space``."""
         x, y, z = game.world.player.position
         vectors: list[float] = []
@@ -73,10 +74,10 @@ class Senses:
         if values:
             observation["variables"] = row[len(vectors) :]
         if self._map is not None:
-            observation["map"] = self._see(game, self._map)
+            observation["map"] = self._map_layers(game, self._map)
         return observation
 
-    def _see(self, game: Game, semantic_map: SemanticMap) -> Any:
+    def _map_layers(self, game: Simulation, semantic_map: SemanticMap) -> Any:
         if game.open != self._open:
             self._open = list(game.open)
             semantic_map.reset()
@@ -99,8 +100,8 @@ class Senses:
         return keys
 
 
-def _scaled(signal: LevelSignal, level: Level) -> Reader:
-    """Scale a signal to the range of observations.
+def _scaled_reader(signal: LevelSignal, level: StealthLevel) -> Reader:
+    """Return a reader that scales a signal to [-1, 1].
 
     The time t, which is unbounded, becomes t / (t + 60 s).
     """

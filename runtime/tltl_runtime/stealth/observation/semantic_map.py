@@ -1,8 +1,8 @@
 """The semantic map: the cell types around the agent at the height of its body.
 
-The static part is cut out of the level's voxels in 2 µs; each mover or enemy in the map costs about
-as much again. The map does not turn with the agent: its first axis runs north (y), its second east
-(x), and the agent is in the middle cell.
+Cutting the static part out of the level's voxels takes 2 µs. Each mover or enemy in the map takes
+about as long again. The map does not turn with the agent: its first axis runs north (y), its second
+east (x), and the agent is in the middle cell.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tltl_runtime.game.sensors import MapSensor
-from tltl_runtime.stealth.level import Level, Point
+from tltl_runtime.stealth.level import Point, StealthLevel
 from tltl_runtime.stealth.observation.voxels import BELOW, CROUCHED, LAYER, STANDING, Voxels
 from tltl_runtime.stealth.world.geometry import Bounds
 
@@ -25,13 +25,13 @@ _TOUCH: Final = 1e-6
 
 
 class SemanticMap:
-    """The semantic map of a level, as its sensors or ``sensor`` describe it.
+    """The semantic map of a level; ``sensor`` describes it, by default the level's own map sensor.
 
     Raises ValueError if the level declares no map and ``sensor`` is None, or if a cell type is
     unknown.
     """
 
-    def __init__(self, level: Level, sensor: MapSensor | None = None) -> None:
+    def __init__(self, level: StealthLevel, sensor: MapSensor | None = None) -> None:
         sensor = level.sensors.map if sensor is None else sensor
         if sensor is None:
             raise ValueError(f"level {level.name} declares no map among its sensors")

@@ -1,4 +1,4 @@
-"""Override the sensors that a level declares, wholly or in part, by a record or a plain mapping."""
+"""Replace the sensors that a level declares, all or some of them, by a record or a plain mapping."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from math import isfinite
 from typing import Any, Final
 
 from tltl_runtime.game.sensors import MapSensor, SensorChoice, Sensors
-from tltl_runtime.stealth.level import Level, entity_names
+from tltl_runtime.stealth.level import StealthLevel, entity_names
 from tltl_runtime.stealth.levels.parts import CELL_TYPES, CELL_WIDTH, MAP_EXTENT
-from tltl_runtime.stealth.signals import described, readers
+from tltl_runtime.stealth.signals import readers, signal_list
 from tltl_runtime.support.suggestion import suggestion
 from tltlc.api import Diagnostic, TltlError
 
@@ -20,11 +20,11 @@ _CELL: Final = f"give a width from {CELL_WIDTH[0]:g} to {CELL_WIDTH[1]:g} m"
 _EXTENT: Final = f"give an odd number of cells from {MAP_EXTENT[0]} to {MAP_EXTENT[1]}, so that one is in the middle"
 
 
-def chosen(level: Level, choice: SensorChoice | None = None) -> Sensors:
-    """Return the sensors of a level, with the parts that ``choice`` gives replaced.
+def choose_sensors(level: StealthLevel, choice: SensorChoice | None = None) -> Sensors:
+    """Return the sensors that the agent uses: ``choice``, or those of the level for None.
 
-    A mapping may leave out what stays unchanged. ``{"map": None}`` removes the map;
-    ``{"map": {"cell": 1.0}}`` keeps the level's map but changes its cells.
+    A mapping may leave out what the level's own sensors should decide. ``{"map": None}`` removes the
+    map; ``{"map": {"cell": 1.0}}`` keeps the level's map but changes its cells.
 
     Raises:
         TltlError: one TLT0815 for each mistake.
@@ -42,14 +42,14 @@ def chosen(level: Level, choice: SensorChoice | None = None) -> Sensors:
     return sensors
 
 
-def missing_sensors(level: Level, sensors: Sensors) -> Iterator[str]:
-    """Yield the entities and signals that the sensors refer to and a level does not have, in words."""
+def missing_sensors(level: StealthLevel, sensors: Sensors) -> Iterator[str]:
+    """Yield the entities and signals that the sensors name and a level does not have, such as "the entity `exit`"."""
     entities, signals = entity_names(level), readers(level)
     yield from (f"the entity `{name}`" for name in sensors.entities if name not in entities)
     yield from (f"the signal `{name}`" for name in sensors.variables if name not in signals)
 
 
-def _read(level: Level, choice: Mapping[str, Any], log: list[Diagnostic]) -> Sensors:
+def _read(level: StealthLevel, choice: Mapping[str, Any], log: list[Diagnostic]) -> Sensors:
     """Build the record from a mapping.
 
     Values of a wrong type are logged and replaced by the level's own.
@@ -93,9 +93,9 @@ def _names(choice: Mapping[str, Any], key: str, default: tuple[str, ...], log: l
     return tuple(map(str, value))
 
 
-def _check(level: Level, sensors: Sensors, log: list[Diagnostic]) -> None:
+def _check(level: StealthLevel, sensors: Sensors, log: list[Diagnostic]) -> None:
     _check_names(sensors.entities, entity_names(level), f"the level `{level.name}` has no entity", log)
-    _check_names(sensors.variables, readers(level), f"the level `{level.name}` has no signal", log, described(level))
+    _check_names(sensors.variables, readers(level), f"the level `{level.name}` has no signal", log, signal_list(level))
     if (map_ := sensors.map) is None:
         return
     _check_names(map_.types, CELL_TYPES, "a map knows no type", log)

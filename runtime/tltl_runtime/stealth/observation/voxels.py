@@ -1,10 +1,11 @@
 """The static cells that semantic maps are cut from.
 
-A level is cut into square cells and, every quarter of a metre in height, into layers. A layer
-contains, for each cell, what a body meets whose feet are at the layer's height, down to the ground
-that the body stands on. There is one set of layers for a standing body and one for a crouched body,
-so a low passage is free only in the second. A cell that an object overlaps at all has the object's
-type; if several objects overlap it, the type that comes last in CELL_TYPES.
+A level is cut into square cells and, every quarter of a metre in height, into layers. A layer is for
+a body whose feet are at its height. For each cell it says what the body would meet there, from its
+head down to the ground that it stands on. There is one set of layers for a standing body and one for
+a crouched body, so a low passage is free only in the second. A cell has the type of an object that
+overlaps it, however little. If several objects overlap the cell, it has the type that comes last in
+CELL_TYPES.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tltl_runtime.game.sensors import MapSensor
-from tltl_runtime.stealth.level import Box, Level, Point
+from tltl_runtime.stealth.level import Box, Point, StealthLevel
 from tltl_runtime.stealth.levels.parts import CELL_TYPES
 from tltlc.api import record
 
@@ -59,7 +60,7 @@ class Voxels:
     that is not in CELL_TYPES.
     """
 
-    def __init__(self, level: Level, sensor: MapSensor) -> None:
+    def __init__(self, level: StealthLevel, sensor: MapSensor) -> None:
         unknown = [name for name in sensor.types if name not in CELL_TYPES]
         if unknown:
             raise ValueError(f"a map knows no type {unknown[0]!r}: it can tell {', '.join(CELL_TYPES)}")
@@ -80,25 +81,25 @@ class Voxels:
         self._layers: dict[frozenset[int], Layers] = {}
 
     def layers(self, shut: Collection[int]) -> Layers:
-        """Return the layers while the given barriers are shut; they are cached and read-only."""
+        """Return the layers while the barriers with these indices are shut; they are cached and read-only."""
         key = frozenset(shut)
         if key not in self._layers:
-            things = sorted(self._things(key), key=lambda thing: CELL_TYPES.index(thing[0]))
+            things = sorted(self._typed_boxes(key), key=lambda thing: CELL_TYPES.index(thing[0]))
             known = [(self.ids[name], box) for name, box in things if name in self.ids]
             self._layers[key] = (self._draw(known, STANDING), self._draw(known, CROUCHED))
         return self._layers[key]
 
-    def _things(self, shut: Collection[int]) -> Iterator[tuple[str, Box]]:
-        """The objects that stand still, with their types."""
+    def _typed_boxes(self, shut: Collection[int]) -> Iterator[tuple[str, Box]]:
+        """Yield the types and the boxes of the objects that stand still."""
         yield from ((solid.kind, solid.box) for solid in self.level.solids)
-        yield from (("switch", self._around(switch.position)) for switch in self.level.switches)
-        yield from (("exit", self._around(exit_.position)) for exit_ in self.level.exits)
+        yield from (("switch", self._point_box(switch.position)) for switch in self.level.switches)
+        yield from (("exit", self._point_box(exit_.position)) for exit_ in self.level.exits)
         for index, barrier in enumerate(self.level.barriers):
             if index in shut:
                 yield "laser" if barrier.kind == "laser" else "barrier", barrier.box
 
-    def _around(self, position: Point) -> Box:
-        """A small box in the cell that contains a position."""
+    def _point_box(self, position: Point) -> Box:
+        """Return a small box in the cell that contains a position."""
         x, y, z = position
         return Box((x, y, z), (x + 10 * _TOUCH, y + 10 * _TOUCH, z + _POINT_HEIGHT))
 
@@ -106,8 +107,8 @@ class Voxels:
         frame = self.frame
         layers = np.zeros((frame.layers, frame.rows, frame.columns), dtype=np.uint8)
         for number, box in things:
-            columns = _covered(box.low[0], box.high[0], frame.x, frame.cell)
-            rows = _covered(box.low[1], box.high[1], frame.y, frame.cell)
+            columns = _cell_range(box.low[0], box.high[0], frame.x, frame.cell)
+            rows = _cell_range(box.low[1], box.high[1], frame.y, frame.cell)
             for layer in range(frame.layers):
                 feet = frame.z + layer * LAYER
                 if box.high[2] > feet - BELOW + _TOUCH and box.low[2] < feet + height - _TOUCH:
@@ -116,6 +117,6 @@ class Voxels:
         return tuple(layers)
 
 
-def _covered(low: float, high: float, origin: float, cell: float) -> slice:
-    """The cells that overlap the inside of an interval."""
+def _cell_range(low: float, high: float, origin: float, cell: float) -> slice:
+    """Return the range of cells that overlap the inside of an interval."""
     return slice(max(0, floor((low - origin) / cell + _TOUCH)), max(0, ceil((high - origin) / cell - _TOUCH)))

@@ -9,7 +9,7 @@ from typing import Any, Final, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from tltl_runtime.stealth.level import Level, Point
+from tltl_runtime.stealth.level import Point, StealthLevel
 from tltl_runtime.stealth.recordings.episode import Episode
 from tltl_runtime.stealth.snapshot import BRANCHES, Snapshot
 from tltl_runtime.stealth.world.player import PlayerState
@@ -21,7 +21,7 @@ Arrays = Mapping[str, NDArray[Any]]
 
 @record
 class Array:
-    """The specification of an array: numpy's ``dtype``, ``shape``, least and greatest value."""
+    """What an array of the file contains: numpy's ``dtype``, the shape, the least and the greatest value."""
 
     name: str
     dtype: str
@@ -109,7 +109,7 @@ def snapshots(arrays: Arrays, modes: tuple[str, ...]) -> tuple[Snapshot, ...]:
     return tuple(Snapshot(time, PlayerState(*state), *remainder) for time, state, remainder in rows)
 
 
-def sizes(level: Level, fspa: Fspa, count: int) -> dict[Size, int]:
+def sizes(level: StealthLevel, fspa: Fspa, count: int) -> dict[Size, int]:
     """Return the lengths of the array axes for an episode of ``count`` decisions."""
     return {
         "n": count,

@@ -9,15 +9,15 @@ from typing import Final
 
 from tltl_runtime.game.episode import Cause, Kind
 from tltl_runtime.spec.goals import next_goals
-from tltl_runtime.stealth.expert.routes import routes_of, shut_of
-from tltl_runtime.stealth.level import Level
+from tltl_runtime.stealth.expert.routes import routes_of, shut_barriers
+from tltl_runtime.stealth.level import StealthLevel
 from tltl_runtime.stealth.recordings.episode import Episode
 from tltl_runtime.stealth.snapshot import Snapshot, places, touches
 from tltl_runtime.stealth.world.player import PlayerKind
 from tltlc.api import Atom, expressions, label_text
 
 _RECENT: Final = 3.0
-"""Damage counts for a death if it was dealt at most this many seconds before."""
+"""Damage counts as a cause of death if it was dealt at most this many seconds before."""
 
 
 def cause(episode: Episode) -> Cause:
@@ -25,48 +25,50 @@ def cause(episode: Episode) -> Cause:
     if not episode.success:
         death = next((row for row, shot in enumerate(episode.snapshots) if shot.health <= 0.0), None)
         if death is not None:
-            return _killed(episode, death)
+            return _death(episode, death)
         if episode.end == "violation":
-            return _violated(episode)
+            return _violation(episode)
         if episode.end == "limit":
             return _limit(episode)
     last = episode.snapshots[-1]
     kind: Kind = "success" if episode.success else "stopped"
-    rest = "" if episode.success else f", remaining: {_remaining(episode)}"
+    rest = "" if episode.success else f", remaining: {_remaining_text(episode)}"
     return Cause(kind, (), last.time, last.player.position, f"{kind} after {last.time:.2f} s{rest}")
 
 
-def _killed(episode: Episode, death: int) -> Cause:
+def _death(episode: Episode, death: int) -> Cause:
     shots = episode.snapshots[: death + 1]
     damage: Counter[str] = Counter()
     for before, after in pairwise(shots):
         if after.health < before.health and after.time >= shots[-1].time - _RECENT:
-            damage.update(_blows(episode.level, before, after))
+            damage.update(_damage_rates(episode.level, before, after))
     lasers = {barrier.name for barrier in episode.level.barriers}
     by = tuple(name for name, _ in damage.most_common())
     names = [f"the laser `{name}`" if name in lasers else f"`{name}`" for name in by]
     how = "burnt" if by and lasers.issuperset(by) else "killed"
-    broke = tuple(name for name, _ in _broken(episode)) if episode.end == "violation" else ()
-    return _here("killed", by, shots[-1], f"{how} by {' and '.join(names)}" if by else how, broke=broke)
+    broke = tuple(name for name, _ in _broken_atoms(episode)) if episode.end == "violation" else ()
+    return _cause_at("killed", by, shots[-1], f"{how} by {' and '.join(names)}" if by else how, broke=broke)
 
 
-def _violated(episode: Episode) -> Cause:
-    """The cause for a violation: the atoms that the last transition depended on."""
-    broken = _broken(episode)
+def _violation(episode: Episode) -> Cause:
+    """Return the cause for a violation: the atoms that the last transition depended on."""
+    broken = _broken_atoms(episode)
     by = tuple(name for name, _ in broken)
     words = [f"{name} {'holds' if holds else 'does not hold'}" for name, holds in broken]
-    return _here("violated", by, episode.snapshots[-1], "violated", ", ".join(words), by)
+    return _cause_at("violated", by, episode.snapshots[-1], "violated", ", ".join(words), by)
 
 
-def _broken(episode: Episode) -> list[tuple[str, bool]]:
-    """The atoms that caused a violation, with their truth values.
+def _broken_atoms(episode: Episode) -> list[tuple[str, bool]]:
+    """Return the atoms that caused a violation, with their truth values.
 
     They are a prime implicant of the guard of the violating transition that held at the last step.
-    If several held and the player died, one that reads the health is preferred.
+    If several held and the player died, one with an atom that reads the health is preferred.
     """
-    fspa, taken = episode.fspa, (int(episode.states[-2]), int(episode.states[-1]))
+    fspa, last_transition = episode.fspa, (int(episode.states[-2]), int(episode.states[-1]))
     holds = [value > 0.0 for value in episode.atoms[-1].tolist()]
-    primes = [prime for edge in fspa.edges if (edge.source, edge.target) == taken for prime in edge.guard.primes]
+    primes = [
+        prime for edge in fspa.edges if (edge.source, edge.target) == last_transition for prime in edge.guard.primes
+    ]
     true_primes = [prime for prime in primes if all(holds[atom] == expected for atom, expected in prime)]
     if episode.snapshots[-1].health <= 0.0:
         true_primes.sort(key=lambda prime: not any(_reads_health(fspa.atoms[atom]) for atom, _ in prime))
@@ -81,11 +83,11 @@ def _reads_health(atom: Atom) -> bool:
 
 
 def _limit(episode: Episode) -> Cause:
-    """The cause of a reached limit; the expert may have found no route to its next goal."""
+    """Return the cause of an episode that reached the limit; it says if the expert had no route to its next goal."""
     last, steps = episode.snapshots[-1], len(episode.actions)
-    remaining = f"limit after {steps} steps, remaining: {_remaining(episode)}"
+    remaining = f"limit after {steps} steps, remaining: {_remaining_text(episode)}"
     if "expert" in episode.player:
-        unreachable = _out_of_reach(episode)
+        unreachable = _unreachable_goals(episode)
         if unreachable is None:
             return Cause("no way", (), last.time, last.player.position, f"nowhere to go for the expert; {remaining}")
         if unreachable:
@@ -96,7 +98,7 @@ def _limit(episode: Episode) -> Cause:
     return Cause("limit", (), last.time, last.player.position, remaining)
 
 
-def _here(
+def _cause_at(
     kind: Kind, by: tuple[str, ...], shot: Snapshot, event: str, detail: str = "", broke: tuple[str, ...] = ()
 ) -> Cause:
     place = shot.player.position
@@ -104,15 +106,15 @@ def _here(
     return Cause(kind, by, shot.time, place, f"{text}: {detail}" if detail else text, broke)
 
 
-def _remaining(episode: Episode) -> str:
+def _remaining_text(episode: Episode) -> str:
     return label_text(episode.fspa, int(episode.states[-1])).rstrip(".")
 
 
-def _blows(level: Level, before: Snapshot, after: Snapshot) -> dict[str, float]:
-    """The damage per second of each enemy and laser in a decision.
+def _damage_rates(level: StealthLevel, before: Snapshot, after: Snapshot) -> dict[str, float]:
+    """Return the health per second that each enemy and laser took in a decision, by name.
 
-    It is computed as in the game, but from the snapshots. In the game, enemies attack before they
-    move, and lasers burn before switches open them.
+    The damage is computed as in the game, but from the snapshots. In the game, enemies attack before
+    they move, and lasers burn before switches open them.
     """
     feet, kind = after.player.position, PlayerKind()
     height = kind.crouched_height if after.player.crouching else kind.height
@@ -130,10 +132,10 @@ def _blows(level: Level, before: Snapshot, after: Snapshot) -> dict[str, float]:
     return blows | burns
 
 
-def _out_of_reach(episode: Episode) -> tuple[str, ...] | None:
-    """The next entities, if none of them can be reached.
+def _unreachable_goals(episode: Episode) -> tuple[str, ...] | None:
+    """Return the next goals if none of them can be reached.
 
-    Return an empty tuple if one can, and None if the spec names no next entity.
+    Return an empty tuple if one of them can be reached, and None if the spec names no next goal.
     """
     last = episode.snapshots[-1]
     sample = {signal.name: value for signal, value in zip(episode.fspa.signals, episode.signals[-1], strict=True)}
@@ -141,7 +143,7 @@ def _out_of_reach(episode: Episode) -> tuple[str, ...] | None:
     goals = next_goals(episode.fspa, int(episode.states[-1]), sample, episode.params, positions)
     if not goals:
         return None
-    routes = routes_of(episode.level, shut_of(last))
+    routes = routes_of(episode.level, shut_barriers(last))
     start = routes.surfaces.nearest(last.player.position)
     if any(isfinite(routes.field(positions[goal]).seconds.flat[start]) for goal in goals):
         return ()

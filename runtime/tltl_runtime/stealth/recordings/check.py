@@ -13,10 +13,10 @@ _Difference = tuple[str, object, object]
 
 
 def check(episode: Episode) -> tuple[Diagnostic, ...]:
-    """Judge the recorded signals again, step by step, and compare.
+    """Judge the recorded signals again, step by step, and compare the results with the recording.
 
-    Atoms, states, progress, rewards and the end must be equal. Return no diagnostics if they are;
-    else TLT0823 for the first step that differs, or the diagnostics of the monitor.
+    Atoms, states, progress, rewards and the end must be equal. Return no diagnostics if they are
+    equal, else TLT0823 for the first step that differs, or the diagnostics of the monitor.
     """
     try:
         first = next(_differences(episode), None)
@@ -34,17 +34,19 @@ def resimulate(episode: Episode) -> int | None:
     """Play the actions again from the seed; return the first row that differs in any bit, or None.
 
     Row 0 is the moment of the reset. The comparison includes the snapshots and those signals of the
-    spec that the game itself has. Raises TltlError: TLT0730 without pybullet; nothing else here
-    needs it.
+    spec that the game itself has.
+
+    Raises:
+        TltlError: TLT0730, pybullet is not installed. The other functions here do not need it.
     """
-    from tltl_runtime.stealth.game import Game
+    from tltl_runtime.stealth.game import Simulation
     from tltl_runtime.stealth.world.physics import WorldError
 
     names = [(column, signal.name) for column, signal in enumerate(episode.fspa.signals)]
     row = 0
     game = None
     try:
-        game = Game(episode.level)
+        game = Simulation(episode.level)
         game.reset(episode.seed)
         own = [(column, name) for column, name in names if name in game.readers]
         for row, snapshot in enumerate(episode.snapshots):

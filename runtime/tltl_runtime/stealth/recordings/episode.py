@@ -8,22 +8,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tltl_runtime.spec.episode_summary import End
-from tltl_runtime.stealth.level import Level
+from tltl_runtime.stealth.level import StealthLevel
 from tltl_runtime.stealth.snapshot import Snapshot
 from tltlc.api import EMPTY, Fspa, RewardOptions, record
 
 
 @record
 class Episode:
-    """One episode of n decisions, with all data needed to draw it and to judge it again.
+    """One episode of n decisions, with all data that is needed to draw it and to judge it again.
 
-    ``seed`` is the seed of the game: resetting the level with it and playing ``actions`` gives the
-    same episode, bit for bit. Arrays of length n + 1 begin with the moment of the reset. ``end`` is
-    ``limit`` if the limit of the spec or of the environment came before the verdict was settled,
-    and ``stopped`` if the player left.
+    If the level is reset with ``seed`` and ``actions`` are played, the same episode results, bit for
+    bit. Arrays of length n + 1 begin with the moment of the reset. ``end`` is ``limit`` if the limit
+    of the spec or of the environment came before the verdict was settled, and ``stopped`` if the
+    player left.
     """
 
-    level: Level
+    level: StealthLevel
     fspa: Fspa
     params: Mapping[str, float]
     """The values of the spec's params, in SI units."""
@@ -51,10 +51,7 @@ class Episode:
     reward: RewardOptions = RewardOptions()
     """The reward options of the episode."""
     versions: Mapping[str, str] = EMPTY
-    """The versions that recorded the episode, by package.
-
-    The same versions reproduce the episode.
-    """
+    """The versions of Python and of the packages that played the episode; equal versions reproduce it."""
 
     @property
     def times(self) -> NDArray[np.float64]:

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tltl_runtime.spec.episode_summary import End
-from tltl_runtime.stealth.level import Level
+from tltl_runtime.stealth.level import StealthLevel
 from tltl_runtime.stealth.levels.fault import fault
 from tltl_runtime.stealth.recordings.arrays import ARRAYS, Array, Arrays, shape_of, sizes, snapshots, to_arrays
 from tltl_runtime.stealth.recordings.episode import Episode
@@ -65,7 +65,7 @@ class Meta:
     versions: Mapping[str, str]
     modes: tuple[str, ...]
     names: AxisNames
-    level: Level
+    level: StealthLevel
 
 
 def write_episode(path: str | os.PathLike[str], episode: Episode) -> None:
@@ -104,10 +104,13 @@ def to_bytes(episode: Episode) -> bytes:
 
 
 def from_bytes(data: bytes, name: str) -> Episode:
-    """Decode an episode; messages call it ``name``. Raises the errors of :func:`read_episode`."""
-    members = _members(data, name)
+    """Return the episode in the bytes of a file; messages call the file ``name``.
+
+    Raises the errors of :func:`read_episode`, except TLT0001.
+    """
+    members = _read_archive(data, name)
     meta = _read_meta(members, name)
-    fspa = compiler.read_artefact(SourceFile(f"{name}/artefact", _text(members, "artefact", name)))
+    fspa = compiler.read_artefact(SourceFile(f"{name}/artefact", _read_text(members, "artefact", name)))
     arrays = _read_arrays(members, meta.level, fspa, name)
     _check_indices(arrays, meta, fspa, name)
     return Episode(
@@ -155,7 +158,7 @@ def _modes(episode: Episode) -> tuple[str, ...]:
     return tuple(sorted({mode for shot in episode.snapshots for mode in shot.modes}))
 
 
-def _names(level: Level, fspa: Fspa) -> AxisNames:
+def _names(level: StealthLevel, fspa: Fspa) -> AxisNames:
     groups = (fspa.signals, fspa.atoms, level.enemies, level.movers, level.switches, level.barriers)
     return AxisNames(*(tuple(item.name for item in group) for group in groups))
 
@@ -163,8 +166,8 @@ def _names(level: Level, fspa: Fspa) -> AxisNames:
 # --- reading untrusted files ------------------------------------------------------------------------
 
 
-def _members(data: bytes, name: str) -> dict[str, bytes]:
-    """Unpack the archive's files that an episode has, by the names of their arrays."""
+def _read_archive(data: bytes, name: str) -> dict[str, bytes]:
+    """Return the bytes of the arrays in the archive, by the names of the arrays."""
     if len(data) > MAX_BYTES:
         raise _ERRORS.unreadable_error(name, f"it is larger than {MAX_BYTES >> 20} MiB")
     try:
@@ -177,7 +180,7 @@ def _members(data: bytes, name: str) -> dict[str, bytes]:
 
 
 def _read_meta(members: Mapping[str, bytes], name: str) -> Meta:
-    text = _text(members, "meta", name)
+    text = _read_text(members, "meta", name)
     try:
         document = fileio.parse_json(text, fileio.limits.RECORDED_TEXTS["meta"])
     except (ValueError, RecursionError):
@@ -194,8 +197,8 @@ def _read_meta(members: Mapping[str, bytes], name: str) -> Meta:
     return meta
 
 
-def _text(members: Mapping[str, bytes], array: str, name: str) -> str:
-    data = _array(members, array, name)
+def _read_text(members: Mapping[str, bytes], array: str, name: str) -> str:
+    data = _read_array(members, array, name)
     if data.dtype != np.uint8 or data.ndim != 1:
         raise _ERRORS.broken_error(name, f"the array `{array}` holds no bytes")
     limit = fileio.limits.RECORDED_TEXTS[array]
@@ -208,17 +211,17 @@ def _text(members: Mapping[str, bytes], array: str, name: str) -> str:
         raise _ERRORS.broken_error(name, f"the array `{array}` is no UTF-8 text") from None
 
 
-def _read_arrays(members: Mapping[str, bytes], level: Level, fspa: Fspa, name: str) -> dict[str, NDArray[Any]]:
+def _read_arrays(members: Mapping[str, bytes], level: StealthLevel, fspa: Fspa, name: str) -> dict[str, NDArray[Any]]:
     """Read the arrays and check their shapes and ranges."""
-    arrays = {array.name: _array(members, array.name, name) for array in ARRAYS}
+    arrays = {array.name: _read_array(members, array.name, name) for array in ARRAYS}
     actions = arrays["actions"]
     known = sizes(level, fspa, actions.shape[0] if actions.ndim else 0)
     for array in ARRAYS:
-        _check(arrays[array.name], array, shape_of(array, known), name)
+        _check_array(arrays[array.name], array, shape_of(array, known), name)
     return arrays
 
 
-def _array(members: Mapping[str, bytes], array: str, name: str) -> NDArray[Any]:
+def _read_array(members: Mapping[str, bytes], array: str, name: str) -> NDArray[Any]:
     """Read an array of any shape."""
     if array not in members:
         raise _ERRORS.broken_error(name, f"the array `{array}` is missing")
@@ -228,7 +231,7 @@ def _array(members: Mapping[str, bytes], array: str, name: str) -> NDArray[Any]:
         raise _ERRORS.broken_error(name, f"the array `{array}`: {error}") from None
 
 
-def _check(values: NDArray[Any], array: Array, shape: tuple[int, ...], name: str) -> None:
+def _check_array(values: NDArray[Any], array: Array, shape: tuple[int, ...], name: str) -> None:
     if values.dtype != np.dtype(array.dtype) or values.shape != shape:
         expected = f"{array.dtype} of shape {shape}"
         raise _ERRORS.broken_error(
@@ -244,7 +247,7 @@ def _check(values: NDArray[Any], array: Array, shape: tuple[int, ...], name: str
 
 
 def _check_indices(arrays: Arrays, meta: Meta, fspa: Fspa, name: str) -> None:
-    """Check that all indices are in range and that the names match the level and the spec."""
+    """Raise TLT0822 unless all indices are in range and the names match the level and the spec."""
     limits = [
         ("actions", np.array(BRANCHES)),
         ("states", np.array(len(fspa.states))),

@@ -27,16 +27,16 @@ class ArchiveError(ValueError):
 
 
 def read_members(data: bytes, names: Collection[str], most: int) -> dict[str, bytes]:
-    """Unpack the files ``NAME.npy`` of an archive, for those ``names`` that are present.
+    """Return the bytes of the files ``NAME.npy`` in an archive, for those ``names`` that are present.
 
     Raises:
-        ArchiveError: the archive is damaged, or these files have more than ``most`` bytes.
+        ArchiveError: the archive is damaged, or these files have more than ``most`` bytes in all.
     """
     try:
         with zipfile.ZipFile(BytesIO(data)) as archive:
             entries = {name: archive.getinfo(f"{name}.npy") for name in names if f"{name}.npy" in archive.namelist()}
             if sum(entry.file_size for entry in entries.values()) <= most:
-                return {name: _unpacked(archive, entry) for name, entry in entries.items()}
+                return {name: _unpack(archive, entry) for name, entry in entries.items()}
     except _DAMAGE:
         raise ArchiveError("it is no whole archive") from None
     raise ArchiveError(f"it holds more than {most >> 20} MiB")
@@ -60,7 +60,7 @@ def read_array(data: bytes) -> NDArray[Any]:
     raise ArchiveError("it is none of plain numbers")
 
 
-def _unpacked(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> bytes:
+def _unpack(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> bytes:
     """Unpack one file, but no more bytes than the size that it declares."""
     if entry.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
         raise zipfile.BadZipFile

@@ -20,10 +20,10 @@ _INSTANT: Final = 1e-6
 
 
 def summary(episode: Episode, notation: Notation = "english") -> dict[str, Any]:
-    """Summarize an episode as JSON values.
+    """Return a summary of an episode as JSON data.
 
-    ``changes`` has a row for the start and for each change of state. ``notation`` is the notation
-    of what remains to be satisfied in each state.
+    ``changes`` has a row for the start and for each change of state. ``notation`` is the notation of
+    the labels, which say what remains to be satisfied in each state.
     """
     level, fspa, result, reason = episode.level, episode.fspa, summary_of(episode), cause(episode)
     states = episode.states.tolist()
@@ -67,7 +67,7 @@ def summary(episode: Episode, notation: Notation = "english") -> dict[str, Any]:
 
 
 def summary_text(values: dict[str, Any]) -> str:
-    """Format a summary as text for people."""
+    """Return a summary as text for people."""
     limit = "" if values["limit_steps"] is None else f" of {values['limit_steps']}"
     end = values["end"] if values["verdict"] in ("satisfied", "violated") else f"{values['end']}, {values['verdict']}"
     lines = [
@@ -87,7 +87,7 @@ def summary_text(values: dict[str, Any]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def judged_with(episode: Episode, trace: str) -> str:
+def monitor_command(episode: Episode, trace: str) -> str:
     """Return the command that judges the file ``trace`` with the params of the episode."""
     words = ["tltlc", "monitor", f"SPEC.tltl:{episode.fspa.name}", trace]
     for param in episode.fspa.params:
@@ -97,7 +97,7 @@ def judged_with(episode: Episode, trace: str) -> str:
 
 
 def trace_csv(episode: Episode, start: float = 0.0, stop: float = inf) -> str:
-    """Format the spec's signals from ``start`` to ``stop`` seconds for ``tltlc monitor``.
+    """Return the spec's signals from ``start`` to ``stop`` seconds as CSV, for ``tltlc monitor``.
 
     The column ``step`` counts decisions from 1: the moment of the reset is not part of the trace.
     Numbers are written so that they can be read back bit for bit.

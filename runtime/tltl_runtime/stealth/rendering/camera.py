@@ -8,17 +8,14 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from tltl_runtime.stealth.level import Level, Point
+from tltl_runtime.stealth.level import Point, StealthLevel
 from tltlc.api import record
 
 View = Literal["third_person", "top_down", "overview"]
 VIEWS: tuple[View, ...] = ("third_person", "top_down", "overview")
 
 SMALLEST, LARGEST = 16, 4096
-"""The least and greatest side of a picture, in pixels.
-
-Outside this range, pybullet ends the process.
-"""
+"""The least and greatest side of a picture, in pixels; outside this range, pybullet ends the process."""
 
 _FOLLOW = (0.0, -6.6, 8.4)
 """From the player to the camera that follows it.
@@ -40,10 +37,10 @@ _OBLIQUE = 1.05
 
 @record
 class Camera:
-    """A camera that looks from ``eye`` to ``target``, ``field`` degrees high.
+    """A camera that looks from ``eye`` to ``target``; its field of view is ``field`` degrees high.
 
     Lengths are in metres. ``up`` is the direction that is up in the picture. Pictures show what is
-    between ``near`` and ``far``.
+    between the distances ``near`` and ``far``.
     """
 
     eye: Point
@@ -54,7 +51,7 @@ class Camera:
     far: float = 150.0
 
 
-def camera(level: Level, view: View, player: Point, aspect: float) -> Camera:
+def camera(level: StealthLevel, view: View, player: Point, aspect: float) -> Camera:
     """Return the camera of a view.
 
     ``aspect`` is the picture's width over its height, ``player`` the position of the feet.
@@ -62,16 +59,16 @@ def camera(level: Level, view: View, player: Point, aspect: float) -> Camera:
     south, oblique) show the entire level.
     """
     if view == "third_person":
-        return Camera(_plus(player, _FOLLOW), _plus(player, _AHEAD), _FIELD)
+        return Camera(_add(player, _FOLLOW), _add(player, _AHEAD), _FIELD)
     if view == "top_down":
         return _top_down(level, aspect)
     return _overview(level, aspect)
 
 
 def check_size(size: object) -> tuple[int, int]:
-    """Return the width and height of a picture.
+    """Return ``size`` if it is a valid width and height of a picture, in pixels.
 
-    Raises ValueError unless they are two whole numbers in the range.
+    Raises ValueError unless ``size`` is two whole numbers from 16 to 4096.
     """
     match size:
         case (int(width), int(height)) if all(SMALLEST <= side <= LARGEST for side in (width, height)):
@@ -80,7 +77,7 @@ def check_size(size: object) -> tuple[int, int]:
 
 
 def sight_lines(camera: Camera, width: int, height: int) -> NDArray[np.float32]:
-    """For each pixel, the vector from the eye that has one metre of depth: (height, width, 3)."""
+    """Return for each pixel the vector from the eye that has one metre of depth: (height, width, 3)."""
     ahead, right, up = _axes(camera)
     half = tan(np.radians(camera.field) / 2)
     x = (2 * (np.arange(width) + 0.5) / width - 1) * half * width / height
@@ -105,8 +102,8 @@ def pixels(camera: Camera, points: NDArray[np.float64], width: int, height: int)
     return np.stack([(x + 1) / 2 * width, (1 - y) / 2 * height], axis=1)
 
 
-def _top_down(level: Level, aspect: float) -> Camera:
-    """A camera above the middle, high enough that floor and wall tops fit."""
+def _top_down(level: StealthLevel, aspect: float) -> Camera:
+    """Return a camera above the middle, so high that the floor and the tops of the walls fit."""
     low, high = level.bounds.low, level.bounds.high
     x, y = (low[0] + high[0]) / 2, (low[1] + high[1]) / 2
     needed = max(high[1] - low[1], (high[0] - low[0]) / aspect) * _MARGIN
@@ -114,8 +111,8 @@ def _top_down(level: Level, aspect: float) -> Camera:
     return Camera(eye, (x, y, 0.0), _TOP_FIELD, up=(0.0, 1.0, 0.0), near=eye[2] - high[2] - 1, far=eye[2] + 5)
 
 
-def _overview(level: Level, aspect: float) -> Camera:
-    """A camera in the south and above, as near as the corners of the level allow."""
+def _overview(level: StealthLevel, aspect: float) -> Camera:
+    """Return a camera in the south and above, as near as the corners of the level allow."""
     low, high = level.bounds.low, level.bounds.high
     x, y = (low[0] + high[0]) / 2, (low[1] + high[1]) / 2
     corners = np.array([(a, b, c) for a in (low[0], high[0]) for b in (low[1], high[1]) for c in (0.0, high[2])])
@@ -140,5 +137,5 @@ def _axes(camera: Camera) -> tuple[NDArray[np.float64], NDArray[np.float64], NDA
     return ahead, right, np.cross(right, ahead)
 
 
-def _plus(a: Point, b: Point) -> Point:
+def _add(a: Point, b: Point) -> Point:
     return a[0] + b[0], a[1] + b[1], a[2] + b[2]

@@ -1,4 +1,4 @@
-"""The part of the floor that an enemy sees, for pictures; in play, ``enemy`` decides."""
+"""The part of the floor that an enemy sees, for pictures only; in play, ``enemy`` decides what is seen."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ _ONLY_STANDING = 0.5
 class SightField:
     """How well an enemy sees each place on the floor.
 
-    The value is 1 if it sees a crouched head there, 0.5 if it sees only a standing one, else 0.
-    ``boxes`` are what blocks sight.
+    The value is 1 if the enemy sees a crouched head there, 0.5 if it sees only a standing one, else
+    0. ``boxes`` block sight.
     """
 
     def __init__(self, kind: EnemyKind, feet: Point, yaw: float, boxes: Iterable[Box]) -> None:
@@ -36,35 +36,37 @@ class SightField:
         crouched = self._free(x, y, feet[2] + CROUCHED_HEAD, near)
         self._seen = np.where(crouched, 1.0, np.where(standing, _ONLY_STANDING, 0.0)).astype(np.float32)
 
-    def at(self, places: NDArray[np.float32]) -> NDArray[np.float32]:
+    def visibility(self, places: NDArray[np.float32]) -> NDArray[np.float32]:
         """Return how well places (n, 2) are seen, in [0, 1]: (n,)."""
         x, y = places[:, 0] - np.float32(self.eyes[0]), places[:, 1] - np.float32(self.eyes[1])
         radius = np.hypot(x, y)
         angle = (np.arctan2(y, x) - self.yaw + pi) % (2 * pi) - pi
         row = (angle + self.half) / (2 * self.half) * (_ANGLES - 1)
         ring = radius / self.reach * _RINGS - 0.5
-        visibility = _between(self._seen, row, ring)
+        visibility = _interpolate(self._seen, row, ring)
         inside = (np.abs(angle) <= self.half) & (radius < self.reach)
         return np.where(inside, visibility, np.float32(0.0))
 
     def _free(
         self, x: NDArray[np.float64], y: NDArray[np.float64], head: float, boxes: Iterable[Box]
     ) -> NDArray[np.bool_]:
-        """Whether the lines from the eyes to heads at offsets ``x``, ``y`` pass no box."""
+        """Return for each head at an offset ``x``, ``y`` whether the line from the eyes to it passes no box."""
         free = np.ones(x.shape, np.bool_)
         for box in boxes:
             enter, leave = np.zeros(x.shape), np.ones(x.shape)
             for axis, delta in enumerate((x, y, np.full(x.shape, head - self.eyes[2]))):
                 with np.errstate(divide="ignore", invalid="ignore"):
-                    one = (box.low[axis] - self.eyes[axis]) / delta
-                    other = (box.high[axis] - self.eyes[axis]) / delta
-                enter = np.maximum(enter, np.minimum(one, other))
-                leave = np.minimum(leave, np.maximum(one, other))
+                    low_time = (box.low[axis] - self.eyes[axis]) / delta
+                    high_time = (box.high[axis] - self.eyes[axis]) / delta
+                enter = np.maximum(enter, np.minimum(low_time, high_time))
+                leave = np.minimum(leave, np.maximum(low_time, high_time))
             free &= enter >= leave
         return free
 
 
-def _between(table: NDArray[np.float32], row: NDArray[np.float32], column: NDArray[np.float32]) -> NDArray[np.float32]:
+def _interpolate(
+    table: NDArray[np.float32], row: NDArray[np.float32], column: NDArray[np.float32]
+) -> NDArray[np.float32]:
     """Interpolate a table bilinearly, so that shadows have soft edges."""
     rows, columns = table.shape
     row, column = row.clip(0, rows - 1.001), column.clip(0, columns - 1.001)

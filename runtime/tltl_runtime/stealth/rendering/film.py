@@ -12,11 +12,11 @@ import matplotlib
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
-from tltl_runtime.stealth.level import Level, Point
+from tltl_runtime.stealth.level import Point, StealthLevel
 from tltl_runtime.stealth.recordings.episode import Episode
-from tltl_runtime.stealth.rendering.camera import View as Rendered
+from tltl_runtime.stealth.rendering.camera import View as CameraView
 from tltl_runtime.stealth.rendering.film_file import Picture
-from tltl_runtime.stealth.rendering.interpolation import between
+from tltl_runtime.stealth.rendering.interpolation import interpolate
 from tltl_runtime.stealth.rendering.plan import BARRIERS, backdrop, state_colour
 from tltl_runtime.stealth.rendering.render import Renderer
 from tltl_runtime.stealth.snapshot import Snapshot
@@ -62,22 +62,24 @@ def frames(
     font = ImageFont.truetype(str(_FONT), _TEXT)
     moments = [_moment(episode, time) for time in times]
     inner = (width, height - STRIP)
-    pictures = _plans(episode, moments, inner) if view == "plan" else _rendered(episode, moments, view, inner)
+    pictures = _draw_plans(episode, moments, inner) if view == "plan" else _draw_view(episode, moments, view, inner)
     for moment, picture in zip(moments, pictures, strict=True):
-        yield _framed(picture, episode, moment, font, notation)
+        yield _add_strip(picture, episode, moment, font, notation)
 
 
 def _moment(episode: Episode, time: float) -> Moment:
-    """The number of the last decision before a time, and the snapshot at that time."""
+    """Return the number of the last decision before a time, and the snapshot at that time."""
     shots = episode.snapshots
     row = min(max(0, bisect_right(shots, time + _INSTANT, key=lambda shot: shot.time) - 1), len(shots) - 1)
     since = time - shots[row].time
     if since <= _INSTANT or row == len(shots) - 1:
         return row, shots[row]
-    return row, between(shots[row], shots[row + 1], since / (shots[row + 1].time - shots[row].time))
+    return row, interpolate(shots[row], shots[row + 1], since / (shots[row + 1].time - shots[row].time))
 
 
-def _rendered(episode: Episode, moments: Sequence[Moment], view: Rendered, size: tuple[int, int]) -> Iterator[Picture]:
+def _draw_view(
+    episode: Episode, moments: Sequence[Moment], view: CameraView, size: tuple[int, int]
+) -> Iterator[Picture]:
     renderer = Renderer(episode.level, *size)
     try:
         for _, shot in moments:
@@ -89,7 +91,7 @@ def _rendered(episode: Episode, moments: Sequence[Moment], view: Rendered, size:
 # --- the plan with moving bodies --------------------------------------------------------------------
 
 
-def _plans(episode: Episode, moments: Sequence[Moment], size: tuple[int, int]) -> Iterator[Picture]:
+def _draw_plans(episode: Episode, moments: Sequence[Moment], size: tuple[int, int]) -> Iterator[Picture]:
     """Draw the level's plan with the player's trail so far and all bodies."""
     empty, pixel = backdrop(episode.level, size)
     trail = Image.fromarray(empty)
@@ -105,7 +107,7 @@ def _plans(episode: Episode, moments: Sequence[Moment], size: tuple[int, int]) -
         yield np.asarray(picture)
 
 
-def _populate(picture: Image.Image, pixel: Pixel, level: Level, shot: Snapshot, colour: str) -> None:
+def _populate(picture: Image.Image, pixel: Pixel, level: StealthLevel, shot: Snapshot, colour: str) -> None:
     """Draw the shut barriers, the movers, the enemies, and the player in ``colour``."""
     draw = ImageDraw.Draw(picture)
     metre = pixel((1.0, 0.0, 0.0))[0] - pixel((0.0, 0.0, 0.0))[0]
@@ -137,7 +139,7 @@ def _figure(draw: ImageDraw.ImageDraw, at: tuple[float, float], yaw: float, radi
 # --- the strip --------------------------------------------------------------------------------------
 
 
-def _framed(
+def _add_strip(
     view: Picture, episode: Episode, moment: Moment, font: ImageFont.FreeTypeFont, notation: Notation
 ) -> Picture:
     """Add the strip below the view: time, progress, health, and what remains to be satisfied."""
@@ -163,14 +165,14 @@ def _framed(
     if row == len(episode.actions):
         draw.text((x, top), episode.end, _PALE, font)
     draw.rectangle((8, height + _LINES[0] + 2, 16, height + _LINES[0] + 12), fill=state_colour(state))
-    lines = _fitting(label_text(episode.fspa, state, notation), width - 30, font)
+    lines = _break_lines(label_text(episode.fspa, state, notation), width - 30, font)
     for line, y in zip(lines, _LINES, strict=False):
         draw.text((22, height + y), line, _PALE, font)
     return np.asarray(picture)
 
 
-def _fitting(text: str, width: int, font: ImageFont.FreeTypeFont) -> list[str]:
-    """Break a text into the lines of the strip; text that does not fit is cut off."""
+def _break_lines(text: str, width: int, font: ImageFont.FreeTypeFont) -> list[str]:
+    """Return a text as the lines of the strip; text that does not fit is cut off."""
     lines: list[str] = []
     while text and len(lines) < len(_LINES):
         line = text

@@ -7,7 +7,7 @@ from textwrap import wrap
 from typing import Any, Final, Literal
 
 from tltl_runtime.game.episode import Cause, Kind
-from tltl_runtime.stealth.level import Level
+from tltl_runtime.stealth.level import StealthLevel
 from tltl_runtime.stealth.snapshot import Snapshot
 from tltl_runtime.stealth.world.player import DECISION
 from tltlc.api import Fspa, formula_text, label_text, record, replace
@@ -54,7 +54,7 @@ class Line:
 class Hud:
     """The head-up display: bars and lines.
 
-    While the game stands still, it also has a title with lines below it.
+    While the game stands still, there is also a ``title``, with the lines ``below``.
     """
 
     bars: tuple[Bar, ...]
@@ -73,33 +73,33 @@ def hud(snapshot: Snapshot, info: Mapping[str, Any], fspa: Fspa) -> Hud:
     )
     lines = [Line(f"{_clock(snapshot.time, fspa)}   {info['verdict']}", "quiet")]
     if snapshot.enemies:
-        lines.append(_seen(snapshot))
-    lines += [Line(text) for text in _shortened(label_text(fspa, info["state"]))]
+        lines.append(_sight_line(snapshot))
+    lines += [Line(text) for text in _shorten(label_text(fspa, info["state"]))]
     return Hud(bars, tuple(lines))
 
 
-def beginning(shown: Hud, level: Level, fspa: Fspa) -> Hud:
+def start_screen(display: Hud, level: StealthLevel, fspa: Fspa) -> Hud:
     """Return the screen before the first key is pressed."""
     goal = wrap(formula_text(fspa), _LONG)
     below = (*wrap(level.doc, _LONG), "", *goal, "", *KEYS, "", "Move to begin.")
-    return replace(shown, title=f"{level.name} {level.variant}", below=below)
+    return replace(display, title=f"{level.name} {level.variant}", below=below)
 
 
-def ending(shown: Hud, why: Cause, file: str) -> Hud:
+def end_screen(display: Hud, cause_of_end: Cause, file: str) -> Hud:
     """Return the screen after the last step; ``file`` is the name of the recording."""
-    tone: Tone = "good" if why.kind == "success" else "bad"
-    below = (*wrap(why.text, _LONG), f"recorded: {file}", "R: again   Esc: close")
-    return replace(shown, title=_TITLES[why.kind], tone=tone, below=below)
+    tone: Tone = "good" if cause_of_end.kind == "success" else "bad"
+    below = (*wrap(cause_of_end.text, _LONG), f"recorded: {file}", "R: again   Esc: close")
+    return replace(display, title=_TITLES[cause_of_end.kind], tone=tone, below=below)
 
 
 def _clock(seconds: float, fspa: Fspa) -> str:
-    """The time, and the time left if the spec has a limit."""
+    """Return the time as text, with the time left if the spec has a limit."""
     if fspa.limit_steps is None:
         return f"{seconds:.1f} s"
     return f"{seconds:.1f} s, {max(0.0, fspa.limit_steps * DECISION - seconds):.0f} s left"
 
 
-def _seen(snapshot: Snapshot) -> Line:
+def _sight_line(snapshot: Snapshot) -> Line:
     if "chase" in snapshot.modes:
         return Line("you are chased", "bad")
     if any(snapshot.sees):
@@ -107,7 +107,7 @@ def _seen(snapshot: Snapshot) -> Line:
     return Line("they search for you", "warn") if "search" in snapshot.modes else Line("nobody sees you", "good")
 
 
-def _shortened(text: str) -> list[str]:
+def _shorten(text: str) -> list[str]:
     lines = wrap(text, _WIDTH)
     if len(lines) <= _MOST_LINES:
         return lines

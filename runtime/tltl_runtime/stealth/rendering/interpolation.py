@@ -9,8 +9,8 @@ from tltl_runtime.stealth.snapshot import Snapshot
 from tltlc.api import replace
 
 
-def between(before: Snapshot, after: Snapshot, share: float) -> Snapshot:
-    """Interpolate the bodies from ``before`` (share 0) to ``after`` (share 1).
+def interpolate(before: Snapshot, after: Snapshot, share: float) -> Snapshot:
+    """Return a snapshot with the bodies between ``before`` (share 0) and ``after`` (share 1).
 
     Everything else is as in ``after``.
     """

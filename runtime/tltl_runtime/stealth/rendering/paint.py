@@ -1,7 +1,7 @@
 """Layers that are painted over a picture by its depth: floor, fields of sight, glass, background.
 
-The position of a pixel in the world follows from its depth, so paint covers whatever is there.
-Pictures contain floats from 0 to 1.
+The position of a pixel in the world follows from its depth, so paint covers whatever is at a
+position. Pictures contain floats from 0 to 1.
 """
 
 from __future__ import annotations
@@ -73,14 +73,14 @@ class Canvas:
         self.picture[window] *= (1 - 0.45 * np.clip(1 - off**2, 0, 1) * below)[..., None]
 
     def field(self, field: SightField, colour: Sequence[float], strength: float) -> None:
-        """Paint the floor an enemy sees; half as strong where it sees only standing players."""
+        """Paint the floor that an enemy sees; half as strong where the enemy sees only standing players."""
         x, y, _ = field.eyes
         reach = field.reach
         window = self._window([(x + a, y + b, 0.0) for a in (-reach, reach) for b in (-reach, reach)])
         places = self.places[window]
         on_floor = np.abs(places[..., 2]) < 0.06
         seen = np.zeros(on_floor.shape, np.float32)
-        seen[on_floor] = field.at(places[on_floor][:, :2])
+        seen[on_floor] = field.visibility(places[on_floor][:, :2])
         self._blend(window, np.array(colour, np.float32), strength * seen)
 
     def glass(self, low: Point, high: Point, colour: Sequence[float], strength: float) -> None:
@@ -90,9 +90,9 @@ class Canvas:
         lines = self.lines[window]
         eye = np.array(self.camera.eye, np.float32)
         with np.errstate(divide="ignore", invalid="ignore"):
-            one, other = (np.array(low, np.float32) - eye) / lines, (np.array(high, np.float32) - eye) / lines
-        enters = np.minimum(one, other)
-        enter, leave = enters.max(axis=-1), np.maximum(one, other).min(axis=-1)
+            low_time, high_time = (np.array(low, np.float32) - eye) / lines, (np.array(high, np.float32) - eye) / lines
+        enters = np.minimum(low_time, high_time)
+        enter, leave = enters.max(axis=-1), np.maximum(low_time, high_time).min(axis=-1)
         met = (enter < leave) & (leave > 0) & (enter < self.depth[window] + 0.02)
         face = _FACES[enters.argmax(axis=-1)]
         self._blend(window, np.array(colour, np.float32) * face[..., None], strength * met)
@@ -102,7 +102,7 @@ class Canvas:
         self.picture[window] = self.picture[window] * (1 - share) + colour * share
 
     def _window(self, points: Sequence[Point]) -> Window:
-        """The part of the picture that contains the projections of these points."""
+        """Return the part of the picture that contains the projections of these points."""
         positions = pixels(self.camera, np.array(points, np.float64), self.width, self.height)
         left, top = np.floor(positions.min(axis=0)).astype(int)
         right, bottom = np.ceil(positions.max(axis=0)).astype(int) + 1

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from tltl_runtime.spec.episode_summary import End
 from tltl_runtime.stealth.capabilities.reach import Reach
 from tltl_runtime.stealth.enemies.grid import grid_of
-from tltl_runtime.stealth.level import Box, Enemy, Level, Point
+from tltl_runtime.stealth.level import Box, Enemy, Point, StealthLevel
 from tltl_runtime.stealth.recordings.episode import Episode
 from tltlc.api import Fspa, Notation, label_text
 
@@ -52,10 +52,7 @@ _COLUMN: Final = 2.0
 """The width of a column of the legend of :func:`draw_level`, in inches."""
 
 _ROOMY: Final = 6.0
-"""Plans at least this wide and high, in inches, have text of full size.
-
-Smaller plans have it only at their natural size.
-"""
+"""Plans at least this wide and high, in inches, have text of full size; smaller plans only at their natural size."""
 
 MOST_LISTED: Final = 12
 """The most states of an episode in the legend."""
@@ -64,15 +61,15 @@ LETTERS_PER_INCH: Final = 12
 """Characters per inch of a line of the legend; longer lines are cut."""
 
 
-def draw_level(level: Level, reach: Reach) -> bytes:
+def draw_level(level: StealthLevel, reach: Reach) -> bytes:
     """Draw the plan of a level as a PNG; red covers all places where the player cannot stand."""
     width, height = natural_size(level)
-    key = _key(level)
+    legend = _legend(level)
     columns = max(1, int(width / _COLUMN))
-    figure = Figure(figsize=(width, height + (ceil(len(key) / columns) + 1) * LINE), dpi=DPI, layout="constrained")
+    figure = Figure(figsize=(width, height + (ceil(len(legend) / columns) + 1) * LINE), dpi=DPI, layout="constrained")
     axes = level_axes(figure, level)
     _add_reach(axes, reach)
-    figure.legend(handles=key, loc="outside lower left", ncols=columns, fontsize=8, frameon=False)
+    figure.legend(handles=legend, loc="outside lower left", ncols=columns, fontsize=8, frameon=False)
     return png(figure)
 
 
@@ -95,7 +92,7 @@ def draw_episode(episode: Episode, size: tuple[int, int] | None = None, notation
     axes.set_title("")
     # A character is about 0.65 times as wide as it is high.
     figure.suptitle(title, fontsize=min(12.0, inches[0] * 72 / (0.65 * len(title))))
-    _add_way(axes, path, states)
+    _add_path(axes, path, states)
     dot = 9 * scale
     marks = [_mark(axes, path[0], "o", "white", "start", dot)]
     # The last row is left out: the mark of the end covers it and names its state.
@@ -118,11 +115,10 @@ def draw_episode(episode: Episode, size: tuple[int, int] | None = None, notation
     return png(figure)
 
 
-def backdrop(level: Level, size: tuple[int, int]) -> tuple[NDArray[np.uint8], Callable[[Point], tuple[float, float]]]:
-    """Draw the plan without moving parts, (height, width, 3).
-
-    Also return the function from places to pixels.
-    """
+def backdrop(
+    level: StealthLevel, size: tuple[int, int]
+) -> tuple[NDArray[np.uint8], Callable[[Point], tuple[float, float]]]:
+    """Return the plan without moving parts, (height, width, 3), and the function from places to pixels."""
     figure = Figure(figsize=(size[0] / DPI, size[1] / DPI), dpi=DPI, layout="constrained")
     axes = level_axes(figure, level, moving=False, start=False)
     canvas: Any = FigureCanvasAgg(figure)
@@ -150,8 +146,8 @@ def _add_reach(axes: Any, reach: Reach) -> None:
     axes.imshow(red, origin="lower", extent=extent, interpolation="nearest", zorder=2)
 
 
-def _key(level: Level) -> list[Any]:
-    """The legend of a level's plan: the colours and marks that occur in it."""
+def _legend(level: StealthLevel) -> list[Any]:
+    """Return the legend of a level's plan: the colours and marks that occur in the plan."""
     kinds = {solid.kind for solid in level.solids}
     handles: list[Any] = [Patch(facecolor=SOLIDS[kind], label=_SOLID_NAMES[kind]) for kind in SOLIDS if kind in kinds]
     barriers = {barrier.kind for barrier in level.barriers}
@@ -174,7 +170,7 @@ def exit_mark() -> Line2D:
     return Line2D([], [], marker="*", linestyle="", color=EXIT, markersize=12, label="exit")
 
 
-def natural_size(level: Level) -> tuple[float, float]:
+def natural_size(level: StealthLevel) -> tuple[float, float]:
     """Return the natural width and height of a level's plan, in inches."""
     (x0, y0, _), (x1, y1, _) = level.bounds.low, level.bounds.high
     width, height = (x1 - x0) / _METRES_PER_INCH, (y1 - y0) / _METRES_PER_INCH
@@ -182,20 +178,17 @@ def natural_size(level: Level) -> tuple[float, float]:
     return width * shrink, height * shrink + 0.4
 
 
-def _text_scale(figure: Figure, level: Level) -> float:
-    """The size of text, relative to a plan of natural size, from 0.6 to 1.
-
-    Small plans have smaller text.
-    """
+def _text_scale(figure: Figure, level: StealthLevel) -> float:
+    """Return the size of text, relative to a plan of natural size, from 0.6 to 1; small plans have smaller text."""
     roomy = np.minimum(natural_size(level), _ROOMY)
     return float(np.clip((figure.get_size_inches() / roomy).min(), 0.6, 1.0))
 
 
-def level_axes(figure: Figure, level: Level, moving: bool = True, start: bool = True) -> Any:
-    """Add axes in metres with everything in a level.
+def level_axes(figure: Figure, level: StealthLevel, moving: bool = True, start: bool = True) -> Any:
+    """Add axes in metres with everything in a level to a figure, and return the axes.
 
-    Moving things are drawn at their initial positions. If text does not fit in full size, only
-    switches and exits are named.
+    With ``moving``, moving things are drawn at their initial positions; with ``start``, so is the
+    player's start. If text does not fit in full size, only switches and exits are named.
     """
     (x0, y0, _), (x1, y1, _) = level.bounds.low, level.bounds.high
     axes: Any = figure.add_subplot(
@@ -218,11 +211,11 @@ def level_axes(figure: Figure, level: Level, moving: bool = True, start: bool = 
         if roomy:
             _name(axes, barrier.name, _middle(barrier.box), letters)
     for mover in level.movers:
-        axes.plot(*_flat(mover.path), color=MOVER, linestyle=":", linewidth=1.5)
+        axes.plot(*_coordinates(mover.path), color=MOVER, linestyle=":", linewidth=1.5)
         if moving and roomy:
             _name(axes, mover.name, mover.path[0], letters)
     for enemy in level.enemies:
-        axes.plot(*_flat(patrol(level, enemy)), color=ROUTE, linestyle="--", linewidth=1.0)
+        axes.plot(*_coordinates(patrol_path(level, enemy)), color=ROUTE, linestyle="--", linewidth=1.0)
         if moving and roomy:
             _name(axes, enemy.name, enemy.route[0], letters)
     for switch in level.switches:
@@ -236,19 +229,19 @@ def level_axes(figure: Figure, level: Level, moving: bool = True, start: bool = 
     return axes
 
 
-def patrol(level: Level, enemy: Enemy) -> list[tuple[float, float]]:
+def patrol_path(level: StealthLevel, enemy: Enemy) -> list[tuple[float, float]]:
     """Return the path of an enemy's patrol around obstacles, with all barriers shut."""
     floor = grid_of(level).floor(range(len(level.barriers)))
     route = [point[:2] for point in (*enemy.route, enemy.route[0])]
-    way = route[:1]
+    path = route[:1]
     for goal in route[1:]:
-        while (corner := floor.towards(way[-1], goal)) not in (None, way[-1], goal):
-            way.append(corner)
-        way.append(goal)
-    return way
+        while (corner := floor.next_point(path[-1], goal)) not in (None, path[-1], goal):
+            path.append(corner)
+        path.append(goal)
+    return path
 
 
-def _add_way(axes: Any, path: Sequence[Point], states: Sequence[int]) -> None:
+def _add_path(axes: Any, path: Sequence[Point], states: Sequence[int]) -> None:
     pieces = [(start[:2], end[:2]) for start, end in pairwise(path)]
     colours = [state_colour(state) for state in states[: len(pieces)]]
     axes.add_collection(LineCollection(pieces, colors=colours, linewidths=2.0, capstyle="round", zorder=4))
@@ -269,7 +262,10 @@ def _mark(axes: Any, place: Point, marker: str, colour: str, label: str, size: f
 
 
 def state_label(fspa: Fspa, state: int, letters: int, notation: Notation = "english") -> str:
-    """Label a state in the legend: number, what remains to be satisfied, settled verdict."""
+    """Return the label of a state in the legend: the number, what remains to be satisfied, a settled verdict.
+
+    A label that is longer than ``letters`` is cut.
+    """
     automaton_state = fspa.states[state]
     text = label_text(fspa, state, notation)
     if len(text) > letters:
@@ -300,7 +296,7 @@ def _middle(box: Box) -> Point:
     return (x0 + x1) / 2, (y0 + y1) / 2, z0
 
 
-def _flat(points: Iterable[Sequence[float]]) -> tuple[list[float], list[float]]:
+def _coordinates(points: Iterable[Sequence[float]]) -> tuple[list[float], list[float]]:
     sequence = list(points)
     return [point[0] for point in sequence], [point[1] for point in sequence]
 

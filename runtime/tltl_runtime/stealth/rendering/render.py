@@ -12,8 +12,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from tltl_runtime.stealth.enemies.segments import blocked, corners
-from tltl_runtime.stealth.level import Box, Level, Point
+from tltl_runtime.stealth.enemies.segments import corners, is_blocked
+from tltl_runtime.stealth.level import Box, Point, StealthLevel
 from tltl_runtime.stealth.rendering.camera import Camera, View, camera, check_size, pixels
 from tltl_runtime.stealth.rendering.cone import SightField
 from tltl_runtime.stealth.rendering.paint import Canvas
@@ -47,7 +47,7 @@ class Renderer:
     :func:`~tltl_runtime.stealth.rendering.camera.check_size` rejects.
     """
 
-    def __init__(self, level: Level, width: int = 640, height: int = 480, samples: int = 1) -> None:
+    def __init__(self, level: StealthLevel, width: int = 640, height: int = 480, samples: int = 1) -> None:
         self.level = level
         self.width, self.height = check_size((width, height))
         self.samples = samples
@@ -68,7 +68,7 @@ class Renderer:
         obstacles = self._scene.obstacles(snapshot)
         glass = [obstacle for obstacle in obstacles if self._is_glass(obstacle.box, eye, view, snapshot)]
         self._scene.pose(snapshot, [obstacle for obstacle in obstacles if obstacle not in glass])
-        canvas = self._shot(eye)
+        canvas = self._draw_bodies(eye)
         for feet in (snapshot.player.position, *snapshot.enemies):
             canvas.shadow(feet, _SHADOW)
         self._paint_sight(canvas, snapshot, [obstacle.box for obstacle in obstacles])
@@ -95,15 +95,15 @@ class Renderer:
             return []
         places = np.array([(x, y, z + above) for _, (x, y, z), above in named])
         positions = pixels(eye, places, self.width, self.height)
-        shown = (positions >= 0).all(axis=1) & (positions < (self.width, self.height)).all(axis=1)
-        shown &= (places - np.array(eye.eye)) @ (np.array(eye.target) - np.array(eye.eye)) > 0
+        are_in_picture = (positions >= 0).all(axis=1) & (positions < (self.width, self.height)).all(axis=1)
+        are_in_picture &= (places - np.array(eye.eye)) @ (np.array(eye.target) - np.array(eye.eye)) > 0
         return [
             (name, float(x), float(y))
-            for (name, *_), (x, y), visible in zip(named, positions, shown, strict=True)
-            if visible
+            for (name, *_), (x, y), is_drawn in zip(named, positions, are_in_picture, strict=True)
+            if is_drawn
         ]
 
-    def _shot(self, eye: Camera) -> Canvas:
+    def _draw_bodies(self, eye: Camera) -> Canvas:
         """Draw the bodies, the floor and the background."""
         width, height = self.width * self.samples, self.height * self.samples
         _, _, colours, depths, bodies = pybullet.getCameraImage(
@@ -156,11 +156,11 @@ class Renderer:
             return True
         x, y, z = snapshot.player.position
         height = self._kind.crouched_height if snapshot.player.crouching else self._kind.height
-        return any(blocked(eye.eye, (x, y, z + share * height), (corners(box),)) for share in (0.5, 0.95))
+        return any(is_blocked(eye.eye, (x, y, z + share * height), (corners(box),)) for share in (0.5, 0.95))
 
 
 def _top(box: Box) -> Point:
-    """The middle of a box's upper side."""
+    """Return the middle of a box's upper side."""
     return (box.low[0] + box.high[0]) / 2, (box.low[1] + box.high[1]) / 2, box.high[2]
 
 

@@ -1,8 +1,8 @@
 """The bodies in pictures: a pybullet client without physics, posed from snapshots.
 
-Visual shapes have no collision shapes here, each box is a separate body, and hidden bodies are
-moved far below. Translucent objects, such as lasers, are not bodies, because TinyRenderer cannot
-draw them; :mod:`tltl_runtime.stealth.rendering.paint` does.
+Visual shapes have no collision shapes here. Each box is a separate body. Hidden bodies are moved far
+below. TinyRenderer cannot draw translucent objects, such as lasers. So they are not bodies, and
+:mod:`tltl_runtime.stealth.rendering.paint` draws them.
 """
 
 from __future__ import annotations
@@ -16,11 +16,11 @@ from typing import Final
 import numpy as np
 
 from tltl_runtime.stealth.enemies.grid import RADIUS
-from tltl_runtime.stealth.level import Box, Level, Point
+from tltl_runtime.stealth.level import Box, Point, StealthLevel
 from tltl_runtime.stealth.snapshot import Snapshot
 from tltl_runtime.stealth.world.bodies import UPRIGHT
 from tltl_runtime.stealth.world.bullet import pybullet
-from tltl_runtime.stealth.world.geometry import around
+from tltl_runtime.stealth.world.geometry import box_around
 from tltl_runtime.stealth.world.player import PlayerKind
 from tltlc.api import record
 
@@ -59,7 +59,7 @@ class Obstacle:
 class Scene:
     """The bodies of a level in a client of their own; ``pose`` moves them to match a snapshot."""
 
-    def __init__(self, level: Level) -> None:
+    def __init__(self, level: StealthLevel) -> None:
         self.level = level
         self.client = pybullet.connect(pybullet.DIRECT)
         self.floors = [self._box(solid.box, SOLIDS["floor"]) for solid in level.solids if solid.kind == "floor"]
@@ -67,7 +67,7 @@ class Scene:
             self._obstacle(solid.box, SOLIDS[solid.kind]) for solid in level.solids if solid.kind != "floor"
         ]
         self._barriers = [self._obstacle(barrier.box, BARRIER) for barrier in level.barriers if barrier.kind == "solid"]
-        self._movers = [self._obstacle(Box(*around(mover.path[0], mover.size)), MOVER) for mover in level.movers]
+        self._movers = [self._obstacle(Box(*box_around(mover.path[0], mover.size)), MOVER) for mover in level.movers]
         self._away: set[int] = set()
         self._switches = [self._switch(switch.position, switch.radius) for switch in level.switches]
         self._active = [False] * len(level.switches)
@@ -93,20 +93,20 @@ class Scene:
         ]
         shut = [barrier for barrier, is_open in zip(self._barriers, solid, strict=True) if not is_open]
         movers = [
-            Obstacle(obstacle.body, Box(*around(place, mover.size)), obstacle.colour, moves=True)
+            Obstacle(obstacle.body, Box(*box_around(place, mover.size)), obstacle.colour, moves=True)
             for obstacle, mover, place in zip(self._movers, self.level.movers, snapshot.movers, strict=True)
         ]
         return [*self._solids, *shut, *movers]
 
-    def pose(self, snapshot: Snapshot, shown: Collection[Obstacle]) -> None:
-        """Move all bodies to match a snapshot; obstacles that are not in ``shown`` are hidden."""
-        shown_bodies = {obstacle.body for obstacle in shown}
-        for obstacle in shown:
+    def pose(self, snapshot: Snapshot, visible: Collection[Obstacle]) -> None:
+        """Move all bodies to match a snapshot; obstacles that are not in ``visible`` are hidden."""
+        visible_bodies = {obstacle.body for obstacle in visible}
+        for obstacle in visible:
             if obstacle.moves or obstacle.body in self._away:
                 self._put(obstacle.body, _middle(obstacle.box), 0.0)
                 self._away.discard(obstacle.body)
         for obstacle in (*self._solids, *self._barriers, *self._movers):
-            if obstacle.body not in shown_bodies | self._away:
+            if obstacle.body not in visible_bodies | self._away:
                 self._put(obstacle.body, _AWAY, 0.0)
                 self._away.add(obstacle.body)
         for person, place, yaw in zip(self._enemies, snapshot.enemies, snapshot.yaws, strict=True):
@@ -134,7 +134,7 @@ class Scene:
 
     def _lathe(self, profile: Sequence[tuple[float, float]], colour: Colour, place: Point = _AWAY) -> int:
         """Create a body of revolution about z; ``profile`` has (radius, z) from bottom to top."""
-        vertices, normals, indices = _turned(tuple(profile))
+        vertices, normals, indices = _revolve(tuple(profile))
         shape = pybullet.createVisualShape(
             pybullet.GEOM_MESH,
             vertices=vertices,
@@ -146,10 +146,7 @@ class Scene:
         return self._body(shape, place)
 
     def _person(self, radius: float, height: float, colour: Colour) -> tuple[int, int]:
-        """Create an upright capsule and a visor on its front.
-
-        Both have their origin between the feet.
-        """
+        """Create an upright capsule and a visor on its front; both have their origin between the feet."""
         quarter = np.linspace(-pi / 2, 0, 7)
         foot = [(radius * cos(a), radius + radius * sin(a)) for a in quarter]
         head = [(r, height - z) for r, z in reversed(foot)]
@@ -194,13 +191,13 @@ class Scene:
 
 
 @lru_cache(maxsize=32)
-def _turned(
-    profile: tuple[tuple[float, float], ...], around: int = 28
+def _revolve(
+    profile: tuple[tuple[float, float], ...], steps: int = 28
 ) -> tuple[list[list[float]], list[list[float]], list[int]]:
-    """The vertices, normals and triangles of a profile turned about the z axis.
+    """Return the vertices, normals and triangles of a profile that is turned about the z axis in ``steps`` steps.
 
-    Edges of the profile stay sharp. The result is cached, because pybullet never frees a list that
-    it was given: a new one for each scene would leak.
+    Edges of the profile stay sharp. The result is cached, because pybullet never frees the lists that
+    it gets: new lists for each scene would leak.
     """
     vertices: list[list[float]] = []
     normals: list[list[float]] = []
@@ -209,11 +206,11 @@ def _turned(
         length = float(np.hypot(r1 - r0, z1 - z0))
         out, up = (z1 - z0) / length, (r0 - r1) / length
         first = len(vertices)
-        for step in range(around + 1):
-            c, s = cos(2 * pi * step / around), sin(2 * pi * step / around)
+        for step in range(steps + 1):
+            c, s = cos(2 * pi * step / steps), sin(2 * pi * step / steps)
             vertices += [[r0 * c, r0 * s, z0], [r1 * c, r1 * s, z1]]
             normals += [[out * c, out * s, up]] * 2
-        for step in range(around):
+        for step in range(steps):
             a = first + 2 * step
             indices += [a, a + 2, a + 1, a + 1, a + 2, a + 3]
     return vertices, normals, indices

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from tltl_runtime.game.episode import Trajectory
-from tltl_runtime.stealth.level import Level
+from tltl_runtime.stealth.level import StealthLevel
 from tltl_runtime.stealth.rendering.plan import (
     DPI,
     ENDS,
@@ -31,11 +31,11 @@ _FAINTEST: Final = 0.12
 """The opacity of one trajectory among very many."""
 
 
-def draw_trajectories(level: Level, fspa: Fspa, trajectories: Sequence[Trajectory], title: str) -> bytes:
+def draw_trajectories(level: StealthLevel, fspa: Fspa, trajectories: Sequence[Trajectory], title: str) -> bytes:
     """Draw trajectories as a PNG, coloured by the automaton's state.
 
     Marks show where episodes ended; successes have small marks. The legend says what remained to be
-    satisfied in each state, how many episodes ended how, and what a star means.
+    satisfied in each state, how many episodes had each end, and what a star means.
     """
     visited = sorted({int(state) for trajectory in trajectories for state in trajectory.states[:-1]})[:MOST_LISTED]
     ends = Counter(trajectory.end for trajectory in trajectories)

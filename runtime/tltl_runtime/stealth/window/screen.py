@@ -1,11 +1,11 @@
-"""The rendering of an environment: a picture or a window, created with the first picture."""
+"""The rendering of an environment: pictures, or a window that opens with the first picture."""
 
 from __future__ import annotations
 
 import warnings
 from typing import TYPE_CHECKING, Final
 
-from tltl_runtime.stealth.level import Level
+from tltl_runtime.stealth.level import StealthLevel
 from tltl_runtime.stealth.rendering.camera import VIEWS, View, check_size
 from tltl_runtime.stealth.world.player import DECISION
 from tltlc.api import TltlError
@@ -28,7 +28,7 @@ class Screen:
     size that :func:`~tltl_runtime.stealth.rendering.camera.check_size` rejects.
     """
 
-    def __init__(self, level: Level, mode: str | None, view: View, size: tuple[int, int]) -> None:
+    def __init__(self, level: StealthLevel, mode: str | None, view: View, size: tuple[int, int]) -> None:
         if mode is not None and mode not in MODES:
             raise ValueError(f"there is no render mode {mode!r}: there are {', '.join(MODES)}")
         if view not in VIEWS:
@@ -37,19 +37,22 @@ class Screen:
         self.size = check_size(size)
         self._renderer: Renderer | None = None
         self._window: Window | None = None
-        self._unseen = False
+        self._cannot_open = False
 
     def render(self, snapshot: Snapshot) -> NDArray[np.uint8] | None:
-        """Return the picture, (height, width, 3), or show it for the time of a decision.
+        """Return the picture, (height, width, 3), or show it in the window for the time of a decision.
 
-        If no window can be opened, warn once and show nothing. Raises TltlError: TLT0730, pygame is
-        not installed.
+        Return None without a mode, and in the mode ``human``. If no window can be opened, warn once
+        and show nothing.
+
+        Raises:
+            TltlError: TLT0730, pygame is not installed.
         """
-        if self.mode is None or self._unseen:
+        if self.mode is None or self._cannot_open:
             return None
         if self.mode == "human" and self._window is None:
             self._open()
-            if self._unseen:
+            if self._cannot_open:
                 return None
         if self._renderer is None:
             from tltl_runtime.stealth.rendering.render import Renderer
@@ -72,10 +75,10 @@ class Screen:
             if diagnostic.code != NO_WINDOW:
                 raise
             warnings.warn(f"{diagnostic.code}: {diagnostic.title}", stacklevel=4)
-            self._unseen = True
+            self._cannot_open = True
 
     def close(self) -> None:
-        """Close the window and release the bodies; a later picture creates them again."""
+        """Close the window and release the bodies; a later call of ``render`` creates them again."""
         if self._renderer is not None:
             self._renderer.close()
         if self._window is not None:

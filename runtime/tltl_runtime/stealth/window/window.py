@@ -19,13 +19,10 @@ from tltlc.api import Diagnostic, TltlError, record
 NO_WINDOW: Final = "TLT0830"
 """The error code for a window that cannot be opened."""
 
-_LEAST: Final = 960
-"""The least width of a window, in pixels; narrower pictures are enlarged to it."""
-_UNSEEN: Final = {"dummy", "offscreen"}
-"""SDL drivers without a screen.
-
-With one of them, the game would wait for keys that can never be pressed.
-"""
+_MIN_WIDTH: Final = 960
+"""The least width of a picture in the window, in pixels; narrower pictures are enlarged."""
+_DRIVERS_WITHOUT_SCREEN: Final = {"dummy", "offscreen"}
+"""SDL drivers without a screen: the game would wait for keys that nobody can press."""
 _TONES: Final[dict[Tone, tuple[int, int, int]]] = {
     "plain": (235, 239, 245),
     "quiet": (160, 170, 186),
@@ -36,11 +33,11 @@ _TONES: Final[dict[Tone, tuple[int, int, int]]] = {
 }
 _PANEL: Final = (16, 20, 30)
 _TITLE_STRENGTH: Final = 215
-_LINE: Final = 20
+_LINE_HEIGHT: Final = 20
 """The height of a line, in pixels."""
-_SMALL: Final = 20
+_NAME_HEIGHT: Final = 20
 """The height of names in the picture, in pixels."""
-_SIDE: Final = 330
+_PANEL_WIDTH: Final = 330
 """The width of the panel beside the picture, in pixels."""
 _TRACK: Final = (60, 68, 84)
 
@@ -76,10 +73,10 @@ class Window:
     """
 
     def __init__(self, title: str, size: tuple[int, int], side: bool = False, sticky_crouch: bool = False) -> None:
-        pygame = self._pygame = _loaded()
-        scale = max(1.0, _LEAST / size[0])
+        pygame = self._pygame = _import_pygame()
+        scale = max(1.0, _MIN_WIDTH / size[0])
         self.size = (round(size[0] * scale), round(size[1] * scale))
-        self._side = _SIDE if side else 0
+        self._side = _PANEL_WIDTH if side else 0
         try:
             # Without a screen, SDL itself prints complaints on standard error.
             with silence():
@@ -88,16 +85,16 @@ class Window:
             pygame.font.init()
         except pygame.error as error:
             pygame.quit()
-            raise _no_display(str(error)) from None
-        if pygame.display.get_driver() in _UNSEEN:
+            raise _no_window_error(str(error)) from None
+        if pygame.display.get_driver() in _DRIVERS_WITHOUT_SCREEN:
             pygame.quit()
-            raise _no_display("there is no screen")
+            raise _no_window_error("there is no screen")
         pygame.display.set_caption(title)
         pygame.event.set_allowed((pygame.QUIT, pygame.KEYDOWN, pygame.KEYUP))
         self._clock = pygame.time.Clock()
         self._fonts: dict[int, Any] = {}
         self._tapped: set[int] = set()
-        self._sticky, self._stuck = sticky_crouch, False
+        self._sticky, self._keeps_crouching = sticky_crouch, False
 
     def close(self) -> None:
         """Close the window; closing twice does nothing."""
@@ -116,7 +113,7 @@ class Window:
                 stop = stop or event.key in (pygame.K_ESCAPE, pygame.K_q)
                 restart = restart or event.key == pygame.K_r
                 view = view or event.key == pygame.K_v
-                self._stuck ^= self._sticky and event.key in crouches
+                self._keeps_crouching ^= self._sticky and event.key in crouches
         pressed, tapped = pygame.key.get_pressed(), self._tapped
         self._tapped = set()
 
@@ -129,7 +126,7 @@ class Window:
             east % 3,
             north % 3,
             int(held(pygame.K_SPACE)),
-            int(self._stuck if self._sticky else held(*crouches)),
+            int(self._keeps_crouching if self._sticky else held(*crouches)),
             int(held(pygame.K_LSHIFT, pygame.K_RSHIFT)),
         )
         return Keys(action, restart, stop, view)
@@ -148,16 +145,13 @@ class Window:
         pygame.display.flip()
 
     def wait(self, seconds: float) -> None:
-        """Wait until this many seconds after the last call; keep the window responsive."""
+        """Wait until ``seconds`` have passed since the last call; the window stays responsive."""
         self._pygame.event.pump()
         self._clock.tick(1 / seconds)
 
     def _draw_name(self, name: str, x: float, y: float) -> None:
-        """Draw a name above a position.
-
-        It is light with a dark outline, and so readable on any background.
-        """
-        light, dark = (self._text(name, tone, _SMALL) for tone in ("plain", "dark"))
+        """Draw a name above a position, light with a dark outline, so that it is readable everywhere."""
+        light, dark = (self._text(name, tone, _NAME_HEIGHT) for tone in ("plain", "dark"))
         left = self._side + round(x) - light.get_width() // 2
         top = round(y) - light.get_height()
         for across, down in ((-1, 0), (1, 0), (0, -1), (0, 1)):
@@ -168,7 +162,7 @@ class Window:
 
     def _draw_side(self, hud: Hud) -> None:
         """Draw the bars and lines to the left of the picture."""
-        step = _LINE
+        step = _LINE_HEIGHT
         self._surface.fill(_PANEL, (0, 0, self._side, self.size[1]))
         rows = [self._bar(bar.name, bar.value, bar.tone, step) for bar in hud.bars]
         rows += [self._text(line.text, line.tone, step) for line in hud.lines]
@@ -177,7 +171,7 @@ class Window:
 
     def _draw_title(self, hud: Hud) -> None:
         """Draw the title and the lines below it in the middle of the picture."""
-        pygame, step = self._pygame, _LINE + 4
+        pygame, step = self._pygame, _LINE_HEIGHT + 4
         rows = [self._text(hud.title, hud.tone, step * 2), *(self._text(line, "plain", step) for line in hud.below)]
         width = max(row.get_width() for row in rows) + 2 * step
         height = sum(row.get_height() for row in rows) + 2 * step
@@ -207,7 +201,7 @@ class Window:
         return self._fonts[height].render(text, True, _TONES[tone])
 
 
-def _loaded() -> Any:
+def _import_pygame() -> Any:
     """Import pygame without its greeting on standard output."""
     os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
     try:
@@ -220,7 +214,7 @@ def _loaded() -> Any:
     return pygame
 
 
-def _no_display(why: str) -> TltlError:
+def _no_window_error(why: str) -> TltlError:
     title = f"no window can be opened here: {why}"
     help_ = "play on a machine with a screen, or start `Xvfb` and set DISPLAY; pictures of episodes need none of that"
     return TltlError([Diagnostic(NO_WINDOW, title, help=help_)])

@@ -1,4 +1,4 @@
-"""Create pybullet bodies in ways that avoid its silent traps; ``physics`` lists the traps."""
+"""Create pybullet bodies in ways that avoid the silent traps of pybullet, which ``physics`` lists."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ COMPOUND = 16
 RAY, PLAYER, PARKED, WORLD = 1, 2, 4, 8
 """Collision groups; Bullet puts rays into the first one."""
 STOPS = RAY | PLAYER
-"""The groups that the world stops: not the world itself."""
+"""The groups that collide with the bodies of the world; the world does not collide with itself."""
 UPRIGHT = (0.0, 0.0, 0.0, 1.0)
 
 
@@ -31,10 +31,7 @@ def static_boxes(client: int, boxes: Sequence[Bounds]) -> int:
 
 
 def static_box(client: int, size: Point, place: Point) -> int:
-    """Create a static body of one box centred at ``place``, in the group of the world.
-
-    It can be moved later.
-    """
+    """Create a static body of one box centred at ``place``, in the group of the world; it can be moved later."""
     half = [side / 2 for side in size]
     shape = pybullet.createCollisionShape(pybullet.GEOM_BOX, halfExtents=half, physicsClientId=client)
     return _static(client, shape, place)
@@ -45,7 +42,7 @@ def capsule(client: int, radius: float, height: float, place: Point) -> int:
     shape = pybullet.createCollisionShape(
         pybullet.GEOM_CAPSULE, radius=radius, height=height - 2 * radius, physicsClientId=client
     )
-    body: int = pybullet.createMultiBody(1.0, shape, _unseen(client), place, physicsClientId=client)
+    body: int = pybullet.createMultiBody(1.0, shape, _tiny_shape(client), place, physicsClientId=client)
     pybullet.changeDynamics(
         body,
         -1,
@@ -69,14 +66,14 @@ def set_filter(client: int, body: int, group: int, mask: int) -> None:
 
 def _static(client: int, shape: int, place: Point) -> int:
     body: int = pybullet.createMultiBody(
-        0.0, shape, _unseen(client), place, useMaximalCoordinates=1, physicsClientId=client
+        0.0, shape, _tiny_shape(client), place, useMaximalCoordinates=1, physicsClientId=client
     )
     pybullet.changeDynamics(body, -1, lateralFriction=0.0, restitution=0.0, physicsClientId=client)
     set_filter(client, body, WORLD, STOPS)
     return body
 
 
-def _unseen(client: int) -> int:
+def _tiny_shape(client: int) -> int:
     """Create a visual shape too small to see; without one, pybullet draws the collision shape."""
     corners = [[0.0, 0.0, 0.0], [0.001, 0.0, 0.0], [0.0, 0.001, 0.0]]
     shape: int = pybullet.createVisualShape(

@@ -1,7 +1,7 @@
-"""Import pybullet without the line that it prints on standard error, which programs may parse.
+"""Import pybullet without the line that it prints on standard error, because programs may parse that output.
 
-No other module imports pybullet itself: the line is printed by the first import, from C. If
-pybullet is not installed, importing this module raises TltlError, TLT0730.
+The first import prints the line, from C. So all other modules import pybullet from here. If pybullet
+is not installed, importing this module raises TltlError, TLT0730.
 """
 
 from __future__ import annotations

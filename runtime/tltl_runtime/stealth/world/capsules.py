@@ -1,8 +1,8 @@
 """The player's body in the physics: a standing and a crouched capsule, one of which is active.
 
-The inactive capsule touches nothing and falls. It is moved back below the level from time to time:
-a sleeping Featherstone body falls all the same, and resting it on a floor would cost a quarter of
-the speed.
+The inactive capsule touches nothing and falls. It is moved back to its place below the level from
+time to time. A sleeping Featherstone body also falls, and a floor under the capsule would cost a
+quarter of the speed.
 """
 
 from __future__ import annotations
@@ -28,19 +28,19 @@ class Capsules:
         self.radius = kind.radius
         self._heights = (kind.height, kind.crouched_height)
         self._bodies = [capsule(client, kind.radius, height, parking) for height in self._heights]
-        self._play(False)
+        self._activate(False)
 
     def put(self, crouching: bool, feet: Point, velocity: Point) -> bool:
         """Move the player to a pose; return whether this switched capsules."""
         changed = self.body != self._bodies[crouching]
         if changed:
-            self._play(crouching)
+            self._activate(crouching)
         place = (feet[0], feet[1], feet[2] + self.height / 2)
         pybullet.resetBasePositionAndOrientation(self.body, place, UPRIGHT, self._client)
-        self.speed(velocity)
+        self.set_velocity(velocity)
         return changed
 
-    def speed(self, velocity: Point) -> None:
+    def set_velocity(self, velocity: Point) -> None:
         """Set the player's velocity."""
         pybullet.resetBaseVelocity(self.body, velocity, _STILL, self._client)
 
@@ -54,7 +54,7 @@ class Capsules:
         velocity: Point = pybullet.getBaseVelocity(self.body, self._client)[0]
         return velocity
 
-    def grounded(self) -> bool:
+    def is_grounded(self) -> bool:
         """Whether the player stands on something."""
         contacts = pybullet.getContactPoints(self.body, physicsClientId=self._client)
         return any(contact[7][2] > 0.5 and contact[8] < TOUCH for contact in contacts)
@@ -64,11 +64,11 @@ class Capsules:
         pybullet.resetBasePositionAndOrientation(self._parked, self._parking, UPRIGHT, self._client)
         pybullet.resetBaseVelocity(self._parked, _STILL, _STILL, self._client)
 
-    def misfiltered(self) -> str | None:
+    def misfiltered_capsule(self) -> str | None:
         """Return the name of the capsule whose collision filter is wrong, or None.
 
-        A ray down through the active capsule must hit it; a ray down through the parked capsule
-        must not.
+        A ray down through the active capsule must hit that capsule. A ray down through the inactive
+        capsule must hit nothing.
         """
         for name, body, height in zip(("standing", "crouched"), self._bodies, self._heights, strict=True):
             (x, y, z), _ = pybullet.getBasePositionAndOrientation(body, self._client)
@@ -78,7 +78,7 @@ class Capsules:
                 return name
         return None
 
-    def _play(self, crouching: bool) -> None:
+    def _activate(self, crouching: bool) -> None:
         self.body, self._parked = self._bodies[crouching], self._bodies[not crouching]
         self.height = self._heights[crouching]
         set_filter(self._client, self._parked, PARKED, 0)

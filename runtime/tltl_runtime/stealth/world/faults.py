@@ -6,7 +6,7 @@ from tltlc.api import Diagnostic, TltlError
 
 
 def player_fault(error: RuntimeError) -> TltlError | None:
-    """Return TLT0806 if the player has left the level, else None.
+    """Return TLT0806 if ``error`` says that the player has left the level, else None.
 
     Other errors of the physics are not the level's fault.
     """

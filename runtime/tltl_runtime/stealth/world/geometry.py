@@ -12,7 +12,7 @@ TOUCH = 0.02
 """A body may overlap another by this many metres and still count as free of it."""
 
 
-def parts(boxes: list[Bounds], size: int) -> list[list[Bounds]]:
+def group_boxes(boxes: list[Bounds], size: int) -> list[list[Bounds]]:
     """Split boxes into groups of at most ``size`` neighbours, by halving along the longer side."""
     if len(boxes) <= size:
         return [boxes] if boxes else []
@@ -20,11 +20,11 @@ def parts(boxes: list[Bounds], size: int) -> list[list[Bounds]]:
     axis = 0 if max(middles[0]) - min(middles[0]) >= max(middles[1]) - min(middles[1]) else 1
     ordered = sorted(boxes, key=lambda box: box[0][axis] + box[1][axis])
     half = len(boxes) // 2
-    return parts(ordered[:half], size) + parts(ordered[half:], size)
+    return group_boxes(ordered[:half], size) + group_boxes(ordered[half:], size)
 
 
-def cells(boxes: list[Bounds], reach: float) -> dict[tuple[int, int], list[Bounds]]:
-    """For each square metre of ground, the boxes within ``reach`` of it."""
+def boxes_by_cell(boxes: list[Bounds], reach: float) -> dict[tuple[int, int], list[Bounds]]:
+    """Return the boxes within ``reach`` metres of each square metre of ground, by its south-west corner."""
     cells: dict[tuple[int, int], list[Bounds]] = {}
     for low, high in boxes:
         for x in range(floor(low[0] - reach), floor(high[0] + reach) + 1):
@@ -34,12 +34,12 @@ def cells(boxes: list[Bounds], reach: float) -> dict[tuple[int, int], list[Bound
 
 
 def depth(feet: Point, height: float, radius: float, low: Point, high: Point) -> float:
-    """How far an upright capsule overlaps a box, in metres; negative if they are apart."""
+    """Return how far an upright capsule overlaps a box, in metres; negative if they are apart."""
     return contact(feet, height, radius, low, high)[0]
 
 
 def contact(feet: Point, height: float, radius: float, low: Point, high: Point) -> tuple[float, Point]:
-    """Return how far an upright capsule overlaps a box, and the direction out of the box."""
+    """Return how far an upright capsule overlaps a box, as :func:`depth` does, and the unit vector out of the box."""
     x, y, z = feet
     bottom, top = z + radius, z + height - radius
     dx = x - min(max(x, low[0]), high[0])
@@ -67,21 +67,21 @@ def contact(feet: Point, height: float, radius: float, low: Point, high: Point) 
     return radius + nearest, normal
 
 
-def around(centre: Point, size: Point) -> Bounds:
+def box_around(centre: Point, size: Point) -> Bounds:
     """Return the corners of a box of this ``size`` around ``centre``."""
     (x, y, z), (a, b, c) = centre, size
     return (x - a / 2, y - b / 2, z - c / 2), (x + a / 2, y + b / 2, z + c / 2)
 
 
-def inside(point: Point, low: Point, high: Point) -> bool:
+def is_inside(point: Point, low: Point, high: Point) -> bool:
     """Whether a point is in a box or on its surface."""
     return all(a <= value <= b for a, value, b in zip(low, point, high, strict=True))
 
 
 def sides(low: Point, high: Point) -> dict[str, tuple[Point, Point]]:
-    """The six sides of a box by name.
+    """Return the six sides of a box by name, such as ``+x``.
 
-    Each is a point 1 cm outside the middle of the side, and the middle itself.
+    A side is a point 1 cm outside the middle of the side, and the middle itself.
     """
     middle = [(a + b) / 2 for a, b in zip(low, high, strict=True)]
     sides: dict[str, tuple[Point, Point]] = {}

@@ -10,9 +10,9 @@ from tltl_runtime.stealth.level import Mover, Point
 
 
 class MoverPath:
-    """The position of a mover over its own clock.
+    """The positions of a mover by the time of its own clock.
 
-    It moves there and back, or in a loop if its path is closed.
+    The mover moves there and back, or in a loop if its path is closed.
     """
 
     def __init__(self, mover: Mover) -> None:
@@ -29,8 +29,8 @@ class MoverPath:
             self._lap += mover.pause + length / mover.speed
         self._begins = [leg[0] for leg in self._legs]
 
-    def at(self, clock: float) -> Point:
-        """Return the centre at ``clock`` seconds.
+    def position_at(self, clock: float) -> Point:
+        """Return the centre of the mover at ``clock`` seconds.
 
         Each leg begins with the pause at its first point.
         """

@@ -1,7 +1,7 @@
 """The movers of a level: they follow their paths and push the player.
 
-Bullet sees a box that is teleported, not one that moves; so the push is applied as a velocity of
-the player.
+For Bullet, a mover is a box that is teleported, so it pushes nothing. This module pushes the player
+by setting the player's velocity.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from tltl_runtime.stealth.level import Mover, Point
 from tltl_runtime.stealth.world.bodies import UPRIGHT, static_box
 from tltl_runtime.stealth.world.bullet import pybullet
 from tltl_runtime.stealth.world.capsules import Capsules
-from tltl_runtime.stealth.world.geometry import around, contact
+from tltl_runtime.stealth.world.geometry import box_around, contact
 from tltl_runtime.stealth.world.mover_path import MoverPath
 from tltl_runtime.stealth.world.player import DECISION
 
@@ -23,16 +23,16 @@ _HARDEST_PUSH = 8.0
 """The greatest speed that a mover gives to the player, in metres per second."""
 
 
-class Moving:
-    """One mover, created at its offset: ``place`` is its current centre, ``box`` its corners."""
+class MoverBody:
+    """The body of a mover, created at its offset: ``place`` is its current centre, ``box`` its corners."""
 
     def __init__(self, client: int, mover: Mover) -> None:
         self._client = client
-        self._way = MoverPath(mover)
+        self._path = MoverPath(mover)
         self._size = mover.size
         self.clock = mover.offset
-        self.place = self._way.at(self.clock)
-        self.box = around(self.place, mover.size)
+        self.place = self._path.position_at(self.clock)
+        self.box = box_around(self.place, mover.size)
         self._body = static_box(client, mover.size, self.place)
         width, depth, rise = mover.size
         reach = _REACH + mover.speed * DECISION
@@ -41,10 +41,10 @@ class Moving:
     def put(self, clock: float) -> None:
         """Move to the position at a time of the mover's own clock."""
         self.clock = clock
-        place = self._way.at(clock)
+        place = self._path.position_at(clock)
         if place != self.place:
             self.place = place
-            self.box = around(place, self._size)
+            self.box = box_around(place, self._size)
             pybullet.resetBasePositionAndOrientation(self._body, place, UPRIGHT, self._client)
 
     def is_near(self, feet: Point, height: float) -> bool:
@@ -54,29 +54,32 @@ class Moving:
 
 
 def push(
-    movers: Sequence[Moving], seconds: float, player: Capsules, room: Callable[[Point, float, Moving], bool]
+    movers: Sequence[MoverBody], seconds: float, player: Capsules, has_room: Callable[[Point, float, MoverBody], bool]
 ) -> None:
     """Advance each mover and push the player; call this before each physics step of ``seconds``.
 
-    A mover waits if the player would have no ``room`` after the push (the mover itself is ignored):
-    if it moved on, it would press the player through a wall, however slowly.
+    ``has_room`` says whether a capsule at a position is free of everything but the mover. A mover
+    waits if the push would leave the player no room: if it moved on, it would press the player
+    through a wall, however slowly.
     """
     x, y, z = feet = player.feet()
     height, radius = player.height, player.radius
     for mover in movers:
         clock, old = mover.clock, mover.box
         mover.put(clock + seconds)
-        deep, normal = contact(feet, height, radius, *mover.box)
-        if deep <= 0.0 or deep <= contact(feet, height, radius, *old)[0]:
+        overlap, normal = contact(feet, height, radius, *mover.box)
+        if overlap <= 0.0 or overlap <= contact(feet, height, radius, *old)[0]:
             continue
         across = sqrt(normal[0] ** 2 + normal[1] ** 2)
         if normal[2] < 0.0 and across > 0.3:
             # An edge that comes down on the player's shoulder pushes sideways.
-            deep, normal = deep / across, (normal[0] / across, normal[1] / across, 0.0)
-        if not room((x + deep * normal[0], y + deep * normal[1], z + deep * normal[2]), height, mover):
+            overlap, normal = overlap / across, (normal[0] / across, normal[1] / across, 0.0)
+        if not has_room((x + overlap * normal[0], y + overlap * normal[1], z + overlap * normal[2]), height, mover):
             mover.put(clock)
             continue
         vx, vy, vz = player.velocity()
-        lack = min(deep / seconds, _HARDEST_PUSH) - (vx * normal[0] + vy * normal[1] + vz * normal[2])
-        if lack > 0.0:
-            player.speed((vx + lack * normal[0], vy + lack * normal[1], vz + lack * normal[2]))
+        missing_speed = min(overlap / seconds, _HARDEST_PUSH) - (vx * normal[0] + vy * normal[1] + vz * normal[2])
+        if missing_speed > 0.0:
+            player.set_velocity(
+                (vx + missing_speed * normal[0], vy + missing_speed * normal[1], vz + missing_speed * normal[2])
+            )

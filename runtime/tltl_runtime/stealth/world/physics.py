@@ -25,22 +25,22 @@ from collections.abc import Sequence
 from math import cos, floor, pi, sin, sqrt
 from typing import NoReturn, Protocol
 
-from tltl_runtime.stealth.level import Barrier, Level, Point
+from tltl_runtime.stealth.level import Barrier, Point, StealthLevel
 from tltl_runtime.stealth.world.bodies import COMPOUND, STOPS, WORLD, set_filter, static_boxes
 from tltl_runtime.stealth.world.bullet import pybullet
 from tltl_runtime.stealth.world.capsules import Capsules
-from tltl_runtime.stealth.world.geometry import TOUCH, Bounds, cells, depth, inside, parts, sides
-from tltl_runtime.stealth.world.moving import Moving, push
+from tltl_runtime.stealth.world.geometry import TOUCH, Bounds, boxes_by_cell, depth, group_boxes, is_inside, sides
+from tltl_runtime.stealth.world.moving import MoverBody, push
 from tltl_runtime.stealth.world.player import DECISION, SUBSTEPS, PlayerKind, PlayerState, control
 from tltl_runtime.stealth.world.stairs import lift
 
-_GIVE = 0.2
+_SINK_TOLERANCE = 0.2
 """How far below the bounds the feet may be, in metres.
 
 A landing sinks into the floor by up to one physics step of a fall.
 """
-_PARKED = 64
-"""Decisions after which the inactive capsule is moved back; by then it has fallen a kilometre."""
+_PARK_INTERVAL = 64
+"""The number of decisions after which the inactive capsule is moved back; until then it falls a kilometre."""
 
 
 class Random(Protocol):
@@ -51,19 +51,20 @@ class Random(Protocol):
 
 
 class WorldError(RuntimeError):
-    """The world differs from its level, or a body left it.
+    """The bodies differ from the level, or a body left the level.
 
-    The error is in the level or in the physics.
+    ``body`` is the name of the body, such as ``player``. The error is in the level or in the
+    physics.
     """
 
-    def __init__(self, level: Level, step: int, body: str, problem: str) -> None:
+    def __init__(self, level: StealthLevel, step: int, body: str, problem: str) -> None:
         super().__init__(f"level {level.name} {level.variant}, step {step}, {body}: {problem}")
         self.level, self.variant, self.step, self.body = level.name, level.variant, step, body
-        self._made_of = level, step, body, problem
+        self._arguments = level, step, body, problem
 
-    def __reduce__(self) -> tuple[type[WorldError], tuple[Level, int, str, str]]:
+    def __reduce__(self) -> tuple[type[WorldError], tuple[StealthLevel, int, str, str]]:
         # The arguments, not the message, rebuild the error: processes send it to each other.
-        return type(self), self._made_of
+        return type(self), self._arguments
 
 
 class World:
@@ -74,7 +75,7 @@ class World:
     with the player exactly at the start.
     """
 
-    def __init__(self, level: Level, kind: PlayerKind | None = None) -> None:
+    def __init__(self, level: StealthLevel, kind: PlayerKind | None = None) -> None:
         self.level = level
         self.kind = PlayerKind() if kind is None else kind
         self.steps = 0
@@ -83,7 +84,7 @@ class World:
         self._disconnect = weakref.finalize(self, pybullet.disconnect, self._client)
         self._open = [False] * len(level.barriers)
         self._boxes = [(solid.box.low, solid.box.high) for solid in level.solids]
-        self._around = cells(self._boxes, self.kind.radius + self.kind.sprint_speed * DECISION)
+        self._boxes_by_cell = boxes_by_cell(self._boxes, self.kind.radius + self.kind.sprint_speed * DECISION)
         try:
             self.reset(None)
             self.check()
@@ -125,29 +126,29 @@ class World:
         self.steps += 1
         old = self._state
         kind = self.kind
-        crouching = bool(action[3]) or (old.crouching and not self.room(old.position, kind.height))
+        crouching = bool(action[3]) or (old.crouching and not self.has_room(old.position, kind.height))
         wish = control(kind, old, action, crouching)
         velocity = (*wish.velocity, kind.jump_speed if wish.jump else max(old.velocity[2], -kind.fall_speed))
         step = 0.0
         if old.grounded and not wish.jump:
-            near = self._near(old.position)
+            near = self._solids_near(old.position)
             height = kind.crouched_height if crouching else kind.height
-            step = lift(kind, old.position, height, wish.velocity, near, self.room)
+            step = lift(kind, old.position, height, wish.velocity, near, self.has_room)
         if step or crouching != old.crouching:
             x, y, z = old.position
             self._put(crouching, (x, y, z + step), (*wish.velocity, 0.0) if step else velocity)
         else:
-            self._capsules.speed(velocity)
-        if self.steps % _PARKED == 0:
+            self._capsules.set_velocity(velocity)
+        if self.steps % _PARK_INTERVAL == 0:
             self._capsules.park()
         self._advance(self._movers_near())
         self._observe(crouching, wish.yaw, wish.stamina)
 
     def put(self, state: PlayerState) -> None:
-        """Set the player to ``state``, an earlier value of ``player``; searches branch from it.
+        """Set the player to ``state``, an earlier value of ``player``, so that a search can branch there.
 
-        Everything else stays unchanged. Bullet's contact cache is not restored, so the next
-        decision may end some millimetres away from its first result.
+        Everything else stays unchanged. Bullet's contact cache is not restored. So a decision that is
+        repeated may end some millimetres away from its first result.
         """
         self._put(state.crouching, state.position, state.velocity)
         self._state = state
@@ -185,30 +186,30 @@ class World:
         hit = pybullet.rayTest(start, end, collisionFilterMask=WORLD, physicsClientId=self._client)[0]
         return bool(hit[0] >= 0)
 
-    def room(self, feet: Point, height: float, ignored: Moving | None = None) -> bool:
-        """Whether a capsule of this ``height`` is free of everything that stops bodies.
+    def has_room(self, feet: Point, height: float, ignored: MoverBody | None = None) -> bool:
+        """Whether a capsule of this height, with the player's radius, is free of everything that stops bodies.
 
-        It has the player's radius. The mover ``ignored`` is left out.
+        The mover ``ignored`` does not count.
         """
         radius = self.kind.radius
         return all(
             depth(feet, height, radius, low, high) <= TOUCH
-            for boxes in (self._near(feet), self._changing(ignored))
+            for boxes in (self._solids_near(feet), self._changing_boxes(ignored))
             for low, high in boxes
         )
 
     def check(self) -> None:
-        """Check the world with rays; raise WorldError if a wall is missing or a filter is wrong.
+        """Check the world with rays; raise WorldError if a box is missing or a collision filter is wrong.
 
-        A ray tests each side of each box at its middle, from 1 cm outside, unless another body
+        A ray tests the middle of each side of each box, from 1 cm outside, unless another body
         covers that point.
         """
         boxes = [(solid.name, solid.box.low, solid.box.high) for solid in self.level.solids]
-        boxes += [(barrier.name, barrier.box.low, barrier.box.high) for barrier in self._shut()]
+        boxes += [(barrier.name, barrier.box.low, barrier.box.high) for barrier in self._shut_barriers()]
         boxes += [(mover.name, *box) for mover, box in zip(self.level.movers, self.mover_boxes(), strict=True)]
         for name, low, high in boxes:
             for side, (outside, face) in sides(low, high).items():
-                if any(inside(outside, other_low, other_high) for _, other_low, other_high in boxes):
+                if any(is_inside(outside, other_low, other_high) for _, other_low, other_high in boxes):
                     continue
                 middle = tuple((a + b) / 2 for a, b in zip(low, high, strict=True))
                 hit = pybullet.rayTest(outside, middle, collisionFilterMask=WORLD, physicsClientId=self._client)[0]
@@ -229,13 +230,13 @@ class World:
             physicsClientId=client,
         )
         self._substeps = SUBSTEPS
-        for part in parts(self._boxes, COMPOUND):
+        for part in group_boxes(self._boxes, COMPOUND):
             static_boxes(client, part)
         self._barriers = [
             static_boxes(client, [(barrier.box.low, barrier.box.high)]) if barrier.kind == "solid" else None
             for barrier in self.level.barriers
         ]
-        self.movers = [Moving(client, mover) for mover in self.level.movers]
+        self.movers = [MoverBody(client, mover) for mover in self.level.movers]
         low, high = self.level.bounds.low, self.level.bounds.high
         parking = ((low[0] + high[0]) / 2, (low[1] + high[1]) / 2, low[2] - 10.0)
         self._capsules = Capsules(client, self.kind, parking)
@@ -251,7 +252,7 @@ class World:
             else:
                 distance, angle = self.level.start.spread * sqrt(rng.random()), 2 * pi * rng.random()
                 feet = (x + distance * cos(angle), y + distance * sin(angle), z)
-            if self.room(feet, self.kind.height):
+            if self.has_room(feet, self.kind.height):
                 return feet
         raise WorldError(self.level, 0, "player", f"there is no room at the start ({x:g}, {y:g}, {z:g})")
 
@@ -260,7 +261,7 @@ class World:
             self._check_filters()
 
     def _check_filters(self) -> None:
-        name = self._capsules.misfiltered()
+        name = self._capsules.misfiltered_capsule()
         if name is not None:
             problem = "its collision filter is not the one that was set"
             raise WorldError(self.level, self.steps, f"{name} player", problem)
@@ -273,13 +274,13 @@ class World:
         capsules, low, high = self._capsules, self.level.bounds.low, self.level.bounds.high
         x, y, z = feet = capsules.feet()
         # Not-a-number fails this comparison, too.
-        if not (low[0] <= x <= high[0] and low[1] <= y <= high[1] and low[2] - _GIVE <= z <= high[2]):
+        if not (low[0] <= x <= high[0] and low[1] <= y <= high[1] and low[2] - _SINK_TOLERANCE <= z <= high[2]):
             raise WorldError(self.level, self.steps, "player", f"({x:g}, {y:g}, {z:g}) is outside the level's bounds")
-        self._state = PlayerState(feet, capsules.velocity(), yaw, crouching, capsules.grounded(), stamina)
+        self._state = PlayerState(feet, capsules.velocity(), yaw, crouching, capsules.is_grounded(), stamina)
 
     # Time
 
-    def _movers_near(self) -> list[Moving]:
+    def _movers_near(self) -> list[MoverBody]:
         """Return the movers that the player can touch in this decision.
 
         The other movers advance by the whole decision.
@@ -292,18 +293,15 @@ class World:
                 mover.put(mover.clock + DECISION)
         return near
 
-    def _advance(self, near: Sequence[Moving]) -> None:
-        """Run the physics of a decision.
-
-        It runs in one call or, if movers are ``near``, step by step with their pushes.
-        """
+    def _advance(self, near: Sequence[MoverBody]) -> None:
+        """Run the physics of a decision: in one call or, if movers are ``near``, step by step with their pushes."""
         if not near:
             self._run_at_once(SUBSTEPS)
             pybullet.stepSimulation(self._client)
             return
         self._run_at_once(1)
         for _ in range(SUBSTEPS):
-            push(near, DECISION / SUBSTEPS, self._capsules, self.room)
+            push(near, DECISION / SUBSTEPS, self._capsules, self.has_room)
             pybullet.stepSimulation(self._client)
 
     def _run_at_once(self, substeps: int) -> None:
@@ -316,16 +314,16 @@ class World:
 
     # What stops bodies
 
-    def _near(self, feet: Point) -> list[Bounds]:
-        """The solids that a capsule can touch within one decision from these feet."""
-        return self._around.get((floor(feet[0]), floor(feet[1])), [])
+    def _solids_near(self, feet: Point) -> list[Bounds]:
+        """Return the solids that a capsule can touch within one decision from these feet."""
+        return self._boxes_by_cell.get((floor(feet[0]), floor(feet[1])), [])
 
-    def _changing(self, ignored: Moving | None) -> list[Bounds]:
-        """The shut barriers and the movers, except the mover ``ignored``."""
-        shut = [(barrier.box.low, barrier.box.high) for barrier in self._shut()]
+    def _changing_boxes(self, ignored: MoverBody | None) -> list[Bounds]:
+        """Return the corners of the shut barriers and of the movers, except the mover ``ignored``."""
+        shut = [(barrier.box.low, barrier.box.high) for barrier in self._shut_barriers()]
         return shut + [mover.box for mover in self.movers if mover is not ignored]
 
-    def _shut(self) -> list[Barrier]:
-        """The barriers that stop bodies now."""
+    def _shut_barriers(self) -> list[Barrier]:
+        """Return the barriers that stop bodies now."""
         barriers = zip(self.level.barriers, self._open, strict=True)
         return [barrier for barrier, is_open in barriers if barrier.kind == "solid" and not is_open]

@@ -27,9 +27,9 @@ SIGN = (0.0, 1.0, -1.0)
 class PlayerKind:
     """The parameters of the player, in metres, seconds and metres per second.
 
-    ``jump_speed`` and ``gravity`` lift the feet by 0.97 m, and the round end of the capsule slides
-    up the rest of an edge: from a walk or a sprint, the player reaches platforms of 1.0 m, hardly
-    ever those of 1.2 m, and never higher ones.
+    A jump lifts the feet by 0.97 m, which follows from ``jump_speed`` and ``gravity``. The round end
+    of the capsule slides up the rest of an edge. From a walk or a sprint, the player reaches
+    platforms of 1.0 m, hardly ever those of 1.2 m, and never higher ones.
     """
 
     radius: float = 0.3
@@ -67,7 +67,7 @@ class PlayerState:
 
 @record
 class Control:
-    """The motion that an action requests for one decision; ``stamina`` is left at its end."""
+    """The motion that an action requests for one decision; ``stamina`` is what is left at the end, in [0, 1]."""
 
     velocity: tuple[float, float]
     yaw: float
@@ -78,9 +78,9 @@ class Control:
 def control(kind: PlayerKind, state: PlayerState, action: Sequence[int], crouching: bool) -> Control:
     """Return the motion that ``action`` requests of a player in ``state``.
 
-    ``crouching`` is whether the player will be crouched. Diagonal motion is no faster than straight
-    motion. Sprinting needs stamina for a whole decision; a crouched player neither sprints nor
-    jumps, and a jump needs ground.
+    ``crouching`` says whether the player crouches in this decision. Diagonal motion is no faster
+    than straight motion. A sprint needs stamina for a whole decision, and a jump needs ground. A
+    crouched player neither sprints nor jumps.
     """
     x, y = SIGN[action[0]], SIGN[action[1]]
     moving = x != 0.0 or y != 0.0

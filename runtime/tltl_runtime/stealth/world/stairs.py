@@ -1,6 +1,7 @@
-"""Walking up stairs.
+"""Lift the player up stairs.
 
-Bullet alone stops a body at the first edge, because its velocity is set once per decision.
+Bullet alone would stop the player at the first edge, because the velocity is set only once per
+decision.
 """
 
 from __future__ import annotations
@@ -11,12 +12,17 @@ from tltl_runtime.stealth.level import Point
 from tltl_runtime.stealth.world.geometry import TOUCH, Bounds, depth
 from tltl_runtime.stealth.world.player import DECISION, PlayerKind
 
-Room = Callable[[Point, float], bool]
+HasRoom = Callable[[Point, float], bool]
 """Whether a player of a given height is free with its feet at a point."""
 
 
 def lift(
-    kind: PlayerKind, feet: Point, height: float, velocity: tuple[float, float], boxes: Sequence[Bounds], room: Room
+    kind: PlayerKind,
+    feet: Point,
+    height: float,
+    velocity: tuple[float, float],
+    boxes: Sequence[Bounds],
+    has_room: HasRoom,
 ) -> float:
     """Return how far to lift the feet to walk up a stair in this decision; 0 if there is none.
 
@@ -43,16 +49,21 @@ def lift(
         return 0.0
     # A wall beside the stairs must not stop a diagonal walk up along it: try each axis alone as well.
     both = velocity[0] and velocity[1]
-    ways = (velocity, (velocity[0], 0.0), (0.0, velocity[1])) if both else (velocity,)
-    return max(_lift_along(kind, feet, height, way, met, room) for way in ways)
+    directions = (velocity, (velocity[0], 0.0), (0.0, velocity[1])) if both else (velocity,)
+    return max(_lift_along(kind, feet, height, direction, met, has_room) for direction in directions)
 
 
 def _lift_along(
-    kind: PlayerKind, feet: Point, height: float, velocity: tuple[float, float], boxes: Sequence[Bounds], room: Room
+    kind: PlayerKind,
+    feet: Point,
+    height: float,
+    velocity: tuple[float, float],
+    boxes: Sequence[Bounds],
+    has_room: HasRoom,
 ) -> float:
-    """The lift onto the first box that is touched.
+    """Return the lift onto the first box that the body touches along ``velocity``.
 
-    It is 0 if the box is too high or there is no room above it.
+    It is 0 if the box is too high, or if there is no room above it.
     """
     x, y, z = feet
     for share in (1 / 3, 2 / 3, 1.0):
@@ -60,6 +71,8 @@ def _lift_along(
         tops = [high[2] for low, high in boxes if depth((*ahead, z), height, kind.radius, low, high) > TOUCH]
         if tops:
             step = max(tops) - z + 0.005
-            fits = step <= kind.step_height + TOUCH and all(room((a, b, z + step), height) for a, b in ((x, y), ahead))
+            fits = step <= kind.step_height + TOUCH and all(
+                has_room((a, b, z + step), height) for a, b in ((x, y), ahead)
+            )
             return step if fits else 0.0
     return 0.0

@@ -15,7 +15,19 @@ from tltl_runtime.spec.task import load_task
 from tltl_runtime.stealth.capabilities.feasible import is_infeasible, reach_warnings
 from tltl_runtime.stealth.capabilities.reach import Reach, highest_lift, reachable
 from tltl_runtime.stealth.capabilities.space import Budget, SpaceGrid, distances, flood
-from tltl_runtime.stealth.level import Barrier, Box, Exit, Level, Mover, Point, Sensors, Solid, Start, Switch, Unlock
+from tltl_runtime.stealth.level import (
+    Barrier,
+    Box,
+    Exit,
+    Mover,
+    Point,
+    Sensors,
+    Solid,
+    Start,
+    StealthLevel,
+    Switch,
+    Unlock,
+)
 from tltl_runtime.stealth.levels.file import level_names, load_level, variants
 from tltl_runtime.stealth.levels.parts import enclosure
 from tltl_runtime.stealth.world.physics import World
@@ -29,10 +41,10 @@ SHIPPED = [(name, variant) for name in level_names() for variant in variants(nam
 BLOCKED = ("navigation", "v2")
 
 
-def room(*boxes: Box, end: Point = (10.5, 2.5, 0.0), movers: tuple[Mover, ...] = ()) -> Level:
+def room(*boxes: Box, end: Point = (10.5, 2.5, 0.0), movers: tuple[Mover, ...] = ()) -> StealthLevel:
     """Return a room 12 m long, with the start in the west, the exit in the east, and ``boxes`` between them."""
     solids = [Solid(f"box_{number}", "wall", box) for number, box in enumerate(boxes)]
-    return Level(
+    return StealthLevel(
         name="room",
         variant="v0",
         doc="A room.",
@@ -76,7 +88,7 @@ def pit(width: float) -> tuple[Box, Box]:
         ((wall(0.0, 2.4), Box((4.5, 2.0, 0.0), (5.3, 2.8, 1.0))), False),
     ],
 )
-def test_walls_gaps_and_slits(boxes: tuple[Box, ...], reached: bool) -> None:
+def test_the_exit_is_reached_exactly_if_the_boxes_leave_a_way(boxes: tuple[Box, ...], reached: bool) -> None:
     assert reachable(room(*boxes)).reaches("exit") == reached
 
 
@@ -97,7 +109,9 @@ def test_a_lift_carries_the_player() -> None:
     assert reachable(room(ledge, end=top, movers=(lift,))).reaches("exit")
 
 
-def with_barriers(level: Level, place: Point, opened_by: tuple[str, ...], unlocks: tuple[Unlock, ...] = ()) -> Level:
+def with_barriers(
+    level: StealthLevel, place: Point, opened_by: tuple[str, ...], unlocks: tuple[Unlock, ...] = ()
+) -> StealthLevel:
     door = Barrier("door", "solid", wall(0.0, 4.0), opened_by)
     return replace(level, switches=(Switch("lever", place, 1.0),), barriers=(door,), unlocks=unlocks)
 
@@ -187,7 +201,7 @@ def test_a_flood_visits_the_cells_of_a_plain_search() -> None:
     assert set(zip(*(axis.tolist() for axis in np.nonzero(flood(free, seeds, Budget(10**6)))), strict=True)) == visited
 
 
-def test_distances_between_cells() -> None:
+def test_distances_are_measured_between_the_nearest_points_of_cells() -> None:
     field = np.zeros((6, 7), dtype=np.bool_)
     field[1, 2] = field[5, 6] = True
     computed = distances(field, 5)

@@ -12,7 +12,7 @@ from tests.runtime.stealth.enemies.test_grid import distance_to_boxes
 from tests.runtime.stealth.enemy_levels import GUARD, bounds, box, level, low, places, solids, wall
 from tltl_runtime.stealth.enemies.enemy import CROUCHED_HEAD, Enemies, PlayerView
 from tltl_runtime.stealth.enemies.grid import RADIUS
-from tltl_runtime.stealth.level import Barrier, Box, Enemy, Level, Solid
+from tltl_runtime.stealth.level import Barrier, Box, Enemy, Solid, StealthLevel
 from tltlc.core.record import replace
 
 DT = 0.15
@@ -27,7 +27,7 @@ def crouched(x: float, y: float) -> PlayerView:
     return PlayerView((x, y, 0.0), CROUCHED_HEAD)
 
 
-def begin(game: Level, seed: int = 0) -> Enemies:
+def begin(game: StealthLevel, seed: int = 0) -> Enemies:
     enemies = Enemies(game)
     enemies.reset(np.random.default_rng(seed))
     return enemies
@@ -47,7 +47,7 @@ STILL = (((1.0, 4.0, 0.0),),)
 """A route of one point: the enemy stands there and looks along x."""
 
 
-def sees(game: Level, player: PlayerView) -> bool:
+def sees(game: StealthLevel, player: PlayerView) -> bool:
     enemies = begin(game)
     enemies.step(DT, player)
     return enemies.sees[0]
@@ -92,7 +92,7 @@ def test_walls_block_sight_and_low_cover_hides_a_crouching_player() -> None:
 
 
 def test_shut_doors_block_sight_and_lasers_do_not() -> None:
-    def with_barrier(kind: str) -> Level:
+    def with_barrier(kind: str) -> StealthLevel:
         return level(routes=STILL, barriers=(Barrier("door", kind, box(5.0, 3.0, 5.2, 5.0), ()),))  # type: ignore[arg-type]
 
     assert not sees(with_barrier("solid"), standing(6.0, 4.0))

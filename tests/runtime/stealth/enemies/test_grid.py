@@ -34,7 +34,7 @@ def distance_to_boxes(x: float, y: float, obstacles: tuple[Solid, ...]) -> float
 
 
 def test_a_path_leads_through_the_door() -> None:
-    path = floor_of(*ROOMS).way((1.0, 1.0), (9.0, 1.0))
+    path = floor_of(*ROOMS).path((1.0, 1.0), (9.0, 1.0))
     assert len(path) > 30
     assert any(abs(x - 5.0) < 0.2 and 5.3 < y < 6.2 for x, y in path)
     assert all(hypot(a - c, b - d) < 0.36 for (a, b), (c, d) in pairwise(path))
@@ -42,15 +42,15 @@ def test_a_path_leads_through_the_door() -> None:
 
 def test_a_walk_is_straight_if_nothing_is_in_the_way() -> None:
     floor = floor_of(low(2.0, 3.0, 3.0, 4.0))
-    assert floor.towards((1.0, 1.0), (9.1, 1.7)) == (9.1, 1.7)
-    assert floor.towards((1.0, 3.5), (9.0, 3.5)) not in ((9.0, 3.5), None)
+    assert floor.next_point((1.0, 1.0), (9.1, 1.7)) == (9.1, 1.7)
+    assert floor.next_point((1.0, 3.5), (9.0, 3.5)) not in ((9.0, 3.5), None)
 
 
 def test_an_unreachable_place_is_approached() -> None:
     floor = floor_of(wall(4.0, 0.0, 4.5, 8.0))
     x, y = 1.0, 4.0
     for _ in range(100):
-        next_place = floor.towards((x, y), (4.2, 4.0))
+        next_place = floor.next_point((x, y), (4.2, 4.0))
         assert next_place is not None
         if next_place == (x, y):
             break
@@ -62,8 +62,8 @@ def test_an_unreachable_place_is_approached() -> None:
 def test_a_shut_barrier_is_a_wall_and_an_open_one_is_not() -> None:
     door = Barrier("door", "solid", box(4.9, 5.0, 5.1, 6.5), ())
     grid = Grid(level(*ROOMS, barriers=(door,)))
-    assert grid.floor([0]).way((1.0, 1.0), (9.0, 1.0)) == []
-    assert grid.floor([]).way((1.0, 1.0), (9.0, 1.0)) != []
+    assert grid.floor([0]).path((1.0, 1.0), (9.0, 1.0)) == []
+    assert grid.floor([]).path((1.0, 1.0), (9.0, 1.0)) != []
     assert grid.floor([]) is grid.floor(())
 
 
@@ -80,7 +80,7 @@ def test_the_cache_stays_within_its_budget(monkeypatch: pytest.MonkeyPatch) -> N
     floor.prepare()
     cached_bytes = sum(table.nbytes for table in grid._answers.values())
     assert 0 < cached_bytes <= 1 << 20
-    assert len(floor.way((1.0, 1.0), (9.0, 7.0))) > 30
+    assert len(floor.path((1.0, 1.0), (9.0, 7.0))) > 30
 
 
 def test_a_level_has_one_grid() -> None:
@@ -96,7 +96,7 @@ def test_gaps_are_the_narrow_passages() -> None:
 
 def test_an_enemy_without_room_is_rejected() -> None:
     with pytest.raises(ValueError, match="no room"):
-        floor_of(wall(0.0, 0.0, 10.0, 8.0)).stand((1.0, 1.0))
+        floor_of(wall(0.0, 0.0, 10.0, 8.0)).standing_place((1.0, 1.0))
 
 
 def lengths(floor: Floor, goal: int) -> list[int]:
@@ -134,7 +134,7 @@ def test_paths_are_as_short_as_those_of_a_breadth_first_search(
 def test_no_path_comes_closer_to_an_obstacle_than_the_radius(
     obstacles: tuple[Solid, ...], a: tuple[float, float], b: tuple[float, float]
 ) -> None:
-    path = floor_of(*obstacles).way(a, b)
+    path = floor_of(*obstacles).path(a, b)
     for (x0, y0), (x1, y1) in pairwise(path):
         for part in np.linspace(0.0, 1.0, 5):
             x, y = x0 + part * (x1 - x0), y0 + part * (y1 - y0)
@@ -151,4 +151,4 @@ def test_an_enemy_can_stand_wherever_it_overlaps_no_obstacle(
         inside = RADIUS <= x <= 10.0 - RADIUS and RADIUS <= y <= 8.0 - RADIUS
         assert floor.is_free(x, y) == (inside and not any(a < x < c and b < y < d for a, b, c, d in floor.obstacles))
         entry = floor.entry((x, y))
-        assert entry is None or floor.clear((x, y), floor.centres[entry])
+        assert entry is None or floor.is_clear((x, y), floor.centres[entry])

@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from tltl_runtime.stealth.enemies.segments import Corners, blocked, crosses
+from tltl_runtime.stealth.enemies.segments import Corners, crosses, is_blocked
 from tltl_runtime.stealth.level import Point
 
 POINTS = st.tuples(*[st.floats(-5, 5).map(lambda x: round(x, 2))] * 3)
@@ -36,8 +36,8 @@ def test_sight_is_blocked_exactly_if_the_segment_crosses_a_box(a: Point, b: Poin
     length = exact_length(np.array(a), np.array(b), box)
     assume(abs(length) > 1e-9 or a == b)
     if a != b:
-        assert blocked(a, b, [box]) == (length > 0)
-        assert blocked(b, a, [box]) == (length > 0)
+        assert is_blocked(a, b, [box]) == (length > 0)
+        assert is_blocked(b, a, [box]) == (length > 0)
 
 
 @settings(max_examples=200, deadline=None)
@@ -47,11 +47,11 @@ def test_walking_is_blocked_like_sight_without_heights(a: Point, b: Point, c: Po
     assume(box[0] < box[3] and box[1] < box[4])
     flat = (box[0], box[1], -1.0, box[3], box[4], 1.0)
     rectangle = (box[0], box[1], box[3], box[4])
-    assert crosses(a[0], a[1], b[0], b[1], [rectangle]) == blocked((*a[:2], 0.0), (*b[:2], 0.0), [flat])
+    assert crosses(a[0], a[1], b[0], b[1], [rectangle]) == is_blocked((*a[:2], 0.0), (*b[:2], 0.0), [flat])
 
 
 def test_touching_a_face_or_an_edge_is_not_blocked() -> None:
     box: Corners = (1.0, 1.0, 1.0, 2.0, 2.0, 2.0)
-    assert not blocked((0.0, 1.0, 1.5), (3.0, 1.0, 1.5), [box])
-    assert blocked((0.0, 1.5, 1.5), (3.0, 1.5, 1.5), [box])
-    assert not blocked((0.0, 1.5, 1.5), (0.9, 1.5, 1.5), [box])
+    assert not is_blocked((0.0, 1.0, 1.5), (3.0, 1.0, 1.5), [box])
+    assert is_blocked((0.0, 1.5, 1.5), (3.0, 1.5, 1.5), [box])
+    assert not is_blocked((0.0, 1.5, 1.5), (0.9, 1.5, 1.5), [box])

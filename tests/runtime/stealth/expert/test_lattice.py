@@ -31,7 +31,7 @@ def test_a_feasible_action_ends_where_the_lattice_predicts() -> None:
 
 def test_the_decisions_around_a_wall_match_the_length_of_the_route() -> None:
     lattice = lattice_of(level(wall(5.0, 0.0, 5.4, 6.0)), frozenset())
-    costs = lattice.way_to((8.0, 2.0, 0.0), within=0.8)
+    costs = lattice.decisions_to((8.0, 2.0, 0.0), within=0.8)
     start = np.array([[2.0, 2.0]])
     # Straight to the corner of the wall, 2.7 m east and 4.3 m north, and as far again to the goal.
     shortest = 2 * np.hypot(2.7, 4.3) / 0.45
@@ -42,6 +42,6 @@ def test_the_decisions_around_a_wall_match_the_length_of_the_route() -> None:
 
 def test_a_place_behind_a_wall_is_unreachable() -> None:
     lattice = lattice_of(level(wall(5.0, 0.0, 5.4, 8.0)), frozenset())
-    costs = lattice.way_to((8.0, 2.0, 0.0), within=0.8)
+    costs = lattice.decisions_to((8.0, 2.0, 0.0), within=0.8)
     assert lattice.values(costs, np.array([[2.0, 2.0]]))[0] >= 0.99 * FAR
     assert lattice.values(costs, np.array([[7.0, 6.0]]))[0] < 40.0

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from tltl_runtime.stealth.expert.motion import Motion, Poses, joined, poses_of
+from tltl_runtime.stealth.expert.motion import Motion, Poses, concatenate, poses_of
 from tltl_runtime.stealth.level import Box
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.stealth.world.physics import World
@@ -27,7 +27,7 @@ def _motion(world: World) -> Motion:
     return Motion(world.kind, [obstacle.box for obstacle in (*world.level.solids, *world.level.barriers)])
 
 
-def test_random_play_is_predicted(world: World) -> None:
+def test_the_prediction_of_random_play_agrees_with_the_physics(world: World) -> None:
     """Each prediction starts from the state in the physics. A few landings and stairs have larger errors."""
     motion, rng = _motion(world), np.random.default_rng(0)
     world.reset(None)
@@ -39,7 +39,7 @@ def test_random_play_is_predicted(world: World) -> None:
         world.step(action.tolist())
         actions.append(action)
         after.append(world.player.position)
-    predicted, _ = motion.step(joined(before), np.array(actions))
+    predicted, _ = motion.step(concatenate(before), np.array(actions))
     errors = np.abs(np.stack([predicted.x, predicted.y, predicted.z], axis=1) - np.array(after)).max(axis=1)
     assert np.quantile(errors, 0.5) < 0.005
     assert np.quantile(errors, 0.95) < 0.05
@@ -51,7 +51,7 @@ def test_bodies_do_not_affect_each_other(world: World) -> None:
     far = Poses(*(np.array([value]) for value in (20.0, 9.0, 1.5, 0.0, False, True, 1.0)))
     action = np.array([[1, 0, 1, 0, 1]])
     predicted_alone, _ = motion.step(alone, action)
-    predicted_together, _ = motion.step(joined([alone, far]), np.repeat(action, 2, axis=0))
+    predicted_together, _ = motion.step(concatenate([alone, far]), np.repeat(action, 2, axis=0))
     assert (predicted_alone.x[0], predicted_alone.y[0], predicted_alone.z[0]) == pytest.approx(
         (predicted_together.x[0], predicted_together.y[0], predicted_together.z[0]), abs=1e-9
     )

@@ -30,31 +30,31 @@ def test_a_place_has_ground_and_room() -> None:
 @pytest.mark.parametrize(("variant", "there"), [("v0", True), ("v1", True), ("v2", False)])
 def test_a_route_leads_to_the_second_switch_of_navigation_except_in_v2(variant: str, there: bool) -> None:
     routes = routes_of(load_level("navigation", variant), frozenset({1}))
-    seconds = routes.field(S2).at(*(np.array([value]) for value in START))
+    seconds = routes.field(S2).seconds_from(*(np.array([value]) for value in START))
     assert isinf(seconds[0]) is not there
 
 
 def test_a_route_has_legs_of_several_kinds() -> None:
     level = load_level("navigation")
-    up = routes_of(level, frozenset({1})).field(S2).way(START)
+    up = routes_of(level, frozenset({1})).field(S2).legs(START)
     assert {leg.kind for leg in up} == {"walk", "crouch", "climb", "drop", "leap"}
     (leap,) = (index for index, leg in enumerate(up) if leg.kind == "leap")
     assert up[leap - 1].place[0] > 17.0 and up[leap].place[0] < 15.2
-    down = routes_of(level, frozenset()).field(EXIT).way(S2)
+    down = routes_of(level, frozenset()).field(EXIT).legs(S2)
     (fall,) = (leg for leg in down if leg.kind != "walk")
     assert fall.kind in ("drop", "leap") and fall.place[2] == 0.0
 
 
 def test_a_route_can_be_cut_at_a_length() -> None:
     field = routes_of(load_level("navigation"), frozenset({1})).field(S2)
-    whole, piece = field.way(START), field.way(START, 3.0)
+    whole, piece = field.legs(START), field.legs(START, 3.0)
     assert whole[: len(piece)] == piece
     assert 2.5 < _length(piece) < 5.5 < _length(whole)
 
 
 def test_without_a_route_the_field_leads_to_the_nearest_place() -> None:
     routes = routes_of(load_level("navigation", "v2"), frozenset({1}))
-    end = routes.field_from(START, S2).way(START)[-1].place
+    end = routes.field_from(START, S2).legs(START)[-1].place
     assert 11.0 < end[0] < 11.5
 
 

@@ -11,15 +11,15 @@ from tltl_runtime.stealth.env import make_env
 from tltl_runtime.stealth.expert.expert import Expert, play_episode
 from tltl_runtime.stealth.expert.sneaker import Sneaker
 from tltl_runtime.stealth.expert.walker import Walker
-from tltl_runtime.stealth.game import Game
-from tltl_runtime.stealth.level import Level, Solid, Start
+from tltl_runtime.stealth.game import Simulation
+from tltl_runtime.stealth.level import Solid, Start, StealthLevel
 from tltl_runtime.stealth.recording import RecordEpisode
 from tltlc.core.record import replace
 
 GOAL = (8.2, 7.2, 0.0)
 
 
-def guarded() -> Level:
+def guarded() -> StealthLevel:
     """Return a level with a guard in the west that looks east, and a low wall along the route to crouch behind."""
     hedge = Solid("hedge", "low", box(3.0, 6.0, 10.0, 6.3, 0.0, 1.2))
     base = level(hedge, routes=(((1.5, 3.0, 0.0),),))
@@ -28,7 +28,7 @@ def guarded() -> Level:
 
 def play_to_goal(player: type[Sneaker] | type[Walker]) -> tuple[bool, int, int]:
     """Return whether the goal was reached unseen, the number of decisions, and the number of crouched ones."""
-    with closing(Game(guarded())) as game:
+    with closing(Simulation(guarded())) as game:
         game.reset(0)
         agent = player(game.level)
         was_seen, crouched = False, 0

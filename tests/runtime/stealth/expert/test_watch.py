@@ -9,16 +9,16 @@ import numpy as np
 import pytest
 
 from tltl_runtime.stealth.expert.watch import Watch
-from tltl_runtime.stealth.game import Game
+from tltl_runtime.stealth.game import Simulation
 from tltl_runtime.stealth.levels.file import load_level
 
 STAY = (0, 0, 0, 0, 0)
 
 
 @contextmanager
-def watched(name: str, variant: str, decisions: int) -> Iterator[tuple[Game, Watch]]:
+def watched(name: str, variant: str, decisions: int) -> Iterator[tuple[Simulation, Watch]]:
     """Yield a game that was watched for ``decisions`` steps by a player who stands still, out of sight."""
-    with closing(Game(load_level(name, variant))) as game:
+    with closing(Simulation(load_level(name, variant))) as game:
         game.reset(11)
         watch = Watch(game.level)
         watch.see(game.snapshot())
@@ -58,7 +58,7 @@ def test_a_model_predicts_which_gap_is_visited_next() -> None:
 
 
 def test_a_late_watcher_learns_where_the_enemy_goes() -> None:
-    with closing(Game(load_level("cover_and_hide"))) as game:
+    with closing(Simulation(load_level("cover_and_hide"))) as game:
         game.reset(11)
         for _ in range(50):
             game.step(STAY)

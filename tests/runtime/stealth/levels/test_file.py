@@ -15,7 +15,7 @@ import pytest
 
 import tltlc
 from tests.golden.cases import Case, cases
-from tltl_runtime.stealth.level import Box, Level, Solid, entity_names
+from tltl_runtime.stealth.level import Box, Solid, StealthLevel, entity_names
 from tltl_runtime.stealth.levels.file import level_names, load_level, variants
 from tltl_runtime.stealth.levels.made_for import LEVELS
 from tltlc.diagnostics.diagnostic import TltlError
@@ -38,7 +38,7 @@ def _folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     yield tmp_path
 
 
-def solid(level: Level, name: str) -> Solid:
+def solid(level: StealthLevel, name: str) -> Solid:
     (match,) = (candidate for candidate in level.solids if candidate.name == name)
     return match
 
@@ -49,7 +49,7 @@ def write(path: str, text: str) -> None:
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
-def test_message(case: Case, folder: Path) -> None:
+def test_an_invalid_level_gives_the_expected_message(case: Case, folder: Path) -> None:
     case.unpack(folder / "case")
     os.chdir(folder / "case")
     _, _, *arguments = case.arguments
@@ -133,7 +133,7 @@ def test_names_too_long_for_a_file_are_reported_as_missing(folder: Path, line: s
         load_level("a" * 300)
 
 
-def test_boxes_stairs_and_the_enclosure(folder: Path) -> None:
+def test_stairs_floor_and_outer_walls_are_solids_of_the_level(folder: Path) -> None:
     write("room.toml", ROOM + "[[stairs]]\nfrom = [8.0, 5.0, 0.0]\nto = [6.0, 5.0, 0.5]\nwidth = 1.0\nsteps = 2\n")
     level = load_level("room.toml")
     assert solid(level, "stairs_1_1").box == Box((7.0, 4.5, 0.0), (8.0, 5.5, 0.25))

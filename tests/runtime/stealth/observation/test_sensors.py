@@ -8,7 +8,7 @@ import pytest
 
 from tltl_runtime.stealth.level import MapSensor, Sensors
 from tltl_runtime.stealth.levels.file import load_level
-from tltl_runtime.stealth.observation.sensors import DEFAULT_MAP, chosen
+from tltl_runtime.stealth.observation.sensors import DEFAULT_MAP, choose_sensors
 from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import TltlError
 
@@ -32,13 +32,13 @@ DECLARED = LEVEL.sensors
     ],
 )
 def test_a_choice_overrides_the_declared_sensors(choice: Any, expected: Sensors) -> None:
-    assert chosen(LEVEL, choice) == expected
+    assert choose_sensors(LEVEL, choice) == expected
 
 
 def test_a_level_without_a_map_gets_the_default_one() -> None:
     bare = replace(LEVEL, sensors=Sensors((), (), None))
-    assert chosen(bare, {"map": {"cell": 1.0}}).map == replace(DEFAULT_MAP, cell=1.0)
-    assert chosen(bare, {}).map is None
+    assert choose_sensors(bare, {"map": {"cell": 1.0}}).map == replace(DEFAULT_MAP, cell=1.0)
+    assert choose_sensors(bare, {}).map is None
 
 
 @pytest.mark.parametrize(
@@ -61,7 +61,7 @@ def test_a_level_without_a_map_gets_the_default_one() -> None:
 )
 def test_invalid_choices_are_rejected(choice: Any, title: str, help_: str) -> None:
     with pytest.raises(TltlError) as error:
-        chosen(LEVEL, choice)
+        choose_sensors(LEVEL, choice)
     (diagnostic,) = error.value.diagnostics
     assert diagnostic.code == "TLT0815"
     assert title in diagnostic.title and help_ in str(diagnostic.help)

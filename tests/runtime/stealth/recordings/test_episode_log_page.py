@@ -68,7 +68,7 @@ def test_the_page_lists_every_key_of_meta() -> None:
     assert f"Format `{FORMAT}`, version {VERSION}." in TEXT
 
 
-def test_the_programs_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_programs_on_the_page_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     programs = [block.text for block in blocks(PAGE) if block.kind == "python"]
     names: dict[str, Any] = {}

@@ -20,7 +20,7 @@ from hypothesis import strategies as st
 
 from tltl_runtime.game.recording_path import SUFFIX
 from tltl_runtime.stealth.env import make_env
-from tltl_runtime.stealth.level import Level
+from tltl_runtime.stealth.level import StealthLevel
 from tltl_runtime.stealth.levels.file import level_names, load_level, variants
 from tltl_runtime.stealth.recording import RecordEpisode
 from tltl_runtime.stealth.recordings.arrays import ARRAYS
@@ -53,14 +53,14 @@ def _episode() -> Episode:
     return play("branching", "v1")
 
 
-def assert_same(one: Episode, other: Episode) -> None:
+def assert_same(first_episode: Episode, second_episode: Episode) -> None:
     for name in NUMBERS:
-        first, second = getattr(one, name), getattr(other, name)
+        first, second = getattr(first_episode, name), getattr(second_episode, name)
         assert first.dtype == second.dtype and first.tobytes() == second.tobytes(), name
     other_fields = [name for name in Episode.__match_args__ if name not in (*NUMBERS, "level")]  # type: ignore[attr-defined]
-    assert all(getattr(one, name) == getattr(other, name) for name in other_fields)
-    assert repr(one.snapshots) == repr(other.snapshots)  # -0.0 is not 0.0
-    assert replace(one.level, spec="") == replace(other.level, spec="")
+    assert all(getattr(first_episode, name) == getattr(second_episode, name) for name in other_fields)
+    assert repr(first_episode.snapshots) == repr(second_episode.snapshots)  # -0.0 is not 0.0
+    assert replace(first_episode.level, spec="") == replace(second_episode.level, spec="")
 
 
 @settings(max_examples=15, deadline=None, suppress_health_check=[HealthCheck.too_slow])
@@ -134,7 +134,7 @@ def nudged(array: np.ndarray, index: tuple[int, ...], by: float) -> np.ndarray:
 
 
 @pytest.mark.parametrize(
-    ("change", "said"),
+    ("change", "pattern"),
     [
         (lambda e: {"states": nudged(e.states, (9,), 1)}, "step 9 of the recording .*: the state was recorded as"),
         (lambda e: {"rewards": nudged(e.rewards, (4,), 1e-15)}, "step 5 .*the reward"),
@@ -148,9 +148,9 @@ def nudged(array: np.ndarray, index: tuple[int, ...], by: float) -> np.ndarray:
         (lambda e: {"params": {"level_size": -1.0}}, "TLT0307"),
     ],
 )
-def test_a_changed_recording_is_detected(episode: Episode, change: Any, said: str) -> None:
+def test_a_changed_recording_is_detected(episode: Episode, change: Any, pattern: str) -> None:
     (diagnostic,) = check(changed(episode, **change(episode)))
-    assert re.search(said, f"{diagnostic.code} {diagnostic.title}"), diagnostic.title
+    assert re.search(pattern, f"{diagnostic.code} {diagnostic.title}"), diagnostic.title
     assert diagnostic.code in ("TLT0823", "TLT0307")
 
 
@@ -387,7 +387,7 @@ def test_random_values_in_meta_are_read_or_rejected(episode: Episode) -> None:
     refused_times = 0
     for _ in range(200):
         try:
-            from_json(Level, mutated(meta["level"]), "level")
+            from_json(StealthLevel, mutated(meta["level"]), "level")
         except RecordJsonError as error:
             assert str(error).startswith("`level")
             refused_times += 1
@@ -395,9 +395,9 @@ def test_random_values_in_meta_are_read_or_rejected(episode: Episode) -> None:
 
 
 @pytest.mark.parametrize(("name", "variant"), [(name, variant) for name in level_names() for variant in variants(name)])
-def test_levels_survive_json(name: str, variant: str) -> None:
+def test_a_level_is_equal_after_a_round_trip_through_json(name: str, variant: str) -> None:
     level = load_level(name, variant)
-    assert from_json(Level, json.loads(json.dumps(to_json(level))), "level") == level
+    assert from_json(StealthLevel, json.loads(json.dumps(to_json(level))), "level") == level
 
 
 # --- messages ---------------------------------------------------------------------------------------
@@ -414,7 +414,9 @@ MESSAGES: dict[str, Callable[[Episode], str]] = {
 
 
 @pytest.mark.parametrize("name", MESSAGES)
-def test_message(episode: Episode, name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_invalid_recording_gives_the_expected_message(
+    episode: Episode, name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr("tltl_runtime.stealth.recordings.check.versions", lambda: {**episode.versions, "numpy": "2.0"})
     text, expected = MESSAGES[name](episode), GOLDEN / f"{name}.txt"
     if os.environ.get("UPDATE_GOLDEN") == "1":

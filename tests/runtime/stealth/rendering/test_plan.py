@@ -12,7 +12,7 @@ from PIL import Image
 from tltl_runtime.stealth.capabilities.reach import reachable
 from tltl_runtime.stealth.enemies.grid import grid_of
 from tltl_runtime.stealth.levels.file import level_names, load_level
-from tltl_runtime.stealth.rendering.plan import draw_level, patrol
+from tltl_runtime.stealth.rendering.plan import draw_level, patrol_path
 
 
 def pixels(png: bytes) -> np.ndarray:
@@ -30,8 +30,8 @@ def test_a_plan_shows_what_a_level_has(name: str) -> None:
     drawn = pixels(draw_level(level, reach))
     assert drawn.shape[1] > 500
     for colour in ((0xFA, 0xCC, 0x15), (0x16, 0xA3, 0x4A)):  # switches and exits; hidden ones are only in the legend
-        wanted = level.switches if colour[0] == 0xFA else level.exits
-        assert has(drawn, colour) == bool(wanted)
+        things = level.switches if colour[0] == 0xFA else level.exits
+        assert has(drawn, colour) == bool(things)
     assert not any(has(drawn, colour) for colour in ((0x25, 0x63, 0xEB), (0x93, 0x33, 0xEA)))  # states 0 and 1
     assert draw_level(level, reach) == draw_level(level, reach)
 
@@ -52,7 +52,7 @@ def test_routes_are_drawn_around_obstacles(name: str) -> None:
     floor = grid_of(level).floor(range(len(level.barriers)))
     bends = 0
     for enemy in level.enemies:
-        path = patrol(level, enemy)
+        path = patrol_path(level, enemy)
         assert all(floor.clear(start, end) for start, end in pairwise(path))
         assert {point[:2] for point in enemy.route} <= set(path) and path[0] == path[-1]
         bends += len(path) - len(enemy.route) - 1

@@ -11,7 +11,7 @@ import pytest
 from numpy.typing import NDArray
 
 from tltl_runtime.stealth.enemies.enemy import Enemies, PlayerView
-from tltl_runtime.stealth.game import Game
+from tltl_runtime.stealth.game import Simulation
 from tltl_runtime.stealth.level import Box
 from tltl_runtime.stealth.levels.file import level_names, load_level
 from tltl_runtime.stealth.rendering.camera import VIEWS, View, camera, pixels, sight_lines
@@ -26,7 +26,7 @@ SIZE = (240, 160)
 
 @pytest.fixture(scope="module", params=level_names())
 def drawn(request: Any) -> Iterator[tuple[Snapshot, Renderer]]:
-    game = Game(load_level(request.param))
+    game = Simulation(load_level(request.param))
     renderer = Renderer(game.level, *SIZE)
     yield game.snapshot(), renderer
     renderer.close()
@@ -116,7 +116,7 @@ def test_the_drawn_field_of_sight_agrees_with_the_enemy() -> None:
         guard.yaw = float(rng.uniform(-3, 3))
         field = SightField(guard.kind, (guard.x, guard.y, 0.0), guard.yaw, boxes)
         places = rng.uniform((0.5, 0.5), (19.5, 13.5), (60, 2))
-        shown = field.at(places.astype(np.float32)) > 0.25
+        shown = field.visibility(places.astype(np.float32)) > 0.25
         for place, is_shown in zip(places, shown, strict=True):
             if any(is_in(box, *place) for box in boxes if box.high[2] > 0):
                 continue
@@ -157,7 +157,7 @@ def test_names_are_drawn_at_their_entities(drawn: tuple[Snapshot, Renderer]) -> 
 
 
 def test_finer_samples_do_not_change_the_size() -> None:
-    game = Game(load_level("branching"))
+    game = Simulation(load_level("branching"))
     renderer = Renderer(game.level, 60, 40, samples=2)
     assert renderer.frame(game.snapshot()).shape == (40, 60, 3)
     renderer.close()

@@ -17,7 +17,7 @@ import tltl_runtime  # noqa: F401  (registers the environments)
 from tests.runtime.stealth.xvfb import MISSING, screen
 from tests.waiting import HANG_S
 from tltl_runtime.stealth.env import GameEnv, make_env
-from tltl_runtime.stealth.game import Game
+from tltl_runtime.stealth.game import Simulation
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.stealth.window.screen import Screen
 
@@ -26,7 +26,7 @@ SMALL = (96, 64)
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_pictures_through_gymnasium(name: str) -> None:
+def test_gymnasium_returns_pictures_of_the_requested_size(name: str) -> None:
     env = gymnasium.make(name, render_mode="rgb_array", render_view="top_down", render_size=SMALL)
     assert env.metadata["render_modes"] == ["human", "rgb_array"] and env.metadata["render_fps"] == 7
     env.reset(seed=1)
@@ -56,7 +56,7 @@ def test_closing_a_screen_frees_its_memory() -> None:
         screen.render(snapshot)
         screen.close()
 
-    game = Game(load_level("branching"))
+    game = Simulation(load_level("branching"))
     level, snapshot = game.level, game.snapshot()
     game.close()
     for _ in range(3):
@@ -67,7 +67,7 @@ def test_closing_a_screen_frees_its_memory() -> None:
     assert used_mb() - before < 4.0  # it is 15 or more if each screen keeps its meshes
 
 
-def test_lists_of_pictures() -> None:
+def test_a_list_of_pictures_has_one_for_the_reset_and_each_step() -> None:
     env = gymnasium.make("tltl/Branching-v0", render_mode="rgb_array_list", render_size=SMALL)
     env.reset(seed=1)
     for _ in range(3):
@@ -98,7 +98,7 @@ def test_unknown_modes_and_views_are_rejected() -> None:
         GameEnv("navigation", render_view="side")  # type: ignore[arg-type]
 
 
-def test_no_picture_without_a_mode() -> None:
+def test_without_a_render_mode_there_is_no_picture() -> None:
     env = GameEnv("navigation")
     env.reset(seed=0)
     with pytest.warns(UserWarning, match="render_mode='rgb_array'"):
@@ -111,9 +111,9 @@ import gymnasium, tltl_runtime, warnings
 from gymnasium.utils.env_checker import check_env
 from PIL import Image
 env = gymnasium.make("tltl/CoverAndHide-v0", render_mode="human", render_size=(96, 64))
-with warnings.catch_warnings(record=True) as told:
+with warnings.catch_warnings(record=True) as caught:
     check_env(env.unwrapped, skip_render_check=False)
-assert not [each for each in told if "TLT0830" in str(each.message)]
+assert not [warning for warning in caught if "TLT0830" in str(warning.message)]
 env.close()
 print("checked")
 """

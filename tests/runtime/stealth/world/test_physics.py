@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from tests.waiting import HANG_S
-from tltl_runtime.stealth.level import Barrier, Box, Level, Mover, Sensors, Solid, Start
+from tltl_runtime.stealth.level import Barrier, Box, Mover, Sensors, Solid, Start, StealthLevel
 from tltl_runtime.stealth.world.bodies import capsule, static_box, static_boxes
 from tltl_runtime.stealth.world.bullet import pybullet
 from tltl_runtime.stealth.world.mover_path import MoverPath
@@ -41,7 +41,7 @@ def arena(
     barriers: tuple[Barrier, ...] = (),
     movers: tuple[Mover, ...] = (),
     start: Start | None = None,
-) -> Level:
+) -> StealthLevel:
     """Return a square room of 24 m with walls 4 m high."""
     room = (
         Solid("floor", "floor", Box((-HALF, -HALF, -0.5), (HALF, HALF, 0.0))),
@@ -51,7 +51,7 @@ def arena(
         wall("north", (-HALF, HALF, 0.0), (HALF, HALF + 0.5, 4.0)),
     )
     bounds = Box((-HALF, -HALF, 0.0), (HALF, HALF, 5.0))
-    return Level(
+    return StealthLevel(
         name="arena",
         variant="v0",
         doc="",
@@ -83,7 +83,7 @@ def walk(world: World, action: Sequence[int], decisions: int) -> None:
         world.step(action)
 
 
-def test_speeds(opened: list[World]) -> None:
+def test_the_player_moves_at_the_speeds_of_its_parameters(opened: list[World]) -> None:
     kind = PlayerKind()
     for action, speed in ((EAST, kind.walk_speed), (EAST_SPRINTING, kind.sprint_speed), (EAST_CROUCHED, 1.5)):
         world = World(arena())
@@ -304,7 +304,7 @@ def test_a_mover_goes_back_and_forth_or_round() -> None:
     path = MoverPath(round_trip)
     assert path.at(3.0) == (2.0, 1.0, 1.0)
     assert path.at(4.0 + 8**0.5 / 2) == pytest.approx((1.0, 1.0, 1.0))
-    assert MoverPath(Mover("m", (1, 1, 1), ((1.0, 2.0, 3.0),), speed=1.0)).at(7.0) == (1.0, 2.0, 3.0)
+    assert MoverPath(Mover("m", (1, 1, 1), ((1.0, 2.0, 3.0),), speed=1.0)).position_at(7.0) == (1.0, 2.0, 3.0)
 
 
 def test_a_mover_keeps_its_schedule_and_pushes_the_player(opened: list[World]) -> None:
@@ -350,7 +350,7 @@ BUSY = (
 )
 
 
-def busy() -> Level:
+def busy() -> StealthLevel:
     """Return an arena with boxes, a gate and movers."""
     boxes = [
         wall(

@@ -15,15 +15,15 @@ from typing import Any, Final
 from markupsafe import Markup
 
 from tltl_runtime.game.geometry import Box
-from tltl_runtime.game.level import Level as GameLevel
+from tltl_runtime.game.level import Level
 from tltl_runtime.regression.report.page.map_scale import MapScale
 from tltl_runtime.regression.report.page.markup import element
 from tltl_runtime.regression.report.page.stealth.map_names import MapLabel, map_labels
 from tltl_runtime.regression.report.page.stealth.mentions import NO_MENTIONS, Mentions
 from tltl_runtime.stealth.enemies.enemy import EYES
-from tltl_runtime.stealth.level import Level, Mover
-from tltl_runtime.stealth.rendering.plan import patrol
-from tltl_runtime.stealth.world.geometry import around
+from tltl_runtime.stealth.level import Mover, StealthLevel
+from tltl_runtime.stealth.rendering.plan import patrol_path
+from tltl_runtime.stealth.world.geometry import box_around
 
 _MARGIN: Final = 30
 _LAYERS: Final = ("heat", "ways", "ends", "live")
@@ -45,12 +45,12 @@ _SIGNS: Final = {
 """The legend: the class of each sign on a map, and its meaning."""
 
 
-def level_map(level: GameLevel, mentions: Mentions = NO_MENTIONS) -> Markup:
+def level_map(level: Level, mentions: Mentions = NO_MENTIONS) -> Markup:
     """Draw the map of a level, with empty layers ``heat``, ``ways``, ``ends`` and ``live``.
 
     Things and regions that the report mentions are highlighted.
     """
-    assert isinstance(level, Level)
+    assert isinstance(level, StealthLevel)
     scale = MapScale(level.bounds)
     width, height = scale.size
     view = f"{-_MARGIN} {-_MARGIN} {width + 2 * _MARGIN} {height + 2 * _MARGIN}"
@@ -69,9 +69,9 @@ def level_map(level: GameLevel, mentions: Mentions = NO_MENTIONS) -> Markup:
     )
 
 
-def map_key(level: GameLevel, mentions: Mentions = NO_MENTIONS) -> Markup:
+def map_key(level: Level, mentions: Mentions = NO_MENTIONS) -> Markup:
     """Return the legend of a map, with the signs that occur on it."""
-    assert isinstance(level, Level)
+    assert isinstance(level, StealthLevel)
     solids, barriers = ({entity.kind for entity in entities} for entities in (level.solids, level.barriers))
     present = {
         "switch": level.switches,
@@ -86,14 +86,14 @@ def map_key(level: GameLevel, mentions: Mentions = NO_MENTIONS) -> Markup:
     return element("ul", *rows, class_="legend signs", aria_label="Signs of the map")
 
 
-def map_data(level: GameLevel) -> dict[str, Any]:
+def map_data(level: Level) -> dict[str, Any]:
     """Return the data that the page's script needs to draw onto the map of a level, as JSON.
 
     ``blocks`` and ``movers`` block sight.  Each block is a rectangle on the map and two heights.
     ``reach`` and ``angle`` describe an enemy's cone of sight, and ``eyes`` is the height of its eyes.
     Lengths are in centimetres, angles in degrees.
     """
-    assert isinstance(level, Level)
+    assert isinstance(level, StealthLevel)
     scale = MapScale(level.bounds)
     return {
         "blocks": [_block(scale, solid.box) for solid in level.solids if solid.kind != "floor"],
@@ -113,7 +113,7 @@ def map_data(level: GameLevel) -> dict[str, Any]:
 
 def _mover(mover: Mover) -> dict[str, list[int]]:
     """Return the sides of a mover on the map, and the heights between which it blocks sight, in centimetres."""
-    low, high = around(mover.path[0], mover.size)
+    low, high = box_around(mover.path[0], mover.size)
     return {
         "sides": [round(100 * side) for side in mover.size[:2]],
         "heights": [round(100 * low[2]), round(100 * high[2])],
@@ -132,7 +132,7 @@ def _sign(kind: str) -> Markup:
     return element("svg", shape, class_="plan", viewBox="-8 -8 16 16", aria_hidden="true")
 
 
-def _ground(level: Level, scale: MapScale, mentions: Mentions) -> Iterable[Markup]:
+def _ground(level: StealthLevel, scale: MapScale, mentions: Mentions) -> Iterable[Markup]:
     for solid in sorted(level.solids, key=lambda item: (item.name in mentions.things, item.box.high[2])):
         kind = f"solid {solid.kind}{' spoken' * (solid.name in mentions.things)}"
         yield element("rect", element("title", solid.name), class_=kind, **scale.sides(solid.box))
@@ -140,10 +140,10 @@ def _ground(level: Level, scale: MapScale, mentions: Mentions) -> Iterable[Marku
         yield element("rect", class_="region", **scale.sides(region.box))
 
 
-def _entities(level: Level, scale: MapScale) -> Iterable[Markup]:
+def _entities(level: StealthLevel, scale: MapScale) -> Iterable[Markup]:
     for enemy in level.enemies:
         title = element("title", f"route of {enemy.name}")
-        yield element("path", title, class_="route", d=_patrol_path([*map(scale.at, patrol(level, enemy))]))
+        yield element("path", title, class_="route", d=_patrol_path([*map(scale.at, patrol_path(level, enemy))]))
     for mover in level.movers:
         title = element("title", f"way of {mover.name}")
         yield element("polyline", title, class_="mover-way", points=scale.line(mover.path))

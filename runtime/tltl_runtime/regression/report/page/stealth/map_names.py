@@ -9,7 +9,7 @@ from typing import Final
 from tltl_runtime.game.geometry import Region
 from tltl_runtime.regression.report.page.map_scale import MapScale, Rect
 from tltl_runtime.regression.report.page.stealth.mentions import Mentions
-from tltl_runtime.stealth.level import Level
+from tltl_runtime.stealth.level import StealthLevel
 from tltlc.api import record, replace
 
 _LETTER_WIDTH: Final = 25
@@ -48,7 +48,7 @@ class MapLabel:
     is_mentioned: bool = False
 
 
-def map_labels(level: Level, scale: MapScale, mentions: Mentions) -> Iterator[MapLabel]:
+def map_labels(level: StealthLevel, scale: MapScale, mentions: Mentions) -> Iterator[MapLabel]:
     """Place the names of a level.
 
     Switches, exits, barriers, enemies and regions always have names.  Solids and movers have names only
@@ -70,7 +70,7 @@ def map_labels(level: Level, scale: MapScale, mentions: Mentions) -> Iterator[Ma
         yield label
 
 
-def _thing_labels(level: Level, scale: MapScale, mentions: Mentions) -> Iterator[MapLabel]:
+def _thing_labels(level: StealthLevel, scale: MapScale, mentions: Mentions) -> Iterator[MapLabel]:
     """Yield the names of things at their default positions."""
     small = [(switch.name, scale.at(switch.position)) for switch in level.switches]
     small += [(exit_.name, scale.at(exit_.position)) for exit_ in level.exits]

@@ -11,8 +11,8 @@ import re
 from collections.abc import Sequence
 from typing import Final
 
-from tltl_runtime.game.level import Level as GameLevel
-from tltl_runtime.stealth.level import Level, entity_names
+from tltl_runtime.game.level import Level
+from tltl_runtime.stealth.level import StealthLevel, entity_names
 from tltlc.api import record
 
 
@@ -27,9 +27,9 @@ class Mentions:
 NO_MENTIONS: Final = Mentions()
 
 
-def mentions(level: GameLevel, sentences: Sequence[str]) -> Mentions:
+def mentions(level: Level, sentences: Sequence[str]) -> Mentions:
     """Return what sentences mention: ```far_wall```, a key of a thing, ```wall.far_wall.at```, or *the left part*."""
-    assert isinstance(level, Level)
+    assert isinstance(level, StealthLevel)
     text = "\n".join(sentences)
     names = {*entity_names(level), *(solid.name for solid in level.solids)}
     return Mentions(frozenset(name for name in names if _mentions_thing(name, text)), _regions(level, text))
@@ -39,7 +39,7 @@ def _mentions_thing(name: str, text: str) -> bool:
     return re.search(rf"[`.]{re.escape(name)}[`.]", text) is not None
 
 
-def _regions(level: Level, text: str) -> frozenset[str]:
+def _regions(level: StealthLevel, text: str) -> frozenset[str]:
     """Return the names of the mentioned regions.
 
     The longest name wins: *the left part* is not *the left*.
