@@ -15,7 +15,7 @@ from typing import Any, Final
 import pytest
 
 from tests.waiting import HANG_S, until
-from tltl_runtime.vector.cluster import sigterm_handler_kept
+from tltl_runtime.vector.cluster import keep_sigterm_handler
 
 needs_ray = pytest.mark.skipif(find_spec("ray") is None, reason="Ray is not installed: pip install '.[ray]'")
 
@@ -47,7 +47,7 @@ def own_cluster() -> Iterator[None]:
         patch.setattr("tltl_runtime.vector.ray_workers.TO_START_S", HANG_S)
         patch.setattr("tltl_runtime.vector.cluster._AFTER_THE_FIRST_S", HANG_S)
         patch.setattr("tltl_runtime.evaluation.ray_pool.PATIENCE_S", HANG_S)
-        with start_alone(), sigterm_handler_kept():
+        with start_alone(), keep_sigterm_handler():
             ray.init(
                 address="local",
                 num_cpus=CORES,

@@ -24,7 +24,7 @@ from tltlc.api import cli
 
 if TYPE_CHECKING:
     from tltl_runtime.cli.support.evaluation_files import EvaluationFiles
-    from tltl_runtime.evaluation.player import PlayedEpisode, Recorded
+    from tltl_runtime.evaluation.player import PlayedEpisode, RecordMode
 
 
 _MOST_NAMED: Final = 6
@@ -80,7 +80,7 @@ def command(
     workers: Any,
     json_file: Path | None,
     folder: Path | None,
-    recorded: Recorded | None,
+    recorded: RecordMode | None,
 ) -> int:
     """Have a trained policy play, and report how often it meets the spec.
 

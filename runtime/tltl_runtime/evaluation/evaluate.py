@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Literal
 
 from tltl_runtime.evaluation.local import WorkerProcess
-from tltl_runtime.evaluation.player import EpisodeRequest, PlayedEpisode, Player, Plays, Recorded, Setup
+from tltl_runtime.evaluation.player import EpisodePlayer, EpisodeRequest, PlayedEpisode, Player, RecordMode, Setup
 from tltl_runtime.evaluation.scheduler import ReplayCommand, play_all
 from tltl_runtime.game.registry import registered_game
 from tltl_runtime.policies.file import read_policy
@@ -35,7 +35,7 @@ def evaluate(
     sampled: bool = True,
     spec: str | Path | Fspa | None = None,
 ) -> Iterator[EpisodeSummary]:
-    """Play ``episodes`` episodes with a policy; yield the results in order, as soon as possible.
+    """Play ``episodes`` episodes with a policy; yield their summaries in order, as soon as possible.
 
     ``level``, ``variant`` and ``spec`` default to those that the policy was trained for; on another
     level, the variant defaults to ``v0``.  The episodes do not depend on ``workers``.  Worker
@@ -57,9 +57,11 @@ def set_up(
     variant: str | None,
     spec: str | Path | Fspa | None,
     seed: int,
-    recorded: Recorded | None = None,
+    recorded: RecordMode | None = None,
 ) -> Setup:
-    """Return the setup of an evaluation, checked.
+    """Check the arguments of an evaluation and return its setup.
+
+    ``level`` and ``variant`` default to those that the policy was trained for, as does ``spec``.
 
     Raises:
         TltlError: the level, variant or spec does not exist; the level lacks something that the
@@ -93,11 +95,11 @@ def results(
     waiting: Callable[[float], None] = lambda left: None,
     replay_command: ReplayCommand | None = None,
 ) -> Generator[PlayedEpisode]:
-    """Play the tasks and yield their results in order.  Closing the iterator ends the workers.
+    """Play the requested episodes and yield them in order.  Closing the iterator ends the workers.
 
     While no core of a Ray cluster is free, ``waiting`` is called with the seconds that are left to
-    wait.  If a worker is lost, the error names the command of ``replay_command`` that plays its episode, by
-    default ``tltlc evaluate``.
+    wait.  If a worker is lost, the error shows the command that plays its episode alone:
+    ``replay_command`` returns it; by default it is ``tltlc evaluate``.
 
     Raises:
         TltlError: TLT0850, a worker was lost; TLT0730, Ray is requested and not installed; TLT0852,
@@ -106,7 +108,7 @@ def results(
         ValueError: ``workers`` is below 0.
     """
     if workers != "ray":
-        yield from results_here(partial(Player, setup), tasks, workers, setup.seed, replay_command)
+        yield from local_results(partial(Player, setup), tasks, workers, setup.seed, replay_command)
         return
     from tltl_runtime.evaluation.ray_pool import ray_workers
 
@@ -114,16 +116,16 @@ def results(
         yield from play_all(team, tasks, setup.seed, replay_command)
 
 
-def results_here(
-    make: Callable[[], Plays],
+def local_results(
+    make: Callable[[], EpisodePlayer],
     tasks: Sequence[EpisodeRequest],
     workers: int,
     seed: int,
     replay_command: ReplayCommand | None = None,
 ) -> Generator[PlayedEpisode]:
-    """Play the tasks on this machine and yield their results in order, like :func:`results`.
+    """Play the requested episodes on this machine and yield them in order, like :func:`results`.
 
-    ``make`` makes the player of each process.  It is pickled if there are worker processes.
+    ``make`` makes the player of each process.  It must be picklable if there are worker processes.
 
     Raises:
         TltlError: TLT0850, a worker was lost; the message names its episode and the evaluation's

@@ -14,8 +14,8 @@ class FailureGroup:
     """Failed episodes with the same end.
 
     ``state`` is the automaton state at the end, or before the violation.  ``label`` says what
-    remained to be done there.  ``share`` is the share among all episodes that were played, in
-    [0, 1].  ``episodes`` are the indices.
+    remained to be done in that state.  ``share`` is the share among all episodes that were played, in
+    [0, 1].  ``episodes`` are the indices of the failed episodes, and ``count`` is their number.
     """
 
     state: int
@@ -69,10 +69,10 @@ def figures_of(episodes: Sequence[EpisodeSummary]) -> Figures:
 
 def evaluation_of(episodes: Sequence[EpisodeSummary]) -> Evaluation:
     """Return the evaluation of episodes.  Raises ValueError if there are none."""
-    return Evaluation(figures_of(episodes), _ended(episodes), tuple(episodes))
+    return Evaluation(figures_of(episodes), _failure_groups(episodes), tuple(episodes))
 
 
-def _ended(episodes: Sequence[EpisodeSummary]) -> tuple[FailureGroup, ...]:
+def _failure_groups(episodes: Sequence[EpisodeSummary]) -> tuple[FailureGroup, ...]:
     """Group the failed episodes by state and end, the most frequent group first."""
     groups: dict[tuple[int, str, End], list[int]] = {}
     for episode in episodes:

@@ -13,38 +13,34 @@ from concurrent.futures.process import BrokenProcessPool
 from multiprocessing.context import BaseContext
 from typing import Final
 
-from tltl_runtime.evaluation.player import EpisodeRequest, PlayedEpisode, Plays
-from tltl_runtime.evaluation.scheduler import LostError
+from tltl_runtime.evaluation.player import EpisodePlayer, EpisodeRequest, PlayedEpisode
+from tltl_runtime.evaluation.scheduler import WorkerLostError
 from tltl_runtime.game.registry import registered_game
 from tltl_runtime.support.child_processes import block_interrupts
 
 
 class WorkerProcess:
-    """A worker process.
+    """A worker process, with an executor of its own: if the process ends, it is known which episode was lost.
 
-    It has an executor of its own, so that if it breaks, it is known which episode was lost.
-    ``make`` makes the player in that process.  It must be picklable.
+    ``make`` makes the player in the process.  It must be picklable.
     """
 
-    def __init__(self, make: Callable[[], Plays]) -> None:
+    def __init__(self, make: Callable[[], EpisodePlayer]) -> None:
         self._executor = ProcessPoolExecutor(1, _context(), initializer=_begin, initargs=(make,))
 
     def play(self, task: EpisodeRequest) -> Future[PlayedEpisode]:
-        """Start to play an episode."""
+        """Start to play an episode; the future raises :class:`WorkerLostError` if the process ends."""
         future: Future[PlayedEpisode] = Future()
         try:
             with block_interrupts():
                 playing = self._executor.submit(_play, task)
             playing.add_done_callback(lambda done: _pass_on(done, future))
         except BrokenProcessPool:
-            future.set_exception(LostError(_ENDED))
+            future.set_exception(WorkerLostError(_PROCESS_ENDED))
         return future
 
     def close(self) -> None:
-        """Wait until the process has played its current episode, then end it.
-
-        Other workers go on meanwhile.
-        """
+        """Wait until the process has played its current episode, then end the process."""
         # Wait: an executor that is still shutting down when Python exits may fail or hang.
         self._executor.shutdown(wait=True, cancel_futures=True)
 
@@ -52,10 +48,10 @@ class WorkerProcess:
 def _context() -> BaseContext:
     """Return the context that starts workers.
 
-    On Linux it is a fork server that loads torch and the game once for all of them.  A forked
-    process inherits the locks of all threads, but not the threads.  This is safe here: the fork
-    server computes nothing, so torch starts no threads in it, and OpenBLAS ends its threads before
-    a fork.
+    On Linux it is a fork server, which loads torch and the game once for all workers.  A forked
+    process inherits the locks of all threads, but not the threads.  Forking is safe here: the fork
+    server computes nothing, so torch starts no threads in it, and OpenBLAS ends its threads before a
+    fork.
     """
     if sys.platform != "linux":
         return multiprocessing.get_context("spawn")
@@ -64,14 +60,14 @@ def _context() -> BaseContext:
     return context
 
 
-_ENDED: Final = "its process ended; where it said nothing before, it was perhaps killed for want of memory"
+_PROCESS_ENDED: Final = "its process ended; where it said nothing before, it was perhaps killed for want of memory"
 
-_make: Callable[[], Plays]
-_player: Plays | None = None
+_make: Callable[[], EpisodePlayer]
+_player: EpisodePlayer | None = None
 """The player of this worker process, once it has been made."""
 
 
-def _begin(make: Callable[[], Plays]) -> None:
+def _begin(make: Callable[[], EpisodePlayer]) -> None:
     global _make
     # The parent process handles Ctrl-C.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
@@ -80,10 +76,7 @@ def _begin(make: Callable[[], Plays]) -> None:
 
 
 def _end_with_parent() -> None:
-    """End this process when its parent has ended.
-
-    If the parent is killed, the process would otherwise wait forever for the next task.
-    """
+    """End this process when its parent has ended; otherwise it would wait forever if the parent is killed."""
     parent = multiprocessing.parent_process()
     if parent is not None:
         parent.join()
@@ -100,7 +93,7 @@ def _play(task: EpisodeRequest) -> PlayedEpisode:
 def _pass_on(done: Future[PlayedEpisode], future: Future[PlayedEpisode]) -> None:
     error = done.exception()
     if isinstance(error, BrokenProcessPool):
-        future.set_exception(LostError(_ENDED))
+        future.set_exception(WorkerLostError(_PROCESS_ENDED))
     elif error is not None:
         future.set_exception(error)
     else:

@@ -7,7 +7,7 @@ from typing import Any
 import gymnasium
 import numpy as np
 
-from tltl_runtime.policies.policy import NoNumbersError, Policy
+from tltl_runtime.policies.policy import NotFiniteError, Policy
 from tltl_runtime.spec.episode_summary import EpisodeSummary, settled_end
 from tltlc.api import Diagnostic, TltlError, label_text
 
@@ -16,12 +16,12 @@ _OF_LEVEL, _OF_ACTIONS = 0, 1
 
 
 def play(policy: Policy, env: gymnasium.Env[Any, Any], seed: int, index: int, sampled: bool) -> EpisodeSummary:
-    """Play episode ``index`` of the evaluation with ``seed`` to its end.
+    """Play episode ``index`` of the evaluation with ``seed`` to its end, and return its summary.
 
-    ``sampled`` says whether actions are sampled or the likeliest ones.
     ``env`` is a :class:`~tltl_runtime.spec.wrapper.TltlEnv`, possibly wrapped, whose spec has a
-    limit.  The episode depends only on the policy, the environment, ``seed``, ``index`` and
-    ``sampled``.  The seed of the environment does not depend on ``sampled``.
+    limit.  If ``sampled``, actions are sampled, otherwise the likeliest action is taken.  The episode
+    depends only on the policy, the environment, ``seed``, ``index`` and ``sampled``.  The seed of the
+    environment does not depend on ``sampled``.
 
     Raises:
         TltlError: TLT0854, the environment or the policy gives values that are not finite.
@@ -33,7 +33,7 @@ def play(policy: Policy, env: gymnasium.Env[Any, Any], seed: int, index: int, sa
     while not over:
         try:
             action = policy.choose(observation, generator)
-        except NoNumbersError as error:
+        except NotFiniteError as error:
             where = f"episode {index} of seed {seed} (seed {reset_seed} of the level), step {steps + 1}"
             help_ = "mend the environment where it gives them, else train the policy again"
             raise TltlError([Diagnostic("TLT0854", f"{where}: {error}", help=help_)]) from None

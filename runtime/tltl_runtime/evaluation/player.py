@@ -1,4 +1,4 @@
-"""The tasks of an evaluation, and the player that each worker has."""
+"""What an evaluation plays, and the player that each worker has."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from tltl_runtime.policies.threads import threads
 from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltlc.api import EMPTY, Fspa, RewardOptions, record, replace
 
-Recorded = Literal["none", "failures", "all"]
+RecordMode = Literal["none", "failures", "all"]
 
 CHOICES: Final = {True: "sampled", False: "arg-max"}
 """The names of the two ways to choose actions."""
@@ -27,8 +27,8 @@ class Setup:
     """What an evaluation plays: ``policy`` on a level with a spec, with the default reward options.
 
     ``level`` is an argument of :meth:`~tltl_runtime.game.game.Game.load_level`.  ``params`` are in
-    SI units.  ``recorded`` says which episodes to record; unless it is None, the
-    trajectories of all episodes are kept.  ``player`` is the name of the policy in recordings.
+    SI units.  ``recorded`` says which episodes to record.  Unless it is None, the results also have
+    the trajectories of all episodes.  ``player`` is the name of the policy in recordings.
     """
 
     policy: Policy
@@ -37,7 +37,7 @@ class Setup:
     fspa: Fspa
     seed: int
     params: Mapping[str, float] = EMPTY
-    recorded: Recorded | None = None
+    recorded: RecordMode | None = None
     player: str = "policy"
 
 
@@ -51,7 +51,10 @@ class EpisodeRequest:
 
 @record
 class PlayedEpisode:
-    """A played episode, with its trajectory and the bytes of its recording if requested."""
+    """A played episode: its request, its summary ``played``, and its trajectory and recording if requested.
+
+    ``recording`` has the bytes of the file.
+    """
 
     task: EpisodeRequest
     played: EpisodeSummary
@@ -59,8 +62,8 @@ class PlayedEpisode:
     recording: bytes = b""
 
 
-class Plays(Protocol):
-    """Plays the episodes of an evaluation, one after the other."""
+class EpisodePlayer(Protocol):
+    """A player of episodes, one after the other."""
 
     def play(self, task: EpisodeRequest) -> PlayedEpisode:
         """Play one episode."""
@@ -70,7 +73,7 @@ class Plays(Protocol):
 
 
 class Player:
-    """Plays the episodes of an evaluation one after the other, in an environment of its own."""
+    """Plays the episodes of an evaluation with its policy, one after the other, in an environment of its own."""
 
     def __init__(self, setup: Setup) -> None:
         self._setup = setup
@@ -98,8 +101,8 @@ class Player:
             return PlayedEpisode(task, played)
         player = f"{setup.player}, {CHOICES[task.sampled]}, episode {task.index}"
         episode = replace(self._recorder.episode, player=player)
-        kept = setup.recorded == "all" or (setup.recorded == "failures" and not played.success)
-        recording = self._game.episode_bytes(episode) if kept else b""
+        is_recorded = setup.recorded == "all" or (setup.recorded == "failures" and not played.success)
+        recording = self._game.episode_bytes(episode) if is_recorded else b""
         return PlayedEpisode(task, played, trajectory(episode), recording)
 
     def close(self) -> None:

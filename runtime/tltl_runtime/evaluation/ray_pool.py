@@ -8,27 +8,27 @@ from contextlib import contextmanager
 from typing import Any, Final
 
 from tltl_runtime.evaluation.player import EpisodeRequest, PlayedEpisode, Player, Setup
-from tltl_runtime.evaluation.scheduler import LostError
-from tltl_runtime.vector.cluster import cluster, free_cores, started_actors
+from tltl_runtime.evaluation.scheduler import WorkerLostError
+from tltl_runtime.vector.cluster import cluster, free_cores, wait_for_actors
 
 PATIENCE_S: Final = 120.0
-"""How long to wait for a free core of a busy cluster, in seconds."""
+"""How many seconds to wait for a free core of a busy cluster."""
 
 
 @contextmanager
 def ray_workers(setup: Setup, most: int, waiting: Callable[[float], None]) -> Iterator[list[RayWorker]]:
-    """Start a worker on each free core of the cluster, up to ``most``; end them after the block.
+    """Start a worker on each free core of the cluster, up to ``most``; end the workers after the context.
 
     ``waiting`` is called now and then with the seconds that are left to wait for the first worker.
 
     Raises:
-        TltlError: the errors of :func:`cluster`; TLT0852, also if no worker starts in time.
+        TltlError: the errors of :func:`cluster`; TLT0852, no worker starts in time.
     """
     with cluster() as ray:
         shared = ray.put(setup)
         workers = [RayWorker(ray, shared) for _ in range(min(most, free_cores(ray)))]
         try:
-            ready = started_actors(ray, [worker.actor for worker in workers], PATIENCE_S, waiting)
+            ready = wait_for_actors(ray, [worker.actor for worker in workers], PATIENCE_S, waiting)
             yield [workers[index] for index in ready]
         finally:
             for worker in workers:
@@ -44,7 +44,7 @@ class RayWorker:
         self.actor = ray.remote(num_cpus=1, max_restarts=0)(_Actor).remote()
 
     def play(self, task: EpisodeRequest) -> Future[PlayedEpisode]:
-        """Start to play an episode."""
+        """Start to play an episode; the future raises :class:`WorkerLostError` if the actor ends."""
         future: Future[PlayedEpisode] = Future()
         playing = self.actor.play.remote(self._setup, task).future()
         playing.add_done_callback(lambda done: self._pass_on(done, future))
@@ -63,7 +63,7 @@ class RayWorker:
         else:
             lines = str(error).splitlines() or [type(error).__name__]
             # The last line says why an actor did not start, for example a missing package.
-            future.set_exception(LostError(lines[-1 if getattr(error, "actor_init_failed", False) else 0]))
+            future.set_exception(WorkerLostError(lines[-1 if getattr(error, "actor_init_failed", False) else 0]))
 
 
 class _Actor:

@@ -11,7 +11,7 @@ from tltl_runtime.evaluation.player import CHOICES, EpisodeRequest, PlayedEpisod
 from tltlc.api import Diagnostic, TltlError
 
 
-class LostError(Exception):
+class WorkerLostError(Exception):
     """A worker ended before it returned its result; the message says how."""
 
 
@@ -19,14 +19,14 @@ class EpisodeWorker(Protocol):
     """Plays one episode at a time, for example in another process."""
 
     def play(self, task: EpisodeRequest) -> Future[PlayedEpisode]:
-        """Start an episode; the future raises the exception of the game, or :class:`LostError`."""
+        """Start an episode; the future raises the exception of the game, or :class:`WorkerLostError`."""
 
     def close(self) -> None:
         """Free the resources."""
 
 
 ReplayCommand = Callable[[EpisodeRequest], str]
-"""Returns the command that plays a single episode."""
+"""A function that returns the command that plays one episode alone."""
 
 
 def play_all(
@@ -35,10 +35,10 @@ def play_all(
     seed: int,
     replay_command: ReplayCommand | None = None,
 ) -> Iterator[PlayedEpisode]:
-    """Give each free worker the next task; yield the results in the order of the tasks.
+    """Give each free worker the next request; yield the episodes in the order of the requests.
 
-    If a task fails, the results that are already there are yielded before the error.  They may have
-    gaps.
+    If an episode fails, the episodes that are already played are yielded before the error is raised.
+    They may have gaps.
 
     Raises:
         TltlError: TLT0850, a worker was lost; the message names its episode and the evaluation's
@@ -49,24 +49,26 @@ def play_all(
     results: dict[int, PlayedEpisode] = {}
     for worker, (index, task) in zip(workers, remaining, strict=False):
         running[worker.play(task)] = worker, index
-    for wanted in range(len(tasks)):
-        while wanted not in results:
+    for index_to_yield in range(len(tasks)):
+        while index_to_yield not in results:
             done, _ = wait(running, return_when=FIRST_COMPLETED)
             ended = [(future, *running.pop(future)) for future in done]
             results |= {index: future.result() for future, _, index in ended if future.exception() is None}
             for future, worker, index in ended:
                 if (error := future.exception()) is not None:
                     yield from (results[played] for played in sorted(results))
-                    if isinstance(error, LostError):
-                        raise _lost(error, tasks[index], seed, replay_command) from error
+                    if isinstance(error, WorkerLostError):
+                        raise _lost_worker_error(error, tasks[index], seed, replay_command) from error
                     raise error
                 for next_index, task in remaining:
                     running[worker.play(task)] = worker, next_index
                     break
-        yield results.pop(wanted)
+        yield results.pop(index_to_yield)
 
 
-def _lost(error: LostError, task: EpisodeRequest, seed: int, replay_command: ReplayCommand | None) -> TltlError:
+def _lost_worker_error(
+    error: WorkerLostError, task: EpisodeRequest, seed: int, replay_command: ReplayCommand | None
+) -> TltlError:
     title = (
         f"a worker was lost while it played episode {task.index} of seed {seed}, {CHOICES[task.sampled]} "
         f"(seed {episode_seed(seed, task.index)} of the level): {error}"

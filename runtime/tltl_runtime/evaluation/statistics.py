@@ -22,16 +22,16 @@ class Spread:
 
 
 def spread_of(values: Sequence[float]) -> Spread:
-    """Return mean and standard deviation.  Raises ValueError if there are no values."""
+    """Return the mean and the sample standard deviation.  Raises ValueError if there are no values."""
     if not values:
         raise ValueError("there are no values")
     return Spread(fmean(values), stdev(values) if len(values) > 1 else 0.0)
 
 
 def wilson(successes: int, count: int) -> tuple[float, float]:
-    """Return the 95 % score interval of a share.
+    """Return the low and high end of the 95 % score interval for the share ``successes / count``, in [0, 1].
 
-    E. B. Wilson, J. Am. Stat. Assoc. 22 (1927), 209-212.
+    Source: E. B. Wilson, J. Am. Stat. Assoc. 22 (1927), 209-212.
 
     Raises ValueError unless 0 <= ``successes`` <= ``count`` and 0 < ``count``.
     """

@@ -14,13 +14,16 @@ _WIDTH: Final = 24
 """The width of a column, in characters."""
 
 _MOST_LISTED: Final = 12
-"""At most this many episodes with the same end are listed."""
+"""The most episodes with the same end that are listed."""
 
 _ENDS: Final[Mapping[End, str]] = {"violation": "violated", "limit": "out of time"}
 
 
 def report_text(evaluations: Mapping[str, Evaluation]) -> str:
-    """Return a table with a column per way to choose actions, and how failed episodes ended."""
+    """Return a table of the figures and of how failed episodes ended, with a column for each evaluation.
+
+    The keys of ``evaluations`` say how actions were chosen: ``sampled`` or ``arg-max``.
+    """
     columns = [evaluation.figures for evaluation in evaluations.values()]
     lines = [
         _row("", list(evaluations)),
@@ -31,10 +34,10 @@ def report_text(evaluations: Mapping[str, Evaluation]) -> str:
         _row("steps", [f"{fig.steps.mean:.0f} ± {_std(fig, fig.steps, 0)}" for fig in columns]),
     ]
     for name, evaluation in evaluations.items():
-        failed = sum(ended.count for ended in evaluation.ended)
+        failed = sum(group.count for group in evaluation.ended)
         if failed:
             lines += ["", f"{name}: {failed} of {len(evaluation.episodes)} failed"]
-            lines += [line for ended in evaluation.ended for line in _failures(ended)]
+            lines += [line for group in evaluation.ended for line in _failures(group)]
     return "\n".join(lines) + "\n"
 
 
@@ -52,7 +55,7 @@ def _std(figures: Figures, spread: Spread, places: int) -> str:
     return number(spread.std, places) if figures.episodes > 1 else "-"
 
 
-def _failures(ended: FailureGroup) -> tuple[str, str]:
-    indices = ", ".join(map(str, ended.episodes[:_MOST_LISTED])) + (", …" if ended.count > _MOST_LISTED else "")
-    heading = column(f"  {ended.count} ", f"{_ENDS[ended.end]} in state {ended.state}, remaining: {ended.label}")
-    return heading, column(f"    episode{'s' if ended.count > 1 else ''} ", indices)
+def _failures(group: FailureGroup) -> tuple[str, str]:
+    indices = ", ".join(map(str, group.episodes[:_MOST_LISTED])) + (", …" if group.count > _MOST_LISTED else "")
+    heading = column(f"  {group.count} ", f"{_ENDS[group.end]} in state {group.state}, remaining: {group.label}")
+    return heading, column(f"    episode{'s' if group.count > 1 else ''} ", indices)

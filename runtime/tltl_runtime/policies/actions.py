@@ -39,30 +39,30 @@ class MultiCategorical(Distribution):
         self._logs = tuple(part.log_softmax(-1) for part in mlp_output.split(self.branches, dim=-1))
 
     def sample(self) -> Tensor:
-        """Sample a choice for each branch [..., branches].
+        """Return a sampled choice for each branch [..., branches].
 
         The sample is the argmax of p / E with E ~ Exp(1), an exponential race.
         """
-        return _greatest([log.exp() / torch.empty_like(log).exponential_() for log in self._logs])
+        return _argmax([log.exp() / torch.empty_like(log).exponential_() for log in self._logs])
 
     def deterministic_output(self, mlp_output: Tensor) -> Tensor:
         """Return the likeliest choice of each branch [..., branches]; the first one on ties."""
-        return _greatest(mlp_output.split(self.branches, dim=-1))
+        return _argmax(mlp_output.split(self.branches, dim=-1))
 
     def as_deterministic_output_module(self) -> nn.Module:
         """Return a module that maps logits to the likeliest choices."""
-        return _Likeliest(self.branches)
+        return _LikeliestChoice(self.branches)
 
     @property
     def mean(self) -> Tensor:
         """The likeliest choice of each branch, because a categorical distribution has no mean."""
-        return _greatest([*self._logs])
+        return _argmax([*self._logs])
 
     @property
     def std(self) -> Tensor:
-        """The entropy of each branch [..., branches].
+        """The entropy of each branch [..., branches], in place of a standard deviation, which does not exist.
 
-        A categorical distribution has no standard deviation.  rsl-rl only reports this value.
+        rsl-rl only reports this value.
         """
         return torch.stack([_entropy(log) for log in self._logs], -1)
 
@@ -95,16 +95,16 @@ class MultiCategorical(Distribution):
         nn.init.zeros_(last.bias)
 
 
-class _Likeliest(nn.Module):
+class _LikeliestChoice(nn.Module):
     def __init__(self, branches: tuple[int, ...]) -> None:
         super().__init__()
         self.branches = branches
 
     def forward(self, logits: Tensor) -> Tensor:
-        return _greatest(logits.split(self.branches, dim=-1))
+        return _argmax(logits.split(self.branches, dim=-1))
 
 
-def _greatest(branches: list[Tensor]) -> Tensor:
+def _argmax(branches: list[Tensor]) -> Tensor:
     """Return the argmax of each branch [..., branches], in their dtype; the first one on ties."""
     # A list, not a sequence: rsl-rl may export an actor to TorchScript, which has no sequences.
     return torch.stack([values.argmax(-1) for values in branches], -1).to(branches[0].dtype)

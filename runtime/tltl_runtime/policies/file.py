@@ -31,14 +31,11 @@ VERSION: Final = 1
 MAX_BYTES: Final = fileio.limits.POLICY.size
 """The maximum size of a file: 64 MiB, or thirty million weights."""
 _RECORD_BYTES: Final = 1 << 20
-"""The bytes that :func:`check_size` reserves for the card without its artefact."""
+"""The number of bytes that :func:`check_size` assumes for the card without its artefact."""
 
 _PREFIX: Final = "actor."
 _KEY: Final = "card"
-"""The only metadata key.
-
-With several, their order could differ between the files of equal policies.
-"""
+"""The only metadata key; with several keys, their order could differ between the files of equal policies."""
 
 _ERRORS: Final = LoadErrors("a", "policy", "TLT0840", "TLT0841", "TLT0842", again="train the policy again")
 _HASH: Final = re.compile(r"[0-9a-f]{64}\Z")
@@ -85,7 +82,7 @@ def check_size(network: Network, fspa: Fspa, sensors: Sensors) -> None:
     (artefact,) = compiler.emit("json", fspa).values()
     # Encoded twice: the card is a JSON string in the JSON header of the file.
     text = json.dumps(json.dumps(json.loads(artefact), ensure_ascii=False), ensure_ascii=False)
-    weights = 2 * weight_count(network, _observed(fspa, sensors), registered_game().branches)
+    weights = 2 * weight_count(network, _observation_shapes(fspa, sensors), registered_game().branches)
     size = weights + len(text.encode()) + _RECORD_BYTES
     if size > MAX_BYTES:
         raise _too_large(size)
@@ -157,17 +154,17 @@ def _card(header: dict[str, Any], name: str) -> Card:
 
 
 def _fault(card: Card) -> str | None:
-    """Return what is wrong with a card whose fields have the right types, or None."""
+    """Return a description of what is wrong with a card whose fields have the right types, or None."""
     shapes = dict(card.shapes)
-    seen = _observed(card.fspa, card.sensors)
-    if len(shapes) < len(card.shapes) or shapes != seen or max(map(prod, shapes.values())) > MAX_BYTES:
+    expected = _observation_shapes(card.fspa, card.sensors)
+    if len(shapes) < len(card.shapes) or shapes != expected or max(map(prod, shapes.values())) > MAX_BYTES:
         return "`card.shapes` are not those of its spec and its sensors"
     if not card.branches or min(card.branches) < 1 or sum(card.branches) > 1 << 16:
         return "`card.branches` are none of an action"
     return None if _HASH.match(card.level_hash) else "`card.level_hash` is no hash"
 
 
-def _observed(fspa: Fspa, sensors: Sensors) -> dict[str, tuple[int, ...]]:
+def _observation_shapes(fspa: Fspa, sensors: Sensors) -> dict[str, tuple[int, ...]]:
     """Return the shapes of the observation by key, for a spec and sensors."""
     shapes: dict[str, tuple[int, ...]] = {"automaton": (len(fspa.states),), "progress": (1,)}
     if sensors.entities:
@@ -180,21 +177,21 @@ def _observed(fspa: Fspa, sensors: Sensors) -> dict[str, tuple[int, ...]]:
 
 
 def _check_tensors(header: dict[str, Any], card: Card, name: str) -> None:
-    """Check that the header lists exactly the weights of the network, before they are loaded."""
+    """Raise an error unless the header lists exactly the weights of the network; nothing is loaded yet."""
     try:
-        wanted = {f"{_PREFIX}{key}": list(tensor.shape) for key, tensor in blank_actor(card).state_dict().items()}
+        expected = {f"{_PREFIX}{key}": list(tensor.shape) for key, tensor in blank_actor(card).state_dict().items()}
     except (ValueError, RuntimeError, OverflowError) as error:
         raise _ERRORS.broken_error(name, f"its card describes no network: {error!s:.80}") from None
     stored = {key: entry for key, entry in header.items() if key != "__metadata__"}
-    for key in sorted(wanted.keys() | stored.keys()):
+    for key in sorted(expected.keys() | stored.keys()):
         if key not in stored:
             raise _ERRORS.broken_error(name, f"the tensor `{key}` is missing")
-        if key not in wanted:
+        if key not in expected:
             raise _ERRORS.broken_error(name, f"there is a tensor `{key:.60}`, which its network has no use for")
         entry = stored[key] if isinstance(stored[key], dict) else {}
-        if entry.get("dtype") != "F16" or entry.get("shape") != wanted[key]:
+        if entry.get("dtype") != "F16" or entry.get("shape") != expected[key]:
             is_ = f"{entry.get('dtype')!s:.20} of shape {entry.get('shape')!s:.40}"
-            raise _ERRORS.broken_error(name, f"the tensor `{key}` is {is_}, not F16 of shape {wanted[key]}")
+            raise _ERRORS.broken_error(name, f"the tensor `{key}` is {is_}, not F16 of shape {expected[key]}")
 
 
 def _weights(data: bytes, name: str) -> dict[str, Tensor]:

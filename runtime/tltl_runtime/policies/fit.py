@@ -17,10 +17,10 @@ _MOST: Final = 3
 
 
 def check_policy(card: Card, level: Level, fspa: Fspa | None = None) -> None:
-    """Check that a policy can play ``level`` by the spec ``fspa`` (by default its own).
+    """Check that a policy can play ``level`` by the spec ``fspa``, by default the spec of its training.
 
-    Another variant fits.  Another level fits if it has everything that the policy senses.  Another
-    spec fits if it judges episodes in the same way; its name does not matter.
+    Any variant of its level fits.  Another level fits if it has everything that the policy senses.
+    Another spec fits if it judges episodes in the same way; its name does not matter.
 
     Raises:
         TltlError: TLT0843, the policy does not fit; the message says what differs.
@@ -28,27 +28,27 @@ def check_policy(card: Card, level: Level, fspa: Fspa | None = None) -> None:
     if card.observation != OBSERVATION:
         age = "a newer" if card.observation > OBSERVATION else "an older"
         suggestion = "use that one, or train a policy with this one"
-        raise _unfit(f"the policy was trained with {age} tltlc, which shows agents other things", suggestion)
+        raise _unfit_error(f"the policy was trained with {age} tltlc, which shows agents other things", suggestion)
     game = registered_game()
     if card.branches != game.branches:
         own, sizes = _sizes(card.branches), _sizes(game.branches)
-        raise _unfit(f"the policy chooses among {own} actions, and the game has {sizes}")
+        raise _unfit_error(f"the policy chooses among {own} actions, and the game has {sizes}")
     missing = [*game.missing_sensors(level, card.sensors)]
     if missing:
         title = f"the policy senses {short_list(missing, _MOST)}, which the level `{level.name}` does not have"
         suggestion = f"let it play `{card.level}`, where it was trained"
         if card.level == level.name:
             suggestion = "put back what was there when it was trained"
-        raise _unfit(title, f"{suggestion}, or train one for `{level.name}`")
+        raise _unfit_error(title, f"{suggestion}, or train one for `{level.name}`")
     if fspa is not None and spec_hash(fspa) != spec_hash(card.fspa):
         title = f"the policy was trained for another spec than `{fspa.name}`: {differences(card.fspa, fspa)}"
-        raise _unfit(title, "let it play its own spec, or train one for this spec")
+        raise _unfit_error(title, "let it play its own spec, or train one for this spec")
 
 
 def differences(own: Fspa, fspa: Fspa) -> str:
-    """Describe how the spec ``fspa`` differs from ``own``, which judges differently.
+    """Describe how the spec ``fspa`` differs from the spec ``own``, which judges episodes differently.
 
-    Differences in what the designer wrote come before differences in the automaton.
+    Differences in what a designer wrote come before differences in the automaton.
     """
     return short_list([*_differences(own, fspa)], _MOST)
 
@@ -60,10 +60,10 @@ def _differences(own: Fspa, fspa: Fspa) -> Iterator[str]:
         yield f"its limit is {_limit(fspa)}, and was {_limit(own)}"
     if own.clock_s != fspa.clock_s:
         yield "its clock is another one"
-    yield from _compared("signal", _named(own.signals, "name"), _named(fspa.signals, "name"))
-    yield from _compared("param", _named(own.params, "value"), _named(fspa.params, "value"))
-    before, after = _named(own.atoms, "expression"), _named(fspa.atoms, "expression")
-    yield from _compared("atom", before, after)
+    yield from _differing("signal", _field_by_name(own.signals, "name"), _field_by_name(fspa.signals, "name"))
+    yield from _differing("param", _field_by_name(own.params, "value"), _field_by_name(fspa.params, "value"))
+    before, after = _field_by_name(own.atoms, "expression"), _field_by_name(fspa.atoms, "expression")
+    yield from _differing("atom", before, after)
     if len(own.states) != len(fspa.states):
         yield f"its automaton has {len(fspa.states)} states, and had {len(own.states)}"
     elif list(before) != list(after):
@@ -72,11 +72,11 @@ def _differences(own: Fspa, fspa: Fspa) -> Iterator[str]:
         yield from _states(own, fspa)
 
 
-def _named(parts: Iterable[Any], field: str) -> dict[str, Any]:
+def _field_by_name(parts: Iterable[Any], field: str) -> dict[str, Any]:
     return {part.name: getattr(part, field) for part in parts}
 
 
-def _compared(kind: str, before: Mapping[str, Any], after: Mapping[str, Any]) -> Iterator[str]:
+def _differing(kind: str, before: Mapping[str, Any], after: Mapping[str, Any]) -> Iterator[str]:
     yield from (f"the {kind} `{name}` is new" for name in after if name not in before)
     yield from (f"the {kind} `{name}` is gone" for name in before if name not in after)
     for name in after:
@@ -105,5 +105,5 @@ def _sizes(branches: tuple[int, ...]) -> str:
     return " x ".join(map(str, branches))
 
 
-def _unfit(title: str, help_: str = "train a policy with this tltlc") -> TltlError:
+def _unfit_error(title: str, help_: str = "train a policy with this tltlc") -> TltlError:
     return TltlError([Diagnostic("TLT0843", title, help=help_)])

@@ -9,7 +9,7 @@ from tltlc.api import Fspa, expressions
 def spec_hash(fspa: Fspa) -> str:
     """Return the SHA-256, in hexadecimal, of everything by which a spec judges an episode.
 
-    The names of the spec and its atoms, labels and documentation do not count.
+    The names of the spec and of its atoms, its labels and its documentation do not count.
     """
     return json_hash(
         {

@@ -36,9 +36,9 @@ def to_onnx(policy: Policy) -> bytes:
     """
     keys = [key for key, _ in policy.card.shapes]
     batch = torch.export.Dim("batch", min=1)
-    with _quiet():
+    with _silence_exporter():
         program = torch.onnx.export(
-            _Player(policy).eval(),
+            _PolicyModule(policy).eval(),
             tuple(torch.zeros(2, *shape) for _, shape in policy.card.shapes),
             dynamo=True,
             verbose=False,
@@ -49,11 +49,11 @@ def to_onnx(policy: Policy) -> bytes:
         )
     model = cast(Any, program).model_proto
     _forget_source(model)
-    set_model_props(model, _texts(policy.card))
+    set_model_props(model, _metadata(policy.card))
     return bytes(model.SerializeToString(deterministic=True))
 
 
-class _Player(nn.Module):
+class _PolicyModule(nn.Module):
     """Maps the parts of observations to logits and actions."""
 
     def __init__(self, policy: Policy) -> None:
@@ -66,12 +66,12 @@ class _Player(nn.Module):
         return logits, self.actor.distribution.deterministic_output(logits).long()
 
 
-def _texts(card: Card) -> dict[str, str]:
+def _metadata(card: Card) -> dict[str, str]:
     """Return the metadata of the model.  All values but ``spec_hash`` are JSON."""
     game = registered_game()
     names = list(game.choices.items()) if card.branches == game.branches else []
     texts = {
-        "inputs": _inputs(card),
+        "inputs": _input_names(card),
         "actions": [{"name": name, "choices": choices} for name, choices in names],
         "states": [
             {"label": str(state.label), "english": label_text(card.fspa, state.id)} for state in card.fspa.states
@@ -84,7 +84,7 @@ def _texts(card: Card) -> dict[str, str]:
     }
 
 
-def _inputs(card: Card) -> dict[str, list[str]]:
+def _input_names(card: Card) -> dict[str, list[str]]:
     """Return names for the first axis of each input."""
     sensors = card.sensors
     names: Mapping[str, list[str]] = {
@@ -107,8 +107,8 @@ def _forget_source(model: ModelProto) -> None:
 
 
 @contextmanager
-def _quiet() -> Iterator[None]:
-    """Silence the messages of torch's exporter; the tests check the exported model."""
+def _silence_exporter() -> Iterator[None]:
+    """Silence the messages of torch's exporter within this context; tests check the exported model instead."""
     log = logging.getLogger("torch.onnx")
     before = log.level
     log.setLevel(logging.ERROR)

@@ -17,17 +17,17 @@ from tltl_runtime.policies.card import Card
 from tltl_runtime.policies.network import Network, Shapes, model_config
 
 
-class NoNumbersError(ValueError):
-    """The weights, the input or the output of a network are not finite; the message says which."""
+class NotFiniteError(ValueError):
+    """The weights, the input or the output of a network are not finite; the message says which of them."""
 
 
 class Policy:
     """The weights of an actor with their card.
 
     ``weights``, by name, are copied and rounded to half precision.  So a policy plays with exactly
-    the weights in its file, and a training that continues does not change it.  An action depends
-    only on the observation, and on the generator if it is sampled.  Observations are never batched:
-    the batch size would change the last bits of the logits.
+    the weights in its file, and a training that continues does not change the policy.  An action
+    depends only on the observation, and on the generator if the action is sampled.  Observations are
+    never batched, because the batch size would change the last bits of the logits.
 
     Raises:
         NoNumbersError: a weight is not finite in half precision.
@@ -38,14 +38,14 @@ class Policy:
         # `contiguous`: with another memory layout, torch would compute in another order.
         rounded = {name: tensor.detach().cpu().half().contiguous() for name, tensor in weights.items()}
         if not all(bool(tensor.isfinite().all()) for tensor in rounded.values()):
-            raise NoNumbersError(
+            raise NotFiniteError(
                 "a weight of the actor is no finite number in half precision: its training has diverged"
             )
         self.card = card
         self.actor = _actor_of(card, rounded)
 
     def weights(self) -> dict[str, Tensor]:
-        """Return the weights by name, in half precision.  No precision is lost."""
+        """Return the weights by name, in half precision, in which they were given."""
         return {name: tensor.to(torch.float16) for name, tensor in self.actor.state_dict().items()}
 
     def logits(self, observation: Mapping[str, NDArray[Any]]) -> NDArray[np.float32]:
@@ -67,7 +67,7 @@ class Policy:
         """
         logits = self.logits(observation).astype(np.float64)
         if not np.isfinite(logits).all():
-            raise NoNumbersError(_no_numbers(observation))
+            raise NotFiniteError(_not_finite_message(observation))
         if generator is not None:
             # The Gumbel-max trick: the argmax of logits plus Gumbel noise is a sample of their softmax.
             logits += generator.gumbel(size=len(logits))
@@ -75,7 +75,7 @@ class Policy:
         return np.array([logits[end - size : end].argmax() for size, end in zip(self.card.branches, ends, strict=True)])
 
 
-def _no_numbers(observation: Mapping[str, NDArray[Any]]) -> str:
+def _not_finite_message(observation: Mapping[str, NDArray[Any]]) -> str:
     parts = [key for key, values in observation.items() if not np.isfinite(values).all()]
     cause = f"`{parts[0]}` of the observation has values" if parts else "the policy's network gives values"
     return f"{cause} that are no finite numbers"

@@ -60,15 +60,17 @@ def summary_text(values: Mapping[str, Any]) -> str:
         "map": _map(map_) if map_ else "",
         "network": f"{layers} ({network['activation']}), {values['weights']:,} weights",
         "training": _training(values["training"]),
-        "initial": _initial(values["training"]),
-        "kept": _kept(values["training"]),
+        "initial": _initial_policy(values["training"]),
+        "kept": _best_policy(values["training"]),
         "ended": _ENDS.get(str(values["training"].get("end")), ""),
         "search": _search(values["training"]),
-        "imitated": _imitated(values["training"]),
+        "imitated": _demonstrations(values["training"]),
         "versions": ", ".join(f"{name} {version}" for name, version in values["versions"].items()),
     }
-    shown = {name: "".join(char if char.isprintable() else "\ufffd" for char in text) for name, text in rows.items()}
-    return "".join(column(f"  {name:9}", text) + "\n" for name, text in shown.items() if text)
+    printable = {
+        name: "".join(char if char.isprintable() else "\ufffd" for char in text) for name, text in rows.items()
+    }
+    return "".join(column(f"  {name:9}", text) + "\n" for name, text in printable.items() if text)
 
 
 def _map(sensor: Mapping[str, Any]) -> str:
@@ -76,7 +78,7 @@ def _map(sensor: Mapping[str, Any]) -> str:
 
 
 def _training(record: Mapping[str, Any]) -> str:
-    """Describe how the training went; numbers that the record lacks are left out."""
+    """Describe how the training went; a number that the record does not have is left out."""
     window = record.get("window")
     # Without episodes there is no pass rate.
     values = {**(window if isinstance(window, dict) and window.get("episodes") else {}), **record}
@@ -89,7 +91,7 @@ def _training(record: Mapping[str, Any]) -> str:
     return ", ".join(wording(values[key]) for key, wording in wordings if isinstance(values.get(key), (int, float)))
 
 
-def _kept(record: Mapping[str, Any]) -> str:
+def _best_policy(record: Mapping[str, Any]) -> str:
     """Describe the best policy, which the training kept; empty if the record does not say."""
     best = record.get("best")
     if not isinstance(best, dict) or not isinstance(best.get("pass_rate"), (int, float)):
@@ -99,7 +101,7 @@ def _kept(record: Mapping[str, Any]) -> str:
     return f"the best policy, pass rate {share(best['pass_rate'])} in its window{after}{confirmed}"
 
 
-def _initial(record: Mapping[str, Any]) -> str:
+def _initial_policy(record: Mapping[str, Any]) -> str:
     """Describe the policy that the training began with; empty if the record names none."""
     initial = record.get("initial")
     if not isinstance(initial, dict):
@@ -118,7 +120,7 @@ def _search(record: Mapping[str, Any]) -> str:
     return f"{ways}, the shortest of {min(lengths)} steps" if lengths else "no way to meet the spec was found"
 
 
-def _imitated(record: Mapping[str, Any]) -> str:
+def _demonstrations(record: Mapping[str, Any]) -> str:
     """Describe the demonstrations of a training by imitation; empty if the record has none."""
     imitated = record.get("imitated")
     if not isinstance(imitated, dict) or not all(type(imitated.get(key)) is int for key in ("episodes", "decisions")):

@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 
 
 def check_batch(space: Space[Any], batch: Any, count: int) -> None:
-    """Raise ValueError if ``batch`` does not have ``count`` values of a space; the environment
-    checks the range of a Box.
+    """Raise ValueError unless ``batch`` has ``count`` values of a space.
+
+    The range of a Box is not checked here; the environment does that.
     """
     if isinstance(space, spaces.Dict):
         if not isinstance(batch, Mapping) or batch.keys() != space.keys():
@@ -26,16 +27,16 @@ def check_batch(space: Space[Any], batch: Any, count: int) -> None:
         for part, values in zip(space, batch, strict=True):
             check_batch(part, values, count)
         return
-    given = np.asarray(batch)
+    array = np.asarray(batch)
     shape = (count, *(space.shape or ()))
-    if given.shape != shape:
-        raise ValueError(f"a batch of shape {shape} is needed, not {given.shape}")
-    if not np.can_cast(given.dtype, np.dtype(space.dtype), "same_kind"):
-        raise ValueError(f"actions of {space} are {space.dtype}, not {given.dtype}")
-    wrong = _outside(space, given).reshape(count, -1).any(axis=1)
+    if array.shape != shape:
+        raise ValueError(f"a batch of shape {shape} is needed, not {array.shape}")
+    if not np.can_cast(array.dtype, np.dtype(space.dtype), "same_kind"):
+        raise ValueError(f"actions of {space} are {space.dtype}, not {array.dtype}")
+    wrong = _outside(space, array).reshape(count, -1).any(axis=1)
     if wrong.any():
         row = int(wrong.argmax())
-        raise ValueError(f"the action of env {row} is {given[row].tolist()}, which is not in {space}")
+        raise ValueError(f"the action of env {row} is {array[row].tolist()}, which is not in {space}")
 
 
 def _outside(space: Space[Any], values: NDArray[Any]) -> NDArray[np.bool_]:

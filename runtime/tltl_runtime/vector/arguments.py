@@ -39,8 +39,8 @@ def check_arguments(
 def split_mask(options: dict[str, Any] | None, count: int) -> tuple[NDArray[np.bool_], dict[str, Any] | None]:
     """Return the mask ``options["reset_mask"]``, by default all environments, and the other options.
 
-    Raises ValueError if the mask is not an array of one bool per environment with at least one of
-    them true.
+    Raises ValueError unless the mask is an array of one bool per environment, at least one of them
+    true.
     """
     if options is None or "reset_mask" not in options:
         return np.ones(count, dtype=np.bool_), options

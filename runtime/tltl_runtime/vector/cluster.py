@@ -12,14 +12,15 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any, Final
 
-from tltl_runtime.vector.cores import started
+from tltl_runtime.vector.cores import torchrun_variable
 from tltlc.api import Diagnostic, TltlError
 
 _TO_ANSWER_S: Final = 10.0
-"""How long a cluster may take to answer."""
+"""How many seconds a cluster may take to answer."""
 _AFTER_THE_FIRST_S: Final = 30.0
-"""How long other actors may take to start after the first one."""
-_TOLD_EVERY_S: Final = 10.0
+"""How many seconds other actors may take to start after the first one."""
+_REPORT_INTERVAL_S: Final = 10.0
+"""Seconds between two reports that no actor has started."""
 
 
 @contextmanager
@@ -31,7 +32,7 @@ def cluster() -> Iterator[Any]:
     running, it starts one on this machine. A connection made here is closed at the end.
 
     Raises:
-        TltlError: TLT0730 Ray is not installed; TLT0852 there is no cluster at ``RAY_ADDRESS``.
+        TltlError: TLT0730, Ray is not installed; TLT0852, there is no cluster at ``RAY_ADDRESS``.
     """
     try:
         import ray
@@ -46,8 +47,8 @@ def cluster() -> Iterator[Any]:
     # A cluster that this process starts must not send usage statistics.
     os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")
     try:
-        _call(os.environ.get("RAY_ADDRESS", ""))
-        with sigterm_handler_kept():
+        _check_address(os.environ.get("RAY_ADDRESS", ""))
+        with keep_sigterm_handler():
             ray.init(include_dashboard=False, log_to_driver=False, logging_level=logging.ERROR)
     except (OSError, ValueError, RuntimeError) as error:
         address = os.environ.get("RAY_ADDRESS", "this machine")
@@ -60,9 +61,10 @@ def cluster() -> Iterator[Any]:
 
 
 @contextmanager
-def sigterm_handler_kept() -> Iterator[None]:
-    """Restore the handler of SIGTERM, which Ray replaces: the command would end with another status
-    and without cleanup.
+def keep_sigterm_handler() -> Iterator[None]:
+    """Restore the handler of SIGTERM at the end of this context, because Ray replaces it.
+
+    With Ray's handler, the command would end with another status and without cleanup.
     """
     before = signal.getsignal(signal.SIGTERM)
     try:
@@ -74,37 +76,44 @@ def sigterm_handler_kept() -> Iterator[None]:
 
 
 def free_cores(ray: Any) -> int:
-    """Return how many cores of the cluster are free, at least 1; processes of torchrun share them equally."""
-    return max(1, int(ray.available_resources().get("CPU", 1)) // started("WORLD_SIZE", 1))
+    """Return how many cores of the cluster are free for this process, at least 1.
+
+    Processes of torchrun share the free cores equally.
+    """
+    return max(1, int(ray.available_resources().get("CPU", 1)) // torchrun_variable("WORLD_SIZE", 1))
 
 
-def started_actors(
+def wait_for_actors(
     ray: Any, actors: Sequence[Any], patience: float, waiting: Callable[[float], None] = lambda left: None
 ) -> list[int]:
-    """Return the indices, in order, of the actors that have started; some may be missing if others use the cores.
+    """Wait until actors have started; return their indices, in order.
 
-    The first actor may take ``patience`` seconds. Meanwhile ``waiting`` is called now and then with
-    the seconds left. Then the others get some more time. Raises TltlError (TLT0852) if none starts.
+    The first actor may take ``patience`` seconds. Until it starts, ``waiting`` is called now and then
+    with the seconds left. The other actors then have up to 30 seconds more. Those that do not start,
+    because other programs use the cores, are missing in the result.
+
+    Raises:
+        TltlError: TLT0852, no actor starts in time.
     """
     deadline = time.monotonic() + patience
     references = [actor.__ray_ready__.remote() for actor in actors]
     ready: list[Any] = []
     while len(ready) < len(references) and (left := deadline - time.monotonic()) > 0:
-        newly_ready, _ = ray.wait(references, num_returns=len(ready) + 1, timeout=min(left, _TOLD_EVERY_S))
+        newly_ready, _ = ray.wait(references, num_returns=len(ready) + 1, timeout=min(left, _REPORT_INTERVAL_S))
         if newly_ready and not ready:
             deadline = min(deadline, time.monotonic() + _AFTER_THE_FIRST_S)
         elif not newly_ready:
             waiting(left)
         ready = newly_ready
     if not ready:
-        raise not_started(ray, patience)
+        raise no_worker_error(ray, patience)
     return [index for index, reference in enumerate(references) if reference in ready]
 
 
-def not_started(ray: Any, waited_s: float) -> TltlError:
-    """Return TLT0852: no worker started within ``waited_s`` seconds.
+def no_worker_error(ray: Any, waited_s: float) -> TltlError:
+    """Return the error TLT0852: no worker started within ``waited_s`` seconds.
 
-    Ray does not give a reason: others may use all cores, or a worker's process may start slowly.
+    Ray gives no reason: other programs may use all cores, or the process of a worker may start slowly.
     """
     cores = int(ray.cluster_resources().get("CPU", 0))
     size = "1 core" if cores == 1 else f"{cores} cores"
@@ -113,8 +122,8 @@ def not_started(ray: Any, waited_s: float) -> TltlError:
     return TltlError([Diagnostic("TLT0852", title, help=help_)])
 
 
-def _call(address: str) -> None:
-    """Raise OSError if nothing answers at HOST:PORT; Ray itself would try for minutes."""
+def _check_address(address: str) -> None:
+    """Raise OSError if nothing answers at the address HOST:PORT; Ray itself would try for minutes."""
     host, _, port = address.removeprefix("ray://").rpartition(":")
     if host and port.isdecimal():
         socket.create_connection((host, int(port)), _TO_ANSWER_S).close()

@@ -12,11 +12,11 @@ def cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def started(variable: str, default: int) -> int:
-    """Return the integer, at least ``default``, in an environment variable that torchrun sets.
+def torchrun_variable(variable: str, default: int) -> int:
+    """Return the integer in an environment variable that torchrun sets, or ``default`` if it is not set.
 
     Raises:
-        TltlError: TLT0862 the variable has another value.
+        TltlError: TLT0862, the value is not an integer from ``default`` on.
     """
     text = os.environ.get(variable, str(default))
     if len(text) <= 9 and text.isascii() and text.isdecimal() and int(text) >= default:

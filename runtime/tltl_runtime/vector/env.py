@@ -22,7 +22,7 @@ from tltl_runtime.vector.cores import cores
 from tltl_runtime.vector.errors import Loss, Playing, WorkerError, report
 from tltl_runtime.vector.memory import Rows, read, write_batch
 from tltl_runtime.vector.worker import EnvFunction
-from tltl_runtime.vector.workers import Workers, shared_out
+from tltl_runtime.vector.workers import Workers, split_evenly
 
 if TYPE_CHECKING:
     from tltl_runtime.vector.ray_workers import RayWorkers
@@ -33,9 +33,7 @@ TLTL_INFO: Final[Mapping[str, DTypeLike]] = {
     "progress": np.float64,
     "success": np.bool_,
 }
-"""The keys of a TltlEnv's ``info`` that are returned at each step; the others are returned at the
-end of an episode.
-"""
+"""The keys of a TltlEnv's ``info`` that each step returns; the end of an episode also returns the others."""
 
 _ALL: Final = slice(None)
 _SEEDS: Final = 2**31
@@ -58,17 +56,18 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
     the keys ``info`` at every step, with an array each; by default those of a
     :class:`~tltl_runtime.spec.wrapper.TltlEnv`: ``verdict``, ``state``, ``progress``, ``success``.
     Other entries of an environment's info are returned with a reset and with the end of an episode.
-    The latter also has ``episode``: the sum of rewards ``r`` and the length ``l``.
+    The end of an episode also has ``episode``: the sum of rewards ``r`` and the length ``l``.
 
-    If a worker ends, raises or is silent for ``timeout`` seconds, this is reported: what happened,
-    and the name (``names``, one for each environment), seed, episode and step of each of its
-    environments. With ``on_death="stop"``, a :class:`WorkerError` is raised and this environment is
-    closed. With ``"replace"``, another worker takes over, the report goes to this module's logger,
-    and the affected environments begin episodes with new seeds: their step is ``truncated`` with
-    reward 0, its ``final_obs`` is the last observation, and ``infos["lost"]`` is True for them.
+    A worker is lost if it ends, raises or is silent for ``timeout`` seconds. The report says what
+    happened, and the name (``names``, one for each environment), seed, episode and step of each of the
+    worker's environments. With ``on_death="stop"``, a :class:`WorkerError` with this report is raised,
+    and this environment is closed. With ``"replace"``, another worker takes over, the report goes to
+    this module's logger, and the affected environments begin episodes with new seeds. Their step is
+    ``truncated`` with reward 0, ``final_obs`` is their last observation, and ``infos["lost"]`` is True
+    for them.
 
-    If an environment has a method ``prepare``, its worker calls it while idle, as long as it
-    returns True. The environment can use it to prepare the next reset in small steps.
+    If an environment has a method ``prepare``, its worker calls the method while idle, until it
+    returns False. So the environment can prepare the next reset in small steps.
 
     Functions that cannot be imported, such as lambdas, are pickled by value. A process starts by
     importing the main module, so a script needs ``if __name__ == "__main__"`` around its own work.
@@ -77,7 +76,7 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         ValueError: a space has no fixed size, or another argument is invalid.
         TypeError: an argument is of another type.
         WorkerError: an environment cannot be made, or its spaces differ from those of the first.
-        TltlError: TLT0730 Ray is not installed, TLT0852 there is no cluster.
+        TltlError: TLT0730, Ray is not installed; TLT0852, there is no cluster.
     """
 
     def __init__(
@@ -109,7 +108,7 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         self._replaces = on_death == "replace"
         self._seeds: list[int | None] = [None] * self.num_envs
         self._observations: Any = None
-        self._untried: set[int] = set()
+        self._unproven: set[int] = set()
         """Workers that were replaced and have not taken a step since."""
         context = multiprocessing.get_context("spawn")
         self._rows = Rows(context, self.num_envs, self.single_observation_space, self.single_action_space, info)
@@ -119,7 +118,7 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
 
             self._workers = RayWorkers(functions, self._rows, info, autoreset, timeout)
         else:
-            shares = list(shared_out(self.num_envs, min(workers or cores(), self.num_envs)))
+            shares = list(split_evenly(self.num_envs, min(workers or cores(), self.num_envs)))
             self._workers = Workers(context, functions, shares, self._rows, autoreset, timeout)
         self._finalizer = weakref.finalize(self, self._workers.close)
         for loss in self._workers.start(range(len(self._workers.shares))):
@@ -158,7 +157,7 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
                 answer = [(row, info if chosen[row] else {**info, "lost": True}) for row, info in resets]
             for row, info in answer:
                 infos = self._add_info(infos, info, row)
-        return self._observed(), self._with_numbers(infos)
+        return self._read_observations(), self._add_columns(infos)
 
     def step(
         self, actions: Any
@@ -166,8 +165,8 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         """Take a step in each environment.
 
         Raises:
-            ValueError: ``actions`` does not have one action of the space for each; no step is
-                taken.
+            ValueError: ``actions`` does not have one action of the space for each environment; no
+                step is taken.
             ResetNeeded: there was no reset.
             WorkerError: a worker was lost, and ``on_death`` is ``stop``.
         """
@@ -181,12 +180,12 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
             if isinstance(answer, Loss):
                 answer = self._continue(answer)
             else:
-                self._untried.discard(worker)
+                self._unproven.discard(worker)
             for row, info in answer:
                 infos = self._add_info(infos, info, row)
         rows = self._rows
         ends = rows.reward.copy(), rows.terminated.copy(), rows.truncated.copy()
-        return self._observed(), *ends, self._with_numbers(infos)
+        return self._read_observations(), *ends, self._add_columns(infos)
 
     def call(self, name: str, *args: Any, **kwargs: Any) -> tuple[Any, ...]:
         """Return an attribute of each environment; if it is callable, the result of calling it."""
@@ -217,7 +216,7 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         return tuple(self._workers.pid(worker) for worker in range(len(self._workers.shares)))
 
     def _ask_all(self, command: str, arguments: Sequence[tuple[Any, ...]]) -> tuple[Any, ...]:
-        """Return the results of all environments, in order; a worker that is lost meanwhile is not replaced."""
+        """Return the results of all environments, in order; a lost worker is not replaced but stops everything."""
         self._check_ready()
         answers = self._workers.ask(command, arguments)
         for answer in answers:
@@ -247,11 +246,11 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
     def _new_seed(self) -> int:
         return int(self.np_random.integers(_SEEDS))
 
-    def _observed(self) -> Any:
+    def _read_observations(self) -> Any:
         self._observations = read(self._rows.observation, _ALL)
         return self._observations
 
-    def _with_numbers(self, infos: dict[str, Any]) -> dict[str, Any]:
+    def _add_columns(self, infos: dict[str, Any]) -> dict[str, Any]:
         """Add the info columns of the shared rows to ``infos``, for all environments."""
         for key, column in self._rows.info.items():
             infos[key] = column.copy()
@@ -273,7 +272,7 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
 
     def _replace(self, loss: Loss) -> list[tuple[int, dict[str, Any]]]:
         """Replace the lost worker and begin episodes in its environments; return their infos, by row."""
-        if not self._replaces or loss.worker in self._untried:
+        if not self._replaces or loss.worker in self._unproven:
             self._stop(loss)
         share = self._workers.shares[loss.worker]
         playing = self._playing(share)
@@ -281,11 +280,11 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
             self._seeds[row] = self._new_seed()
         seeds = self._seeds[share]
         _log.warning("%s\nanother begins with seeds %s", report(loss, playing), seeds)
-        self._untried.add(loss.worker)
+        self._unproven.add(loss.worker)
         self._rows.busy[share] = False
         for failure in self._workers.start([loss.worker]):
             self._stop(failure)
-        self._workers.tell(loss.worker, "reset", (seeds, None, [True] * len(seeds)))
+        self._workers.send(loss.worker, "reset", (seeds, None, [True] * len(seeds)))
         (answer,) = self._workers.answers()
         if isinstance(answer, Loss):
             self._stop(answer)

@@ -7,11 +7,11 @@ from typing import Final
 
 from tltlc.api import record
 
-_UNGUARDED: Final = (
+_NO_MAIN_GUARD: Final = (
     "it ended before it made them: a worker begins by importing the program, so what the program does stands under",
     '`if __name__ == "__main__":`, and the program in a file (python program.py, not python < program.py)',
 )
-"""The two causes for a main module that a worker cannot import."""
+"""The likely cause if a worker ends before it has made its environments: it cannot import the main module."""
 
 
 @record
@@ -19,8 +19,9 @@ class Playing:
     """What an environment was playing when its worker was lost.
 
     To get the same episode, reset the environment with ``seed``, then ``episode`` - 1 times without
-    a seed. A seed of None means that it was not reset yet. ``step`` is the step of the episode that
-    was in progress, or the last one taken. ``busy`` means that the environment was at work.
+    a seed. ``env`` is the number of the environment, ``name`` its name. A ``seed`` of None means that
+    the environment was not reset yet. ``step`` is the step of the episode that was in progress, or
+    the last step that was finished. ``busy`` means that the environment was at work.
     """
 
     env: int
@@ -37,11 +38,11 @@ class Playing:
 
 @record
 class Loss:
-    """How a worker was lost: it ended with ``status`` (negative: by that signal), or was ``silent``
-    for so many seconds.
+    """How a worker was lost.
 
-    ``traceback`` is that of the exception that ended it, if any. ``starting`` means that its
-    environments were not made yet.
+    It ended with the exit status ``status``, or by the signal ``-status`` if that is negative. Or it
+    was ``silent`` for that many seconds and was killed. ``traceback`` is that of the exception that
+    ended the worker, if any. ``starting`` means that it had not made its environments yet.
     """
 
     worker: int
@@ -69,10 +70,10 @@ class WorkerError(RuntimeError):
 
 
 def report(loss: Loss, playing: tuple[Playing, ...]) -> str:
-    """Return the loss as text: a line for it, one for each environment, and the traceback or a likely cause."""
+    """Return a loss as text: a line for the worker, one for each environment, and the traceback or a likely cause."""
     lines = [f"{loss}; it had", *(f"  {env}" for env in playing), *loss.traceback.splitlines()]
     if loss.starting and loss.status and not loss.traceback:
-        lines += _UNGUARDED
+        lines += _NO_MAIN_GUARD
     return "\n".join(lines)
 
 

@@ -34,10 +34,14 @@ def make_vec(
 ) -> WorkerVectorEnv:
     """Return ``num_envs`` environments of :meth:`~tltl_runtime.game.game.Game.make_env`, stepped by ``workers``.
 
-    ``wrapper`` receives the function that makes an environment, and returns the environment to use;
-    it must be importable. ``options`` and errors are those of
-    :class:`~tltl_runtime.vector.WorkerVectorEnv` and of ``make_env``. Raises ValueError for the
-    render mode ``human`` with several environments, each of which would open a window.
+    ``wrapper`` receives the function that makes an environment, and returns the environment to use.
+    The wrapper must be importable. ``options`` are those of
+    :class:`~tltl_runtime.vector.WorkerVectorEnv`.
+
+    Raises:
+        ValueError: the render mode is ``human`` and there are several environments, each of which
+            would open a window.
+        TltlError, TypeError, WorkerError: the errors of ``make_env`` and of ``WorkerVectorEnv``.
     """
     if render_mode == "human" and num_envs > 1:
         raise ValueError("render_mode 'human' shows one environment: with several, give 'rgb_array' and call render()")

@@ -28,7 +28,7 @@ class Rows:
     - ``episode`` counts the episodes since the last reset with a seed, from 1.
     - ``step`` counts the steps of the episode, including the one in progress; ``total`` sums its
       rewards.
-    - ``busy`` says whether the environment is at work.
+    - ``busy`` says whether the environment is in a reset or a step.
     - ``info`` are further columns, by name; ``table`` has all columns of all rows.
 
     Raises:
@@ -93,9 +93,7 @@ def write(columns: Columns, row: int, value: Any) -> None:
 
 
 def write_batch(columns: Columns, batch: Any) -> None:
-    """Write a value into each row; :func:`tltl_runtime.vector.actions.check_batch` has checked that
-    there is one for each.
-    """
+    """Write a value into each row; ``batch`` has passed :func:`tltl_runtime.vector.actions.check_batch`."""
     if isinstance(columns, dict):
         for key, column in columns.items():
             write_batch(column, batch[key])

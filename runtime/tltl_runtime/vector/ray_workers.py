@@ -1,6 +1,4 @@
-"""Workers of a Ray cluster that step environments; the counterpart of
-:class:`~tltl_runtime.vector.workers.Workers`.
-"""
+"""Workers of a Ray cluster that step environments, with the methods of the processes in ``workers``."""
 
 from __future__ import annotations
 
@@ -13,23 +11,23 @@ from typing import Any
 from gymnasium.vector import AutoresetMode
 from numpy.typing import DTypeLike, NDArray
 
-from tltl_runtime.vector.cluster import cluster, free_cores, started_actors
+from tltl_runtime.vector.cluster import cluster, free_cores, wait_for_actors
 from tltl_runtime.vector.errors import Loss
 from tltl_runtime.vector.memory import Rows
 from tltl_runtime.vector.worker import EnvFunction, Share
-from tltl_runtime.vector.workers import TO_START_S, shared_out
+from tltl_runtime.vector.workers import TO_START_S, split_evenly
 from tltlc.api import replace
 
 
 class RayWorkers:
     """Actors that step environments, one on each free core; actor w has the w-th slice of ``shares``.
 
-    They share no memory: actions are sent with each command, and the answer brings the rows back to
-    ``rows``. Everything else is the same as with processes. ``info`` are the further columns of
-    ``rows``.
+    Actors share no memory. So actions are sent with each command, and the answer brings the new rows
+    back to ``rows``. Everything else is as in :class:`~tltl_runtime.vector.workers.Workers`. ``info``
+    are the further columns of ``rows``.
 
-    Raises TltlError: TLT0730 Ray is not installed; TLT0852 there is no cluster, or no worker
-    starts.
+    Raises:
+        TltlError: TLT0730, Ray is not installed; TLT0852, there is no cluster, or no worker starts.
     """
 
     def __init__(
@@ -43,67 +41,70 @@ class RayWorkers:
         self._functions, self._rows, self._info = functions, rows, info
         self._autoreset, self._timeout = autoreset, timeout
         self._actors: dict[int, Any] = {}
-        self._asked: dict[Any, int] = {}
+        self._pending: dict[Any, int] = {}
         """The worker of each reference to a pending answer."""
         self._stack = ExitStack()
         self._ray = self._stack.enter_context(cluster())
         try:
-            self._idle = self._placed(min(free_cores(self._ray), len(functions)))
+            self._idle = self._start_actors(min(free_cores(self._ray), len(functions)))
             """Actors that have a core and no environments yet."""
         except BaseException:
             self._stack.close()
             raise
-        self.shares = tuple(shared_out(len(functions), len(self._idle)))
+        self.shares = tuple(split_evenly(len(functions), len(self._idle)))
 
     @property
     def is_waiting(self) -> bool:
         """Whether an answer is still pending, as after a Ctrl-C."""
-        return bool(self._asked)
+        return bool(self._pending)
 
     def pid(self, worker: int) -> int | None:
         """Return None: an actor's process may be on another machine."""
         return None
 
     def start(self, workers: Sequence[int]) -> list[Loss]:
-        """Start these workers, wait until they have made their environments, and return those that failed.
+        """Start these workers, wait until they have made their environments, and return the losses.
 
-        Raises TltlError: TLT0852 a new actor does not start in time.
+        Raises:
+            TltlError: TLT0852, a new actor does not start in time.
         """
         for worker in workers:
-            actor = self._actors[worker] = self._idle.pop() if self._idle else self._placed(1)[0]
+            actor = self._actors[worker] = self._idle.pop() if self._idle else self._start_actors(1)[0]
             share = self.shares[worker]
             arguments = (len(self._functions), dict(self._rows.spaces), dict(self._info), self._autoreset)
-            self._asked[actor.begin.remote(list(self._functions[share]), share, *arguments)] = worker
+            self._pending[actor.begin.remote(list(self._functions[share]), share, *arguments)] = worker
         answers = self.answers(max(self._timeout, TO_START_S))
         return [replace(answer, starting=True) for answer in answers if isinstance(answer, Loss)]
 
     def ask(self, command: str, arguments: Sequence[tuple[Any, ...]]) -> list[Any]:
         """Send a command to all workers, each with its own arguments, and return their answers."""
-        for worker, given in enumerate(arguments):
-            self.tell(worker, command, given)
+        for worker, worker_arguments in enumerate(arguments):
+            self.send(worker, command, worker_arguments)
         return self.answers()
 
-    def tell(self, worker: int, command: str, arguments: tuple[Any, ...]) -> None:
+    def send(self, worker: int, command: str, arguments: tuple[Any, ...]) -> None:
         """Send a command to one worker; :meth:`answers` returns its answer."""
         actions = self._rows.table["action"][self.shares[worker]]
-        self._asked[self._actors[worker].do.remote(command, arguments, actions)] = worker
+        self._pending[self._actors[worker].do.remote(command, arguments, actions)] = worker
 
     def answers(self, patience: float | None = None) -> list[Any]:
-        """Wait for the pending answers, for at most ``timeout`` or ``patience`` seconds, and return
-        them in order of workers.
+        """Wait for the pending answers and return them in order of the workers.
+
+        A worker that is silent for ``patience`` seconds, by default ``timeout``, is killed; its answer
+        is a :class:`Loss`.
         """
         patience = self._timeout if patience is None else patience
         deadline = time.monotonic() + patience
         answers: dict[int, Any] = {}
-        while self._asked:
+        while self._pending:
             left = max(0.0, deadline - time.monotonic())
-            ready, late = self._ray.wait(list(self._asked), timeout=left)
+            ready, late = self._ray.wait(list(self._pending), timeout=left)
             for reference in ready:
-                worker = self._asked.pop(reference)
+                worker = self._pending.pop(reference)
                 answers[worker] = self._answer(worker, reference)
             if not ready:
                 for reference in late:
-                    worker = self._asked.pop(reference)
+                    worker = self._pending.pop(reference)
                     self._ray.kill(self._actors.pop(worker))
                     answers[worker] = Loss(worker, silent=patience)
         return [answers[worker] for worker in sorted(answers)]
@@ -113,21 +114,21 @@ class RayWorkers:
         for actor in (*self._actors.values(), *self._idle):
             self._ray.kill(actor)
         self._actors.clear()
-        self._asked.clear()
+        self._pending.clear()
         self._stack.close()
 
-    def _placed(self, most: int) -> list[Any]:
-        """Return up to ``most`` new actors, as many as get a core; the others are ended."""
+    def _start_actors(self, most: int) -> list[Any]:
+        """Start ``most`` actors; return those that get a core, and end the others."""
         # Ray would restart a lost actor and continue silently, with its environments back at their beginning.
         actors = [self._ray.remote(num_cpus=1, max_restarts=0)(_Actor).remote() for _ in range(most)]
-        placed: list[Any] = []
+        started: list[Any] = []
         try:
-            placed = [actors[index] for index in started_actors(self._ray, actors, max(self._timeout, TO_START_S))]
+            started = [actors[index] for index in wait_for_actors(self._ray, actors, max(self._timeout, TO_START_S))]
         finally:
             for actor in actors:
-                if actor not in placed:
+                if actor not in started:
                     self._ray.kill(actor)
-        return placed
+        return started
 
     def _answer(self, worker: int, reference: Any) -> Any:
         try:

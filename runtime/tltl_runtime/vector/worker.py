@@ -25,9 +25,10 @@ def work(connection: Connection, functions: Any, rows: Rows, first: int, autores
     """Serve commands until ``close`` arrives or the other end is gone.
 
     ``functions`` is a ``CloudpickleWrapper`` of the functions that make the environments, whose
-    rows begin at ``first``. A command is a pair of a name and its arguments. The answer is a pair:
-    ``done`` and the result, or ``failed`` and a traceback, after which the worker ends. The first
-    answer comes without a command: it says that all environments are made.
+    rows begin at ``first``. A command is a pair: the name of a method of :class:`Share`, and its
+    arguments. The answer is a pair, too: ``done`` and the result, or ``failed`` and a traceback. After
+    ``failed`` the worker ends. The first answer comes without a command, when all environments are
+    made.
     """
     # The parent process handles Ctrl-C.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
@@ -58,7 +59,7 @@ class Share:
         self._same_step = autoreset == AutoresetMode.SAME_STEP
         self._envs = [make() for make in functions]
         self._preparing = [env.prepare for env in self._envs if hasattr(env, "prepare")]
-        self._over = [False] * len(self._envs)
+        self._is_over = [False] * len(self._envs)
         for row, env in enumerate(self._envs, first):
             for name, space in rows.spaces.items():
                 env_space = getattr(env, name)
@@ -68,7 +69,7 @@ class Share:
     def reset(
         self, seeds: Sequence[int | None], options: dict[str, Any] | None, chosen: Sequence[bool]
     ) -> list[tuple[int, Info]]:
-        """Begin an episode in each chosen environment; return their infos, by row."""
+        """Begin an episode in each chosen environment; return pairs of their rows and infos."""
         infos = []
         for index in range(len(self._envs)):
             if chosen[index]:
@@ -78,11 +79,11 @@ class Share:
         return infos
 
     def step(self) -> list[tuple[int, Info]]:
-        """Take the actions in the rows; return the infos of episodes that ended or began, by row."""
+        """Take the actions in the rows; return the rows and infos of the environments whose episodes ended or began."""
         actions = read(self._rows.action, slice(self._first, self._first + len(self._envs)))
         infos = []
         for index, env in enumerate(self._envs):
-            if self._over[index]:
+            if self._is_over[index]:
                 observation, info = self._begin(index)
                 self._write_row(index, observation, 0.0, False, False, info)
                 infos.append((self._first + index, info))
@@ -100,13 +101,13 @@ class Share:
                     observation, info = self._begin(index)
                     infos.append((row, {**last, **info}))
                 else:
-                    self._over[index] = True
+                    self._is_over[index] = True
                     infos.append((row, info))
             self._write_row(index, observation, float(reward), terminated, truncated, info)
         return infos
 
     def prepare(self) -> bool:
-        """Let the environments that have a ``prepare`` do a little work ahead of time; return whether one did."""
+        """Let an environment with a method ``prepare`` do a little work ahead of time; return whether one did."""
         return any(prepare() for prepare in self._preparing)
 
     def call(self, name: str, args: tuple[Any, ...], kwargs: dict[str, Any]) -> list[Any]:
@@ -133,13 +134,11 @@ class Share:
         rows.busy[row] = True
         observation, info = self._envs[index].reset(seed=seed, options=options)
         rows.busy[row] = False
-        self._over[index] = False
+        self._is_over[index] = False
         return observation, info
 
     def _statistics(self, row: int) -> dict[str, Any]:
-        """Return the sum of rewards and the length of the episode, with the keys of Gymnasium's
-        RecordEpisodeStatistics.
-        """
+        """Return the sum of rewards ``r`` and the length ``l`` of the episode, as Gymnasium's statistics call them."""
         return {"r": float(self._rows.total[row]), "l": int(self._rows.step[row])}
 
     def _write_row(

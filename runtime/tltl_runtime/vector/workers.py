@@ -20,18 +20,18 @@ from tltl_runtime.vector.worker import CLOSE, FAILED, EnvFunction, work
 from tltlc.api import replace
 
 TO_START_S: Final = 120.0
-"""The least time that a worker gets to import its modules and make its environments."""
+"""The least time that a worker has to import its modules and make its environments, in seconds."""
 _TO_END_S: Final = 5.0
-"""How long a worker may take to end after a command to close, or after it was killed."""
+"""How many seconds a worker may take to end after a command to close, or after it was killed."""
 
 
 class Workers:
     """Processes that step environments; worker w has the w-th slice of ``shares``.
 
     Processes are spawned, not forked: forking while threads of torch or OpenBLAS exist is unsafe. A
-    command to all workers returns their answers in order of the workers; the answer of a lost
-    worker is a :class:`Loss`: it ended, raised, or was silent for ``timeout`` seconds. After a
-    loss, ``start`` starts a new process in its place.
+    command to all workers returns their answers in order of the workers. A worker is lost if it ends,
+    raises, or is silent for ``timeout`` seconds. Its answer is then a :class:`Loss`, and ``start``
+    starts a new process in its place.
     """
 
     def __init__(
@@ -48,21 +48,21 @@ class Workers:
         self._autoreset, self._timeout = autoreset, timeout
         self._processes: dict[int, SpawnProcess] = {}
         self._connections: dict[int, Connection] = {}
-        self._asked: set[int] = set()
+        self._pending: set[int] = set()
         """Workers whose answers are pending; the selector watches only these."""
         self._selector = selectors.DefaultSelector()
 
     @property
     def is_waiting(self) -> bool:
         """Whether an answer is still pending, as after a Ctrl-C."""
-        return bool(self._asked)
+        return bool(self._pending)
 
     def pid(self, worker: int) -> int | None:
         """Return the process id of a worker."""
         return self._processes[worker].pid
 
     def start(self, workers: Sequence[int]) -> list[Loss]:
-        """Start these workers, wait until they have made their environments, and return those that failed."""
+        """Start these workers, wait until they have made their environments, and return the losses."""
         for worker in workers:
             ours, theirs = self._context.Pipe()
             share = self.shares[worker]
@@ -83,11 +83,11 @@ class Workers:
 
     def ask(self, command: str, arguments: Sequence[tuple[Any, ...]]) -> list[Any]:
         """Send a command to all workers, each with its own arguments, and return their answers."""
-        for worker, given in enumerate(arguments):
-            self.tell(worker, command, given)
+        for worker, worker_arguments in enumerate(arguments):
+            self.send(worker, command, worker_arguments)
         return self.answers()
 
-    def tell(self, worker: int, command: str, arguments: tuple[Any, ...]) -> None:
+    def send(self, worker: int, command: str, arguments: tuple[Any, ...]) -> None:
         """Send a command to one worker; :meth:`answers` returns its answer."""
         self._watch(worker)
         # If the other end is gone, the answer will be the loss.
@@ -95,16 +95,18 @@ class Workers:
             self._connections[worker].send((command, arguments))
 
     def answers(self, patience: float | None = None) -> list[Any]:
-        """Wait for the pending answers, for at most ``timeout`` or ``patience`` seconds, and return
-        them in order of workers.
+        """Wait for the pending answers and return them in order of the workers.
+
+        A worker that is silent for ``patience`` seconds, by default ``timeout``, is killed; its answer
+        is a :class:`Loss`.
         """
         patience = self._timeout if patience is None else patience
         deadline = time.monotonic() + patience
         answers: dict[int, Any] = {}
-        while self._asked:
+        while self._pending:
             ready = self._ready(deadline)
-            for worker in ready or tuple(self._asked):
-                answers[worker] = self._answer(worker) if ready else self._lost(worker, silent=patience)
+            for worker in ready or tuple(self._pending):
+                answers[worker] = self._answer(worker) if ready else self._end_lost(worker, silent=patience)
         return [answers[worker] for worker in sorted(answers)]
 
     def close(self) -> None:
@@ -116,12 +118,12 @@ class Workers:
         for worker in list(self._processes):
             self._processes[worker].join(max(0.0, deadline - time.monotonic()))
             self._end(worker)
-        self._asked.clear()
+        self._pending.clear()
         self._selector.close()
 
     def _watch(self, worker: int) -> None:
         """Watch for an answer of this worker, or for its end."""
-        self._asked.add(worker)
+        self._pending.add(worker)
         for file in (self._connections[worker].fileno(), self._processes[worker].sentinel):
             self._selector.register(file, selectors.EVENT_READ, worker)
 
@@ -130,7 +132,7 @@ class Workers:
             # Only one file is registered if a Ctrl-C came between the registrations, and none if the worker is idle.
             with contextlib.suppress(KeyError):
                 self._selector.unregister(file)
-        self._asked.discard(worker)
+        self._pending.discard(worker)
 
     def _ready(self, deadline: float) -> set[int]:
         """Return the workers with pending answers that answered or ended; empty once the deadline has passed."""
@@ -144,12 +146,13 @@ class Workers:
             if connection.poll():
                 outcome, answer = connection.recv()
                 self._unwatch(worker)
-                return self._lost(worker, traceback=answer) if outcome == FAILED else answer
+                return self._end_lost(worker, traceback=answer) if outcome == FAILED else answer
         except (EOFError, OSError):
             pass
-        return self._lost(worker)
+        return self._end_lost(worker)
 
-    def _lost(self, worker: int, *, silent: float | None = None, traceback: str = "") -> Loss:
+    def _end_lost(self, worker: int, *, silent: float | None = None, traceback: str = "") -> Loss:
+        """End a lost worker and return how it was lost."""
         process = self._processes[worker]
         if silent is None:
             process.join(_TO_END_S)
@@ -158,7 +161,7 @@ class Workers:
         return Loss(worker, status, silent, traceback)
 
     def _end(self, worker: int) -> None:
-        """Make sure that a worker is gone, and forget it."""
+        """Kill a worker unless it has ended, and release what belongs to it."""
         self._unwatch(worker)
         process, connection = self._processes.pop(worker), self._connections.pop(worker)
         connection.close()
@@ -169,7 +172,7 @@ class Workers:
             process.close()
 
 
-def shared_out(count: int, workers: int) -> Iterator[slice]:
-    """Yield the slices of ``count`` environments for so many workers; their lengths differ by at most one."""
+def split_evenly(count: int, workers: int) -> Iterator[slice]:
+    """Yield a slice of ``count`` environments for each worker; the lengths of the slices differ by at most one."""
     for worker in range(workers):
         yield slice(worker * count // workers, (worker + 1) * count // workers)

@@ -30,7 +30,7 @@ EPISODES = [
 ]
 
 
-def test_figures_are_computed() -> None:
+def test_figures_equal_values_computed_by_hand() -> None:
     figures = figures_of(EPISODES)
     assert figures.pass_rate == pytest.approx(0.6)
     assert figures.pass_interval == pytest.approx((0.3127, 0.8318), abs=1e-4)
@@ -52,12 +52,12 @@ def test_failed_episodes_are_grouped_by_state_and_end() -> None:
     assert evaluation.episodes == tuple(EPISODES)
 
 
-def test_no_episodes_have_no_figures() -> None:
+def test_figures_of_no_episodes_are_an_error() -> None:
     with pytest.raises(ValueError, match="0 of 0 is no share"):
         figures_of([])
 
 
-def test_the_text_report() -> None:
+def test_the_text_report_has_a_column_for_each_evaluation() -> None:
     text = report_text({"sampled": evaluation_of(EPISODES), "arg-max": evaluation_of([PASSED])})
     assert (
         text

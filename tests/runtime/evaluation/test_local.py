@@ -13,7 +13,7 @@ import pytest
 from tests.docs.blocks import ROOT
 from tests.waiting import HANG_S
 from tltl_runtime.evaluation.local import WorkerProcess
-from tltl_runtime.evaluation.player import EpisodeRequest, Plays
+from tltl_runtime.evaluation.player import EpisodePlayer, EpisodeRequest
 
 _MAIN = """
 import os, signal
@@ -71,11 +71,11 @@ class Origin:
 
 @pytest.mark.skipif(sys.platform != "linux", reason="processes are started otherwise")
 def test_workers_are_forked_from_one_process_with_torch_and_one_thread() -> None:
-    workers = [WorkerProcess(cast("type[Plays]", Origin)) for _ in range(2)]
+    workers = [WorkerProcess(cast("type[EpisodePlayer]", Origin)) for _ in range(2)]
     try:
-        one, other = (worker.play(EpisodeRequest(0)).result() for worker in workers)
+        first_origin, second_origin = (worker.play(EpisodeRequest(0)).result() for worker in workers)
     finally:
         for worker in workers:
             worker.close()
-    parent, *state = cast(Any, one)
-    assert one == other and parent != os.getpid() and state == [1, True]
+    parent, *state = cast(Any, first_origin)
+    assert first_origin == second_origin and parent != os.getpid() and state == [1, True]

@@ -48,7 +48,7 @@ def test_an_episode_does_not_depend_on_earlier_episodes(policy: Policy) -> None:
     single_env.close()
 
 
-def test_an_episode_that_runs_out_of_time(policy: Policy) -> None:
+def test_an_episode_that_runs_out_of_time_ends_at_its_limit(policy: Policy) -> None:
     env = make_env("cover_and_hide", "v0", policy.card.fspa, reward=RewardOptions())
     result = play(policy, env, 3, 0, sampled=True)
     env.close()
@@ -59,7 +59,7 @@ def test_an_episode_that_runs_out_of_time(policy: Policy) -> None:
     assert result.reward == pytest.approx(result.progress - 1.0)
 
 
-def played(spec: str) -> EpisodeSummary:
+def played_summary(spec: str) -> EpisodeSummary:
     policy = untrained(spec)
     env = make_env("cover_and_hide", "v0", policy.card.fspa, reward=RewardOptions())
     result = play(policy, env, 3, 0, sampled=True)
@@ -68,7 +68,7 @@ def played(spec: str) -> EpisodeSummary:
 
 
 def test_a_violation_costs_one_and_states_what_remained() -> None:
-    result = played(LATE)
+    result = played_summary(LATE)
     assert (result.success, result.end, result.verdict, result.steps) == (False, "violation", "violated", 7)
     assert result.reward == pytest.approx(result.progress - 1.0)
     assert result.state != result.unmet == 0
@@ -76,7 +76,7 @@ def test_a_violation_costs_one_and_states_what_remained() -> None:
 
 
 def test_a_success_costs_its_steps() -> None:
-    result = played(AT_ONCE)
+    result = played_summary(AT_ONCE)
     assert (result.success, result.end, result.progress, result.steps) == (True, "success", 1.0, 1)
     assert result.reward == pytest.approx(1.0 - 1 / 50)
 
@@ -93,7 +93,7 @@ class Blinded(gymnasium.ObservationWrapper[Any, Any, Any]):
         return observation if self._left > 0 else {**observation, "entities": observation["entities"] * np.nan}
 
 
-def refusal(policy: Policy, blinded: bool) -> tuple[str, str]:
+def diagnostic_of(policy: Policy, blinded: bool) -> tuple[str, str]:
     env: gymnasium.Env[Any, Any] = make_env("cover_and_hide", "v0", policy.card.fspa, reward=RewardOptions())
     with pytest.raises(TltlError) as caught:
         play(policy, Blinded(env) if blinded else env, 3, 5, sampled=False)
@@ -105,7 +105,7 @@ def refusal(policy: Policy, blinded: bool) -> tuple[str, str]:
 def test_nan_in_an_observation_is_reported(policy: Policy) -> None:
     where = f"episode 5 of seed 3 (seed {episode_seed(3, 5)} of the level), step 3"
     title = f"{where}: `entities` of the observation has values that are no finite numbers"
-    assert refusal(policy, blinded=True) == ("TLT0854", title)
+    assert diagnostic_of(policy, blinded=True) == ("TLT0854", title)
 
 
 def test_a_network_that_overflows_is_reported() -> None:
@@ -114,4 +114,4 @@ def test_a_network_that_overflows_is_reported() -> None:
         weights.mul_(1e30)
     where = f"episode 5 of seed 3 (seed {episode_seed(3, 5)} of the level), step 1"
     title = f"{where}: the policy's network gives values that are no finite numbers"
-    assert refusal(huge, blinded=False) == ("TLT0854", title)
+    assert diagnostic_of(huge, blinded=False) == ("TLT0854", title)

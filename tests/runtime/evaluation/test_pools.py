@@ -18,11 +18,11 @@ from tests.runtime.evaluation.untrained import untrained
 from tests.runtime.own_cluster import CORES, needs_ray, own_cluster
 from tests.waiting import HANG_S, until
 from tltl_runtime.evaluation import ray_pool
-from tltl_runtime.evaluation.evaluate import Pool, evaluate, results, results_here, set_up
+from tltl_runtime.evaluation.evaluate import Pool, evaluate, local_results, results, set_up
 from tltl_runtime.evaluation.local import WorkerProcess
 from tltl_runtime.evaluation.play import episode_seed
-from tltl_runtime.evaluation.player import EpisodeRequest, PlayedEpisode, Player, Recorded, Setup
-from tltl_runtime.evaluation.scheduler import LostError, play_all
+from tltl_runtime.evaluation.player import EpisodeRequest, PlayedEpisode, Player, RecordMode, Setup
+from tltl_runtime.evaluation.scheduler import WorkerLostError, play_all
 from tltl_runtime.policies.policy import Policy
 from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltl_runtime.stealth.levels.file import load_level
@@ -95,8 +95,8 @@ def test_recordings_are_made_as_requested(policy: Policy, expected: list[Episode
                 assert episode.player == f"policy, {chosen}, episode {result.task.index}"
 
 
-@pytest.mark.parametrize("recorded", get_args(Recorded))
-def test_only_failures_are_recorded_if_requested(recorded: Recorded) -> None:
+@pytest.mark.parametrize("recorded", get_args(RecordMode))
+def test_only_failures_are_recorded_if_requested(recorded: RecordMode) -> None:
     played_results = list(
         results(set_up(untrained(CHANCE), None, None, None, 3, recorded), [EpisodeRequest(index) for index in range(6)])
     )
@@ -142,7 +142,7 @@ class Ends:
 
 def test_a_lost_worker_is_reported_for_any_player() -> None:
     with pytest.raises(TltlError, match="TLT0850: a worker was lost while it played episode 0 of seed 3"):
-        list(results_here(Ends, [EpisodeRequest(0)], 2, 3))
+        list(local_results(Ends, [EpisodeRequest(0)], 2, 3))
 
 
 @pytest.mark.parametrize("workers", [1, *POOLS])
@@ -167,7 +167,7 @@ class Prompt:
     def play(self, task: EpisodeRequest) -> Future[PlayedEpisode]:
         future: Future[PlayedEpisode] = Future()
         if task.index == 1:
-            future.set_exception(LostError("gone"))
+            future.set_exception(WorkerLostError("gone"))
         elif task.index != 0:
             future.set_result(PlayedEpisode(task, None))  # type: ignore[arg-type]
         return future
@@ -192,7 +192,7 @@ def test_a_process_that_ended_between_episodes_is_reported_as_lost(policy: Polic
             child.kill()
             child.join()
         until(lambda: worker._executor._broken, "the executor to know that its process has ended")
-        with pytest.raises(LostError, match="its process ended"):
+        with pytest.raises(WorkerLostError, match="its process ended"):
             worker.play(EpisodeRequest(1)).result()
     finally:
         worker.close()
@@ -239,7 +239,7 @@ def test_a_core_that_becomes_free_is_used(
         ray.kill(busy)
 
     remaining: list[float] = []
-    monkeypatch.setattr("tltl_runtime.vector.cluster._TOLD_EVERY_S", 0.5)
+    monkeypatch.setattr("tltl_runtime.vector.cluster._REPORT_INTERVAL_S", 0.5)
     played = results(set_up(policy, None, None, None, 3), [EpisodeRequest(0)], "ray", waiting)
     assert [result.played for result in played] == [expected[0]]
     assert 0 < remaining[0] <= ray_pool.PATIENCE_S == HANG_S

@@ -100,10 +100,10 @@ def test_samples_have_the_expected_frequencies() -> None:
 def test_the_likeliest_choice_is_the_first_of_equal_ones() -> None:
     logits = torch.tensor([[1.0, 2.0, 2.0, 0.0, 0.0, 3.0, 1.0]])
     distribution = updated([3, 2, 2], logits)
-    wanted = [[1.0, 0.0, 0.0]]
-    assert distribution.deterministic_output(logits).tolist() == wanted
-    assert distribution.as_deterministic_output_module()(logits).tolist() == wanted
-    assert distribution.mean.tolist() == wanted
+    expected = [[1.0, 0.0, 0.0]]
+    assert distribution.deterministic_output(logits).tolist() == expected
+    assert distribution.as_deterministic_output_module()(logits).tolist() == expected
+    assert distribution.mean.tolist() == expected
 
 
 @pytest.mark.filterwarnings("ignore::DeprecationWarning")

@@ -44,7 +44,7 @@ def spec(old: str = "", new: str = "") -> Fspa:
     return load_task(SPEC.replace(old, new, 1) if old else SPEC).fspa
 
 
-def refused(card: Card, level: str = "cover_and_hide", fspa: Fspa | None = None) -> str:
+def message_of_refusal(card: Card, level: str = "cover_and_hide", fspa: Fspa | None = None) -> str:
     with pytest.raises(TltlError) as caught:
         check_policy(card, load_level(level), fspa)
     (diagnostic,) = caught.value.diagnostics
@@ -80,17 +80,17 @@ CHANGES = {
 
 @pytest.mark.parametrize("name", CHANGES)
 def test_another_spec_is_rejected_with_the_difference(card: Card, name: str) -> None:
-    change, said = CHANGES[name]
-    other = spec(*change)
-    assert spec_hash(other) != spec_hash(card.fspa)
-    assert said in refused(card, fspa=other)
+    change, text = CHANGES[name]
+    other_spec = spec(*change)
+    assert spec_hash(other_spec) != spec_hash(card.fspa)
+    assert text in message_of_refusal(card, fspa=other_spec)
 
 
-def test_other_values_of_params_are_another_spec() -> None:
+def test_a_spec_with_other_params_has_another_hash() -> None:
     text = "import stealth\nentity s1\nparam far: ratio = {}%\nspec it {{ limit 9 steps\n reach health < far }}"
-    one, other = (load_task(text.format(value)).fspa for value in (20, 30))
-    card = replace(card_of("cover_and_hide"), fspa=one)
-    assert "the param `far` is 0.3, and was 0.2" in refused(card, fspa=other)
+    first, second = (load_task(text.format(value)).fspa for value in (20, 30))
+    card = replace(card_of("cover_and_hide"), fspa=first)
+    assert "the param `far` is 0.3, and was 0.2" in message_of_refusal(card, fspa=second)
 
 
 def test_a_level_hash_depends_only_on_the_content_of_the_level() -> None:
@@ -109,16 +109,16 @@ def test_the_hash_of_a_spec_is_stable() -> None:
 # --- messages ---------------------------------------------------------------------------------------
 
 MESSAGES: dict[str, Callable[[Card], Any]] = {
-    "TLT0843": lambda card: refused(card, "navigation"),
-    "TLT0843_spec": lambda card: refused(card, fspa=spec(*CHANGES["limit"][0])),
-    "TLT0843_other_spec": lambda card: refused(card, fspa=card_of("branching").fspa),
-    "TLT0843_senses": lambda card: refused(replace(card, observation=OBSERVATION + 1)),
-    "TLT0843_actions": lambda card: refused(replace(card, branches=(3, 3))),
+    "TLT0843": lambda card: message_of_refusal(card, "navigation"),
+    "TLT0843_spec": lambda card: message_of_refusal(card, fspa=spec(*CHANGES["limit"][0])),
+    "TLT0843_other_spec": lambda card: message_of_refusal(card, fspa=card_of("branching").fspa),
+    "TLT0843_senses": lambda card: message_of_refusal(replace(card, observation=OBSERVATION + 1)),
+    "TLT0843_actions": lambda card: message_of_refusal(replace(card, branches=(3, 3))),
 }
 
 
 @pytest.mark.parametrize("name", MESSAGES)
-def test_the_message_is_as_expected(card: Card, name: str) -> None:
+def test_an_unfit_policy_gives_the_expected_message(card: Card, name: str) -> None:
     message, expected = MESSAGES[name](card), GOLDEN / f"{name}.txt"
     if os.environ.get("UPDATE_GOLDEN") == "1":
         expected.write_text(message, encoding="utf-8")

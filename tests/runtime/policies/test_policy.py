@@ -49,11 +49,11 @@ def test_samples_have_the_frequencies_of_the_softmax(policy: Policy) -> None:
 
 def test_equal_generators_give_equal_choices(policy: Policy) -> None:
     observation = observation_of(policy.card, np.random.default_rng(3))
-    one, other = (
+    first, second = (
         [policy.choose(observation, rng).tolist() for _ in range(50)] for rng in map(np.random.default_rng, (1, 1))
     )
-    assert one == other
-    assert len(set(map(tuple, one))) > 1
+    assert first == second
+    assert len(set(map(tuple, first))) > 1
 
 
 def test_the_first_of_equal_choices_is_chosen(policy: Policy) -> None:
@@ -87,7 +87,7 @@ def test_the_memory_layout_of_weights_does_not_count() -> None:
         name: weight.float().to(memory_format=torch.channels_last) if weight.dim() == 4 else weight.float()
         for name, weight in policy.weights().items()
     }
-    other = Policy(policy.card, weights)
+    copy = Policy(policy.card, weights)
     for seed in range(20):
         observation = observation_of(policy.card, np.random.default_rng(seed))
-        assert (other.logits(observation) == policy.logits(observation)).all()
+        assert (copy.logits(observation) == policy.logits(observation)).all()

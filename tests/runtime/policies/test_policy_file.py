@@ -21,7 +21,7 @@ from safetensors.torch import load, save
 from tests.runtime.policies.examples import card_of, observation_of, policy_of
 from tltl_runtime.policies.file import MAX_BYTES, check_size, from_bytes, read_policy, to_bytes, write_policy
 from tltl_runtime.policies.network import Network
-from tltl_runtime.policies.policy import NoNumbersError, Policy, new_actor
+from tltl_runtime.policies.policy import NotFiniteError, Policy, new_actor
 from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.diagnostics.render import render
@@ -97,14 +97,14 @@ def test_weights_outside_half_precision_are_rejected(policy: Policy, value: floa
     actor = new_actor(policy.card)
     with torch.no_grad():
         actor.mlp[0].bias[3] = value
-    with pytest.raises(NoNumbersError, match="no finite number in half precision"):
+    with pytest.raises(NotFiniteError, match="no finite number in half precision"):
         Policy(policy.card, actor.state_dict())
 
 
 def test_weights_of_another_network_are_rejected(policy: Policy) -> None:
-    other = replace(policy.card, network=Network(hidden=(7,)))
+    other_card = replace(policy.card, network=Network(hidden=(7,)))
     with pytest.raises(ValueError, match="of another network"):
-        Policy(other, policy.weights())
+        Policy(other_card, policy.weights())
 
 
 def test_a_file_is_written_without_temporary_files(tmp_path: Path, policy: Policy) -> None:
@@ -156,7 +156,7 @@ def with_header(header: bytes, rest: bytes = b"") -> bytes:
     return len(header).to_bytes(8, "little") + header + rest
 
 
-def refused(data: bytes) -> str:
+def message_of_refusal(data: bytes) -> str:
     with pytest.raises(TltlError) as caught:
         from_bytes(data, "bot.safetensors")
     (diagnostic,) = caught.value.diagnostics
@@ -183,7 +183,7 @@ def tensor(name: str, change: Callable[[torch.Tensor], torch.Tensor]) -> Change:
     return lambda tensors, _: tensors.update({name: change(tensors[name])})
 
 
-def spoilt(value: float) -> Callable[[torch.Tensor], torch.Tensor]:
+def with_value(value: float) -> Callable[[torch.Tensor], torch.Tensor]:
     def spoil(weights: torch.Tensor) -> torch.Tensor:
         copy = weights.clone()
         copy.view(-1)[-1] = value
@@ -196,7 +196,7 @@ BIAS = "actor.mlp.0.bias"
 
 
 @pytest.mark.parametrize(
-    ("change", "said"),
+    ("change", "text"),
     [
         (set_card(format="other"), "TLT0840.*the weights of something else"),
         (lambda *_: "[]", "TLT0840.*the weights of something else"),
@@ -239,12 +239,12 @@ BIAS = "actor.mlp.0.bias"
         (lambda tensors, _: tensors.update(more=torch.zeros(1)), "TLT0842.*no use for"),
         (tensor(BIAS, lambda each: each.float()), f"TLT0842.*`{BIAS}` is F32"),
         (tensor(BIAS, lambda each: each[:-1].clone()), f"TLT0842.*`{BIAS}` is F16 of shape"),
-        (tensor(BIAS, spoilt(float("nan"))), f"TLT0842.*`{BIAS}` has values that are no finite numbers"),
-        (tensor(BIAS, spoilt(float("-inf"))), f"TLT0842.*`{BIAS}` has values"),
+        (tensor(BIAS, with_value(float("nan"))), f"TLT0842.*`{BIAS}` has values that are no finite numbers"),
+        (tensor(BIAS, with_value(float("-inf"))), f"TLT0842.*`{BIAS}` has values"),
     ],
 )
-def test_an_edited_file_is_rejected_with_the_reason(policy: Policy, change: Change, said: str) -> None:
-    assert re.search(said, refused(edited(policy, change)), re.DOTALL)
+def test_an_edited_file_is_rejected_with_the_reason(policy: Policy, change: Change, text: str) -> None:
+    assert re.search(text, message_of_refusal(edited(policy, change)), re.DOTALL)
 
 
 @pytest.mark.parametrize(
@@ -263,14 +263,14 @@ def test_an_edited_file_is_rejected_with_the_reason(policy: Policy, change: Chan
     ],
 )
 def test_data_that_is_no_policy_is_rejected(data: bytes) -> None:
-    assert "TLT0840" in refused(data)
+    assert "TLT0840" in message_of_refusal(data)
 
 
 def test_a_truncated_file_is_rejected(policy: Policy) -> None:
     data = to_bytes(policy)
     for end in (*range(60), *random.Random(1).sample(range(len(data)), 60), len(data) - 1):
-        assert "TLT0840" in refused(data[:end])
-    assert "TLT0840" in refused(data + b"\0")
+        assert "TLT0840" in message_of_refusal(data[:end])
+    assert "TLT0840" in message_of_refusal(data + b"\0")
 
 
 @pytest.mark.parametrize("offsets", [[0, 2], [-1, 3], [10**30, 10**30 + 2], "x", None])
@@ -279,7 +279,7 @@ def test_overlapping_or_outside_tensors_are_rejected(policy: Policy, offsets: An
     header = header_of(data)
     header[BIAS]["data_offsets"] = offsets
     rest = data[8 + int.from_bytes(data[:8], "little") :]
-    assert "TLT0840" in refused(with_header(json.dumps(header).encode(), rest))
+    assert "TLT0840" in message_of_refusal(with_header(json.dumps(header).encode(), rest))
 
 
 @settings(
@@ -301,16 +301,16 @@ def test_a_changed_byte_is_rejected_or_gives_a_valid_policy(policy: Policy, data
 # --- messages ---------------------------------------------------------------------------------------
 
 MESSAGES: dict[str, Callable[[Policy], str]] = {
-    "TLT0840": lambda policy: refused(to_bytes(policy)[:-40]),
-    "TLT0840_other": lambda policy: refused(save({"weight": torch.zeros(2)})),
-    "TLT0841": lambda policy: refused(edited(policy, set_card(version=2))),
-    "TLT0842": lambda policy: refused(edited(policy, tensor(BIAS, spoilt(float("nan"))))),
-    "TLT0842_card": lambda policy: refused(edited(policy, set_card(level=3))),
+    "TLT0840": lambda policy: message_of_refusal(to_bytes(policy)[:-40]),
+    "TLT0840_other": lambda policy: message_of_refusal(save({"weight": torch.zeros(2)})),
+    "TLT0841": lambda policy: message_of_refusal(edited(policy, set_card(version=2))),
+    "TLT0842": lambda policy: message_of_refusal(edited(policy, tensor(BIAS, with_value(float("nan"))))),
+    "TLT0842_card": lambda policy: message_of_refusal(edited(policy, set_card(level=3))),
 }
 
 
 @pytest.mark.parametrize("name", MESSAGES)
-def test_the_message_is_as_expected(policy: Policy, name: str) -> None:
+def test_an_invalid_file_gives_the_expected_message(policy: Policy, name: str) -> None:
     message, expected = MESSAGES[name](policy), GOLDEN / f"{name}.txt"
     if os.environ.get("UPDATE_GOLDEN") == "1":
         expected.write_text(message, encoding="utf-8")

@@ -15,7 +15,7 @@ from torch import nn
 from tests.runtime.training.runs import checkpoint_of, run_in
 from tests.runtime.training.test_settings import compare
 from tltl_runtime.policies.file import read_policy, write_policy
-from tltl_runtime.policies.policy import NoNumbersError, Policy
+from tltl_runtime.policies.policy import NotFiniteError, Policy
 from tltl_runtime.policies.summary import summary, summary_text
 from tltl_runtime.training.exploration.search import SearchProgress
 from tltl_runtime.training.run.checkpoint import deep_copy
@@ -103,7 +103,7 @@ def test_an_initial_policy_that_gives_no_numbers_is_rejected(
     tmp_path: Path, policy: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def refuse(*_: object) -> None:
-        raise NoNumbersError("it gives no numbers")
+        raise NotFiniteError("it gives no numbers")
 
     run = tuned(tmp_path / "run", policy, exploration__ways=4, exploration__steps=400)
     monkeypatch.setattr(Policy, "choose", refuse)

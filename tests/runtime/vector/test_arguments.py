@@ -77,7 +77,7 @@ MULTI = spaces.MultiDiscrete([3, 2])
 
 
 @pytest.mark.parametrize(
-    ("space", "batch", "said"),
+    ("space", "batch", "text"),
     [
         (MULTI, [[0, 0], [3, 0]], r"env 1 is \[3, 0\], which is not in MultiDiscrete"),
         (MULTI, [[0, -1], [0, 0]], r"env 0 is \[0, -1\]"),
@@ -89,8 +89,8 @@ MULTI = spaces.MultiDiscrete([3, 2])
         (spaces.Dict(move=MULTI), {"move": [[0, 0], [0, 2]]}, r"env 1 is \[0, 2\]"),
     ],
 )
-def test_an_action_outside_its_space_is_named(space: spaces.Space[Any], batch: Any, said: str) -> None:
-    with pytest.raises(ValueError, match=said):
+def test_an_action_outside_its_space_is_named(space: spaces.Space[Any], batch: Any, text: str) -> None:
+    with pytest.raises(ValueError, match=text):
         check_batch(space, batch, 2)
 
 

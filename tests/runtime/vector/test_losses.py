@@ -54,7 +54,7 @@ def error_of_loss(env: WorkerVectorEnv, *actions: list[int]) -> WorkerError:
     return caught.value
 
 
-def test_a_worker_that_exits() -> None:
+def test_a_worker_that_exits_is_reported_with_its_status() -> None:
     error = error_of_loss(fragile(1), *[[GO, GO]] * 9, [GO, EXIT])
     assert str(error).splitlines() == [
         "worker 0 ended with exit status 3; it had",
@@ -64,7 +64,7 @@ def test_a_worker_that_exits() -> None:
     assert (error.loss.status, error.playing[1].seed, error.playing[1].step) == (3, 41, 3)
 
 
-def test_a_worker_that_is_killed_between_two_steps() -> None:
+def test_a_worker_that_is_killed_between_two_steps_is_reported() -> None:
     env = fragile(2)
     kill(env.worker_pids[1])
     error = error_of_loss(env, [GO, GO])
@@ -72,7 +72,7 @@ def test_a_worker_that_is_killed_between_two_steps() -> None:
     assert [playing.env for playing in error.playing] == [1]
 
 
-def test_a_worker_that_raises() -> None:
+def test_a_worker_that_raises_is_reported_with_its_traceback() -> None:
     error = error_of_loss(fragile(2, names=["left", "right"]), [GO, GO], [RAISE, GO])
     lines = str(error).splitlines()
     assert lines[:3] == [
@@ -83,7 +83,7 @@ def test_a_worker_that_raises() -> None:
     assert lines[-1] == "RuntimeError: the bridge is out"
 
 
-def test_a_worker_that_is_silent(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_silent_worker_is_reported_and_killed(monkeypatch: pytest.MonkeyPatch) -> None:
     env = fragile(2)
     time_out_with(env, 1, monkeypatch)
     error = error_of_loss(env, [GO, HANG])
@@ -108,7 +108,7 @@ def test_a_silent_worker_is_reported_though_another_answers_and_ends(monkeypatch
     assert str(error).startswith(f"worker 0 was silent for {HANG_S:g} s, and was killed")
 
 
-def test_a_player_that_leaves_its_level() -> None:
+def test_an_error_of_the_game_is_reported_with_its_traceback() -> None:
     env = WorkerVectorEnv([leaves_its_level], names=["navigation v0"])
     env.reset(seed=3)
     error = error_of_loss(env, *[[[1, 1, 0, 0, 0]]] * 20)
@@ -116,7 +116,7 @@ def test_a_player_that_leaves_its_level() -> None:
     assert "WorldError: level navigation v0, step " in str(error)
 
 
-def test_an_environment_that_cannot_be_created() -> None:
+def test_an_environment_that_cannot_be_made_is_reported() -> None:
     with pytest.raises(WorkerError, match="no room for another") as caught:
         WorkerVectorEnv([partial(Unmade, os.getpid())])
     assert "env 0: Unmade, not reset yet" in str(caught.value)

@@ -13,7 +13,7 @@ import pytest
 from tests.runtime.own_cluster import CORES, needs_ray, own_cluster
 from tests.runtime.vector.clock import Clock
 from tests.runtime.vector.envs import EXIT, GO, HANG, RAISE, Fragile
-from tests.runtime.vector.test_vector import COUNT, SPEC, played, same
+from tests.runtime.vector.test_vector import COUNT, SPEC, equal_values, results_of_steps
 from tests.waiting import HANG_S, until
 from tltl_runtime.vector import WorkerError, WorkerVectorEnv, make_vec
 from tltlc.diagnostics.diagnostic import TltlError
@@ -45,13 +45,13 @@ def test_processes_of_torchrun_share_the_cores(monkeypatch: pytest.MonkeyPatch) 
 
 
 def test_ray_gives_the_same_steps_as_local_workers() -> None:
-    rows = played(make_vec("cover_and_hide", "v2", COUNT, "ray", spec=SPEC))
-    expected_rows = played(make_vec("cover_and_hide", "v2", COUNT, 2, spec=SPEC))
+    rows = results_of_steps(make_vec("cover_and_hide", "v2", COUNT, "ray", spec=SPEC))
+    expected_rows = results_of_steps(make_vec("cover_and_hide", "v2", COUNT, 2, spec=SPEC))
     for ours, theirs in zip(rows, expected_rows, strict=True):
-        assert all(map(same, ours, theirs))
+        assert all(map(equal_values, ours, theirs))
 
 
-def test_an_actor_that_raises() -> None:
+def test_an_actor_that_raises_is_reported_with_its_traceback() -> None:
     env = WorkerVectorEnv([Fragile] * 2, "ray", timeout=HANG_S)
     env.reset(seed=[4, 8])
     env.step(np.array([GO, GO]))
@@ -123,7 +123,7 @@ def test_environments_are_spread_over_the_actors_that_start(monkeypatch: pytest.
         assert list(env.step(np.full(2 * CORES + 2, GO))[1]) == [1.0] * (2 * CORES + 2)
 
 
-def test_an_environment_that_cannot_be_created() -> None:
+def test_an_environment_that_cannot_be_made_is_reported() -> None:
     with pytest.raises(WorkerError, match="no room"):
         WorkerVectorEnv([Fragile, partial(missing, True)], "ray")
 

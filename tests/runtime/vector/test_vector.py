@@ -17,7 +17,7 @@ from tests.runtime.vector.envs import Fragile, Preparing
 from tests.waiting import until
 from tltl_runtime.stealth.env import make_env
 from tltl_runtime.vector import WorkerVectorEnv, make_vec
-from tltl_runtime.vector.workers import shared_out
+from tltl_runtime.vector.workers import split_evenly
 
 SPEC = """
 clock 0.15 s
@@ -31,18 +31,22 @@ COUNT = 4
 SHARED = ("verdict", "state", "progress", "success")
 
 
-def same(one: Any, other: Any) -> bool:
+def equal_values(first: Any, second: Any) -> bool:
     """Whether the values are equal, including the types of arrays."""
-    if isinstance(one, dict):
-        return isinstance(other, dict) and one.keys() == other.keys() and all(same(one[k], other[k]) for k in one)
-    if isinstance(one, np.ndarray):
-        if one.dtype == object:
-            return len(one) == len(other) and all(map(same, one, other))
-        return one.dtype == other.dtype and np.array_equal(one, other)
-    return bool(one == other)
+    if isinstance(first, dict):
+        return (
+            isinstance(second, dict)
+            and first.keys() == second.keys()
+            and all(equal_values(first[k], second[k]) for k in first)
+        )
+    if isinstance(first, np.ndarray):
+        if first.dtype == object:
+            return len(first) == len(second) and all(map(equal_values, first, second))
+        return first.dtype == second.dtype and np.array_equal(first, second)
+    return bool(first == second)
 
 
-def played(env: Any) -> list[Any]:
+def results_of_steps(env: Any) -> list[Any]:
     """Take 210 steps, with resets by one seed, by none and by a list of seeds; return all results."""
     rng = np.random.default_rng(8)
     rows: list[Any] = []
@@ -57,7 +61,9 @@ def played(env: Any) -> list[Any]:
 
 
 def in_this_process(autoreset: AutoresetMode) -> list[Any]:
-    return played(SyncVectorEnv([partial(make_env, "cover_and_hide", "v2", SPEC)] * COUNT, autoreset_mode=autoreset))
+    return results_of_steps(
+        SyncVectorEnv([partial(make_env, "cover_and_hide", "v2", SPEC)] * COUNT, autoreset_mode=autoreset)
+    )
 
 
 def without_episode(info: dict[str, Any]) -> dict[str, Any]:
@@ -70,22 +76,24 @@ def expected() -> list[Any]:
 
 
 @pytest.mark.parametrize("workers", [1, 2, 3])
-def test_same_episodes_for_any_number_of_workers(expected: list[Any], workers: int) -> None:
+def test_any_number_of_workers_gives_the_same_episodes(expected: list[Any], workers: int) -> None:
     env = make_vec("cover_and_hide", "v2", COUNT, workers, spec=SPEC)
     assert env.metadata["autoreset_mode"] is AutoresetMode.SAME_STEP
     assert len(env.worker_pids) == workers
-    rows = played(env)
+    rows = results_of_steps(env)
     ends, totals, lengths = 0, np.zeros(COUNT), np.zeros(COUNT)
     for ours, theirs in zip(rows, expected, strict=True):
-        assert all(same(our_part, their_part) for our_part, their_part in zip(ours[:-1], theirs[:-1], strict=True))
+        assert all(
+            equal_values(our_part, their_part) for our_part, their_part in zip(ours[:-1], theirs[:-1], strict=True)
+        )
         assert all(np.array_equal(ours[-1][key], theirs[-1][key]) for key in SHARED)
         totals = totals + ours[1] if len(ours) == 5 else np.zeros(COUNT)
         lengths = lengths + 1 if len(ours) == 5 else np.zeros(COUNT)
         assert ("final_obs" in ours[-1]) is ("final_obs" in theirs[-1])
         if "final_obs" in ours[-1]:
             final = ours[-1]["final_info"]
-            assert same(ours[-1]["final_obs"], theirs[-1]["final_obs"])
-            assert same(without_episode(final), theirs[-1]["final_info"])
+            assert equal_values(ours[-1]["final_obs"], theirs[-1]["final_obs"])
+            assert equal_values(without_episode(final), theirs[-1]["final_info"])
             over = final["_episode"]
             assert np.allclose(final["episode"]["r"][over], totals[over])
             assert list(final["episode"]["l"][over]) == list(lengths[over])
@@ -94,13 +102,15 @@ def test_same_episodes_for_any_number_of_workers(expected: list[Any], workers: i
     assert ends > 6
 
 
-def test_autoreset_in_the_next_step() -> None:
+def test_with_next_step_an_episode_begins_in_the_step_after_the_end() -> None:
     expected = in_this_process(AutoresetMode.NEXT_STEP)
     env = make_vec("cover_and_hide", "v2", COUNT, 2, spec=SPEC, autoreset="NextStep")
     assert env.metadata["autoreset_mode"] is AutoresetMode.NEXT_STEP
     ends, totals = 0, np.zeros(COUNT)
-    for ours, theirs in zip(played(env), expected, strict=True):
-        assert all(same(our_part, their_part) for our_part, their_part in zip(ours[:-1], theirs[:-1], strict=True))
+    for ours, theirs in zip(results_of_steps(env), expected, strict=True):
+        assert all(
+            equal_values(our_part, their_part) for our_part, their_part in zip(ours[:-1], theirs[:-1], strict=True)
+        )
         assert all(np.array_equal(ours[-1][key], theirs[-1][key]) for key in SHARED)
         totals = totals + ours[1] if len(ours) == 5 else np.zeros(COUNT)
         if "episode" in ours[-1]:
@@ -140,7 +150,7 @@ def test_workers_run_any_environment_with_spaces_of_fixed_size() -> None:
     observations, infos = env.reset(seed=[1, 2, 1], options={"why": 4})
     assert env.observation_space.contains(observations)
     assert list(infos["options"]["why"]) == [4, 4, 4]
-    assert same(observations["pair"][0][0], observations["pair"][0][2])
+    assert equal_values(observations["pair"][0][0], observations["pair"][0][2])
     with pytest.raises(ValueError, match=r"a batch of shape \(3,\) is needed, not \(\)"):
         env.step(0)
     for step in range(1, 7):
@@ -196,6 +206,6 @@ def test_invalid_arguments_are_rejected() -> None:
 
 @pytest.mark.parametrize("count, workers, lengths", [(4, 3, [1, 1, 2]), (32, 2, [16, 16]), (5, 1, [5])])
 def test_shares_differ_by_at_most_one(count: int, workers: int, lengths: list[int]) -> None:
-    shares = list(shared_out(count, workers))
+    shares = list(split_evenly(count, workers))
     assert [share.stop - share.start for share in shares] == lengths
     assert [row for share in shares for row in range(share.start, share.stop)] == list(range(count))

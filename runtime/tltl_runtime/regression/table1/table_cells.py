@@ -9,7 +9,7 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Final
 
-from tltl_runtime.evaluation.evaluate import Pool, evaluate, results_here
+from tltl_runtime.evaluation.evaluate import Pool, evaluate, local_results
 from tltl_runtime.evaluation.play import episode_seed
 from tltl_runtime.evaluation.player import EpisodeRequest, PlayedEpisode
 from tltl_runtime.evaluation.statistics import spread_of
@@ -92,7 +92,7 @@ def _expert_episodes(level: str, variant: str, pool: Pool) -> Generator[EpisodeR
     def replay_command(task: EpisodeRequest) -> str:
         return f"tltlc demonstrate {level}:{variant} --seed {episode_seed(SEED, task.index)}"
 
-    for result in results_here(partial(_ExpertPlayer, level, variant), tasks, workers, SEED, replay_command):
+    for result in local_results(partial(_ExpertPlayer, level, variant), tasks, workers, SEED, replay_command):
         yield EpisodeResult(result.played.success, result.played.progress, result.played.reward)
 
 

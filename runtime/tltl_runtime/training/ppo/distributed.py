@@ -10,7 +10,7 @@ import torch
 from torch import distributed
 
 from tltl_runtime.vector.cores import cores as usable_cores
-from tltl_runtime.vector.cores import started
+from tltl_runtime.vector.cores import torchrun_variable
 from tltlc.api import record
 
 T = TypeVar("T")
@@ -52,8 +52,8 @@ def process_group() -> ProcessGroup:
 
     Without these variables it is the only process.
     """
-    count, local_count = (started(name, 1) for name in ("WORLD_SIZE", "LOCAL_WORLD_SIZE"))
-    rank, local_rank = (started(name, 0) for name in ("RANK", "LOCAL_RANK"))
+    count, local_count = (torchrun_variable(name, 1) for name in ("WORLD_SIZE", "LOCAL_WORLD_SIZE"))
+    rank, local_rank = (torchrun_variable(name, 0) for name in ("RANK", "LOCAL_RANK"))
     return ProcessGroup(rank, count, local_rank, local_count)
 
 

@@ -8,7 +8,7 @@ from torch import Tensor
 
 from tltl_runtime.game.registry import registered_game
 from tltl_runtime.policies.card import Card
-from tltl_runtime.policies.policy import NoNumbersError, Policy
+from tltl_runtime.policies.policy import NotFiniteError, Policy
 from tltl_runtime.training.ppo.environment import TrainingEnv
 from tltl_runtime.training.run.run_file import TrainingRun
 from tltl_runtime.training.run.versions import versions
@@ -46,6 +46,6 @@ def policy_of(card: Card, weights: Mapping[str, Tensor]) -> Policy:
     """
     try:
         return Policy(card, weights)
-    except NoNumbersError as error:
+    except NotFiniteError as error:
         help_ = "train anew with a smaller `learning_rate` or `max_gradient`"
         raise TltlError([Diagnostic("TLT0866", str(error), help=help_)]) from None

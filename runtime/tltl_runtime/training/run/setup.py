@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tltl_runtime.game.registry import registered_game
-from tltl_runtime.policies.policy import NoNumbersError, Policy
+from tltl_runtime.policies.policy import NotFiniteError, Policy
 from tltl_runtime.spec.wrapper import TltlEnv
 from tltl_runtime.training.exploration.replayed_starts import ReplayedStartEnv
 from tltl_runtime.training.exploration.reverse_curriculum import ReverseCurriculum
@@ -164,7 +164,7 @@ def _player(run: TrainingRun, group: ProcessGroup, policy: Policy | None) -> Pla
     def play(observation: Mapping[str, NDArray[Any]]) -> NDArray[np.int64]:
         try:
             return policy.choose(observation, generator)
-        except NoNumbersError as error:
+        except NotFiniteError as error:
             title = f"the policy that the training in `{run.folder}` begins with: {error}"
             help_ = "begin with another one, or train without --from"
             raise TltlError([Diagnostic("TLT0854", title, help=help_)]) from None

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tests.runtime.stealth.enemy_levels import level, wall
-from tltl_runtime.stealth.expert.lattice import ACTIONS, FAR, SPRINTS, WAYS, lattice_of
+from tltl_runtime.stealth.expert.lattice import ACTIONS, DISPLACEMENTS, FAR, SPRINTS, lattice_of
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.stealth.world.physics import World
 
@@ -26,7 +26,7 @@ def test_a_feasible_action_ends_where_the_lattice_predicts() -> None:
             chosen = int(rng.choice(np.flatnonzero(free)))
             world.step(ACTIONS[chosen])
             stamina = world.player.stamina
-            assert world.player.position[:2] == pytest.approx(here + WAYS[chosen], abs=0.01)
+            assert world.player.position[:2] == pytest.approx(here + DISPLACEMENTS[chosen], abs=0.01)
 
 
 def test_the_decisions_around_a_wall_match_the_length_of_the_route() -> None:

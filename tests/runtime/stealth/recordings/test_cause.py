@@ -11,7 +11,7 @@ import pytest
 from tltl_runtime.stealth.env import make_env
 from tltl_runtime.stealth.expert.expert import Expert, play_episode
 from tltl_runtime.stealth.recording import RecordEpisode
-from tltl_runtime.stealth.recordings.cause import _blows, cause
+from tltl_runtime.stealth.recordings.cause import _damage_rates, cause
 from tltl_runtime.stealth.recordings.episode import Episode
 from tltl_runtime.stealth.world.player import DECISION
 from tltlc.core.record import replace
@@ -50,7 +50,7 @@ def test_the_recorded_damage_accounts_for_all_lost_health(level: str, seed: int)
     episode = play_carelessly(level, seed)
     for before, after in pairwise(episode.snapshots):
         if after.health > 0.0:
-            damage = sum(_blows(episode.level, before, after).values()) * DECISION
+            damage = sum(_damage_rates(episode.level, before, after).values()) * DECISION
             assert damage == pytest.approx(before.health - after.health, abs=1e-9)
 
 
