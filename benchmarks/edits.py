@@ -124,7 +124,7 @@ def expert(level: str, variant: str, plan: Plan) -> Record:
     the number of successes, and a digest of each episode (``ways``).
     """
     from tltl_runtime.stealth.capabilities.feasible import check_reach
-    from tltl_runtime.stealth.capabilities.reach import reachable
+    from tltl_runtime.stealth.capabilities.reach import compute_reach
     from tltl_runtime.stealth.capabilities.spec_places import SpecPlaces
     from tltl_runtime.stealth.env import make_env
     from tltl_runtime.stealth.expert.expert import Expert, play_episode
@@ -134,7 +134,7 @@ def expert(level: str, variant: str, plan: Plan) -> Record:
     try:
         player = Expert(env)
         fspa = env.get_wrapper_attr("task").fspa
-        unreachable = check_reach(player.level, reachable(player.level), fspa, SpecPlaces(None))
+        unreachable = check_reach(player.level, compute_reach(player.level), fspa, SpecPlaces(None))
         ways, successes, failures = [], 0, 0
         for seed in range(plan.expert_episodes):
             play_episode(env, player, seed)

@@ -107,7 +107,7 @@ def main() -> None:
 
 
 def _show(variant: str) -> None:
-    from tltl_runtime.stealth.capabilities.reach import reachable
+    from tltl_runtime.stealth.capabilities.reach import compute_reach
     from tltl_runtime.stealth.levels.file import load_level
     from tltl_runtime.stealth.world.physics import World
 
@@ -127,7 +127,7 @@ def _show(variant: str) -> None:
         f"furthest east {max(place[0] for place in rest.places):.2f} m; {rest.poses} poses, "
         f"{room.decisions + rest.decisions} decisions, {time.perf_counter() - begin:.0f} s"
     )
-    near = ", ".join(f"{name} {distance:.1f} m" for name, distance in reachable(level).distances.items())
+    near = ", ".join(f"{name} {distance:.1f} m" for name, distance in compute_reach(level).distances.items())
     print(f"{variant}: for certain, nobody gets nearer to each than: {near}")
 
 

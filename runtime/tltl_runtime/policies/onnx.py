@@ -54,7 +54,7 @@ def to_onnx(policy: Policy) -> bytes:
 
 
 class _PolicyModule(nn.Module):
-    """Maps the parts of observations to logits and actions."""
+    """The policy as a module: maps the parts of observations to logits and the likeliest actions."""
 
     def __init__(self, policy: Policy) -> None:
         super().__init__()

@@ -59,7 +59,7 @@ def _value(kind: Any, data: object, where: str) -> object:
     if origin is Literal:
         if isinstance(data, str) and data in get_args(kind):
             return data
-        raise _wrong(where, "one of " + ", ".join(map(repr, get_args(kind))), data)
+        raise _mismatch_error(where, "one of " + ", ".join(map(repr, get_args(kind))), data)
     if origin is UnionType:
         return None if data is None else _value(next(arg for arg in get_args(kind) if arg is not NoneType), data, where)
     if origin is tuple:
@@ -68,18 +68,18 @@ def _value(kind: Any, data: object, where: str) -> object:
         inner = get_args(kind)[1]
         return {name: _value(inner, item, f"{where}.{name}") for name, item in _object(data, where).items()}
     if kind is Any:
-        return _any(data, where)
+        return _any_value(data, where)
     if kind in _PLAIN:
-        return _plain(kind, data, where)
+        return _plain_value(kind, data, where)
     return _record(kind, data, where, {})
 
 
-def _plain(kind: type, data: object, where: str) -> object:
+def _plain_value(kind: type, data: object, where: str) -> object:
     if kind is float and type(data) is int and abs(data) < 2**53:
         return float(data)
     if type(data) is kind and _fits(data):
         return data
-    raise _wrong(where, _PLAIN[kind], data)
+    raise _mismatch_error(where, _PLAIN[kind], data)
 
 
 def _fits(data: object) -> bool:
@@ -89,18 +89,18 @@ def _fits(data: object) -> bool:
     return not isinstance(data, float) or isfinite(data)
 
 
-def _any(data: object, where: str) -> object:
+def _any_value(data: object, where: str) -> object:
     """Return JSON data of any kind. ``json.loads`` also accepts numbers that are not finite; these are errors."""
     if isinstance(data, dict):
-        return {name: _any(item, f"{where}.{name}") for name, item in data.items()}
+        return {name: _any_value(item, f"{where}.{name}") for name, item in data.items()}
     if isinstance(data, list):
-        return [_any(item, f"{where}[{index}]") for index, item in enumerate(data)]
-    return _plain(float, data, where) if isinstance(data, float) else data
+        return [_any_value(item, f"{where}[{index}]") for index, item in enumerate(data)]
+    return _plain_value(float, data, where) if isinstance(data, float) else data
 
 
 def _tuple(kinds: tuple[Any, ...], data: object, where: str) -> tuple[object, ...]:
     if not isinstance(data, list):
-        raise _wrong(where, "a list", data)
+        raise _mismatch_error(where, "a list", data)
     if kinds[-1] is Ellipsis:
         kinds = kinds[:1] * len(data)
     if len(data) != len(kinds):
@@ -147,7 +147,7 @@ def _gather_inlined(kind: Any, values: dict[str, object]) -> list[str]:
 def _object(data: object, where: str) -> dict[str, object]:
     if isinstance(data, dict):
         return data
-    raise _wrong(where, "an object", data)
+    raise _mismatch_error(where, "an object", data)
 
 
 @cache
@@ -161,5 +161,5 @@ def _fields(kind: Any) -> Mapping[str, Any]:
     return fields
 
 
-def _wrong(where: str, expected: str, data: object) -> RecordJsonError:
+def _mismatch_error(where: str, expected: str, data: object) -> RecordJsonError:
     return RecordJsonError(f"`{where}` is {data!r:.60}, and {expected} was expected")

@@ -33,13 +33,13 @@ def check_batch(space: Space[Any], batch: Any, count: int) -> None:
         raise ValueError(f"a batch of shape {shape} is needed, not {array.shape}")
     if not np.can_cast(array.dtype, np.dtype(space.dtype), "same_kind"):
         raise ValueError(f"actions of {space} are {space.dtype}, not {array.dtype}")
-    wrong = _outside(space, array).reshape(count, -1).any(axis=1)
+    wrong = _outside_space(space, array).reshape(count, -1).any(axis=1)
     if wrong.any():
         row = int(wrong.argmax())
         raise ValueError(f"the action of env {row} is {array[row].tolist()}, which is not in {space}")
 
 
-def _outside(space: Space[Any], values: NDArray[Any]) -> NDArray[np.bool_]:
+def _outside_space(space: Space[Any], values: NDArray[Any]) -> NDArray[np.bool_]:
     """Return a mask of the numbers that are not in the space."""
     if isinstance(space, (spaces.Discrete, spaces.MultiDiscrete)):
         size = space.n if isinstance(space, spaces.Discrete) else space.nvec

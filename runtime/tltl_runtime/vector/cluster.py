@@ -27,9 +27,10 @@ _REPORT_INTERVAL_S: Final = 10.0
 def cluster() -> Iterator[Any]:
     """Connect to a Ray cluster and yield the module ``ray``.
 
-    An existing connection is used as it is. Otherwise this connects to a running cluster: that of
-    the environment variable ``RAY_ADDRESS``, or one that ``ray start`` began here. If none is
-    running, it starts one on this machine. A connection made here is closed at the end.
+    An existing connection is used as it is. Otherwise the function connects to a running cluster: to
+    that of the environment variable ``RAY_ADDRESS``, or to one that ``ray start`` began on this
+    machine. If no cluster is running, the function starts one on this machine. A connection that it
+    made is closed at the end of the context.
 
     Raises:
         TltlError: TLT0730, Ray is not installed; TLT0852, there is no cluster at ``RAY_ADDRESS``.

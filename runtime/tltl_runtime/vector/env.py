@@ -133,8 +133,8 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         """Begin an episode in each environment.
 
         The i-th environment gets the seed ``seed + i``, or the i-th seed of a sequence. Without a
-        seed, or with None, it continues with its random generator; the first reset without a seed
-        draws one for each.
+        seed, or with None, an environment continues with its random generator. The first reset
+        without a seed draws a seed for each environment.
 
         ``options["reset_mask"]``, one bool per environment, chooses the environments to reset. The
         others continue their episodes. The mask is not passed on to the environments.

@@ -9,7 +9,7 @@ import pytest
 
 from tests.interfaces.cli.conftest import Outcome, inside, tltlc  # noqa: F401
 from tltl_runtime.cli.support.level_copy import NAMES
-from tltl_runtime.stealth.capabilities.reach import reachable
+from tltl_runtime.stealth.capabilities.reach import compute_reach
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.stealth.recordings.file import read_episode
 
@@ -46,7 +46,7 @@ def test_the_vault_requires_hiding_and_opening_the_door(tltlc, inside: Path) -> 
         lever = np.asarray(episode.signals)[:, names.index("distance(lever)")]
         assert lever.min() <= 1.0
     level.write_text(level.read_text().replace("at = [10.5, 1.5, 0.0]", "at = [10.5, 9.2, 0.0]"))
-    assert not reachable(load_level(str(level))).reaches("exit")
+    assert not compute_reach(load_level(str(level))).reaches("exit")
     message = "`door` stays shut: it is opened by `lever`, which lies behind it"
     assert message in tltlc("check", "--level", level).err
 

@@ -20,6 +20,6 @@ class Deadly:
         return self._end()
 
 
-def killed() -> None:
+def kill_this_process() -> None:
     """Kill this process with SIGKILL."""
     os.kill(os.getpid(), signal.SIGKILL)

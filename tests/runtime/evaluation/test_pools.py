@@ -13,7 +13,7 @@ from typing import Any, get_args
 
 import pytest
 
-from tests.runtime.evaluation.deadly import Deadly, killed
+from tests.runtime.evaluation.deadly import Deadly, kill_this_process
 from tests.runtime.evaluation.untrained import untrained
 from tests.runtime.own_cluster import CORES, needs_ray, own_cluster
 from tests.waiting import HANG_S, until
@@ -112,7 +112,7 @@ def out_of_the_level() -> None:
 
 @pytest.mark.parametrize("workers", POOLS)
 def test_a_lost_worker_is_reported_with_its_seed(policy: Policy, workers: Pool) -> None:
-    setup = Setup(Deadly(policy, killed), "cover_and_hide", "v0", policy.card.fspa, 3, policy.card.params)  # type: ignore[arg-type]
+    setup = Setup(Deadly(policy, kill_this_process), "cover_and_hide", "v0", policy.card.fspa, 3, policy.card.params)  # type: ignore[arg-type]
     with pytest.raises(TltlError) as caught, closing(results(setup, [EpisodeRequest(6)], workers)) as playing:
         next(playing)
     (diagnostic,) = caught.value.diagnostics
@@ -133,7 +133,7 @@ class Ends:
     """A player without a policy that kills its process."""
 
     def play(self, task: EpisodeRequest) -> PlayedEpisode:
-        killed()
+        kill_this_process()
         raise AssertionError("it was killed")
 
     def close(self) -> None:

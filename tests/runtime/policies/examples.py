@@ -31,7 +31,7 @@ def card_of(
         fspa=env.task.fspa,
         params={},
         reward=RewardOptions(),
-        sensors=env.unwrapped._senses.sensors,  # type: ignore[attr-defined]
+        sensors=env.unwrapped._observer.sensors,  # type: ignore[attr-defined]
         shapes=tuple((key, space.shape) for key, space in env.observation_space.spaces.items()),  # type: ignore[attr-defined]
         branches=(3, 3, 2, 2, 2),
         network=network,

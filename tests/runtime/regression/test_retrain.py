@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from tests.runtime.evaluation.deadly import Deadly, killed
+from tests.runtime.evaluation.deadly import Deadly, kill_this_process
 from tests.runtime.evaluation.untrained import untrained
 from tests.runtime.regression.game import NEVER, edit, with_baseline, with_few_environments, write_game
 from tests.runtime.regression.handmade import changed
@@ -157,7 +157,7 @@ def test_a_lost_worker_is_reported_with_the_command_that_plays_its_episode(
     run = training_of(game, hopeless)
 
     def deadly(prepare_case: PreparedCase, pool: Pool) -> Generator[CaseEpisode]:
-        policy: Any = Deadly(prepare_case.setup.policy, killed)
+        policy: Any = Deadly(prepare_case.setup.policy, kill_this_process)
         return play_episodes(replace(prepare_case, setup=replace(prepare_case.setup, policy=policy)), pool)
 
     monkeypatch.setattr("tltl_runtime.regression.retrain.retrain.play_episodes", deadly)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.runtime.evaluation.deadly import killed
+from tests.runtime.evaluation.deadly import kill_this_process
 from tests.runtime.policies.examples import card_of, policy_of
 from tltl_runtime.evaluation.player import EpisodeRequest, PlayedEpisode
 from tltl_runtime.evaluation.statistics import Spread
@@ -95,7 +95,7 @@ class Mortal(table_cells._ExpertPlayer):
     """A player that kills its process in its first episode."""
 
     def play(self, task: EpisodeRequest) -> PlayedEpisode:
-        killed()
+        kill_this_process()
         return super().play(task)
 
 

@@ -37,7 +37,7 @@ def kill(pid: int | None) -> None:
 
 def time_out_with(env: WorkerVectorEnv, silent: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """Let a silent worker time out as soon as it is the only one that has not answered."""
-    pending: set[int] = env._workers._asked  # type: ignore[assignment]
+    pending: set[int] = env._workers._pending  # type: ignore[assignment]
     monkeypatch.setattr("tltl_runtime.vector.workers.time", Clock(lambda: pending == {silent}))
 
 
@@ -94,7 +94,7 @@ def test_a_silent_worker_is_reported_and_killed(monkeypatch: pytest.MonkeyPatch)
 def test_a_silent_worker_is_reported_though_another_answers_and_ends(monkeypatch: pytest.MonkeyPatch) -> None:
     env = WorkerVectorEnv([Fragile, Ending], 2, timeout=HANG_S)
     env.reset(seed=40)
-    pending: set[int] = env._workers._asked  # type: ignore[assignment]
+    pending: set[int] = env._workers._pending  # type: ignore[assignment]
     ending_pids = [pid for pid in env.worker_pids[1:] if pid]
 
     def is_over() -> bool:

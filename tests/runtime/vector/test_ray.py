@@ -63,7 +63,7 @@ def test_an_actor_that_raises_is_reported_with_its_traceback() -> None:
 
 def test_a_lost_actor_is_replaced(monkeypatch: pytest.MonkeyPatch) -> None:
     env = WorkerVectorEnv([Fragile] * 2, "ray", on_death="replace", timeout=HANG_S)
-    pending: dict[Any, int] = env._workers._asked  # type: ignore[assignment]
+    pending: dict[Any, int] = env._workers._pending  # type: ignore[assignment]
     clock = Clock(lambda: set(pending.values()) == {1})
     env.reset(seed=[4, 8])
     for action in (EXIT, HANG):

@@ -13,7 +13,7 @@ from tltl_runtime.cli.support.sensor_options import senses_options
 from tltl_runtime.game.level_name import split_level
 from tltl_runtime.stealth.capabilities.capabilities import check_supply, params_from_level, used_entities
 from tltl_runtime.stealth.capabilities.feasible import check_height, check_reach
-from tltl_runtime.stealth.capabilities.reach import Reach, reachable
+from tltl_runtime.stealth.capabilities.reach import Reach, compute_reach
 from tltl_runtime.stealth.capabilities.spec_places import SpecPlaces
 from tltl_runtime.stealth.level import StealthLevel
 from tltl_runtime.stealth.levels.file import level_names, read_level, variants
@@ -65,7 +65,7 @@ class _Check:
     def __call__(self, path: str, variant: str) -> tuple[StealthLevel, Reach]:
         """Check one variant of a level and report the messages; return the level and what can be reached in it."""
         level, remarks = read_level(path, variant)
-        senses, reach = Observer(level, self._sensors), reachable(level)
+        senses, reach = Observer(level, self._sensors), compute_reach(level)
         warnings = [*remarks, *check_height(level, reach)]
         self._add(warnings)
         inputs = self._inputs or self._compile_own_spec(level)

@@ -4,9 +4,9 @@ The code computes what :func:`tltlc.expression.evaluate.evaluate` does, for all 
 that function raises an error, the value here is arbitrary and the environment is marked as failed;
 a case that an environment does not take cannot fail there.
 
-On a CPU in float64 the values are equal to the last bit, except for the sign of zeros and for
-``exp``, ``tanh``, ``sqrt`` and powers other than 2 and 3. Torch rounds these differently from the C
-library, by a relative difference of less than 1e-12.
+On a CPU in float64 the values are equal to the last bit, except for the sign of zeros. Another
+exception are ``exp``, ``tanh``, ``sqrt`` and powers other than 2 and 3, which torch rounds differently
+from the C library: the relative difference is less than 1e-12.
 """
 
 from __future__ import annotations

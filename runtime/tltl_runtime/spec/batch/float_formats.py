@@ -1,4 +1,4 @@
-"""Floating-point formats: which numbers fit into one, and how values keep their sign in a smaller one."""
+"""Check whether numbers fit into a floating-point format, and convert values without losing their sign."""
 
 from __future__ import annotations
 

@@ -95,9 +95,8 @@ class BatchMonitor:
     in a tensor.
 
     Checking samples waits for the device a few times per step. With ``checked=False`` a step never
-    waits: values out of range are clamped and not counted, a NaN makes its atoms false and may
-    appear in progress and reward, and if exclusive atoms hold at once, some edge of the state is
-    taken.
+    waits. Then values out of range are clamped and not counted. A NaN makes its atoms false and may
+    appear in progress and reward. If exclusive atoms hold at once, some edge of the state is taken.
 
     Raises:
         MonitorError: TLT0307, TLT0308 for ``params`` that do not fit.

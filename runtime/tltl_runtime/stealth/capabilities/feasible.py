@@ -7,7 +7,7 @@ from math import inf
 from typing import Final
 
 from tltl_runtime.stealth.capabilities.capabilities import params_from_level, used_entities
-from tltl_runtime.stealth.capabilities.reach import Reach, highest_jump, highest_lift, reachable
+from tltl_runtime.stealth.capabilities.reach import Reach, compute_reach, highest_jump, highest_lift
 from tltl_runtime.stealth.capabilities.space import Budget, SpaceBudgetError
 from tltl_runtime.stealth.capabilities.spec_places import SpecPlaces
 from tltl_runtime.stealth.capabilities.vocabulary import offered_signals
@@ -57,7 +57,7 @@ def reach_warnings(level: StealthLevel, fspa: Fspa) -> list[Diagnostic]:
     If the level is too large to search, return TLT0006 as a warning.
     """
     try:
-        diagnostics: Iterable[Diagnostic] = check_reach(level, reachable(level), fspa, SpecPlaces(None))
+        diagnostics: Iterable[Diagnostic] = check_reach(level, compute_reach(level), fspa, SpecPlaces(None))
     except TltlError as error:
         diagnostics = error.diagnostics
     return [replace(diagnostic, severity="warning") for diagnostic in diagnostics]
@@ -69,7 +69,7 @@ def is_infeasible(level: StealthLevel, fspa: Fspa) -> bool:
     Return False if the level is too large to search.
     """
     try:
-        diagnostics = check_reach(level, reachable(level), fspa, SpecPlaces(None))
+        diagnostics = check_reach(level, compute_reach(level), fspa, SpecPlaces(None))
     except TltlError:
         return False
     return any(diagnostic.severity == "error" for diagnostic in diagnostics)
@@ -177,11 +177,11 @@ class _ObstacleSearch:
 
     def _reach_with_lift(self, lift: float) -> Reach:
         if lift not in self._by_lift:
-            self._by_lift[lift] = reachable(self._level, lift=lift, budget=self._budget)
+            self._by_lift[lift] = compute_reach(self._level, lift=lift, budget=self._budget)
         return self._by_lift[lift]
 
     def _is_behind(self, entity: str, obstacle: str) -> bool:
         """Whether an entity could be reached if a solid or barrier were removed."""
         if obstacle not in self._by_removed:
-            self._by_removed[obstacle] = reachable(self._level, without=[obstacle], budget=self._budget)
+            self._by_removed[obstacle] = compute_reach(self._level, without=[obstacle], budget=self._budget)
         return self._by_removed[obstacle].reaches(entity)

@@ -7,10 +7,10 @@ much (tests check some of them in the physics):
 - The body is always crouched, 0.9 m high, and extends 0.25 m to each side, not 0.3 m.
 - The top of any box is ground. So is the space up to 0.28 m beside the top and 0.16 m below it, where
   contact with the edge of the box counts as ground.
-- From ground, the feet can get to tops that are at most 1.27 m higher: a jump lifts them by 0.97 m
-  (in steps of 1/60 s), and an edge more than 0.3 m above them hits the side of the body, not its
-  round end, which would slide up. (In tests, a top of 1.1 m is nearly always reached, one of 1.2 m
-  in one of a hundred tries, one of 1.24 m never.)
+- From ground, the feet can get to tops that are at most 1.27 m higher. A jump lifts them by 0.97 m,
+  computed in steps of 1/60 s. The round end of the body then slides up the last 0.3 m of an edge; a
+  higher edge hits the side of the body. (In tests, the player reaches a top of 1.1 m nearly always, a
+  top of 1.2 m in one of a hundred tries, and a top of 1.24 m never.)
 - In the air, the player moves at most at the speed of a sprint, 5 m/s, whatever the stamina. A fall
   gets no faster than 8 m/s, so it lasts longer than in the physics.
 - Movers block nothing. Their tops are ground along their whole path, and they throw a player who
@@ -81,7 +81,7 @@ class Reach:
         return self.distances[entity] <= NEAR
 
 
-def reachable(
+def compute_reach(
     level: StealthLevel, *, lift: float | None = None, without: Collection[str] = (), budget: Budget | None = None
 ) -> Reach:
     """Compute everything that a player may reach from any start of an episode.
@@ -94,16 +94,16 @@ def reachable(
         SpaceBudgetError: the search exceeds ``budget``; only if one is given, in place of TLT0006.
     """
     if budget is not None:
-        return _reachable(level, lift, without, budget)
+        return _compute_reach(level, lift, without, budget)
     try:
-        return _reachable(level, lift, without, Budget(fileio.limits.WORK["cells of reachable space"]))
+        return _compute_reach(level, lift, without, Budget(fileio.limits.WORK["cells of reachable space"]))
     except SpaceBudgetError:
         title = f"it takes too long to find out what can be reached in `{level.name}:{level.variant}`"
         help_ = "make the level smaller, or leave out barriers whose switches lie behind other barriers"
         raise TltlError([Diagnostic("TLT0006", title, help=help_)]) from None
 
 
-def _reachable(level: StealthLevel, lift: float | None, without: Collection[str], budget: Budget) -> Reach:
+def _compute_reach(level: StealthLevel, lift: float | None, without: Collection[str], budget: Budget) -> Reach:
     kind = PlayerKind()
     search = _Search(level, kind, highest_lift(kind) if lift is None else lift, without, budget)
     switches: set[str] = set()

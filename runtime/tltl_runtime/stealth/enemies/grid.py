@@ -6,9 +6,10 @@ neighbouring cell can jump over it: a step that crosses the obstacle has an end 
 is diagonal, a cell beside it. Therefore a step between walkable neighbours is free along its whole
 length, provided that a diagonal step passes between two walkable cells.
 
-When a goal is first needed, the next step from every cell is computed for 512 goals at once, with one
-bit per goal, in 10 to 100 ms. A cache of at most 64 MB per level keeps the most recently used
-results; all pairs of 8,000 cells fit. Processes that fork after ``Floor.prepare`` share the cache.
+The next step from every cell to a goal is computed when the goal is first needed, for 512 goals at
+once, with one bit per goal. This takes 10 to 100 ms. A cache of at most 64 MB per level keeps the most
+recently used results; all pairs of 8,000 cells fit. Processes that fork after ``Floor.prepare`` share
+the cache.
 """
 
 from __future__ import annotations

@@ -30,9 +30,9 @@ class Surfaces:
     """The places of a level while the barriers with the indices ``shut`` are shut, lasers included.
 
     ``heights`` [layers] are the heights of the tops, upwards; ``xs`` [columns] and ``ys`` [rows]
-    are the centres of the cells, all in metres. ``places`` marks the places. ``standing``,
-    ``crouched`` and ``leaping`` mark where the room above is free for a body that stands, that is
-    crouched, and that jumps upright, with ``margin`` metres to all sides. Boxes no higher than a
+    are the centres of the cells, all in metres. ``places`` marks the places. ``standing`` marks where
+    the room above is free for a body that stands, ``crouched`` for a crouched body, and ``leaping``
+    for a body that jumps upright, each with ``margin`` metres to all sides. Boxes no higher than a
     stair are not obstacles.
     """
 
@@ -52,7 +52,7 @@ class Surfaces:
         self.standing = self._free(boxes, self.kind.height, margin)
         self.crouched = self._free(boxes, self.kind.crouched_height, margin)
         self.leaping = self._free(boxes, self.kind.height + apex, margin)
-        self.places: Cells = self._supported(grounds) & self.crouched & ~self._buried(boxes)
+        self.places: Cells = self._supported_cells(grounds) & self.crouched & ~self._buried_cells(boxes)
         layer, row, column = np.nonzero(self.places)
         self._flat = np.flatnonzero(self.places)
         self._points = np.stack([self.xs[column], self.ys[row], self.heights[layer]], axis=1)
@@ -75,8 +75,8 @@ class Surfaces:
         squares: NDArray[np.float64] = ((self._points - np.array(point)) ** 2).sum(axis=1)
         return squares
 
-    def _supported(self, boxes: list[Box]) -> Cells:
-        supported = self._nothing()
+    def _supported_cells(self, boxes: list[Box]) -> Cells:
+        supported = self._no_cells()
         for box in boxes:
             layer = np.flatnonzero(np.abs(self.heights - box.high[2]) < _TOUCH)
             rows, columns = self._over(box)
@@ -85,7 +85,7 @@ class Surfaces:
 
     def _free(self, boxes: list[Box], height: float, margin: float) -> Cells:
         """Return a mask of where no box touches a cylinder of this height, above the height of a stair."""
-        taken = self._nothing()
+        taken = self._no_cells()
         radius = self.kind.radius + margin
         for box in boxes:
             dx = np.maximum(np.maximum(box.low[0] - self.xs, self.xs - box.high[0]), 0.0)
@@ -97,9 +97,9 @@ class Surfaces:
             taken[layers] |= meets[None]
         return ~taken
 
-    def _buried(self, boxes: list[Box]) -> Cells:
+    def _buried_cells(self, boxes: list[Box]) -> Cells:
         """Return a mask of where the centre of the cell is inside a box, however low the box is."""
-        buried = self._nothing()
+        buried = self._no_cells()
         for box in boxes:
             rows, columns = self._over(box)
             layers = (box.high[2] > self.heights + _TOUCH) & (box.low[2] < self.heights + _TOUCH)
@@ -112,5 +112,5 @@ class Surfaces:
         columns = (self.xs >= box.low[0]) & (self.xs <= box.high[0])
         return rows, columns
 
-    def _nothing(self) -> Cells:
+    def _no_cells(self) -> Cells:
         return np.zeros((len(self.heights), len(self.ys), len(self.xs)), dtype=np.bool_)

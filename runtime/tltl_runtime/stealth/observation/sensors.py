@@ -64,7 +64,7 @@ def _read(level: StealthLevel, choice: Mapping[str, Any], log: list[Diagnostic])
         elif isinstance(value, Mapping):
             map_ = _read_map(declared.map or DEFAULT_MAP, value, log)
         else:
-            log.append(_wrong("the map", value, "give its `cell`, `extent` and `types`, or None for no map"))
+            log.append(_wrong_value("the map", value, "give its `cell`, `extent` and `types`, or None for no map"))
     return Sensors(
         _names(choice, "entities", declared.entities, log),
         _names(choice, "variables", declared.variables, log),
@@ -77,10 +77,10 @@ def _read_map(defaults: MapSensor, mapping: Mapping[str, Any], log: list[Diagnos
     cell, extent = mapping.get("cell", defaults.cell), mapping.get("extent", defaults.extent)
     # Check the types first: `_check` compares the values as numbers.
     if not isinstance(cell, (int, float)) or isinstance(cell, bool):
-        log.append(_wrong("`cell`", cell, _CELL))
+        log.append(_wrong_value("`cell`", cell, _CELL))
         cell = defaults.cell
     if not isinstance(extent, int) or isinstance(extent, bool):
-        log.append(_wrong("`extent`", extent, _EXTENT))
+        log.append(_wrong_value("`extent`", extent, _EXTENT))
         extent = defaults.extent
     return MapSensor(_names(mapping, "types", defaults.types, log), float(cell), extent)
 
@@ -88,7 +88,7 @@ def _read_map(defaults: MapSensor, mapping: Mapping[str, Any], log: list[Diagnos
 def _names(choice: Mapping[str, Any], key: str, default: tuple[str, ...], log: list[Diagnostic]) -> tuple[str, ...]:
     value = choice.get(key, default)
     if isinstance(value, str) or not isinstance(value, Iterable):
-        log.append(_wrong(f"`{key}`", value, "give a list of names"))
+        log.append(_wrong_value(f"`{key}`", value, "give a list of names"))
         return default
     return tuple(map(str, value))
 
@@ -100,9 +100,9 @@ def _check(level: StealthLevel, sensors: Sensors, log: list[Diagnostic]) -> None
         return
     _check_names(map_.types, CELL_TYPES, "a map knows no type", log)
     if not (isfinite(map_.cell) and CELL_WIDTH[0] <= map_.cell <= CELL_WIDTH[1]):
-        log.append(_wrong("`cell`", map_.cell, _CELL))
+        log.append(_wrong_value("`cell`", map_.cell, _CELL))
     if not MAP_EXTENT[0] <= map_.extent <= MAP_EXTENT[1] or map_.extent % 2 == 0:
-        log.append(_wrong("`extent`", map_.extent, _EXTENT))
+        log.append(_wrong_value("`extent`", map_.extent, _EXTENT))
 
 
 def _check_names(
@@ -118,5 +118,5 @@ def _check_names(
     ]
 
 
-def _wrong(subject: str, value: object, expected: str) -> Diagnostic:
+def _wrong_value(subject: str, value: object, expected: str) -> Diagnostic:
     return Diagnostic("TLT0815", f"wrong value for {subject} of what is sensed: {value!r:.40}", help=expected)

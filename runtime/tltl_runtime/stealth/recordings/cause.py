@@ -25,18 +25,18 @@ def cause(episode: Episode) -> Cause:
     if not episode.success:
         death = next((row for row, shot in enumerate(episode.snapshots) if shot.health <= 0.0), None)
         if death is not None:
-            return _death(episode, death)
+            return _death_cause(episode, death)
         if episode.end == "violation":
-            return _violation(episode)
+            return _violation_cause(episode)
         if episode.end == "limit":
-            return _limit(episode)
+            return _limit_cause(episode)
     last = episode.snapshots[-1]
     kind: Kind = "success" if episode.success else "stopped"
     rest = "" if episode.success else f", remaining: {_remaining_text(episode)}"
     return Cause(kind, (), last.time, last.player.position, f"{kind} after {last.time:.2f} s{rest}")
 
 
-def _death(episode: Episode, death: int) -> Cause:
+def _death_cause(episode: Episode, death: int) -> Cause:
     shots = episode.snapshots[: death + 1]
     damage: Counter[str] = Counter()
     for before, after in pairwise(shots):
@@ -50,7 +50,7 @@ def _death(episode: Episode, death: int) -> Cause:
     return _cause_at("killed", by, shots[-1], f"{how} by {' and '.join(names)}" if by else how, broke=broke)
 
 
-def _violation(episode: Episode) -> Cause:
+def _violation_cause(episode: Episode) -> Cause:
     """Return the cause for a violation: the atoms that the last transition depended on."""
     broken = _broken_atoms(episode)
     by = tuple(name for name, _ in broken)
@@ -82,7 +82,7 @@ def _reads_health(atom: Atom) -> bool:
     )
 
 
-def _limit(episode: Episode) -> Cause:
+def _limit_cause(episode: Episode) -> Cause:
     """Return the cause of an episode that reached the limit; it says if the expert had no route to its next goal."""
     last, steps = episode.snapshots[-1], len(episode.actions)
     remaining = f"limit after {steps} steps, remaining: {_remaining_text(episode)}"

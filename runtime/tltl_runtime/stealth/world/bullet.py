@@ -12,7 +12,7 @@ from tltl_runtime.support.quiet_stderr import silence
 from tltlc.api import Diagnostic, TltlError
 
 
-def _missing() -> TltlError:
+def _missing_package_error() -> TltlError:
     help_ = "in the clone of tltlc: pip install -c constraints.txt '.[game]'"
     if sys.version_info >= (3, 12):
         help_ = "it comes ready to use for Python 3.10 and 3.11 alone: install '.[game]' in the clone with one"
@@ -23,6 +23,6 @@ try:
     with silence():
         import pybullet
 except ModuleNotFoundError:
-    raise _missing() from None
+    raise _missing_package_error() from None
 
 __all__ = ["pybullet"]

@@ -13,7 +13,7 @@ import pytest
 
 from tltl_runtime.spec.task import load_task
 from tltl_runtime.stealth.capabilities.feasible import is_infeasible, reach_warnings
-from tltl_runtime.stealth.capabilities.reach import Reach, highest_lift, reachable
+from tltl_runtime.stealth.capabilities.reach import Reach, compute_reach, highest_lift
 from tltl_runtime.stealth.capabilities.space import Budget, SpaceGrid, distances, flood
 from tltl_runtime.stealth.level import (
     Barrier,
@@ -89,24 +89,24 @@ def pit(width: float) -> tuple[Box, Box]:
     ],
 )
 def test_the_exit_is_reached_exactly_if_the_boxes_leave_a_way(boxes: tuple[Box, ...], reached: bool) -> None:
-    assert reachable(room(*boxes)).reaches("exit") == reached
+    assert compute_reach(room(*boxes)).reaches("exit") == reached
 
 
 @pytest.mark.parametrize(("width", "reached"), [(3.0, True), (5.0, False)])
 def test_a_leap_crosses_3_m_and_not_5_m(width: float, reached: bool) -> None:
     level = room(*pit(width), end=(10.5, 2.5, 2.0))
     on_top = replace(level, start=Start((1.5, 2.5, 2.0)))
-    assert reachable(on_top).reaches("exit") == reached
+    assert compute_reach(on_top).reaches("exit") == reached
     # The platforms cannot be climbed from the floor.
-    assert not reachable(level).reaches("exit")
+    assert not compute_reach(level).reaches("exit")
 
 
 def test_a_lift_carries_the_player() -> None:
     ledge = Box((7.0, 0.2, 0.0), (11.8, 4.8, 3.0))
     lift = Mover("lift", (1.0, 1.0, 0.2), ((6.3, 2.5, 0.1), (6.3, 2.5, 2.4)), 1.0)
     top = (10.5, 2.5, 3.0)
-    assert not reachable(room(ledge, end=top)).reaches("exit")
-    assert reachable(room(ledge, end=top, movers=(lift,))).reaches("exit")
+    assert not compute_reach(room(ledge, end=top)).reaches("exit")
+    assert compute_reach(room(ledge, end=top, movers=(lift,))).reaches("exit")
 
 
 def with_barriers(
@@ -117,17 +117,17 @@ def with_barriers(
 
 
 def test_a_barrier_opens_if_its_switch_can_be_reached() -> None:
-    assert reachable(with_barriers(room(), (3.0, 1.0, 0.0), ("lever",))).reaches("exit")
-    behind = reachable(with_barriers(room(), (8.0, 1.0, 0.0), ("lever",)))
+    assert compute_reach(with_barriers(room(), (3.0, 1.0, 0.0), ("lever",))).reaches("exit")
+    behind = compute_reach(with_barriers(room(), (8.0, 1.0, 0.0), ("lever",)))
     assert (behind.switches, behind.barriers, behind.reaches("exit")) == ((), (), False)
     unlocked_at_random = with_barriers(room(), (3.0, 1.0, 0.0), (), (Unlock("lever", ("door", "other")),))
-    assert reachable(unlocked_at_random).reaches("exit")
+    assert compute_reach(unlocked_at_random).reaches("exit")
 
 
 @pytest.mark.parametrize(("name", "variant"), SHIPPED)
 def test_everything_in_the_shipped_levels_can_be_reached_except_in_navigation_v2(name: str, variant: str) -> None:
     level = load_level(name, variant)
-    reach = reachable(level)
+    reach = compute_reach(level)
     if (name, variant) == BLOCKED:
         assert reach.switches == ("s1",) and reach.barriers == ("gap",)
         assert not reach.reaches("s2") and not reach.reaches("exit")
@@ -144,7 +144,7 @@ def test_jumps_in_the_physics_stay_below_the_highest_lift() -> None:
     rng = np.random.default_rng(1)
     for top, possible in ((1.1, True), (lift + 0.02, False)):
         level = room(Box((6.0, 0.2, 0.0), (11.8, 4.8, top)))
-        reach = reachable(level)
+        reach = compute_reach(level)
         assert reach.ground[:, int(8.0 / reach.cell)].any() == possible
         with closing(World(level)) as world:
             landed = 0
@@ -168,7 +168,7 @@ def has_ground(reach: Reach, x: float, y: float) -> bool:
 
 @pytest.mark.parametrize(("name", "variant"), SHIPPED)
 def test_the_player_stands_only_on_reachable_ground(name: str, variant: str) -> None:
-    reach = reachable(load_level(name, variant))
+    reach = compute_reach(load_level(name, variant))
     rng = np.random.default_rng(7)
     with closing(World(load_level(name, variant))) as world:
         world.reset(rng)
@@ -232,9 +232,9 @@ def test_distance_is_measured_to_the_nearest_cell(seed: int) -> None:
 
 def test_a_near_switch_is_found_with_little_work() -> None:
     grid = SpaceGrid(Box((0.0, 0.0, 0.0), (100.0, 100.0, 2.0)), [], [1.0], PlayerKind(), budget := Budget(10**9))
-    before = budget._left
+    before = budget._remaining
     assert grid.distance(np.ones(grid.shape, dtype=np.bool_), (50.0, 50.0, 0.5), 1.0) == 0.0
-    assert before - budget._left < 100
+    assert before - budget._remaining < 100
 
 
 def test_a_level_that_takes_too_long_is_rejected(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -250,7 +250,7 @@ def test_a_level_that_takes_too_long_is_rejected(monkeypatch: pytest.MonkeyPatch
     assert (warning.code, warning.help) == ("TLT0814", "one gets no nearer to it than 4.5 m")
     monkeypatch.setattr("tltl_runtime.stealth.capabilities.reach.fileio", limited)
     with pytest.raises(TltlError, match="TLT0006: it takes too long to find out what can be reached in `room:v0`"):
-        reachable(level)
+        compute_reach(level)
     # A player gets a warning, and can play.
     assert [(diagnostic.code, diagnostic.severity) for diagnostic in reach_warnings(level, fspa)] == [
         ("TLT0006", "warning")
@@ -261,4 +261,4 @@ def test_a_level_that_takes_too_long_is_rejected(monkeypatch: pytest.MonkeyPatch
 def test_shipped_levels_need_a_small_part_of_the_work_limit() -> None:
     for name, variant in SHIPPED:
         budget = Budget(WORK["cells of reachable space"] // 20)
-        assert reachable(load_level(name, variant), budget=budget).highest >= 0.0
+        assert compute_reach(load_level(name, variant), budget=budget).highest >= 0.0

@@ -7,7 +7,7 @@ from contextlib import closing
 import pytest
 
 from benchmarks.reach import Search, search
-from tltl_runtime.stealth.capabilities.reach import reachable
+from tltl_runtime.stealth.capabilities.reach import compute_reach
 from tltl_runtime.stealth.level import Start
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.stealth.world.physics import World
@@ -37,7 +37,7 @@ def test_the_stretched_block_cannot_be_passed() -> None:
     assert result.poses > 300
     east = max(place[0] for place in result.places)
     assert BLOCK_2 - 0.35 < east < BLOCK_2
-    reach = reachable(load_level("navigation", "v2"))
+    reach = compute_reach(load_level("navigation", "v2"))
     for x, y, _ in result.places:
         assert reach.ground[int((y - reach.origin[1]) / reach.cell), int((x - reach.origin[0]) / reach.cell)]
 

@@ -74,7 +74,7 @@ def test_a_decorated_function_adds_a_branch(monkeypatch: pytest.MonkeyPatch) -> 
     class Dancer:
         knows = False
         search_left = 0.0
-        back = False
+        is_off_route = False
         danced = 0
 
     @branches.branch("dance", rank=45, added=True)

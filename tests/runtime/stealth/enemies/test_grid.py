@@ -78,7 +78,7 @@ def test_the_cache_stays_within_its_budget(monkeypatch: pytest.MonkeyPatch) -> N
     grid = Grid(level())
     floor = grid.floor(())
     floor.prepare()
-    cached_bytes = sum(table.nbytes for table in grid._answers.values())
+    cached_bytes = sum(table.nbytes for table in grid._steps_to_goals.values())
     assert 0 < cached_bytes <= 1 << 20
     assert len(floor.path((1.0, 1.0), (9.0, 7.0))) > 30
 
@@ -125,7 +125,7 @@ def test_paths_are_as_short_as_those_of_a_breadth_first_search(
     goal = data.draw(cells)
     steps = lengths(floor, goal)
     for cell in data.draw(st.lists(cells, min_size=1, max_size=8)):
-        path = floor._way(cell, goal)
+        path = floor._cell_path(cell, goal)
         assert len(path) == steps[cell] + 1 if steps[cell] >= 0 else path == [cell]
 
 

@@ -299,11 +299,11 @@ def test_starts_are_spread_around_the_start(opened: list[World]) -> None:
 def test_a_mover_goes_back_and_forth_or_round() -> None:
     back_and_forth = Mover("m", (1, 1, 1), ((0.0, 0.0, 1.0), (2.0, 0.0, 1.0)), speed=1.0, pause=0.5)
     path = MoverPath(back_and_forth)
-    assert [path.at(t)[0] for t in (0.0, 0.5, 1.5, 2.5, 3.0, 4.0, 5.0)] == [0.0, 0.0, 1.0, 2.0, 2.0, 1.0, 0.0]
+    assert [path.position_at(t)[0] for t in (0.0, 0.5, 1.5, 2.5, 3.0, 4.0, 5.0)] == [0.0, 0.0, 1.0, 2.0, 2.0, 1.0, 0.0]
     round_trip = Mover("m", (1, 1, 1), ((0.0, 0.0, 1.0), (2.0, 0.0, 1.0), (2.0, 2.0, 1.0)), speed=1.0, closed=True)
     path = MoverPath(round_trip)
-    assert path.at(3.0) == (2.0, 1.0, 1.0)
-    assert path.at(4.0 + 8**0.5 / 2) == pytest.approx((1.0, 1.0, 1.0))
+    assert path.position_at(3.0) == (2.0, 1.0, 1.0)
+    assert path.position_at(4.0 + 8**0.5 / 2) == pytest.approx((1.0, 1.0, 1.0))
     assert MoverPath(Mover("m", (1, 1, 1), ((1.0, 2.0, 3.0),), speed=1.0)).position_at(7.0) == (1.0, 2.0, 3.0)
 
 
