@@ -60,8 +60,8 @@ class Guard:
 
     ``formula`` states the condition as a short formula.  In an automaton of another tool,
     ``formula`` may be text that is no formula.  ``primes`` are all prime implicants of the guard
-    (``((),)`` is true).  With ``exclusive`` declarations D, ``primes`` are the prime implicants of ``guard or not D`` that are not contained in ``not D`` (semantics,
-    section 3).
+    (``((),)`` is true).  With ``exclusive`` declarations D, ``primes`` are the prime implicants of
+    ``guard or not D`` that are not contained in ``not D`` (semantics, section 3).
     """
 
     formula: Formula | Text

@@ -47,7 +47,10 @@ def actions(
             # Editors may apply a preferred action without asking, so it must not be a guess.
             is_preferred=offer.fix.applicability == "safe",
         )
-        for offer in (*fixes_of_findings(findings_at_span, document.module), *fixes_of_errors(diagnostics, document.source, errors))
+        for offer in (
+            *fixes_of_findings(findings_at_span, document.module),
+            *fixes_of_errors(diagnostics, document.source, errors),
+        )
     ]
 
 

@@ -42,7 +42,7 @@ class OddColumns:
     def warning(self) -> Diagnostic:
         """Return the warning TLT0763. It names the first of the traces."""
         is_one = len(self.names) == 1
-        listed_names, consequence = name_list(self.names), "it is left out" if is_one else "they are left out"
+        listed_names, consequence = first_names(self.names), "it is left out" if is_one else "they are left out"
         if not self.has_other_values:
             lack = "lacks" if len(self.traces) == 1 else "lack"
             title = f"{_first(self.traces)} {lack} the column{'s' * (not is_one)} {listed_names}, so {consequence}"
@@ -70,7 +70,7 @@ def odd_columns(traces: Sequence[Columns], *, truths: bool) -> tuple[OddColumns,
     return tuple(OddColumns(*key, tuple(names)) for key, names in groups.items())
 
 
-def name_list(names: Sequence[str]) -> str:
+def first_names(names: Sequence[str]) -> str:
     """Return the names in words. If there are many, list the first ones and count the others."""
     if len(names) <= _MOST_NAMED:
         return name_list(names)

@@ -28,7 +28,7 @@ from tltlc.resolve.problem import Log
 from tltlc.resolve.resolution import resolve_atoms
 from tltlc.resolve.scope import Binding, build_scopes
 from tltlc.resolve.spec import Vocabulary
-from tltlc.tools.mine.column_diagnostics import name_list
+from tltlc.tools.mine.column_diagnostics import first_names
 
 _CALL: Final = re.compile(r"([A-Za-z_][\w.]*)\s*\(([^()]*)\)\Z", re.ASCII)
 _WORD: Final = re.compile(r"[A-Za-z_][\w.]*\Z", re.ASCII)
@@ -134,7 +134,7 @@ def _no_columns(truths: Sequence[str]) -> TltlError:
     title = "no column of the traces holds `true` and `false` alone"
     help_ = "with `--predicates LIB` atoms are computed from columns of numbers"
     if truths:
-        columns = f"column {name_list(truths)} holds" if len(truths) == 1 else f"columns {name_list(truths)} hold"
+        columns = f"column {first_names(truths)} holds" if len(truths) == 1 else f"columns {first_names(truths)} hold"
         title = f"the {columns} `true` and `false` alone, but no atom can be called so"
         help_ = "call it as atoms are, e.g. `seen` or `at(key)`: letters, digits and `_`, and no word of the language"
     return TltlError([Diagnostic("TLT0760", title, help=help_)])

@@ -117,7 +117,8 @@ def _sensor_differences(
     initial: InitialPolicyOptions, level: StealthLevel, sensor_options: Mapping[str, Any]
 ) -> Iterator[str]:
     """Yield a sentence for each option that asks for other sensors than those of the policy."""
-    own, sensors = initial.card.sensors, choose_sensors(level, sensor_options) if sensor_options else initial.card.sensors
+    own = initial.card.sensors
+    sensors = choose_sensors(level, sensor_options) if sensor_options else own
     for key in sensor_options:
         if getattr(sensors, key) != getattr(own, key):
             yield f"`{initial.path}` senses as `{option_of(key, own)}` says, not as `{option_of(key, sensors)}`"
