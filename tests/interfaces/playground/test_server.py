@@ -459,7 +459,7 @@ def test_an_interrupt_at_any_point_of_serving_ends_it(monkeypatch: pytest.Monkey
 
 
 def is_interrupted_at(step: int, monkeypatch: pytest.MonkeyPatch) -> bool:
-    """Whether an interrupt after so many steps ends a server, which otherwise stops once its loop runs."""
+    """Run a server and interrupt it after ``step`` instructions; return False if it stops before."""
     code = (PlaygroundServer.serve_forever.__code__, PlaygroundServer._woken_by_signals.__wrapped__.__code__)  # type: ignore[attr-defined]
     left = step
 
