@@ -9,14 +9,18 @@
 >>> [str(state.label) for state in fspa.states]
 ['F exit_reached & G(health > 0)', 'G(health > 0)', 'false']
 
-Importing this package loads nothing else of it. Each public name below is loaded on first use.
+Importing this package loads nothing else. Each public name below is loaded on first use.
 """
 
-from tltlc.core.moved_modules import keep_old_names
+import sys
 
 # Type checkers treat this as true. Importing it from `typing` would add some milliseconds to each start.
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from importlib.machinery import ModuleSpec
+    from types import ModuleType
+
     from tltlc.automaton.fspa import Fspa as Fspa
     from tltlc.automaton.networkx_graph import to_networkx as to_networkx
     from tltlc.diagnostics.diagnostic import Diagnostic as Diagnostic
@@ -60,15 +64,30 @@ _HOMES = {
     "to_networkx": "tltlc.automaton.networkx_graph",
 }
 
-keep_old_names(
-    {
-        "tltlc.comparison": "tltlc.automaton.compare",
-        "tltlc.fmt": "tltlc.tools.fmt",
-        "tltlc.playground": "tltlc.interfaces.playground",
-        "tltlc.rabin": "tltlc.automaton.infinite",
-        "tltlc.rabin.work": "tltlc.automaton.work",
-    }
-)
+_MOVED = {
+    "tltlc.comparison": "tltlc.automaton.compare",
+    "tltlc.fmt": "tltlc.tools.fmt",
+    "tltlc.playground": "tltlc.interfaces.playground",
+    "tltlc.rabin": "tltlc.automaton.infinite",
+    "tltlc.rabin.work": "tltlc.automaton.work",
+}
+
+
+class _OldNames:
+    """Finds documented modules by their old names."""
+
+    @staticmethod
+    def find_spec(
+        fullname: str, path: "Sequence[str] | None", target: "ModuleType | None" = None
+    ) -> "ModuleSpec | None":
+        if fullname not in _MOVED:
+            return None
+        from tltlc.core.moved_modules import OldNames
+
+        return OldNames(_MOVED).find_spec(fullname, path, target)
+
+
+sys.meta_path.append(_OldNames)
 
 
 def __getattr__(name: str) -> object:

@@ -7,9 +7,10 @@ and ``tltl/Branching-v0``.  It loads neither torch nor pybullet.  The package ne
 
 from __future__ import annotations
 
+import sys
 from typing import TYPE_CHECKING
 
-from tltlc.api import keep_old_names
+from tltlc.api import OldNames
 
 if TYPE_CHECKING:
     from tltl_runtime.spec.task import Task as Task
@@ -24,14 +25,16 @@ _HOMES = {
     "load_task": "tltl_runtime.spec.task",
 }
 
-keep_old_names(
-    {
-        "tltl_runtime.batch": "tltl_runtime.spec.batch",
-        "tltl_runtime.stealth.episodes": "tltl_runtime.stealth.recordings",
-        "tltl_runtime.stealth.episodes.cause": "tltl_runtime.stealth.recordings.cause",
-        "tltl_runtime.stealth.episodes.file": "tltl_runtime.stealth.recordings.file",
-        "tltl_runtime.training.gail": "tltl_runtime.training.imitation.gail",
-    }
+sys.meta_path.append(
+    OldNames(
+        {
+            "tltl_runtime.batch": "tltl_runtime.spec.batch",
+            "tltl_runtime.stealth.episodes": "tltl_runtime.stealth.recordings",
+            "tltl_runtime.stealth.episodes.cause": "tltl_runtime.stealth.recordings.cause",
+            "tltl_runtime.stealth.episodes.file": "tltl_runtime.stealth.recordings.file",
+            "tltl_runtime.training.gail": "tltl_runtime.training.imitation.gail",
+        }
+    )
 )
 
 

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from tltlc.automaton.fspa import State as State
     from tltlc.automaton.text import formula_text as formula_text
     from tltlc.automaton.text import label_text as label_text
-    from tltlc.core.moved_modules import keep_old_names as keep_old_names
+    from tltlc.core.moved_modules import OldNames as OldNames
     from tltlc.core.record import EMPTY as EMPTY
     from tltlc.core.record import MissingFieldsError as MissingFieldsError
     from tltlc.core.record import record as record
@@ -64,6 +64,7 @@ _HOMES = {
     "Monitor": "tltlc.monitor",
     "MonitorError": "tltlc.monitor",
     "Notation": "tltlc.automaton.fspa",
+    "OldNames": "tltlc.core.moved_modules",
     "RewardOptions": "tltlc.monitor",
     "Severity": "tltlc.diagnostics.diagnostic",
     "Signal": "tltlc.resolve.spec",
@@ -74,7 +75,6 @@ _HOMES = {
     "Step": "tltlc.monitor",
     "TltlError": "tltlc.diagnostics.diagnostic",
     "formula_text": "tltlc.automaton.text",
-    "keep_old_names": "tltlc.core.moved_modules",
     "label_text": "tltlc.automaton.text",
     "record": "tltlc.core.record",
     "replace": "tltlc.core.record",
@@ -92,6 +92,7 @@ __all__ = [
     "Monitor",
     "MonitorError",
     "Notation",
+    "OldNames",
     "RewardOptions",
     "Severity",
     "Signal",
@@ -106,7 +107,6 @@ __all__ = [
     "expressions",
     "fileio",
     "formula_text",
-    "keep_old_names",
     "label_text",
     "monitors",
     "ranges",

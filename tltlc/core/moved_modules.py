@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import sys
+from typing import TYPE_CHECKING
 
-# Type checkers treat this as true. The imports would add to each start of the command line.
-TYPE_CHECKING = False
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from importlib.machinery import ModuleSpec
@@ -13,22 +11,20 @@ if TYPE_CHECKING:
     from typing import Any
 
 
-def keep_old_names(new_names: Mapping[str, str]) -> None:
-    """Make modules importable under their old names; ``new_names`` maps each old name to the new name.
+class OldNames:
+    """Finds modules by their old names; append it to :data:`sys.meta_path`.
 
-    Importing an old name gives a new module object with the attributes of the module that has the
-    new name. That module loads only then.
+    ``new_names`` maps each old name to the new name. Importing an old name gives a new module object
+    with the attributes of the module that has the new name. That module loads only then.
     """
-    sys.meta_path.append(_Finder(new_names))
 
-
-class _Finder:
     def __init__(self, new_names: Mapping[str, str]) -> None:
         self._new_names = new_names
 
     def find_spec(
         self, fullname: str, path: Sequence[str] | None, target: ModuleType | None = None
     ) -> ModuleSpec | None:
+        """Return how to load the module; None if no module had this name."""
         if fullname not in self._new_names:
             return None
         from importlib.machinery import ModuleSpec
@@ -48,6 +44,6 @@ class _Loader:
     def exec_module(self, module: ModuleType) -> None:
         from importlib import import_module
 
-        new_module = import_module(self._new_name)
-        module.__doc__ = new_module.__doc__
-        vars(module)["__getattr__"] = lambda name: getattr(new_module, name)
+        moved = import_module(self._new_name)
+        module.__doc__ = moved.__doc__
+        vars(module)["__getattr__"] = lambda name: getattr(moved, name)

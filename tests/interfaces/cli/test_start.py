@@ -89,8 +89,6 @@ def test_an_interrupt_at_the_start_shows_no_traceback_of_tltlc(how: tuple[str, s
     before = [what for _, event, what, _ in ends[:first] if event == "import" and what.startswith("tltlc")]
     assert set(before) <= {
         "tltlc",
-        "tltlc.core",
-        "tltlc.core.moved_modules",
         "tltlc.interfaces",
         "tltlc.interfaces.cli",
         "tltlc.interfaces.cli.main",
