@@ -87,8 +87,8 @@ def reward_step(
 
     Deviations from the listing:
 
-    ▲ line 10: the caller moved the automaton along the edge whose guard is true, not along the edge
-    with the highest robustness.
+    ▲ line 10: the caller moved the automaton by truth, along the edge whose guard is true, and not
+    along the edge with the highest robustness.
     ▲ lines 12 to 23: the episode ends on entry into an accepting or trap state, not one step later;
     ``termination="paper"`` runs the lines as printed.
     ▲ line 11: if S is 0, nothing is divided. A trap has no progress, so entering a trap gains none.
