@@ -23,7 +23,7 @@ _NEGATING: Final = ("no", "nt")
 
 
 def likely_name(name: str, known: Iterable[str]) -> str | None:
-    """Return the known name that a name most likely misspells; None if there is none, or if several are as likely.
+    """Return the known name that a name is or most likely misspells; None if none or several are as likely.
 
     A name that differs only in capital letters and underscores comes first, then a name that ends with
     a dot and the given name. Among more than 2,000 names, no other typos are looked for.

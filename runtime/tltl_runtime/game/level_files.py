@@ -50,9 +50,8 @@ class LevelFiles(ABC, Generic[LevelT]):
     def dependencies(self, name: str, variant: str) -> Iterator[Path]:
         """Yield the files that a level depends on, among them its spec.
 
-        The files need not load: from a file with errors, everything readable counts.  If a file at
-        another path would be used instead of an existing one, that path is included, although it
-        does not exist.
+        The files need not load: from a file with errors, everything readable counts.  Also yields
+        the paths where a new file would take precedence over an existing one.
         """
 
     @abstractmethod

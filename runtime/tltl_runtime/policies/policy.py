@@ -30,7 +30,7 @@ class Policy:
     never batched, because the batch size would change the last bits of the logits.
 
     Raises:
-        NoNumbersError: a weight is not finite in half precision.
+        NotFiniteError: a weight is not finite in half precision.
         ValueError: the weights do not fit the network that the card describes.
     """
 
@@ -63,7 +63,7 @@ class Policy:
         On ties, the first choice is taken.
 
         Raises:
-            NoNumbersError: the observation or the output of the network is not finite.
+            NotFiniteError: the observation or the output of the network is not finite.
         """
         logits = self.logits(observation).astype(np.float64)
         if not np.isfinite(logits).all():

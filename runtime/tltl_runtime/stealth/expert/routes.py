@@ -234,9 +234,10 @@ class Routes:
     def _place_pairs(
         self, layer: int, target: int, direction: tuple[int, int], begin: Cells, steps: int = 1
     ) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-        """Return the places in ``begin`` [rows, columns] and the places of ``target`` that are ``steps`` away.
+        """Return the flat indices of pairs of places: the first of each pair, then the second.
 
-        Both are flat indices, in pairs.
+        The first is in ``layer``, within the mask ``begin`` [rows, columns]; the second is in the
+        layer ``target``, ``steps`` cells away in ``direction``.
         """
         _, rows, columns = self.surfaces.places.shape
         places = begin & _shift(self.surfaces.places[target], direction, steps)

@@ -1,4 +1,6 @@
-"""Starts of training episodes: the level's start, or a point in the middle of an earlier episode.
+"""Begin a training episode at the level's start, or in the middle of an earlier episode, by replaying it.
+
+:class:`~tltl_runtime.training.exploration.reverse_curriculum.ReverseCurriculum` chooses where.
 
 Equal seeds and actions give equal episodes.  So replaying the first actions of an episode reaches
 the same state again, and the agent continues from there.
