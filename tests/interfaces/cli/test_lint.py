@@ -176,10 +176,10 @@ def test_an_artefact_cannot_be_linted(tltlc: Command, inside: Path) -> None:
     ],
     ids=["cover_and_hide", "navigation", "branching", "many goals", "many states"],
 )
-def test_linting_costs_less_than_three_times_compiling(text: str) -> None:
+def test_linting_costs_less_than_four_times_compiling(text: str) -> None:
     source = SourceFile("example.tltl", text)
     lint(source)  # Warm up: read the libraries.
-    assert calls(lambda: lint(source)) < 3 * calls(lambda: compile_source(source))
+    assert calls(lambda: lint(source)) < 4 * calls(lambda: compile_source(source))
 
 
 def test_a_comment_in_a_list_of_entities_applies_to_its_line(inside: Path, tltlc: Callable[..., Outcome]) -> None:

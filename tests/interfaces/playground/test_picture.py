@@ -249,8 +249,8 @@ def test_edges_cross_no_state_and_no_text(graph: tuple[int, list[Ends]], sizes: 
         taken[ends] = x - width / 2, y - height / 2, x + width / 2, y + height / 2
     for one, other in combinations(taken.values(), 2):
         assert not overlap(inner(one), inner(other))
-    assert set(places.ways) == {(a, b) for a, b in texts if a != b}
-    for ends, way in places.ways.items():
+    assert set(places.curves) == {(a, b) for a, b in texts if a != b}
+    for ends, way in places.curves.items():
         for x, y in points(way):
             # An edge overlaps its own two states.
             for owner, area in taken.items():

@@ -460,7 +460,7 @@ def test_an_interrupt_at_any_point_of_serving_ends_it(monkeypatch: pytest.Monkey
 
 def is_interrupted_at(step: int, monkeypatch: pytest.MonkeyPatch) -> bool:
     """Run a server and interrupt it after ``step`` instructions; return False if it stops before."""
-    code = (PlaygroundServer.serve_forever.__code__, PlaygroundServer._woken_by_signals.__wrapped__.__code__)  # type: ignore[attr-defined]
+    code = (PlaygroundServer.serve_forever.__code__, PlaygroundServer._signals_wake_loop.__wrapped__.__code__)  # type: ignore[attr-defined]
     left = step
 
     def trace(frame: FrameType, event: str, _: object) -> object:

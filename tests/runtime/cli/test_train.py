@@ -397,7 +397,7 @@ def test_the_effective_settings_are_printed(tltlc: TltlcFunction, here: Path) ->
     expected = read_settings(here / "small.toml")
     expected = replace(expected, device="cuda", stop=replace(expected.stop, minutes=0.5))
     assert read_settings(here / "all.toml") == expected
-    assert "envs = 4                # environments, of each process of torchrun" in result.out.splitlines()
+    assert "envs = 4                # environments of each process of torchrun" in result.out.splitlines()
     assert len(result.out.splitlines()) == len(default_text().splitlines())
 
 

@@ -56,8 +56,8 @@ def trained(run: TrainingRun, resume: bool = False) -> None:
     write_record(run, last)
 
 
-@pytest.fixture(name="made", scope="module")
-def _made(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
+@pytest.fixture(name="game_folder", scope="module")
+def _game_folder(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     """A game with judged cases, a retraining of the hopeless case, and a retraining of a case that passes."""
     folder = tmp_path_factory.mktemp("made") / "game"
     with pytest.MonkeyPatch.context() as patch:
@@ -73,9 +73,9 @@ def _made(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
 
 
 @pytest.fixture(name="game")
-def _game(an_episode: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Suite:
+def _game(game_folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Suite:
     with_few_environments(monkeypatch)
-    shutil.copytree(an_episode, tmp_path / "game")
+    shutil.copytree(game_folder, tmp_path / "game")
     monkeypatch.chdir(tmp_path / "game")
     return read_suite(Path("game.toml"))
 
