@@ -56,7 +56,7 @@ class Client:
         self.errors: list[str] = []
         self._number = 0
         self._first_unread = 0
-        """The index in ``said`` of the first message after the last notification or the last diagnostics."""
+        """An index into ``received``: of the first message after the last notification, or after the last diagnostics."""
         threading.Thread(target=self._read, daemon=True).start()
         self._listening = threading.Thread(target=self._read_errors, daemon=True)
         self._listening.start()
@@ -76,7 +76,7 @@ class Client:
     # --- messages -----------------------------------------------------------------------------
 
     def tell(self, method: str, params: Any) -> None:
-        self._first_unread = len(self.said)
+        self._first_unread = len(self.received)
         self._send({"method": method, "params": params})
 
     def start(self, method: str, params: Any) -> int:
@@ -100,14 +100,25 @@ class Client:
         return next(filter(is_answer, self.received), None) or self._next(is_answer)
 
     def diagnostics(self, uri: str, wanted: Callable[[list[Any]], bool] = lambda _: True) -> list[dict[str, Any]]:
-        """Return the next diagnostics of a document for which ``wanted`` is true."""
-        message = self._next(
-            lambda message: (
+        """Return the next diagnostics of a document for which ``wanted`` is true, since the last notification.
+
+        They may have come before the answer to a request that was sent after the notification.
+        """
+
+        def is_wanted(message: dict[str, Any]) -> bool:
+            return (
                 message.get("method") == "textDocument/publishDiagnostics"
                 and message["params"]["uri"] == uri
                 and wanted(message["params"]["diagnostics"])
             )
-        )
+
+        for index in range(self._first_unread, len(self.received)):
+            if is_wanted(message := self.received[index]):
+                self._first_unread = index + 1
+                break
+        else:
+            message = self._next(is_wanted)
+            self._first_unread = len(self.received)
         diagnostics: list[dict[str, Any]] = message["params"]["diagnostics"]
         return diagnostics
 

@@ -163,7 +163,7 @@ def test_times_are_shown_in_steps() -> None:
     assert hints_with_units(without_clock, whole) == []
 
 
-def test_the_client_of_these_tests_finds_diagnostics_that_came_before_an_answer(client: Client, tmp_path: Path) -> None:
+def test_the_client_finds_diagnostics_that_came_before_an_answer(client: Client, tmp_path: Path) -> None:
     uri = client.open(tmp_path / "plan.tltl", "signal a: boolean")
     client.message("textDocument/publishDiagnostics")
     assert client.ask("workspace/symbol", {"query": "a"})
