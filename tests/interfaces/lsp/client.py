@@ -56,7 +56,7 @@ class Client:
         self.errors: list[str] = []
         self._number = 0
         self._first_unread = 0
-        """An index into ``received``: of the first message after the last notification, or after the last diagnostics."""
+        """The index in ``received`` of the first message after the last notification or the last diagnostics."""
         threading.Thread(target=self._read, daemon=True).start()
         self._listening = threading.Thread(target=self._read_errors, daemon=True)
         self._listening.start()
