@@ -25,7 +25,7 @@ _DEVICES: Final = {
 class Archive:
     """The texts for messages about an archive.
 
-    Messages call the archive ``first``. ``damaged_help`` is the help for an archive that was damaged or
+    Messages call the archive ``name``. ``damaged_help`` is the help for an archive that was damaged or
     made by hand; ``elsewhere_help`` is the help for a sound archive whose files this system cannot store.
     """
 

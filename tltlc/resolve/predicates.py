@@ -42,7 +42,7 @@ class PredicateUse:
 def predicate(use: NameExpr | CallExpr, binding: Binding, env: Env, depth: int = 0) -> PredicateUse:
     """Return the value of a predicate where it is used.
 
-    The name of the value is the name of the atom, e.g. ``near(s1, suggestion=3)``.
+    The name of the value is the name of the atom, e.g. ``near(s1, close=3)``.
     """
     declaration = binding.declaration
     assert isinstance(declaration, PredicateDecl)

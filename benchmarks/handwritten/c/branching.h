@@ -28,8 +28,8 @@ static inline const char *branching_refusal(const Signals *signals) {
     return NULL;
 }
 
-// States 0, 1 and 3 wait for a switch, 4 for an exit, 5 is the goal, 2 is the trap.  False, and the state stays, where a signal
-// is not finite.
+// States 0, 1 and 3 wait for a switch, 4 for an exit, 5 is the goal, 2 is the trap.
+// Returns false, and the state stays, where a signal is not finite.
 static inline bool monitor_step(Monitor *monitor, const Signals *signals, Result *result) {
     static const char *const atoms[] = {"near(s1)", "near(s2)", "near(s3)"};
     static const char *const labels[] = {

@@ -38,8 +38,8 @@ class Sample:
 	var health: float
 
 
-# States 0, 1 and 3 wait for a switch, 4 for an exit, 5 is the goal, 2 is the trap.  Returns false, and the state stays, where a
-# signal is not finite.
+# States 0, 1 and 3 wait for a switch, 4 for an exit, 5 is the goal, 2 is the trap.
+# Returns false, and the state stays, where a signal is not finite.
 func step(sample: Sample) -> bool:
 	if not _is_finite(sample.distance_s1):
 		return _refuse("distance(s1) is not finite")

@@ -21,7 +21,7 @@ ANALYSIS = DocumentAnalysis(())
 
 
 class ControlledQueue:
-    """A queue whose analyses run until they are ended or abandoned; ``begun`` lists all that were
+    """A queue whose analyses run until they are ended or abandoned; ``started`` lists all that were
     started."""
 
     def __init__(self) -> None:
@@ -58,7 +58,7 @@ async def run_pending_tasks() -> None:
 def on_a_controlled_queue(
     long_s: float,
 ) -> Callable[[Callable[[ControlledQueue], Awaitable[None]]], Callable[[pytest.MonkeyPatch], None]]:
-    """A decorator for a test of a desk on which an analysis gives way after ``long_s`` seconds."""
+    """Return a decorator for tests of a controlled queue, in which an analysis gives way after ``long_s`` seconds."""
 
     def decorated(test: Callable[[ControlledQueue], Awaitable[None]]) -> Callable[[pytest.MonkeyPatch], None]:
         def run(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,4 +1,4 @@
-"""Accounts of real episodes, played by the scripted expert and by a player that ignores enemies."""
+"""Explained episodes of real play, by the scripted expert and by a player that ignores enemies."""
 
 from __future__ import annotations
 

@@ -117,7 +117,7 @@ def test_the_default_file_has_exactly_all_settings() -> None:
 def test_the_comments_on_settings_hold_for_other_values_too(tmp_path: Path) -> None:
     printed = settings_text(_read(tmp_path, '[ppo]\nentropy_schedule = "fixed"\n'))
     assert "with their defaults" not in printed
-    comment = '# "fading": the weight falls as the pass rate rises, to 0 at a pass rate of 1; or "fixed"'
+    comment = '# "fading": the weight falls as the pass rate rises, to 0 at 1; or "fixed"'
     assert f'entropy_schedule = "fixed"          {comment}' in printed.splitlines()
 
 

@@ -28,7 +28,7 @@ from tltlc.resolve.spec import Spec
 from tltlc.resolve.values import Env, number_text, range_text
 
 _LONGEST: Final = 600
-"""A longer declaration is interval_text by its head only."""
+"""A longer declaration is shown by its head only."""
 
 _SUPPLIED_AS: Final = {
     "length": "metres",

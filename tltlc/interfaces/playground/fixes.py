@@ -17,7 +17,7 @@ _LONGEST: Final = 20_000
 
 
 def of_errors(source: SourceFile, diagnostics: Iterable[Diagnostic], libraries: tuple[Path, ...]) -> list[OfferedFix]:
-    """Return the fixes for errors of a text that :func:`tltlc.tools.lint.fixes.of_errors` has tried.
+    """Return the fixes for errors of a text that :func:`tltlc.tools.lint.fixes.fixes_of_errors` has tried.
 
     ``libraries`` are the folders of imports. Texts over 20,000 characters get no fixes.
     """

@@ -126,7 +126,7 @@ def diagnostic(
 ) -> dict[str, Any]:
     """Return a message as the page expects it.
 
-    ``source`` is the text in which the page can show places. Of ``offers``, only the fixes of this
+    ``source`` is the text in which the page can show places. Of ``offered_fixes``, only the fixes of this
     very message are included.
     """
     short = shorten(message)

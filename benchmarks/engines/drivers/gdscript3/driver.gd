@@ -1,6 +1,6 @@
 # Runs the generated and the handwritten monitor over the same traces, which have a line of numbers for each sample.
 #
-#     driver rows TRACE...               a row for each step, first of the generated monitor, then of the handwritten one
+#     driver rows TRACE...               a row for each step, first of the generated, then of the handwritten one
 #     driver time ROUNDS SECONDS TRACE   JSON lines: steps per second in each round
 
 extends SceneTree
