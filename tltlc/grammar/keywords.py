@@ -116,6 +116,9 @@ _OTHER_WORDS: Final = frozenset(
 
 @lru_cache(maxsize=1000)
 def closest_word(word: str, known: tuple[str, ...]) -> str | None:
-    """Return the known word that ``word`` is or misspells; None if there is none, or if ``word`` means something else."""
+    """Return the known word that ``word`` is or misspells.
+
+    Return None if there is none, or if ``word`` means something else.
+    """
     word = word.lower()
     return None if word in _OTHER_WORDS else likely_name(word, known)

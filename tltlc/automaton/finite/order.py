@@ -56,7 +56,10 @@ def restore_order(fspa: Fspa, spec: Spec, order: Sequence[int]) -> Fspa:
 
 
 def _primes(primes: Iterable[Implicant], order: Sequence[int]) -> tuple[Implicant, ...]:
-    """Return the prime implicants with their atoms renumbered, sorted as :meth:`~tltlc.automaton.guards.Guards.primes` sorts them."""
+    """Return the prime implicants with their atoms renumbered.
+
+    They are sorted as :meth:`~tltlc.automaton.guards.Guards.primes` sorts them.
+    """
     renumbered = (tuple(sorted((order[atom], polarity) for atom, polarity in prime)) for prime in primes)
     return tuple(sorted(renumbered, key=lambda prime: (len(prime), [(atom, not polarity) for atom, polarity in prime])))
 

@@ -30,7 +30,8 @@ def lint(
     name only some. ``used_elsewhere`` contains the names of this file that other files may use.
     :func:`apply_levels` explains ``levels``.
 
-    Errors: :class:`~tltlc.diagnostics.diagnostic.TltlError` with all diagnostics, as in :func:`tltlc.pipeline.compile_source`.
+    Raises:
+        TltlError: all diagnostics, as in :func:`tltlc.pipeline.compile_source`.
     """
     return findings(replace(view_of(source, options or CompileOptions()), used_elsewhere=used_elsewhere), levels)
 
