@@ -36,9 +36,7 @@ class Watched:
             stderr=subprocess.PIPE,
             text=True,
         )
-        # Match only windows of applications: the root window has no class.
-        search = ["xdotool", "search", "--sync", "--onlyvisible", "--class", "."]
-        subprocess.run(search, env=display, check=True, timeout=HANG_S, capture_output=True)
+        self.until(self._is_visible, "shows its window")
         self.until(self._hears, "hears keys")
 
     def log_lines(self) -> list[Line]:
@@ -80,9 +78,9 @@ class Watched:
 
         self.until(lambda: len(looks()) >= times, "looks at the keys")
 
-    def _is_seen(self) -> bool:
-        # Only windows of applications have a class. A search fails where a window closes during it (BadWindow), as the
-        # first window of SDL does: then there is nothing to see yet.
+    def _is_visible(self) -> bool:
+        # Match only windows of applications: the root window has no class. The search fails (BadWindow) if a window
+        # closes during it, as the first window of SDL does; then the window of the game is not there yet.
         search = ["xdotool", "search", "--onlyvisible", "--class", "."]
         return not subprocess.run(search, env=self._display, timeout=HANG_S, capture_output=True).returncode
 
