@@ -34,16 +34,18 @@ Examples:
 """
 )
 @click.argument("suite", metavar="[SUITE]", required=False, type=click.Path(path_type=Path))
-@output_file("FILE", "Where to write it (default: SUITE.baseline.json, beside the suite).")
-@click.option("--fresh", is_flag=True, help="Play again what the file has already, and nothing has changed of.")
+@output_file("FILE", "The file to write (default: SUITE.baseline.json, next to the suite).")
+@click.option(
+    "--fresh", is_flag=True, help="Play all levels again, even if nothing has changed since they were recorded."
+)
 @all_cores_option
 @level_faults()
 def command(suite: Path | None, path: Path | None, fresh: bool, workers: Any) -> int:
-    """Record the figures of the policies of a suite on the levels as they are now, for `tltlc regress`.
+    """Record how the policies of a suite play the levels now. `tltlc regress` compares with this baseline.
 
-    Of each level that is the variant with which its cases are compared, by default the first one.  What the file has
-    already is not played again where level, policy, spec, seed, versions and code are as they were.  Without SUITE, the
-    levels that come with tltlc are played, and `shipped.baseline.json` is written.
+    Each level is played in the variant that its cases are compared with; by default the first one. Results in an
+    existing file are kept if level, policy, spec, seed, versions and code have not changed. Without SUITE, the command
+    plays the levels that come with tltlc and writes `shipped.baseline.json`.
     """
     with cli.Report() as report, require_learning("`tltlc baseline`"), ignore_closed_pipe():
         check_suite_exists(suite)

@@ -28,15 +28,13 @@ Examples:
 """
 )
 @click.argument("level", metavar="LEVEL[:VARIANT]")
-@click.option(
-    "--spec", metavar="SPEC[:NAME]", help="What is to be done; by default the spec that the level is made for."
-)
+@click.option("--spec", metavar="SPEC[:NAME]", help="The spec that judges the player (default: the spec of the level).")
 @click.option("--episodes", metavar="N", type=cli.WholeRange(min=1), default=1, show_default=True)
-@seed_option("Of the first episode; those of the next follow.")
-@output_folder("The folder for recordings and plans, made where it is missing.", default=Path("demonstrations"))
-@click.option("--film", type=click.Choice([ending[1:] for ending in FILMS]), help="Make a film of each episode, too.")
+@seed_option("The seed of the first episode. Each following episode adds 1.")
+@output_folder("The folder for recordings and plans. It is created if it is missing.", default=Path("demonstrations"))
+@click.option("--film", type=click.Choice([ending[1:] for ending in FILMS]), help="Write a film of each episode, too.")
 @notation_option
-@click.option("--careless", is_flag=True, help="Play as if nobody could see.")
+@click.option("--careless", is_flag=True, help="Play as if no guard could see the player.")
 @level_faults()
 def command(
     level: str,
@@ -48,11 +46,11 @@ def command(
     notation: Notation,
     careless: bool,
 ) -> int:
-    """Have the scripted expert play a level.
+    """Let the scripted expert play a level.
 
-    Writes for each episode the recording LEVEL-VARIANT-SEED.episode.npz and the plan of its way as a .png, and says
-    why those failed that did.  What is there stays: another episode of the same name becomes LEVEL-VARIANT-SEED-2 and
-    so on.  The exit status is 1 where an episode does not succeed.
+    For each episode, the command writes the recording LEVEL-VARIANT-SEED.episode.npz and a plan of the path (.png), and
+    says why an episode failed. Existing files are kept: a different episode with the same name becomes
+    LEVEL-VARIANT-SEED-2, and so on. The exit status is 1 if an episode fails.
     """
     from tltl_runtime.cli.support.episode_text import episode_line
     from tltl_runtime.stealth.capabilities.feasible import reach_warnings

@@ -42,32 +42,39 @@ Examples:
 )
 @click.argument("policy", metavar="[POLICY]", required=False, type=click.Path(path_type=Path))
 @click.option(
-    "--level", metavar="LEVEL[:VARIANT]", help="Where; by default where the policy was trained.  VARIANT: v0."
+    "--level", metavar="LEVEL[:VARIANT]", help="The level to play (default: the level of the training; VARIANT: v0)."
 )
 @click.option("--episodes", metavar="N", type=cli.WholeRange(1, 10**6), default=100, show_default=True)
-@seed_option("Of the evaluation: episode i of seed N always plays the same.")
+@seed_option("The seed of the evaluation. Equal seeds give equal episodes.")
 @click.option(
-    "--first", metavar="I", type=cli.WholeRange(min=0), default=0, show_default=True, help="Begin with episode I."
+    "--first",
+    metavar="I",
+    type=cli.WholeRange(min=0),
+    default=0,
+    show_default=True,
+    help="The number of the first episode.",
 )
-@click.option("--spec", metavar="SPEC[:NAME]", help="What is to be done; by default what the policy was trained for.")
+@click.option(
+    "--spec", metavar="SPEC[:NAME]", help="The spec that judges the policy (default: the spec of the training)."
+)
 @click.option(
     "--workers",
     metavar="N|ray",
     type=WorkersType(),
     default=1,
     show_default=True,
-    help="Processes that play (0: one a core), or those of a Ray cluster.",
+    help="The number of processes that play (0: one per core), or `ray` for a Ray cluster.",
 )
 @click.option(
     "--json", "json_file", metavar="FILE", type=cli.OutputPath("file", stdout=True, checked=True),
-    help="Write the report as JSON, too; `-` prints it in place of the text.",
+    help="Write the report as JSON, too; `-` prints it instead of the text.",
 )  # fmt: skip
-@output_folder("Write recordings, their plans, a picture of all ways and the report to this folder.")
+@output_folder("Write recordings, their plans, a picture of all paths and the report to this folder.")
 @click.option(
     "--record",
     "recorded",
     type=click.Choice(("failures", "all", "none")),
-    help="Of which episodes --out has the recordings (default: failures).",
+    help="Which episodes to record in the folder of --out (default: failures).",
 )
 @level_faults()
 def command(
@@ -82,12 +89,12 @@ def command(
     folder: Path | None,
     recorded: RecordMode | None,
 ) -> int:
-    """Have a trained policy play, and report how often it meets the spec.
+    """Let a trained policy play, and report how often it meets the spec.
 
-    POLICY is a .safetensors file, the folder of a training, or the name of a level for the policy that comes with it;
-    without one that of --level plays.
-    Every episode is played twice, with actions sampled as in training and with the likeliest ones.  The exit status
-    is 0 whatever the pass rate; after Ctrl-C the report is on what was played.
+    POLICY is a .safetensors file, the folder of a training, or the name of a level for the policy that comes with it.
+    Without POLICY, the policy of the level in --level plays.
+    Each episode is played twice: with sampled actions, as in training, and with the most probable actions. The exit
+    status is 0 for any pass rate. After Ctrl-C, the report covers the episodes that were played.
     """
     if policy is None and level is None:
         raise click.UsageError("name a POLICY or a --level, or both")

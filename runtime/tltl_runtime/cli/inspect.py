@@ -26,10 +26,10 @@ Examples:
 """
 )
 @click.argument("files", metavar="POLICY...", nargs=-1, required=True)
-@output_file("OUT.onnx", "Write the policy as an ONNX model, and no summary.")
+@output_file("OUT.onnx", "Write the policy as an ONNX model instead of the summary.")
 @summary_format
 def command(files: tuple[str, ...], path: Path | None, format: str) -> int:  # noqa: A002
-    """Show what policies were trained for, what they sense and choose, and how their training went.
+    """Show what policies were trained for, what they observe and choose, and how their training went.
 
     A POLICY is a .safetensors file, the folder of a training, or the name of a level for the policy that comes with it.
     """

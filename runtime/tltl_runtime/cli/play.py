@@ -33,10 +33,10 @@ Examples:
 """
 )
 @click.argument("level", metavar="LEVEL[:VARIANT]")
+@click.option("--spec", metavar="SPEC[:NAME]", help="The spec that judges the player (default: the spec of the level).")
 @click.option(
-    "--spec", metavar="SPEC[:NAME]", help="What is to be done; by default the spec that the level is made for."
+    "--seed", type=cli.WholeRange(min=0), help="The seed of the first episode (default: a new seed each time)."
 )
-@click.option("--seed", type=cli.WholeRange(min=0), help="Of the first episode; by default another one each time.")
 @click.option(
     "--output",
     "--out",
@@ -44,15 +44,15 @@ Examples:
     "out",
     metavar="PLACE",
     type=cli.OutputPath("place"),
-    help=f"Where to record: NAME{SUFFIX}, or a folder, made where it is missing.  Older recordings stay.",
+    help=f"The recording: NAME{SUFFIX}, or a folder, which is created if it is missing. Older recordings are kept.",
 )
 @keyboard_options
 @level_faults()
 def command(level: str, spec: str | None, seed: int | None, out: Path | None, view: View, crouch: str) -> None:
     """Play a level with the keyboard, in real time, in a window.
 
-    The spec judges while you play: the screen shows what it still asks for.  Each episode is recorded to a file,
-    those that you stop, too.  `tltlc replay FILE` shows a recording.
+    The spec judges you while you play: the screen shows what remains to be done. Each episode is recorded to a file,
+    also if you stop it. `tltlc replay FILE` shows a recording.
     """
     _play(*split_level(level), spec, seed, out, view, crouch)
 

@@ -34,24 +34,28 @@ Examples:
 """
 )
 @click.argument("level", metavar="[LEVEL[:VARIANT]]", required=False)
-@click.option("--by", type=click.Choice(("expert", "keyboard")), default="expert", show_default=True, help="Who plays.")
 @click.option(
-    "--spec", metavar="SPEC[:NAME]", help="What is to be done; by default the spec that the level is made for."
+    "--by",
+    type=click.Choice(("expert", "keyboard")),
+    default="expert",
+    show_default=True,
+    help="Who plays: the scripted expert or you.",
 )
+@click.option("--spec", metavar="SPEC[:NAME]", help="The spec that judges the player (default: the spec of the level).")
 @click.option(
     "--episodes",
     metavar="N",
     type=cli.WholeRange(min=1),
     default=20,
     show_default=True,
-    help="How many demonstrations there are to be in the folder.",
+    help="The number of demonstrations wanted in the folder.",
 )
 @click.option(
     "--seed",
     metavar="N",
     type=cli.WholeRange(min=0),
-    help="Of the first episode (default: 0, with the keyboard another one each time); where the expert fails in one "
-    "after the other, those from another seed on may go better.",
+    help="The seed of the first episode (default: 0; with the keyboard a new seed each time). Try another seed if the "
+    "expert fails again and again.",
 )
 @output_folder("The folder for the recordings (default: demonstrations/LEVEL-VARIANT-SPEC).")
 @keyboard_options
@@ -66,14 +70,13 @@ def command(
     view: View,
     crouch: str,
 ) -> int:
-    """Record demonstrations: episodes of the scripted expert, or of a person at the keyboard, that meet the spec.
+    """Record demonstrations: episodes of the scripted expert or of a person that meet the spec.
 
-    Each is a recording LEVEL-VARIANT-SEED.episode.npz.  An episode that does not meet the spec is not kept, and it is
-    said why it failed.  What the folder holds already counts, so that the same command goes on where it was stopped;
-    recordings there that are no demonstrations of this level and spec, or cannot be read, stay as they are.  LEVEL may
-    be left out where the spec names it.
+    Each demonstration is a recording LEVEL-VARIANT-SEED.episode.npz. An episode that fails is not kept; the command
+    says why. Demonstrations that are already in the folder count, so the same command continues where it stopped. Other
+    recordings in the folder, and files that cannot be read, stay as they are. You may omit LEVEL if the spec names it.
 
-    The exit status is 0 where there are N demonstrations, and 1 where the player stopped before.
+    The exit status is 0 if there are N demonstrations, and 1 if the player stopped earlier.
     """
     with cli.Report() as report, ignore_closed_pipe():
         from tltl_runtime.stealth.env import make_env

@@ -24,7 +24,7 @@ _REPORTS: Final = {"json": "the JSON", "junit": "the XML", "html": "the page"}
 
 
 def _report_option(name: str, help_text: str) -> Callable[[Function], Function]:
-    help_text = f"{help_text}; `-` prints it in place of the text."
+    help_text = f"{help_text}; `-` prints it instead of the text."
     return click.option(
         f"--{name}", metavar="FILE", type=cli.OutputPath("file", stdout=True, checked=True), help=help_text
     )
@@ -47,32 +47,32 @@ Examples:
     "--changed",
     metavar="ASSET…",
     multiple=True,
-    help="Only the cases that depend on one of these files; it takes every word up to the next option.",
+    help="Play only the cases that depend on these files. All words up to the next option are files.",
 )
 @_report_option("json", "Write the report as JSON, too")
-@_report_option("junit", "Write it as JUnit XML, too")
-@_report_option("html", "Write the page here, too")
-@click.option("--github", is_flag=True, help="Print findings as annotations of GitHub Actions, too.")
+@_report_option("junit", "Write the report as JUnit XML, too")
+@_report_option("html", "Write the report as an HTML page, too")
+@click.option("--github", is_flag=True, help="Print annotations for GitHub Actions, too.")
 @click.option(
     "--baseline",
     metavar="FILE",
     type=click.Path(path_type=Path, dir_okay=False),
-    help="What they are judged against (default: SUITE.baseline.json, beside the suite).",
+    help="The baseline to compare with (default: SUITE.baseline.json, next to the suite).",
 )
-@click.option("--fresh", is_flag=True, help="Play cases again of which nothing has changed since they were played.")
+@click.option("--fresh", is_flag=True, help="Play all cases again, even if nothing has changed since they were played.")
 @click.option(
     "--retrain",
     is_flag=True,
-    help="Train for the cases that do not pass, to see whether their levels are feasible after all.",
+    help="Train a new policy for each case that does not pass, to find out whether its level can still be played.",
 )
 @click.option(
     "--minutes",
     metavar="M",
     type=cli.FiniteRange(min=0, min_open=True, max=1_000_000),
-    help=f"Of each training, at the most (default: {_MINUTES:g}).",
+    help=f"The time limit of each training (default: {_MINUTES:g}).",
 )
 @all_cores_option
-@output_folder("The folder for the page and for what was played (default: regression/SUITE).")
+@output_folder("The folder for the page and the recordings (default: regression/SUITE).")
 def command(
     suite: Path | None,
     changed: tuple[str, ...],
@@ -85,11 +85,11 @@ def command(
     folder: Path | None,
     **files: Path | None,
 ) -> int:
-    """Have trained policies play the cases of a suite, and report which levels still play as designed.
+    """Let trained policies play the cases of a suite, and report which levels still play as designed.
 
-    SUITE is a TOML file; without one, the levels that come with tltlc are played in all of their variants.  A case of
-    which nothing has changed since it was played is not played again.  The exit status is 0 where all cases pass, and
-    1 where one is to be reviewed or fails; what --retrain finds changes neither.
+    SUITE is a TOML file. Without it, the levels that come with tltlc are played in all of their variants. A case is not
+    played again if nothing has changed since the last time. The exit status is 0 if all cases pass, and 1 if a case
+    fails or needs a review; --retrain does not change it.
     """
     printed = {
         name: f"`--{name} {path}`" for name, path in files.items() if path is not None and is_standard_output(path)

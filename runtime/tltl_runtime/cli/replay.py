@@ -49,45 +49,47 @@ def _size(_: click.Context, __: click.Parameter, text: str | None) -> tuple[int,
 @click.command(
     epilog="""\b
 Examples:
-  tltlc replay run.episode.npz                          how it went
-  tltlc replay runs/*.episode.npz --check               whether the recordings are true
-  tltlc replay run.episode.npz -o run.png               the way, coloured by the automaton's state
+  tltlc replay run.episode.npz                          a summary
+  tltlc replay runs/*.episode.npz --check               check the recordings
+  tltlc replay run.episode.npz -o run.png               the path, coloured by state
   tltlc replay run.episode.npz -o run.mp4 --view top_down --speed 2 --fps 20
   tltlc replay run.episode.npz -o run.gif --view plan --from 4 --to 9.5
   tltlc replay run.episode.npz -o run.csv               then: tltlc monitor SPEC run.csv
 """
 )
 @click.argument("files", metavar="FILE...", nargs=-1, required=True)
-@output_file("OUT", "Write a plan (.png), a film (.gif, .mp4) or the signals (.csv), and no summary.")
-@click.option("--view", type=click.Choice(_VIEWS), help="Of a film (default: third_person).")
+@output_file("OUT", "Write a plan (.png), a film (.gif, .mp4) or the signals (.csv) instead of the summary.")
+@click.option("--view", type=click.Choice(_VIEWS), help="The view of a film (default: third_person).")
 @click.option(
     "--speed",
     type=cli.FiniteRange(0.05, 100.0),
-    help="Of a film (default: 1): 2 is twice as fast as the game.",
+    help="The speed of a film (default: 1). 2 is twice as fast as the game.",
 )
 @click.option(
     "--fps",
     "rate",
     type=cli.FiniteRange(1.0, 60.0),
-    help="Pictures a second (default: one for each decision).",
+    help="The frames per second of a film (default: one frame per decision).",
 )
-@click.option("--size", metavar="WxH", callback=_size, help="Of a film (default: 640x480) or a plan, in pixels.")
+@click.option(
+    "--size", metavar="WxH", callback=_size, help="The size of a film (default: 640x480) or a plan, in pixels."
+)
 @click.option(
     "--from",
     "start",
     metavar="SECONDS",
     type=cli.FiniteRange(min=0.0),
-    help="Begin a film or the signals here.",
+    help="The start of a film or of the signals.",
 )
 @click.option(
     "--to",
     "stop",
     metavar="SECONDS",
     type=cli.FiniteRange(min=0.0),
-    help="End a film or the signals here.",
+    help="The end of a film or of the signals.",
 )
 @notation_option
-@click.option("--check", "checked", is_flag=True, help="Judge the episode again, and play it again.")
+@click.option("--check", "checked", is_flag=True, help="Check the recording: judge and play the episode again.")
 @summary_format
 @click.pass_context
 def command(
@@ -104,10 +106,10 @@ def command(
     checked: bool,
     format: str,  # noqa: A002
 ) -> int:
-    """Show recorded episodes: a summary, the plan of the way, a film, the signals.
+    """Show recorded episodes: a summary, a plan of the path, a film, the signals.
 
-    --check says whether the atoms, states and rewards of the recording follow from its signals by the spec, and
-    whether the level, played again from the seed with the same actions, gives the same episode.
+    --check tells whether the spec gives the recorded atoms, states and rewards for the recorded signals, and whether
+    the level gives the same episode again for the same seed and actions.
     """
     _check_usage(context, files, path, size)
     from tltl_runtime.stealth.recordings.check import check, check_replay

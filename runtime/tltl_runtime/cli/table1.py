@@ -51,22 +51,22 @@ Examples:
 """
 )
 @output_folder("The folder for trainings, episodes and the table.", default=Path("table1"))
-@click.option("--shipped", is_flag=True, help="Take the policies that come with the levels, and train imitation alone.")
+@click.option("--shipped", is_flag=True, help="Use the policies that come with the levels; train only by imitation.")
 @click.option(
     "--minutes",
     metavar="M",
     type=cli.FiniteRange(min=0, max=1_000_000),
-    help="Of each training, at the most; 0: no limit but that of steps (default: 60; with --shipped as many as the "
-    "policies were given that come with the levels).",
+    help="The time limit of each training; 0 means no limit except that of steps (default: 60; with --shipped, the "
+    "limit that the shipped policies had).",
 )
 @all_cores_option
 def command(folder: Path, shipped: bool, minutes: float | None, workers: Any) -> int:
-    """Train and play what the paper's Table I is of, and print our table beside it.
+    """Train and play the models of the paper's Table I, and print our table next to it.
 
-    On each of the three levels: the scripted expert in place of the human, an agent that learns by imitation of it, and
-    one that learns from its spec.  Each plays 100 episodes in each variant.  What is done stays in the folder: called
-    again, the command goes on.  What has changed since, be it a level, a spec, a setting or the code that plays, is
-    trained or played anew.
+    Three models play each of three levels: the scripted expert (in place of a human), an agent that imitates the
+    expert, and an agent that learns from its spec. Each model plays 100 episodes in each variant. All results stay in
+    the folder, so that the same command continues a run. If a level, a spec, a setting or the code has changed, the
+    command trains or plays again.
     """
     with cli.Report() as report, require_learning("`tltlc table1`"), ignore_closed_pipe():
         from tltl_runtime.support.folder_lock import lock_folder

@@ -54,24 +54,26 @@ Watching, from another terminal:
 )
 @click.argument("spec", metavar="[SPEC[:NAME]]", required=False)
 @click.option(
-    "--level", metavar="LEVEL[:VARIANT]", help="Where; by default the level that the spec names.  VARIANT: v0."
+    "--level", metavar="LEVEL[:VARIANT]", help="The level (default: the level that the spec names; VARIANT: v0)."
 )
 @output_folder(
-    "The folder for the policy and all that is measured (default: training/LEVEL-VARIANT-SPEC-SEED, by imitation "
-    "with -imitation behind it, with --from -tuned)."
+    "The folder for the policy and the measurements (default: training/LEVEL-VARIANT-SPEC-SEED; imitation appends "
+    "-imitation, --from appends -tuned)."
 )
-@click.option("--seed", metavar="N", type=cli.WholeRange(min=0, max=2**31 - 1), help="Of the training (default: 0).")
+@click.option(
+    "--seed", metavar="N", type=cli.WholeRange(min=0, max=2**31 - 1), help="The seed of the training (default: 0)."
+)
 @click.option(
     "--resume",
     metavar="DIR",
     type=click.Path(path_type=Path, file_okay=False),
-    help="Go on with the training in this folder, from its last checkpoint.",
+    help="Continue the training in this folder from its last checkpoint.",
 )
 @click.option(
     "--config",
     metavar="FILE.toml",
     type=click.Path(path_type=Path),
-    help="Settings in place of the defaults; --print-config shows all of them.",
+    help="A file with settings that differ from the defaults. --print-config shows all settings.",
 )
 @click.option(
     "--method",
@@ -82,38 +84,38 @@ Watching, from another terminal:
     "--demonstrations",
     metavar="DIR",
     type=click.Path(path_type=Path, file_okay=False),
-    help="What is imitated, as `tltlc record` made it (default: the expert's, recorded first).",
+    help="The demonstrations to imitate, from `tltlc record` (default: demonstrations of the expert, recorded first).",
 )
 @click.option(
     "--from",
     "policy",
     metavar="POLICY",
     type=click.Path(path_type=Path),
-    help="Begin with the weights of this policy, named as for `tltlc evaluate`, by default for its spec and level.",
+    help="Start with the weights of this policy, named as for `tltlc evaluate`. Its spec and level are the defaults.",
 )
 @click.option(
     "--steps",
     metavar="N",
-    type=cli.WholeRange(),
+    type=cli.WholeRange(min=1),
     callback=_setting("stop", "steps"),
-    help="End after so many steps of all environments.",
+    help="Stop after this many steps, counted over all environments.",
 )
 @click.option(
     "--minutes",
     metavar="M",
     type=float,
     callback=_setting("stop", "minutes"),
-    help="End after so many minutes of training (0: no limit).",
+    help="Stop after this many minutes of training (0: no limit).",
 )
 @click.option(
     "--workers",
     metavar="N|ray",
     type=WorkersType(),
-    help="Processes that play (0: one a core), or those of a Ray cluster.",
+    help="The number of processes that play (0: one per core), or `ray` for a Ray cluster.",
 )
-@click.option("--device", metavar="cpu|cuda|cuda:N", callback=_setting("", "device"), help="Where the network learns.")
+@click.option("--device", metavar="cpu|cuda|cuda:N", callback=_setting("", "device"), help="The device of the network.")
 @senses_options
-@click.option("--print-config", is_flag=True, help="Print the settings, as a file for --config, and exit.")
+@click.option("--print-config", is_flag=True, help="Print all settings as a file for --config, and exit.")
 def command(
     spec: str | None,
     folder: Path | None,
@@ -124,13 +126,12 @@ def command(
 ) -> int:
     """Train an agent until it meets a spec.
 
-    SPEC is the spec by which it is judged and rewarded; where it is left out, that for which --level is made.
-    The training ends when the spec was met in 100 episodes in a row, and by the policy as it then is in 300 fresh ones;
-    or at a limit.  The folder then holds the policy of the agent (policy.safetensors), the record of the training
-    (record.json, curve.png) and what was measured (metrics.jsonl, and event files for TensorBoard).  Ctrl-C keeps what
-    was learned, for --resume.
+    SPEC judges and rewards the agent; the default is the spec of --level.
+    The training ends when 100 episodes in a row met the spec and then 300 new episodes of the unchanged policy met it,
+    or at a limit. The folder then contains the policy (policy.safetensors), the record of the training (record.json,
+    curve.png) and the measurements (metrics.jsonl, and event files for TensorBoard). After Ctrl-C, --resume continues.
 
-    The exit status is 0 where the spec was met, and 1 where a limit ended the training before.
+    The exit status is 0 if the spec was met, and 1 if a limit ended the training.
     """
     if resume is not None and folder is not None:
         raise click.UsageError("--resume goes on in its own folder: leave --out out", click.get_current_context())

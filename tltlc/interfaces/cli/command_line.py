@@ -22,24 +22,24 @@ from tltlc.io.limits import COMMAND, ProcessLimit
 from tltlc.io.resources import OutOfTimeError
 
 BUILT_IN: Final = {
-    "compile": "Compile the specs of a file to artefacts and monitors.",
-    "import": "Make an artefact of another tool's automaton (HOA).",
-    "check": "Report what is wrong in source files, and write nothing.",
-    "lint": "Report what is likely to be a mistake in specs that compile.",
-    "fmt": "Lay out source files, and spell operators in one style.",
+    "compile": "Compile specs to artefacts, diagrams and monitors.",
+    "import": "Convert an automaton of another tool (HOA) to an artefact.",
+    "check": "Report errors and warnings in source files.",
+    "lint": "Report probable mistakes in specs that compile.",
+    "fmt": "Format source files in one style.",
     "render": "Draw the automaton of a spec.",
-    "monitor": "Run a spec over a recorded trace and judge it.",
+    "monitor": "Judge a recorded trace by a spec.",
     "test": "Run the test blocks of source files.",
     "watch": "Check, lint and test source files whenever one changes.",
-    "witness": "Show a spec by traces: shortest ones, or every edge.",
+    "witness": "Print traces that show what a spec means.",
     "mine": "Propose specs from recorded traces.",
-    "diff": "Say how the specs of two files differ.",
-    "breaking": "Report what changed that hosts or recorded baselines notice.",
-    "conformance": "Write the cases that an engine's monitors must pass.",
-    "lsp": "Serve editors: errors as you type, meaning, completion, layout.",
-    "serve": "Show a page on which to try specs.",
-    "list": "List the predicates, targets, levels or error codes there are.",
-    "explain": "Say what a spec asks for, or what an error code means.",
+    "diff": "Say how two specs differ.",
+    "breaking": "Report changes that break a game or a recorded baseline.",
+    "conformance": "Write test cases for the monitors of an engine.",
+    "lsp": "Start a language server for editors.",
+    "serve": "Serve a page for trying out specs.",
+    "list": "List predicates, targets, levels or error codes.",
+    "explain": "Explain a spec or an error code.",
     "new": "Create a starter project that compiles.",
     "completion": "Print the completion script of a shell.",
 }
@@ -51,16 +51,16 @@ The other commands limit only parts of their work.
 """
 
 RUNTIME_COMMANDS: Final = {
-    "demonstrate": "Have the scripted expert play a level, and record it.",
+    "demonstrate": "Let the scripted expert play a level, and record it.",
     "play": "Play a level with the keyboard, and record it.",
-    "record": "Record demonstrations that meet a spec, for an agent to imitate.",
-    "replay": "Show recorded episodes: how they went, plans, films, signals.",
+    "record": "Record demonstrations for an agent to imitate.",
+    "replay": "Show recorded episodes: a summary, plans, films, signals.",
     "train": "Train an agent until it meets a spec.",
-    "evaluate": "Have a trained policy play, and report how often it meets the spec.",
+    "evaluate": "Let a trained policy play, and report how often it meets the spec.",
     "inspect": "Show what a policy was trained for, or export it as ONNX.",
     "regress": "Report which levels still play as designed, and where and why not.",
-    "baseline": "Record the figures that a suite is judged against.",
-    "table1": "Train and play what the paper's Table I is of, and print ours beside it.",
+    "baseline": "Record how the policies of a suite play now.",
+    "table1": "Reproduce the paper's Table I.",
 }
 """Commands of the runtime, with what they do; they ship with tltlc but need an extra.
 
@@ -226,7 +226,7 @@ Start here:
     metavar="SECONDS",
     default=COMMAND.work_s,
     show_default=True,
-    help="End the work on files after so much processor time; 0 for no end.",
+    help="Stop a command after this much processor time; 0 means no limit.",
 )
 @click.option(
     "--max-memory",
@@ -234,7 +234,7 @@ Start here:
     metavar="GIB",
     default=COMMAND.memory / 2**30,
     show_default=True,
-    help="End the work on files where it takes more memory; 0 for no end.",
+    help="Stop a command that needs more memory than this; 0 means no limit.",
 )
 @click.pass_context
 def cli(ctx: click.Context, max_cpu: int, max_memory: float) -> None:

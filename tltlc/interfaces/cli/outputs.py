@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from tltlc.io.project import Project
 
 output_option = click.option(
-    "--output", "-o", "folder", metavar="DIR", type=OutputPath("folder"), default=".", help="Write here."
+    "--output", "-o", "folder", metavar="DIR", type=OutputPath("folder"), default=".", help="The folder for the files."
 )
 
 target_option = click.option(
@@ -26,7 +26,8 @@ target_option = click.option(
     "target_lists",
     metavar="TARGETS",
     multiple=True,
-    help="What to write, by commas: `tltlc list targets` (default: json,dot,python, or those of tltl.toml).",
+    help="What to write, separated by commas; see `tltlc list targets` (default: the targets in tltl.toml, or else "
+    "json,dot,python).",
 )
 
 

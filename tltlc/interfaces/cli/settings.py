@@ -58,7 +58,7 @@ def compile_options(command: Function) -> Function:
                 metavar="DIR",
                 type=click.Path(path_type=Path, readable=False),
                 multiple=True,
-                help="Look for imports in this folder, too (repeatable).",
+                help="Search this folder for imports, too (repeatable).",
             ),
             click.option(
                 "--param",
@@ -71,7 +71,7 @@ def compile_options(command: Function) -> Function:
                 "--state-budget",
                 metavar="N",
                 type=WholeRange(min=1),
-                help="Give up on an automaton that needs more states, or as much more work (default: 50000).",
+                help="Report an error if an automaton needs more states than this, or too much work (default: 50000).",
             ),
         )
     ):
@@ -83,7 +83,7 @@ format_option = click.option(
     "--format",
     type=click.Choice(FORMATS),
     default="text",
-    help="How to show errors and warnings (default: text).",
+    help="The format of errors and warnings (default: text).",
 )
 
 

@@ -26,7 +26,11 @@ def keyboard_options(function: Function) -> Function:
     from tltl_runtime.stealth.rendering.camera import VIEWS
 
     crouch = click.option(
-        "--crouch", type=click.Choice(_CROUCHES), default="hold", show_default=True, help="What C does."
+        "--crouch",
+        type=click.Choice(_CROUCHES),
+        default="hold",
+        show_default=True,
+        help="Whether the key C must be held to crouch, or toggles it.",
     )
     view = click.option("--view", type=click.Choice(VIEWS), default="third_person", show_default=True)
     return view(crouch(function))

@@ -28,7 +28,7 @@ from tltlc.api import Diagnostic, Fspa, TltlError, cli, fileio
     "--plan",
     metavar="FILE.png",
     type=cli.OutputPath("file"),
-    help="Draw the level from above, red where nobody can stand (for one level and variant).",
+    help="Draw a plan of the level, with red where nobody can stand. For one level and variant.",
 )
 def command(
     levels: tuple[str, ...],

@@ -13,5 +13,5 @@ notation_option = click.option(
     type=click.Choice(NOTATIONS),
     default="english",
     show_default=True,
-    help="Of what remains to be satisfied.",
+    help="The notation of the formulas in the picture.",
 )

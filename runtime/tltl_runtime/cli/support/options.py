@@ -44,5 +44,5 @@ summary_format = click.option(
     type=click.Choice(("text", "json")),
     default="text",
     show_default=True,
-    help="Of the summary, and of messages.",
+    help="The format of the summary and of messages.",
 )

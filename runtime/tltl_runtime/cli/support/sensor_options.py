@@ -115,18 +115,27 @@ class _Map(_Type):
 
 
 _OPTIONS = (
-    click.option("--entities", metavar="A,B", type=_Names(), help="The agent senses where these are, e.g. `s1,exit`."),
-    click.option("--no-entities", is_flag=True, help="It senses the place of none."),
     click.option(
-        "--variables", metavar="A,B", type=_Names(), help="It senses these signals, e.g. `health,distance(exit)`."
+        "--entities",
+        metavar="A,B",
+        type=_Names(),
+        help="The agent observes the positions of these entities, e.g. `s1,exit`.",
     ),
-    click.option("--no-variables", is_flag=True, help="It senses none."),
+    click.option("--no-entities", is_flag=True, help="The agent observes no entity."),
+    click.option(
+        "--variables",
+        metavar="A,B",
+        type=_Names(),
+        help="The agent observes these signals, e.g. `health,distance(exit)`.",
+    ),
+    click.option("--no-variables", is_flag=True, help="The agent observes no signal."),
     click.option(
         "--map",
         "map_",
         metavar="KEY=VALUE,…",
         type=_Map(),
-        help="It senses a map around itself: `cell=0.5,extent=15,types=wall,low`; what is left out is as in the level.",
+        help="The agent observes a map around itself, e.g. `cell=0.5,extent=15,types=wall,low`. Missing keys keep the "
+        "values of the level.",
     ),
-    click.option("--no-map", is_flag=True, help="It senses no map."),
+    click.option("--no-map", is_flag=True, help="The agent observes no map."),
 )

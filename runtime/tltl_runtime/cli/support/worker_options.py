@@ -39,5 +39,5 @@ all_cores_option = click.option(
     metavar="N|ray",
     type=WorkersType(),
     default=0,
-    help="Processes that play (default: one a core), or those of a Ray cluster.",
+    help="The number of processes that play (default: one per core), or `ray` for a Ray cluster.",
 )

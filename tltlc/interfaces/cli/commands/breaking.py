@@ -35,15 +35,15 @@ Examples:
     "--against",
     metavar="REV|DIR",
     required=True,
-    help="A folder that holds the files as they were; or, where there is no such folder, a revision of git.",
+    help="The folder with the old files. If there is no such folder, a Git revision.",
 )
 @source_options
 def command(paths: tuple[str, ...], against: str, settings: CompileSettings, format: str) -> int:  # noqa: A002
-    """Report what changed in specs, artefacts and libraries that a game or a recorded baseline notices.
+    """Report changes of specs, artefacts and libraries that break a game or a recorded baseline.
 
-    An error is what breaks them: specs that are gone or stricter, signals that must be supplied now, predicates that
-    are judged otherwise.  A warning is what changes other numbers or behaviour, and a note what needs nothing to be
-    done.  The exit status is 1 where there is an error.  Imports of the old files are the old ones.
+    Errors are changes that break it: a spec is gone or stricter, the game must supply a new signal, a predicate has
+    another meaning. Warnings are changes of other numbers or behaviour. Notes need no action. The exit status is 1 if
+    there is an error. The old files use the old versions of the files that they import.
     """
     from tltlc.interfaces.cli.report import Report
     from tltlc.tools.diff.breaking import version_changes

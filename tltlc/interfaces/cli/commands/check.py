@@ -41,14 +41,14 @@ class Check(click.Command):
     cls=Check,
     epilog="""\b
 Examples:
-  tltlc check                                    every .tltl file in this folder, and below
+  tltlc check                                    all .tltl files in this folder and its subfolders
   tltlc check cover_and_hide.tltl
-  tltlc check levels                             those of another folder
-  tltlc check --format github levels             remarks on a pull request
+  tltlc check levels                             another folder
+  tltlc check --format github levels             annotations on a pull request
   tltlc check --format sarif levels > tltlc.sarif
   tltlc check cover_and_hide.tltl --level vault.toml
   tltlc check --level navigation:v1              a level against its own spec
-  tltlc check --level all --help                 the further options that levels have
+  tltlc check --level all --help                 more options for levels
 """,
 )
 @click.argument("specs", metavar="[SPEC_OR_FOLDER]...", nargs=-1)
@@ -57,8 +57,8 @@ Examples:
     "levels",
     metavar="LEVEL[:VARIANT]",
     multiple=True,
-    help="Tell whether this level has what the specs speak of (repeatable): a .toml file, the name of a level that "
-    "comes with tltlc, or `all` of those; without a variant, each of its variants.",
+    help="Check that this level has everything the specs use (repeatable). LEVEL is a .toml file, the name of a level "
+    "that comes with tltlc, or `all` for all of these. Without VARIANT, all variants are checked.",
 )
 @source_options
 def command(
@@ -68,12 +68,11 @@ def command(
     format: str,  # noqa: A002
     **options: Any,
 ) -> int:
-    """Report every error and warning of each SPEC (a file, FILE:NAME, an artefact, or - for standard input).
+    """Report all errors and warnings of each SPEC (a file, FILE:NAME, an artefact, or - for standard input).
 
-    Of a folder, by default the current one, every .tltl file in it and below is checked.
-    With --level, also what a level does not have that a spec needs, and what nobody can reach in it; without a SPEC,
-    by the spec that the level is made for.  The exit status is 1 where there is an error, and 0 where there are
-    warnings at most.
+    In a folder, all .tltl files are checked, also those in subfolders. The default is the current folder.
+    With --level, the command also reports what a spec needs and the level lacks, and what nobody can reach there;
+    without SPEC, it uses the spec of the level. The exit status is 1 if there is an error, and 0 otherwise.
     """
     from tltlc.diagnostics.diagnostic import TltlError
     from tltlc.interfaces.cli.folders import every_source

@@ -23,20 +23,20 @@ if TYPE_CHECKING:
 @click.command(
     epilog="""\b
 Examples:
-  tltlc compile cover_and_hide.tltl                  three files beside you
+  tltlc compile cover_and_hide.tltl                  three files in the current folder
   tltlc compile cover_and_hide.tltl -o build -t json,svg
   tltlc compile levels.tltl --spec level_1 --spec level_2
   tltlc compile build/level_1.fspa.json -t python    from an artefact
-  tltlc compile levels -o Assets/Specs -t csharp --watch    every .tltl file in the folder, and below
+  tltlc compile levels -o Assets/Specs -t csharp --watch    all .tltl files in the folder and its subfolders
 """
 )
 @click.argument("specs", metavar="SPEC_OR_FOLDER...", nargs=-1, required=True)
 @output_option
 @target_option
-@click.option("--spec", "names", metavar="NAME", multiple=True, help="Only this spec of each file (repeatable).")
 @click.option(
-    "--watch", is_flag=True, help="Stay, and compile again whenever a file changes that was read, until Ctrl-C."
+    "--spec", "names", metavar="NAME", multiple=True, help="Compile only the spec with this name (repeatable)."
 )
+@click.option("--watch", is_flag=True, help="Compile again whenever one of the files changes, until you press Ctrl-C.")
 @source_options
 def command(
     specs: tuple[str, ...],
@@ -49,9 +49,9 @@ def command(
 ) -> int:
     """Compile the specs of each SPEC (a file, FILE:NAME, an artefact, or - for standard input).
 
-    For each spec NAME this writes NAME.fspa.json, NAME.dot and NAME_monitor.py, or what -t asks for.
-    Nothing is written unless everything could be, and files that would not change stay untouched.  Of a folder, as of
-    . for the current one, every .tltl file in it and below is compiled.
+    For each spec NAME, the command writes NAME.fspa.json, NAME.dot and NAME_monitor.py, or the targets of -t. If there
+    is an error, it writes nothing. It does not touch files that would not change. In a folder (`.` is the current
+    folder), all .tltl files are compiled, also those in subfolders.
     """
     from tltlc.interfaces.cli.folders import every_source, files_in_folders
     from tltlc.interfaces.cli.report import Report

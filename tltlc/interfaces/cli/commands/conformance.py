@@ -25,13 +25,13 @@ Examples:
     type=OutputPath("folder"),
     default="conformance",
     show_default=True,
-    help="Write here.",
+    help="The folder for the files.",
 )
 def command(folder: Path) -> int:
-    """Write specs and traces with what a monitor must say of them, to check an engine's build.
+    """Write specs, traces and the results that a monitor must give, to check the monitors of an engine.
 
-    DIR/README.md says how; DIR/index.json is for programs.  The files are the same at each run.  DIR must be new, empty
-    or made by an earlier run.
+    DIR/README.md explains the check; DIR/index.json is for programs. Each run writes the same files. DIR must be new,
+    empty, or the output of an earlier run.
     """
     from tltlc.interfaces.cli.folders import is_free, occupied_folder_error
     from tltlc.interfaces.cli.report import Report

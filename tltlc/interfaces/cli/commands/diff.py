@@ -23,26 +23,28 @@ if TYPE_CHECKING:
 @click.command(
     epilog="""\b
 Examples:
-  tltlc diff vault.tltl vault_new.tltl             specs of one name, side by side
+  tltlc diff vault.tltl vault_new.tltl             specs with the same name
   tltlc diff vault.tltl:heist vault.tltl:heist_2   two specs of a file
-  tltlc diff build/heist.fspa.json vault.tltl      what the artefact does not know yet
-  tltlc diff main:vault.tltl vault.tltl            since a revision of git
+  tltlc diff build/heist.fspa.json vault.tltl      what changed since the artefact
+  tltlc diff main:vault.tltl vault.tltl            what changed since a Git revision
   tltlc diff old.tltl new.tltl --format json
 """
 )
 @click.argument("a", metavar="A[:SPEC]")
 @click.argument("b", metavar="B[:SPEC]")
-@click.option("--by-name", is_flag=True, help="Take atoms of one name for one, whatever their expressions.")
+@click.option(
+    "--by-name", is_flag=True, help="Treat atoms with the same name as equal, even if their expressions differ."
+)
 @compile_options
 @click.option(
-    "--format", type=click.Choice(("text", "json")), default="text", help="How to say what differs (default: text)."
+    "--format", type=click.Choice(("text", "json")), default="text", help="The format of the output (default: text)."
 )
 def command(a: str, b: str, by_name: bool, settings: CompileSettings, format: str) -> int:  # noqa: A002
-    """Say how B differs from A (files, FILE:NAME, artefacts, REV:FILE of a git revision, or - for standard input).
+    """Say how B differs from A (files, FILE:NAME, artefacts, REV:FILE of a Git revision, or - for standard input).
 
-    Whether it is equivalent, stricter or looser, with a shortest trace for each direction, in words and as a test
-    block; and what else differs: limit, judge, level, what atoms mean, signals, params, exclusive atoms.  The
-    exit status is 0 where nothing differs, and 1 otherwise.
+    The output says whether B is equivalent, stricter or looser, with a shortest trace for each direction, in words and
+    as a test block. Then it lists other differences: limit, judge, level, meanings of atoms, signals, params, exclusive
+    atoms. The exit status is 0 if nothing differs, and 1 otherwise.
     """
     from tltlc.interfaces.cli.report import Report
     from tltlc.tools.diff.pairs import diff_files

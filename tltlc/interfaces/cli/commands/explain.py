@@ -25,8 +25,8 @@ Examples:
   tltlc explain levels.tltl:level_1 --format markdown
   tltlc explain levels --format markdown > levels.md    every spec of a folder
   tltlc explain TLT0201
-  tltlc explain TLT02     the codes that begin so
-  tltlc list codes        the codes there are to explain
+  tltlc explain TLT02     all codes that start with TLT02
+  tltlc list codes        all codes
 """
 )
 @click.argument("what", metavar="SPEC[:NAME]|FOLDER|TLTnnnn")
@@ -34,15 +34,15 @@ Examples:
     "--format",
     type=click.Choice(("text", "markdown", "json")),
     default="text",
-    help="How to write a spec's explanation (default: text).",
+    help="The format of the explanation (default: text).",
 )
 @compile_options
 def command(what: str, format: str, settings: CompileSettings) -> int:  # noqa: A002
-    """Say what a spec asks for, or what an error code means and how to mend it.
+    """Explain a spec, or an error code and how to fix the error.
 
-    Of a spec: its steps, what holds throughout, what breaks it, when it ends, its states, the shortest ways to succeed
-    and to fail.  SPEC is a file, an artefact, or - for standard input; without :NAME all its specs are explained, of a
-    folder those of every .tltl file in it and below.
+    For a spec, the output lists its steps, the conditions that always hold, what violates it, when it ends, its states,
+    and the shortest traces that succeed and fail. SPEC is a file, an artefact, or - for standard input. Without :NAME,
+    all specs of the file are explained; in a folder, those of all .tltl files, also in subfolders.
     """
     if (_CODE.match(what) or _CODE_LIKE.match(what)) and not Path(what).exists():
         return _print_code_page(what)

@@ -16,27 +16,29 @@ if TYPE_CHECKING:
 @click.command(
     epilog="""\b
 Examples:
-  tltlc fmt                            every .tltl file in this folder, and below
-  tltlc fmt levels                     those of another folder
-  tltlc fmt --check --diff levels      what would change; for continuous integration
+  tltlc fmt                            all .tltl files in this folder and its subfolders
+  tltlc fmt levels                     another folder
+  tltlc fmt --check --diff levels      show what would change; for continuous integration
   tltlc fmt --style unicode heist.tltl
   tltlc fmt - < heist.tltl             from standard input to standard output
 """
 )
 @click.argument("paths", metavar="[FILE_OR_FOLDER]...", nargs=-1)
-@click.option("--check", is_flag=True, help="Write nothing, list the files that would change; if any, exit with 1.")
-@click.option("--diff", is_flag=True, help="Write nothing, print what would change.")
+@click.option(
+    "--check", is_flag=True, help="Change no file. List the files that would change; exit with 1 if there are any."
+)
+@click.option("--diff", is_flag=True, help="Change no file. Print the changes.")
 @click.option(
     "--style",
     type=click.Choice(FORMATTINGS),
-    help="How to spell operators: `eventually`, `F`, `<>` or `◇` (default: words, or that of tltl.toml).",
+    help="How to spell operators: `eventually`, `F`, `<>` or `◇` (default: the style in tltl.toml, or else words).",
 )
 def command(paths: tuple[str, ...], check: bool, diff: bool, style: str | None) -> int:
-    """Lay out source files: the same specs and comments, with one way to break lines and to spell operators.
+    """Format source files: one style for line breaks and operators, with the same specs and comments.
 
-    Files are rewritten in place, without arguments those of the current folder; those that would not change are not
-    touched; - is from standard input to standard output.  A file with syntax errors is left as it is, and the exit
-    status is 1.
+    Files are rewritten in place; without arguments, all files of the current folder. A file that would not change is
+    not touched. `-` reads standard input and writes standard output. A file with syntax errors stays as it is, and the
+    exit status is 1.
     """
     from tltlc.diagnostics.diagnostic import TltlError
     from tltlc.interfaces.cli import exits

@@ -26,7 +26,7 @@ def _name(_: click.Context, __: click.Parameter, name: str | None) -> str | None
 @click.command(
     epilog="""\b
 Examples:
-  tltlc import patrol.hoa --predicates game.tltl     three files beside you
+  tltlc import patrol.hoa --predicates game.tltl     three files in the current folder
   tltlc import patrol.hoa --predicates game.tltl --atom "p0=near(post_1)" -t json,svg -o build
   ltl2tgba -G -D -C "GFp0" | tltlc import - --predicates game.tltl --atom "p0=near(post_1)"
 """
@@ -36,20 +36,22 @@ Examples:
     "--predicates",
     metavar="LIB.tltl",
     required=True,
-    help="What the atomic propositions mean: a file with signals and predicates; its specs do not matter.",
+    help="The file whose predicates give the atomic propositions their meaning. Its specs are ignored.",
 )
 @click.option(
     "--atom",
     "atom_texts",
     metavar="AP=PREDICATE",
     multiple=True,
-    help="The predicate of an atomic proposition that is not called like one, e.g. `p0=near(exit)` (repeatable).",
+    help="The predicate for an atomic proposition with another name, e.g. `p0=near(exit)` (repeatable).",
 )
-@click.option("--name", metavar="NAME", callback=_name, help="Call the spec so (default: as the file does).")
-@click.option("--level", metavar="LEVEL", help="The level that it is for.")
+@click.option("--name", metavar="NAME", callback=_name, help="The name of the spec (default: the name in the file).")
+@click.option("--level", metavar="LEVEL", help="The level of the spec.")
 @click.option("--limit", metavar="STEPS", type=WholeRange(min=1), help="End each episode after this many steps.")
 @click.option(
-    "--judge", type=click.Choice(("goal", "limit")), help="When an episode is over (default: by the automaton)."
+    "--judge",
+    type=click.Choice(("goal", "limit")),
+    help="What ends an episode: the goal or the limit (default: chosen by the automaton).",
 )
 @output_option
 @target_option
@@ -67,10 +69,10 @@ def command(
     settings: CompileSettings,
     format: str,  # noqa: A002
 ) -> int:
-    """Make an artefact of FILE.hoa, an automaton in the Hanoi format (- is standard input).
+    """Convert FILE.hoa, an automaton in the Hanoi format, to an artefact (- is standard input).
 
-    It must be deterministic and complete, with any acceptance of edges or states; Spot, Owl and Rabinizer write such
-    files.  Its atomic propositions are predicates of LIB.tltl, written as in a spec: "near(exit)".
+    The automaton must be deterministic and complete. It may have any acceptance on edges or states; Spot, Owl and
+    Rabinizer write such files. Its atomic propositions are predicates of LIB.tltl, written as in a spec: "near(exit)".
     """
     from tltlc.automaton.finite.build import DEFAULT_STATE_BUDGET
     from tltlc.diagnostics.diagnostic import stop_at_errors

@@ -19,10 +19,10 @@ if TYPE_CHECKING:
 @click.command(
     epilog="""\b
 Examples:
-  tltlc lint                            every .tltl file in this folder, and below
-  tltlc lint levels/vault.tltl --fix    remove what is not needed
-  tltlc lint --format github levels     remarks on a pull request
-  tltlc explain TLT0412                 what a rule finds, and why
+  tltlc lint                            all .tltl files in this folder and its subfolders
+  tltlc lint levels/vault.tltl --fix    apply the safe fixes
+  tltlc lint --format github levels     annotations on a pull request
+  tltlc explain TLT0412                 what a rule reports, and why
 
 \b
 `// tltlc: allow TLT0419` at the end of a line, or above it, silences a rule there; before the first declaration, in
@@ -30,13 +30,13 @@ the whole file. `[lint] allow = ["TLT0419"]` in tltl.toml silences it everywhere
 """
 )
 @click.argument("paths", metavar="[FILE_OR_FOLDER]...", nargs=-1)
-@click.option("--fix", "fixing", is_flag=True, help="Apply the fixes that change the meaning of nothing.")
+@click.option("--fix", "fixing", is_flag=True, help="Apply the fixes that keep the meaning of every spec.")
 @source_options
 def command(paths: tuple[str, ...], fixing: bool, settings: CompileSettings, format: str) -> int:  # noqa: A002
-    """Report what is likely to be a mistake in specs that compile, such as goals that are met by doing nothing.
+    """Report probable mistakes in specs that compile, such as a goal that is met by doing nothing.
 
-    Every warning of the compiler is among it, and without arguments the current folder is searched.  The exit status
-    is 1 where there is an error or a warning, and 0 where there are notes at most.
+    The output includes all warnings of the compiler. Without arguments, the command reads the current folder. The exit
+    status is 1 if there is an error or a warning, and 0 otherwise.
     """
     from tltlc.diagnostics.diagnostic import TltlError
     from tltlc.interfaces.cli.folders import every_source, links_outside

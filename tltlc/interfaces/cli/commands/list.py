@@ -23,10 +23,10 @@ Each entry is a function that returns rows.
 @click.command(
     epilog="""\b
 Examples:
-  tltlc list predicates                   those of the standard library
-  tltlc list predicates --library mine    and those of a folder of yours
+  tltlc list predicates                   the standard library
+  tltlc list predicates --library mine    and your folder
   tltlc list targets --json
-  tltlc list levels                       those of the stealth game, and what their variants change
+  tltlc list levels                       the levels of the stealth game and their variants
   tltlc list codes
 """
 )
@@ -40,9 +40,9 @@ Examples:
     multiple=True,
     help="List the predicates of this folder, too (repeatable).",
 )
-@click.option("--json", "as_json", is_flag=True, help="A JSON list, for programs.")
+@click.option("--json", "as_json", is_flag=True, help="Print a JSON list.")
 def command(what: str, libraries: tuple[Path, ...], as_json: bool) -> int:
-    """List the predicates, targets, levels or error codes there are, each with a line on what it is."""
+    """List all predicates, targets, levels or error codes, each with a short description."""
     from tltlc.interfaces.cli.report import Report
 
     with Report() as report:

@@ -8,18 +8,19 @@ import click
 @click.command(
     epilog="""\b
 Examples:
-  tltlc lsp                       what an editor starts; it speaks over standard input and output
+  tltlc lsp                       for editors; uses standard input and output
 
 \b
 The folder editors/vscode of the repository holds the extension for VS Code; docs/guides/editors.md shows the settings
 of Neovim, Helix, Emacs and Kate.
 """
 )
-@click.option("--stdio", is_flag=True, help="Without effect: there is no other way to speak.")
+@click.option("--stdio", is_flag=True, help="Ignored; the server always uses standard input and output.")
 def command(stdio: bool) -> int:
-    """Serve an editor: errors and warnings as you type, completion, what a name or a formula means, renaming, layout.
+    """Start a language server for editors: errors, completion, hover, renaming, formatting.
 
-    Needs the extra `lsp`.  The exit status is 0 where the editor said `shutdown` before it left, else 1.
+    It needs the extra `lsp`. The exit status is 0 if the editor sent `shutdown` before it closed the connection, and 1
+    otherwise.
     """
     from tltlc.interfaces.cli.exits import CLEAN, FINDINGS, missing_component
 

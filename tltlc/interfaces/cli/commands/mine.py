@@ -39,7 +39,7 @@ _TELL_EVERY_S: Final = 1.0
 Examples:
   tltlc mine good/ --against bad/                         columns are atoms, true or false
   tltlc mine good/ --against bad/ --predicates game.tltl  atoms are computed from signals
-  tltlc mine good/ --against bad/ --predicates stealth    the same by the library of that name
+  tltlc mine good/ --against bad/ --predicates stealth    with the library `stealth`
   tltlc mine run_*.csv --predicates game.tltl -o mined.tltl --top 3
   tltlc mine good/ --against bad/ --min-support 0.9 --time 10 --json
 """
@@ -50,13 +50,13 @@ Examples:
     "counterexamples",
     metavar="TRACES",
     multiple=True,
-    help="Failed or wrong play: a trace or a folder that must not satisfy what is proposed (repeatable).",
+    help="Traces of failed or wrong play, which must violate the proposed specs: a file or a folder (repeatable).",
 )
 @click.option(
     "--predicates",
     metavar="LIB",
-    help="What atoms there are: predicates of signals, of a file or of a library such as `stealth`, for all entities "
-    "of the traces (default: the columns).",
+    help="Compute the atoms with the predicates in this file or library (such as `stealth`), for all entities in the "
+    "traces (default: each column is an atom).",
 )
 @click.option(
     "--top", metavar="N", type=WholeRange(1, 100), default=5, help="Propose at most this many specs (default: 5)."
@@ -66,30 +66,30 @@ Examples:
     metavar="SHARE",
     type=FiniteRange(0.0, 1.0, min_open=True),
     default=1.0,
-    help="The least share of the traces to satisfy a proposal (default: 1; less where some may be wrong).",
+    help="The share of the traces that must satisfy a proposal (default: 1). Lower it if some traces may be wrong.",
 )
 @click.option(
     "--max-length",
     metavar="ATOMS",
     type=WholeRange(min=1),
     default=12,
-    help="How often a proposal may name an atom (default: 12).",
+    help="The largest number of atoms in a proposal, counting repetitions (default: 12).",
 )
 @click.option(
     "--time",
     "seconds",
     metavar="S",
     type=FiniteRange(min=0.0),
-    help="Search for so many seconds at most, and propose the best so far; so does Ctrl-C.",
+    help="Stop the search after this many seconds and print the best proposals so far. Ctrl-C does the same.",
 )
 @click.option(
     "--output",
     "-o",
     metavar="FILE.tltl",
     type=OutputPath("file", stdout=True),
-    help="Write the proposals as a source file; `-` prints it in place of the list.",
+    help="Write the proposals to a source file; `-` prints it instead of the list.",
 )
-@click.option("--json", "as_json", is_flag=True, help="One JSON document, for programs.")
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON document.")
 @source_options
 def command(
     traces: tuple[str, ...],
@@ -104,11 +104,11 @@ def command(
     settings: CompileSettings,
     format: str,  # noqa: A002
 ) -> int:
-    """Propose specs that recorded TRACES satisfy and counterexamples violate: what a level asks for, from play.
+    """Propose specs that the recorded TRACES satisfy and the counterexamples violate.
 
-    TRACES are files as `tltlc monitor` takes them, CSV or JSON lines, or folders of them (*.csv, *.jsonl).  Proposals
-    are ranked by the share of the traces that satisfy them and of the counterexamples that violate them; each was
-    compiled, and its automaton has judged every trace.  The exit status is 1 where there is nothing to propose.
+    TRACES are files in the formats of `tltlc monitor` (CSV or JSON lines), or folders with *.csv and *.jsonl files. The
+    proposals are ranked by the share of traces that satisfy them and of counterexamples that violate them. Each one has
+    been compiled, and its automaton has judged all traces. The exit status is 1 if there is no proposal.
     """
     import json
 

@@ -35,14 +35,14 @@ Examples:
 )
 @click.argument("spec", metavar="SPEC[:NAME]")
 @click.argument("trace", metavar="TRACE")
-@click.option("--json", "as_json", is_flag=True, help="One JSON document: `rows`, then `accepted` and `verdict`.")
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON document with `rows`, `accepted` and `verdict`.")
 @source_options
 def command(spec: str, trace: str, as_json: bool, settings: CompileSettings, format: str) -> int:  # noqa: A002
-    """Run a spec over a recorded trace: CSV with a header of signal names, or JSON lines of objects.
+    """Judge a recorded trace by a spec. TRACE is CSV with a header of signal names, or JSON lines with objects.
 
-    Prints a row per step (state, verdict, progress, reward, the value of each atom) and the verdict of
-    the whole trace.  The exit status is 0 where the trace is accepted, and 1 where it is not.  By a spec about
-    infinite traces, a trace is accepted that ends in a goal state.
+    The output has one row per step (state, verdict, progress, reward, value of each atom) and the verdict of the whole
+    trace. The exit status is 0 if the trace is accepted, and 1 otherwise. A spec over infinite traces accepts a trace
+    that ends in a goal state.
     """
     from tltlc.monitor import Monitor
     from tltlc.monitor.run import outcome, run

@@ -25,13 +25,13 @@ Examples:
 @click.option(
     "--level",
     metavar="LEVEL",
-    help="Copy a level of the stealth game with its spec, assets and overlays: `vault`, which is small, or one that "
-    "`tltlc list levels` shows.",
+    help="Copy a level of the stealth game with its spec, assets and overlays: the small level `vault`, or one from "
+    "`tltlc list levels`.",
 )
 def command(folder: Path, level: str | None) -> int:
     """Create the folder NAME with a spec that compiles, a test, a recorded trace and a project file.
 
-    With --level, create it with a level to be changed instead.
+    With --level, the folder contains a level for you to change instead.
     """
     from tltlc.interfaces.cli.folders import is_free, occupied_folder_error
     from tltlc.interfaces.cli.report import Report

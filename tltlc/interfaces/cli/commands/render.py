@@ -39,19 +39,19 @@ Examples:
     "path",
     metavar="FILE",
     type=OutputPath("file", stdout=True),
-    help="Write here, not on standard output (`-`).",
+    help="Write the picture to this file; `-` is standard output (the default).",
 )
 @click.option(
     "--target",
     "-t",
     "target",
     type=click.Choice(("svg", "png", "dot", "mermaid")),
-    help="The kind of picture (default: by the ending of FILE, else svg).",
+    help="The format of the picture (default: from the extension of FILE, or else svg).",
 )
 @click.option(
     "--notation",
     type=click.Choice(("unicode", "ascii", "english")),
-    help="How formulas are written (default: unicode, or that of tltl.toml).",
+    help="How to write formulas (default: the notation in tltl.toml, or else unicode).",
 )
 @source_options
 def command(
@@ -62,9 +62,9 @@ def command(
     settings: CompileSettings,
     format: str,  # noqa: A002
 ) -> int:
-    """Draw the automaton of a spec: states with what remains to be done, guards, distances, goal and trap.
+    """Draw the automaton of a spec: what remains to be done in each state, guards, distances, goal and trap.
 
-    SPEC is a file, an artefact, or - for standard input; :NAME picks one of several specs.
+    SPEC is a file, an artefact, or - for standard input. If the file has several specs, :NAME selects one.
     """
     from tltlc import backends
     from tltlc.interfaces.cli.inputs import open_input

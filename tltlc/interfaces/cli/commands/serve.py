@@ -25,26 +25,28 @@ The page asks this machine and nobody else, and only the address that is printed
 in the current folder and below, and the libraries of tltlc.
 """
 )
-@click.option("--port", metavar="N", type=WholeRange(0, 65535), default=8765, help="Serve there (default: 8765).")
+@click.option(
+    "--port", metavar="N", type=WholeRange(0, 65535), default=8765, help="The port of the server (default: 8765)."
+)
 @click.option("--open", "open_browser", is_flag=True, help="Open the page in a browser.")
 @click.option(
     "--static",
     "folder",
     metavar="DIR",
     type=OutputPath("folder"),
-    help="Write the page there, with the compiler in it, and serve nothing.",
+    help="Write the page with the compiler to this folder, and start no server.",
 )
 @click.option(
     "--pyodide",
     metavar="DIR",
     type=click.Path(path_type=Path),
     default=Path("node_modules/pyodide"),
-    help="The npm package that --static puts in (default: node_modules/pyodide).",
+    help="The folder of the npm package Pyodide for --static (default: node_modules/pyodide).",
 )
 def command(port: int, open_browser: bool, folder: Path | None, pyodide: Path) -> int:
-    """Show a page on which to try specs: errors as one types, the automaton, traces to click through.
+    """Serve a page for trying out specs: errors as you type, the automaton, traces that you click together.
 
-    It stays until Ctrl-C, and is seen from this machine alone.
+    The server runs until you press Ctrl-C. Only this machine can reach it.
     """
     from tltlc.interfaces.cli.report import Report
 

@@ -18,18 +18,19 @@ if TYPE_CHECKING:
 @click.command(
     epilog="""\b
 Examples:
-  tltlc test                         every .tltl file in this folder, and below
+  tltlc test                         all .tltl files in this folder and its subfolders
   tltlc test cover_and_hide.tltl
   tltlc test levels.tltl:level_1     only the tests of that spec
-  tltlc test levels                  those of another folder
+  tltlc test levels                  another folder
 """
 )
 @click.argument("paths", metavar="[FILE_OR_FOLDER]...", nargs=-1)
 @source_options
 def command(paths: tuple[str, ...], settings: CompileSettings, format: str) -> int:  # noqa: A002
-    """Run test blocks: a line for each on standard output, and what went wrong on standard error.
+    """Run test blocks. Results go to standard output, one line per test; failures go to standard error.
 
-    Without arguments, those of the current folder.  The exit status is 1 where a test fails or a file has errors.
+    Without arguments, the command runs the tests of the current folder. The exit status is 1 if a test fails or a file
+    has errors.
     """
     from tltlc.interfaces.cli.folders import sources
     from tltlc.interfaces.cli.report import Report

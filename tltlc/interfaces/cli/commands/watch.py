@@ -25,16 +25,16 @@ _CLEAR = "\x1b[2J\x1b[3J\x1b[H"
 @click.command(
     epilog="""\b
 Examples:
-  tltlc watch                    the files of this folder, and below
+  tltlc watch                    all files in this folder and its subfolders
   tltlc watch levels lib.tltl
 """
 )
 @click.argument("paths", metavar="[FILE_OR_FOLDER]...", nargs=-1)
 @compile_options
 def command(paths: tuple[str, ...], settings: CompileSettings) -> int:
-    """Check and lint source files and run their tests, again whenever one of them changes, until Ctrl-C.
+    """Check, lint and test source files again whenever one of them changes, until you press Ctrl-C.
 
-    Changes of what they import count, and files that are new in a folder.  `tltlc compile --watch` writes files, too.
+    Changes in imported files count, and so do new files in a folder. `tltlc compile --watch` also writes files.
     """
     from tltlc.interfaces.cli.folders import files_in_folders
     from tltlc.interfaces.cli.watching import repeat

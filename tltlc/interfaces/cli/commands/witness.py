@@ -26,12 +26,23 @@ Examples:
 """
 )
 @click.argument("spec", metavar="SPEC[:NAME]")
-@click.option("--accepting", is_flag=True, help="A shortest trace that is accepted.")
-@click.option("--rejecting", is_flag=True, help="A shortest trace that breaks the spec, or else one that is rejected.")
-@click.option("--cover", is_flag=True, help="Traces that together take every edge that can be taken.")
-@click.option("--as", "kind", type=click.Choice(("test", "csv")), default="test", help="What to write (default: test).")
+@click.option("--accepting", is_flag=True, help="Print a shortest accepted trace.")
 @click.option(
-    "--output", "-o", "folder", metavar="DIR", type=OutputPath("folder"), help="Write files here, one per trace."
+    "--rejecting",
+    is_flag=True,
+    help="Print a shortest trace that violates the spec; if there is none, a shortest rejected trace.",
+)
+@click.option("--cover", is_flag=True, help="Print traces that together take every reachable edge of the automaton.")
+@click.option(
+    "--as", "kind", type=click.Choice(("test", "csv")), default="test", help="The format of the traces (default: test)."
+)
+@click.option(
+    "--output",
+    "-o",
+    "folder",
+    metavar="DIR",
+    type=OutputPath("folder"),
+    help="Write each trace to a file in this folder.",
 )
 @source_options
 def command(
@@ -44,11 +55,11 @@ def command(
     settings: CompileSettings,
     format: str,  # noqa: A002
 ) -> int:
-    """Show a spec by traces: as `test` blocks to paste into its file, or as CSV of the signals of a game.
+    """Print traces that show what a spec means: as `test` blocks for its file, or as CSV with signals.
 
-    Without options, a shortest trace that is accepted and a shortest one that breaks the spec.  Values of signals are
-    found that give the atoms their truth, and each trace is run before it is shown.  Over infinite traces a trace
-    is a prefix and a cycle, which is written once.
+    Without options, the output is a shortest accepted trace and a shortest trace that violates the spec. The values of
+    the signals make the atoms true or false as needed, and each trace is checked by the monitor before it is printed. A
+    trace of a spec over infinite traces is a prefix and a cycle; the cycle is written once.
     """
     from tltlc.interfaces.cli.inputs import open_input
     from tltlc.io.writing import write_files
