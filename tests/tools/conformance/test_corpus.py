@@ -106,7 +106,7 @@ def test_the_corpus_checks_monitors_by_itself(tmp_path: Path) -> None:
     ("words", "message"),
     [
         (["no-such-program", "{name}"], "cannot start `no-such-program {name}`: "),
-        ([sys.executable, "monitor.py"], "the command holds no {name}"),
+        ([sys.executable, "monitor.py"], "the command has no {name}"),
         (["--only", "cells,rang", sys.executable, "{name}"], "no case is called `rang`; there are ranges"),
     ],
 )

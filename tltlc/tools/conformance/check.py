@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Runs monitors over the corpus in this folder, and says what they do otherwise than expected.
+"""Run monitors on the traces in this folder, and print the differences from the expected results.
 
     python check.py [--only CASE,CASE] COMMAND...
 
-COMMAND is how a monitor is started, word by word; ``{name}`` in it is the name of a case, and ``--full`` and a trace
-are added: ``python check.py node 'build/{name}_monitor.mjs'``.  What an engine prints before the header is left out.
-It exits with 1 where anything differs, and with 2 where COMMAND or a CASE is none.
+COMMAND starts a monitor. ``{name}`` in it stands for the name of a case; the script appends ``--full`` and a trace:
+``python check.py node 'build/{name}_monitor.mjs'``. Lines that an engine prints before the header are ignored. The
+exit status is 1 if there is a difference, and 2 if COMMAND or a CASE is wrong.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ def main(words: Sequence[str]) -> int:
 def _misuse(command: Sequence[str], only: Sequence[str], names: Sequence[str]) -> str | None:
     """Return what is wrong with the command line, or None."""
     if not any("{name}" in word for word in command):
-        return "the command holds no {name}, so that every case would run the same monitor"
+        return "the command has no {name}, so all cases would run the same monitor"
     for case in only:
         if case not in names:
             near = difflib.get_close_matches(case, names) or names
@@ -65,7 +65,7 @@ def _checked(command: Sequence[str], only: Sequence[str] | None, folder: Path, i
         tolerance = 0.0 if case["exact"] else index["tolerance"]
         for trace in case["traces"]:
             traces += 1
-            problems = list(of_trace(command, folder, case["name"], trace, tolerance))
+            problems = list(trace_problems(command, folder, case["name"], trace, tolerance))
             differing += bool(problems)
             for problem in problems[:5]:
                 print(f"{trace['trace']}: {problem}")
@@ -73,7 +73,7 @@ def _checked(command: Sequence[str], only: Sequence[str] | None, folder: Path, i
     return 1 if differing or not traces else 0
 
 
-def of_trace(
+def trace_problems(
     command: Sequence[str], folder: Path, name: str, trace: Mapping[str, Any], tolerance: float
 ) -> Iterator[str]:
     """Yield the differences of a monitor on one trace of the index.
@@ -108,12 +108,12 @@ def differences(
     expected_status = 1 if error else 0
     if status != expected_status:
         yield f"exit status {status}, not {expected_status}: {err}"
-    yield from _in_rows(out, rows, tolerance)
-    yield from _in_words(err, warnings, error)
+    yield from _row_differences(out, rows, tolerance)
+    yield from _message_differences(err, warnings, error)
 
 
-def _in_rows(out: str, rows: Sequence[Sequence[str]], tolerance: float) -> Iterator[str]:
-    """Compare the rows cell by cell. The header may be missing if the first sample is refused."""
+def _row_differences(out: str, rows: Sequence[Sequence[str]], tolerance: float) -> Iterator[str]:
+    """Compare the rows cell by cell. The header may be missing if the first sample is rejected."""
     columns, *expected = rows
     # Game engines print lines of their own first.
     header = re.search(rf"^{re.escape(','.join(columns))}\r?$", out, re.MULTILINE)
@@ -128,8 +128,7 @@ def _in_rows(out: str, rows: Sequence[Sequence[str]], tolerance: float) -> Itera
         if len(row) != len(expected_row):
             yield f"row {number} has {len(row)} cells: {row}"
             continue
-        for place, column in enumerate(columns):
-            cell, expected_cell = row[place], expected_row[place]
+        for column, cell, expected_cell in zip(columns, row, expected_row):  # noqa: B905 (equal lengths)
             if cell != expected_cell and not (column in NUMBERS and _is_near(cell, expected_cell, tolerance)):
                 yield f"row {number}: {column} is {cell!r}, not {expected_cell!r}"
 
@@ -141,7 +140,7 @@ def _is_near(cell: str, expected: str, tolerance: float) -> bool:
         return False
 
 
-def _in_words(err: str, warnings: int, error: Mapping[str, Any] | None) -> Iterator[str]:
+def _message_differences(err: str, warnings: int, error: Mapping[str, Any] | None) -> Iterator[str]:
     """Compare standard error: one line for an error, with the names at fault, or one per warning."""
     lines = err.splitlines()
     errors = [line for line in lines if line.startswith("error: ")]
