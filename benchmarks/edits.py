@@ -27,7 +27,7 @@ from benchmarks.store import Record, Store, measure_missing, source_digest
 
 if TYPE_CHECKING:
     from tltl_runtime.evaluation.figures import Figures
-    from tltl_runtime.regression.explain.account import ExplainedEpisode
+    from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode
     from tltl_runtime.regression.suite.suite import Case, Suite
     from tltl_runtime.regression.verdict.baseline import Reference
     from tltl_runtime.stealth.recordings.episode import Episode
@@ -127,8 +127,8 @@ def expert(level: str, variant: str, plan: Plan) -> Record:
     from tltl_runtime.stealth.capabilities.reach import compute_reach
     from tltl_runtime.stealth.capabilities.spec_places import SpecPlaces
     from tltl_runtime.stealth.env import make_env
+    from tltl_runtime.stealth.episode_recorder import RecordEpisode
     from tltl_runtime.stealth.expert.expert import Expert, play_episode
-    from tltl_runtime.stealth.recording import RecordEpisode
 
     env = RecordEpisode(make_env(level, variant))
     try:
@@ -216,7 +216,7 @@ def _write_suite(edits: Sequence[Edit], plan: Plan, folder: Path) -> Path:
 
 
 def _assets(names: set[str]) -> dict[str, Asset]:
-    from tltl_runtime.stealth.levels.made_for import LEVELS
+    from tltl_runtime.stealth.levels.default_spec import LEVELS
     from tltlc.io.files import read_source
     from tltlc.io.toml_text import parse
 

@@ -43,8 +43,8 @@ def play_episodes(level: str, variant: str, care: str, episodes: int) -> Record:
     The barrier is ``""`` if none opens by chance. ``cpu_s`` is the CPU time per episode.
     """
     from tltl_runtime.stealth.env import make_env
+    from tltl_runtime.stealth.episode_recorder import RecordEpisode
     from tltl_runtime.stealth.expert.expert import Expert, play_episode
-    from tltl_runtime.stealth.recording import RecordEpisode
     from tltl_runtime.stealth.recordings.episode_summary import opened_barriers, summary_of, was_chased
 
     env = RecordEpisode(make_env(level, variant))

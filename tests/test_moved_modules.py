@@ -13,12 +13,14 @@ MOVED = {
     "tltlc.comparison:is_included": "tltlc.automaton.compare",
     "tltlc.comparison:separating": "tltlc.automaton.compare",
     "tltlc.fmt:format_text": "tltlc.tools.fmt",
+    "tltlc.monitor.reward:RewardOptions": "tltlc.monitor.progress_and_reward",
     "tltlc.playground:view": "tltlc.interfaces.playground",
     "tltlc.rabin.work:OutOfWork": "tltlc.automaton.work",
     "tltl_runtime.batch:BatchMonitor": "tltl_runtime.spec.batch",
     "tltl_runtime.stealth.episodes.cause:cause": "tltl_runtime.stealth.recordings.cause",
     "tltl_runtime.stealth.episodes.file:read_episode": "tltl_runtime.stealth.recordings.file",
     "tltl_runtime.stealth.episodes.file:write_episode": "tltl_runtime.stealth.recordings.file",
+    "tltl_runtime.stealth.recording:RecordEpisode": "tltl_runtime.stealth.episode_recorder",
     "tltl_runtime.training.gail:__doc__": "tltl_runtime.training.imitation.gail",
 }
 

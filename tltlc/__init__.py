@@ -67,6 +67,7 @@ _HOMES = {
 _MOVED = {
     "tltlc.comparison": "tltlc.automaton.compare",
     "tltlc.fmt": "tltlc.tools.fmt",
+    "tltlc.monitor.reward": "tltlc.monitor.progress_and_reward",
     "tltlc.playground": "tltlc.interfaces.playground",
     "tltlc.rabin": "tltlc.automaton.infinite",
     "tltlc.rabin.work": "tltlc.automaton.work",

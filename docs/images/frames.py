@@ -7,9 +7,9 @@ from pathlib import Path
 
 from PIL import Image
 
-from tltl_runtime.stealth.game import Simulation
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.stealth.rendering.render import Renderer
+from tltl_runtime.stealth.simulation import Simulation
 
 SIZE = (640, 360)
 MOMENTS = {

@@ -32,6 +32,7 @@ sys.meta_path.append(
             "tltl_runtime.stealth.episodes": "tltl_runtime.stealth.recordings",
             "tltl_runtime.stealth.episodes.cause": "tltl_runtime.stealth.recordings.cause",
             "tltl_runtime.stealth.episodes.file": "tltl_runtime.stealth.recordings.file",
+            "tltl_runtime.stealth.recording": "tltl_runtime.stealth.episode_recorder",
             "tltl_runtime.training.gail": "tltl_runtime.training.imitation.gail",
         }
     )
@@ -60,7 +61,7 @@ def _register() -> None:
         register(
             f"tltl/{level.title().replace('_', '')}-v0",
             entry_point="tltl_runtime.stealth.env:make_env",
-            vector_entry_point="tltl_runtime.vector.game:make_vec",
+            vector_entry_point="tltl_runtime.vector.level_environments:make_vec",
             kwargs={"level": level},
         )
 

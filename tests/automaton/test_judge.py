@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 import tltlc
 from tests.reference_formulas import read_formula
-from tltlc.automaton.judge import default_judge
+from tltlc.automaton.default_judge import default_judge
 
 SIGNALS = "signal a: bool signal b: bool signal c: bool\n"
 

@@ -71,13 +71,13 @@ def test_the_index_lists_every_decision() -> None:
 @pytest.mark.parametrize(
     "claim, file, remark",
     [
-        ("Truth decides", "reward.py", "by truth"),
+        ("Truth decides", "progress_and_reward.py", "by truth"),
         ("The paper evaluates the formula as it is written", "guards.py", "the guard as written"),
-        ("r is capped at 0", "reward.py", "capped at 0"),
+        ("r is capped at 0", "progress_and_reward.py", "capped at 0"),
         ("Where S is 0", "tables.py", "the paper divides"),
-        ("A trap has none", "reward.py", "A trap has no progress"),
-        ("Judging at the limit", "reward.py", "judged at its limit"),
-        ("notices the end one step later", "reward.py", "not one step later"),
+        ("A trap has none", "progress_and_reward.py", "A trap has no progress"),
+        ("Judging at the limit", "progress_and_reward.py", "judged at its limit"),
+        ("notices the end one step later", "progress_and_reward.py", "not one step later"),
         ("It is the signed distance", "reward_modes/sparse.py", "robustness of the formula"),
         ("Edges into a trap", "reward_modes/edge.py", "left out"),
     ],
@@ -91,7 +91,7 @@ def test_a_deviation_from_the_paper_is_marked_on_the_page_and_in_the_code(claim:
 
 def test_no_other_code_deviates() -> None:
     marked = {path.name for path in (ROOT / "tltlc").rglob("*.py") if "▲" in path.read_text(encoding="utf-8")}
-    assert marked == {"reward.py", "guards.py", "tables.py", "sparse.py", "edge.py"}
+    assert marked == {"progress_and_reward.py", "guards.py", "tables.py", "sparse.py", "edge.py"}
 
 
 ARTEFACT = (DOCS / "artefact.md").read_text(encoding="utf-8")

@@ -17,7 +17,7 @@ from tltlc.automaton.fspa import Fspa
 from tltlc.core.record import replace
 from tltlc.logic import formula as f
 from tltlc.monitor import Monitor, RewardOptions, Step
-from tltlc.monitor.reward import reward_step
+from tltlc.monitor.progress_and_reward import reward_step
 from tltlc.monitor.tables import tables
 
 A, P = f.atom("a"), f.atom("p")

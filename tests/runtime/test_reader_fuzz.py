@@ -25,13 +25,13 @@ from tltl_runtime.policies.policy import Policy
 from tltl_runtime.policies.shipped import shipped_policy
 from tltl_runtime.policies.summary import summary as policy_summary
 from tltl_runtime.policies.summary import summary_text as policy_summary_text
-from tltl_runtime.regression.explain.account import ExplainedEpisode
+from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode
 from tltl_runtime.regression.suite.result_cache import read_cache
 from tltl_runtime.regression.suite.suite import read_suite
 from tltl_runtime.regression.verdict.baseline import read_baseline
 from tltl_runtime.stealth.env import make_env
+from tltl_runtime.stealth.episode_recorder import RecordEpisode
 from tltl_runtime.stealth.levels.file import read_level
-from tltl_runtime.stealth.recording import RecordEpisode
 from tltl_runtime.stealth.recordings.check import check as check_episode
 from tltl_runtime.stealth.recordings.file import from_bytes as episode_from_bytes
 from tltl_runtime.stealth.recordings.file import to_bytes as episode_to_bytes

@@ -10,7 +10,7 @@ import pytest
 
 from tests.waiting import HANG_S
 from tltl_runtime.stealth.env import make_env
-from tltl_runtime.stealth.recording import RecordEpisode
+from tltl_runtime.stealth.episode_recorder import RecordEpisode
 from tltl_runtime.stealth.recordings.file import write_episode
 
 PROGRAM = "import sys; sys.modules['pybullet'] = None; "

@@ -7,7 +7,7 @@
 
 from tltlc.monitor.arguments import automaton_argument, reward_options_argument
 from tltlc.monitor.guards import bounding_literal, robustness
-from tltlc.monitor.reward import MODES, Mode, TerminalPenalty, Termination, ends_episode, terminal_penalty
+from tltlc.monitor.progress_and_reward import MODES, Mode, TerminalPenalty, Termination, ends_episode, terminal_penalty
 from tltlc.monitor.samples import (
     ROUNDING,
     SUGGESTIONS,

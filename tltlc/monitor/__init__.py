@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tltlc.monitor.monitor import Monitor, Step
-from tltlc.monitor.reward import RewardOptions
+from tltlc.monitor.progress_and_reward import RewardOptions
 from tltlc.monitor.samples import MonitorError
 
 __all__ = ["Monitor", "MonitorError", "RewardOptions", "Step"]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tltlc.automaton.fspa import Fspa
-from tltlc.monitor.reward import RewardOptions
+from tltlc.monitor.progress_and_reward import RewardOptions
 
 
 def automaton_argument(given: object) -> Fspa:

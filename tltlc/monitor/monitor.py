@@ -9,7 +9,7 @@ from tltlc.automaton.fspa import Fspa, State, Verdict
 from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.monitor.arguments import automaton_argument, reward_options_argument
 from tltlc.monitor.guards import bounding_atom, holds, robustness
-from tltlc.monitor.reward import RewardOptions, RewardStep, reward_step
+from tltlc.monitor.progress_and_reward import RewardOptions, RewardStep, reward_step
 from tltlc.monitor.samples import Samples, check_exclusive
 from tltlc.monitor.tables import tables
 

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.fspa import Fspa
 from tltlc.core.record import record
-from tltlc.monitor.reward import ends_on_entry
+from tltlc.monitor.progress_and_reward import ends_on_entry
 from tltlc.monitor.tables import tables
 from tltlc.program import reward_step, states
 from tltlc.program.arithmetic import ExpressionTranslator

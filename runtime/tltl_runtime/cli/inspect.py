@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from tltl_runtime.cli.support.input_files import read_each
-from tltl_runtime.cli.support.learning import require_learning
+from tltl_runtime.cli.support.learning_extra import require_learning
 from tltl_runtime.cli.support.options import output_file, summary_format
 from tltlc.api import cli
 

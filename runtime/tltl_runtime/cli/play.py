@@ -8,12 +8,12 @@ from pathlib import Path
 import click
 
 from tltl_runtime.cli.support.at_keyboard import keyboard_options, play_at_keyboard
-from tltl_runtime.cli.support.level_faults import level_faults
+from tltl_runtime.cli.support.player_outside_level import level_faults
 from tltl_runtime.cli.support.recording_files import RecordingFiles
 from tltl_runtime.game.level_name import split_level
 from tltl_runtime.game.recording_path import SUFFIX
 from tltl_runtime.stealth.env import make_env
-from tltl_runtime.stealth.recording import RecordEpisode
+from tltl_runtime.stealth.episode_recorder import RecordEpisode
 from tltl_runtime.stealth.rendering.camera import View
 from tltl_runtime.stealth.rendering.hud import KEYS
 from tltlc.api import cli

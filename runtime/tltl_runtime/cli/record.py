@@ -10,15 +10,15 @@ import click
 
 from tltl_runtime.cli.support.at_keyboard import keyboard_options, play_at_keyboard
 from tltl_runtime.cli.support.closed_output import ignore_closed_pipe
-from tltl_runtime.cli.support.level_faults import level_faults
 from tltl_runtime.cli.support.options import output_folder
+from tltl_runtime.cli.support.player_outside_level import level_faults
 from tltl_runtime.cli.support.printable import plain_text
 from tltl_runtime.game.level_name import split_level
 from tltlc.api import TltlError, cli
 
 if TYPE_CHECKING:
+    from tltl_runtime.stealth.episode_recorder import RecordEpisode
     from tltl_runtime.stealth.keyboard import Recordings
-    from tltl_runtime.stealth.recording import RecordEpisode
     from tltl_runtime.stealth.recordings.episode import Episode
     from tltl_runtime.stealth.rendering.camera import View
     from tltl_runtime.training.imitation.demonstrations import Attempt, Demonstrations
@@ -80,7 +80,7 @@ def command(
     """
     with cli.Report() as report, ignore_closed_pipe():
         from tltl_runtime.stealth.env import make_env
-        from tltl_runtime.stealth.recording import RecordEpisode
+        from tltl_runtime.stealth.episode_recorder import RecordEpisode
         from tltl_runtime.training.imitation.demonstrations import Demonstrations
 
         file, variant = _level_and_variant(level, spec)
@@ -149,7 +149,7 @@ def _record_expert(
 def _record_person(
     env: RecordEpisode, demonstrations: Demonstrations, requested: int, seed: int | None, view: View, crouch: str
 ) -> None:
-    from tltl_runtime.stealth.recording import writable_folder
+    from tltl_runtime.stealth.episode_recorder import writable_folder
 
     writable_folder(demonstrations.folder)
 

@@ -11,7 +11,7 @@ import click
 
 from tltl_runtime.cli.support.changed_option import ChangedCommand
 from tltl_runtime.cli.support.closed_output import ignore_closed_pipe
-from tltl_runtime.cli.support.learning import require_learning
+from tltl_runtime.cli.support.learning_extra import require_learning
 from tltl_runtime.cli.support.options import Function, output_folder
 from tltl_runtime.cli.support.suite_argument import check_suite_exists
 from tltl_runtime.cli.support.worker_options import all_cores_option

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from tltl_runtime.cli.support.closed_output import ignore_closed_pipe
-from tltl_runtime.cli.support.learning import require_learning
+from tltl_runtime.cli.support.learning_extra import require_learning
 from tltl_runtime.cli.support.options import output_folder
 from tltl_runtime.cli.support.worker_options import all_cores_option
 from tltl_runtime.cli.support.writable_paths import check_no_training

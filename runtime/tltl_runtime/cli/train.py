@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, get_args
 
 import click
 
-from tltl_runtime.cli.support.learning import require_learning
+from tltl_runtime.cli.support.learning_extra import require_learning
 from tltl_runtime.cli.support.options import output_folder
 from tltl_runtime.cli.support.sensor_options import senses_options
 from tltl_runtime.cli.support.worker_options import WorkersType

@@ -8,9 +8,9 @@ from functools import partial
 from pathlib import Path
 from typing import Literal
 
-from tltl_runtime.evaluation.local import WorkerProcess
 from tltl_runtime.evaluation.player import EpisodePlayer, EpisodeRequest, PlayedEpisode, Player, RecordMode, Setup
 from tltl_runtime.evaluation.scheduler import ReplayCommand, play_all
+from tltl_runtime.evaluation.worker_process import WorkerProcess
 from tltl_runtime.game.registry import registered_game
 from tltl_runtime.policies.file import read_policy
 from tltl_runtime.policies.fit import check_policy

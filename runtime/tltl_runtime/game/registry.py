@@ -7,7 +7,7 @@ from typing import Any, Final
 
 from tltl_runtime.game.game import Game
 
-_MODULE: Final = "tltl_runtime.stealth.registration"
+_MODULE: Final = "tltl_runtime.stealth.stealth_game"
 """The module whose ``GAME`` is the game.
 
 It is imported by its name. So no package that plays games has to import a particular game.

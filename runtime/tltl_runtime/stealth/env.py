@@ -21,12 +21,12 @@ from tltl_runtime.spec.wrapper import TltlEnv
 from tltl_runtime.stealth.capabilities.capabilities import check_supply
 from tltl_runtime.stealth.capabilities.spec_places import SpecPlaces
 from tltl_runtime.stealth.capabilities.vocabulary import params as level_params
-from tltl_runtime.stealth.game import Simulation
 from tltl_runtime.stealth.level import StealthLevel
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.stealth.observation.observation import Observer
 from tltl_runtime.stealth.rendering.camera import View
 from tltl_runtime.stealth.signals import Signals
+from tltl_runtime.stealth.simulation import Simulation
 from tltl_runtime.stealth.snapshot import ACTIONS, BRANCHES
 from tltl_runtime.stealth.window.screen import MODES, Screen
 from tltl_runtime.stealth.world.player import DECISION

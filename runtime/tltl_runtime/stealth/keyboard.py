@@ -7,7 +7,7 @@ from time import monotonic
 from typing import Any, Final, Protocol
 
 from tltl_runtime.stealth.env import GameEnv
-from tltl_runtime.stealth.recording import RecordEpisode
+from tltl_runtime.stealth.episode_recorder import RecordEpisode
 from tltl_runtime.stealth.recordings.cause import cause
 from tltl_runtime.stealth.recordings.episode import Episode
 from tltl_runtime.stealth.rendering.camera import VIEWS, View

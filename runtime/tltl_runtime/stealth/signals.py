@@ -10,7 +10,7 @@ from tltl_runtime.stealth.level import Point, StealthLevel, fixed_places
 from tltlc.api import record, specs
 
 if TYPE_CHECKING:
-    from tltl_runtime.stealth.game import Simulation
+    from tltl_runtime.stealth.simulation import Simulation
 
 _EYES: Final = 0.15
 """Metres from the top of the body down to the eyes."""

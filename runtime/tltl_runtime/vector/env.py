@@ -20,7 +20,7 @@ from tltl_runtime.vector.actions import check_batch
 from tltl_runtime.vector.arguments import check_arguments, split_mask
 from tltl_runtime.vector.cores import cores
 from tltl_runtime.vector.errors import Loss, Playing, WorkerError, report
-from tltl_runtime.vector.memory import Rows, read, write_batch
+from tltl_runtime.vector.shared_memory import Rows, read, write_batch
 from tltl_runtime.vector.worker import EnvFunction
 from tltl_runtime.vector.workers import Workers, split_evenly
 

@@ -13,7 +13,7 @@ from numpy.typing import DTypeLike, NDArray
 
 from tltl_runtime.vector.cluster import cluster, free_cores, wait_for_actors
 from tltl_runtime.vector.errors import Loss
-from tltl_runtime.vector.memory import Rows
+from tltl_runtime.vector.shared_memory import Rows
 from tltl_runtime.vector.worker import EnvFunction, Share
 from tltl_runtime.vector.workers import TO_START_S, split_evenly
 from tltlc.api import replace

@@ -11,7 +11,7 @@ from typing import Any, Final
 import gymnasium
 from gymnasium.vector import AutoresetMode
 
-from tltl_runtime.vector.memory import Rows, read, write
+from tltl_runtime.vector.shared_memory import Rows, read, write
 
 Info = dict[str, Any]
 EnvFunction = Callable[[], gymnasium.Env[Any, Any]]

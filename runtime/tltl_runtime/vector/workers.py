@@ -15,7 +15,7 @@ from gymnasium.vector.utils import CloudpickleWrapper
 
 from tltl_runtime.support.child_processes import block_interrupts
 from tltl_runtime.vector.errors import Loss
-from tltl_runtime.vector.memory import Rows
+from tltl_runtime.vector.shared_memory import Rows
 from tltl_runtime.vector.worker import CLOSE, FAILED, EnvFunction, work
 from tltlc.api import replace
 

@@ -14,7 +14,7 @@ from tests.logic.small_formulas import formulas_of_size, formulas_up_to
 from tests.logic.strategies import formulas
 from tests.logic.test_english import assert_sentence
 from tests.reference_formulas import read_formula
-from tltlc.automaton.infinite.factoring import Factoring
+from tltlc.automaton.infinite.label_factoring import Factoring
 from tltlc.automaton.infinite.lasso import holds_on_lasso
 from tltlc.automaton.infinite.normal_form import infinite_form, with_derived_operators
 from tltlc.automaton.infinite.readback import NormalFormWriter, without_constants

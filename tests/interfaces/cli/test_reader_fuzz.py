@@ -30,7 +30,7 @@ from tltlc.resolve.options import ResolveOptions
 from tltlc.tools.hoa.load import ImportOptions
 from tltlc.tools.hoa.load import load as load_hoa
 from tltlc.tools.mine.evidence_reader import read_evidence
-from tltlc.tools.mine.reading import TraceFile
+from tltlc.tools.mine.trace_letters import TraceFile
 
 LIBRARY: Final = SourceFile(
     "library.tltl",

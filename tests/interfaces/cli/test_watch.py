@@ -158,7 +158,7 @@ def test_errors_that_no_edit_can_fix_end_the_command(process, inside: Path) -> N
 def test_a_file_that_changes_constantly_is_compiled_nevertheless(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from tltlc.interfaces.cli import watching
+    from tltlc.interfaces.cli import repeated_runs
     from tltlc.io import files
 
     log, looks, worked = tmp_path / "log.tltl", [], []
@@ -174,8 +174,8 @@ def test_a_file_that_changes_constantly_is_compiled_nevertheless(
             raise KeyboardInterrupt
         files.is_file(str(log))
 
-    monkeypatch.setattr(watching.time, "sleep", changed_meanwhile)
+    monkeypatch.setattr(repeated_runs.time, "sleep", changed_meanwhile)
     with pytest.raises(KeyboardInterrupt):
-        watching.repeat(work)
+        repeated_runs.repeat(work)
     assert [changed for _, changed in worked] == [(), (str(log),), (str(log),)]
     assert [place for place, _ in worked] == [0, 11, 22]

@@ -14,8 +14,8 @@ from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Edit
 from tltlc.grammar.parser import parse
 from tltlc.interfaces.lsp.actions import actions
-from tltlc.interfaces.lsp.analysed_text import Document
 from tltlc.interfaces.lsp.diagnostics import label_in
+from tltlc.interfaces.lsp.document import Document
 from tltlc.interfaces.lsp.edits import apply_edits
 from tltlc.interfaces.lsp.positions import offset
 

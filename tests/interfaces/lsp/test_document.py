@@ -9,10 +9,10 @@ import pytest
 from tests.interfaces.lsp.texts import EXAMPLES, open_text
 from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.interfaces.lsp.analysis import Request, analyse
 from tltlc.interfaces.lsp.diagnostics import protocol_diagnostic
 from tltlc.interfaces.lsp.edits import apply_edits, difference
 from tltlc.interfaces.lsp.formatting import formatting
+from tltlc.interfaces.lsp.slow_analysis import Request, analyse
 from tltlc.interfaces.lsp.symbols import symbols
 from tltlc.io.files import is_file, read_source, unsaved_texts
 

@@ -10,7 +10,7 @@ import pytest
 from tests.interfaces.lsp.client import Client
 from tltlc.core.source import SourceFile
 from tltlc.interfaces.cli.main import main
-from tltlc.interfaces.lsp.analysis import Request, analyse
+from tltlc.interfaces.lsp.slow_analysis import Request, analyse
 
 LIBRARY = """\
 signal loud: bool
@@ -60,7 +60,7 @@ def test_neighbouring_files_are_read_only_if_something_seems_unused(
     def read(_: object) -> dict[Path, str]:
         raise AssertionError("it was read")
 
-    monkeypatch.setattr("tltlc.interfaces.lsp.analysis.neighbours", read)
+    monkeypatch.setattr("tltlc.interfaces.lsp.slow_analysis.neighbours", read)
     used = LIBRARY.replace("F dark", "F (dark and hushed)")
     assert analyse(Request(SourceFile(str(tmp_path / "library.tltl"), used), (), {}, {})).figures
     with pytest.raises(AssertionError, match="it was read"):

@@ -24,13 +24,13 @@ from tltlc.interfaces.lsp import (
     symbols,
     tokens,
 )
-from tltlc.interfaces.lsp.analysed_text import Document
-from tltlc.interfaces.lsp.analysis import DocumentAnalysis, SpecFigures
 from tltlc.interfaces.lsp.cursor import cursor, quoted_text
 from tltlc.interfaces.lsp.diagnostics import label_in, protocol_diagnostic
+from tltlc.interfaces.lsp.document import Document
 from tltlc.interfaces.lsp.edits import apply_edits
 from tltlc.interfaces.lsp.paths import uri_of
 from tltlc.interfaces.lsp.positions import offset, position, range_of
+from tltlc.interfaces.lsp.slow_analysis import DocumentAnalysis, SpecFigures
 from tltlc.interfaces.lsp.workspace import Workspace
 
 PIECES = (

@@ -6,9 +6,9 @@ import pytest
 from lsprotocol import types
 
 from tests.interfaces.lsp.texts import open_text
-from tltlc.interfaces.lsp.analysed_text import Document
-from tltlc.interfaces.lsp.analysis import Request, analyse
+from tltlc.interfaces.lsp.document import Document
 from tltlc.interfaces.lsp.hover import hover
+from tltlc.interfaces.lsp.slow_analysis import Request, analyse
 
 TEXT = """\
 import stealth

@@ -14,8 +14,8 @@ from tests.interfaces.lsp.client import Client
 from tests.interfaces.lsp.test_server import codes
 from tests.interfaces.lsp.texts import ENDLESS
 from tltlc.interfaces.lsp import queue
-from tltlc.interfaces.lsp.analysis import DocumentAnalysis
 from tltlc.interfaces.lsp.server import create
+from tltlc.interfaces.lsp.slow_analysis import DocumentAnalysis
 
 ANALYSIS = DocumentAnalysis(())
 

@@ -11,7 +11,7 @@ from lsprotocol import types
 from tests.interfaces.lsp.client import Client
 from tests.interfaces.lsp.texts import EXAMPLES, open_text
 from tltlc.core.source import Span
-from tltlc.interfaces.lsp.analysed_text import Document
+from tltlc.interfaces.lsp.document import Document
 from tltlc.interfaces.lsp.durations import hints
 from tltlc.interfaces.lsp.folding import folds
 from tltlc.interfaces.lsp.positions import offset

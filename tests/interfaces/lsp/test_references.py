@@ -9,9 +9,9 @@ import pytest
 
 from tests.interfaces.lsp.texts import EXAMPLES, open_text
 from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.interfaces.lsp.analysis import Request, analyse
 from tltlc.interfaces.lsp.edits import apply_edits
 from tltlc.interfaces.lsp.references import references, rename
+from tltlc.interfaces.lsp.slow_analysis import Request, analyse
 
 LIBRARY = """\
 signal dark: ratio

@@ -18,8 +18,8 @@ from tltlc.core.source import SourceFile
 from tltlc.grammar.parser import parse
 from tltlc.grammar.tree import EntityDecl
 from tltlc.interfaces.lsp import names, symbols
-from tltlc.interfaces.lsp.analysed_text import Document
 from tltlc.interfaces.lsp.diagnostics import protocol_diagnostic
+from tltlc.interfaces.lsp.document import Document
 from tltlc.interfaces.lsp.paths import uri_of
 from tltlc.interfaces.lsp.positions import UTF_16, offset, range_of
 from tltlc.interfaces.lsp.references import rename

@@ -7,8 +7,8 @@ from pathlib import Path
 from tests.interfaces.lsp.client import Client
 from tests.interfaces.lsp.test_server import SPEC, codes
 from tests.interfaces.lsp.texts import ENDLESS, open_text
-from tltlc.interfaces.lsp.analysis import Request, analyse
 from tltlc.interfaces.lsp.previous_diagnostics import previous_diagnostics
+from tltlc.interfaces.lsp.slow_analysis import Request, analyse
 
 END = {"line": 9, "character": 0}
 IDLE = "spec idle = G (alive or not alive)\n"

@@ -8,7 +8,7 @@ import multiprocessing
 import pytest
 
 from tltlc.core.source import SourceFile
-from tltlc.interfaces.lsp.analysis import Request
+from tltlc.interfaces.lsp.slow_analysis import Request
 from tltlc.interfaces.lsp.worker import AnalysisWorker
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from tests.interfaces.lsp.endless.sitecustomize import NEVER_ENDS
-from tltlc.interfaces.lsp.analysed_text import Document
+from tltlc.interfaces.lsp.document import Document
 from tltlc.interfaces.lsp.workspace import Workspace
 
 MARK = "¦"

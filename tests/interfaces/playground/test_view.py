@@ -15,7 +15,7 @@ from tltlc.interfaces.playground import protocol, view
 from tltlc.interfaces.playground.page_config import examples, start
 from tltlc.interfaces.playground.page_data import NAME
 from tltlc.interfaces.playground.protocol import RequestError, answer
-from tltlc.tools.lint.fixing import fix
+from tltlc.tools.lint.fix_application import fix
 from tltlc.tools.lint.run import lint
 
 BUTTONS = "signal a: bool\nsignal b: bool\nsignal fuel in [0, 5]\nspec both { reach a then b  keep fuel > 1 }\n"

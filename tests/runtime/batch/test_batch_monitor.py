@@ -16,14 +16,14 @@ from tests.fixtures import cover_and_hide
 from tests.monitor.strategies import atom_traces, automata
 from tltl_runtime.spec.batch import BatchMonitor, BatchStep
 from tltl_runtime.spec.batch import guards as batch_guards
-from tltl_runtime.spec.batch.rewards import VERDICTS
+from tltl_runtime.spec.batch.progress_and_reward import VERDICTS
 from tltlc import compile_file, compile_text
 from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
 from tltlc.core.record import replace
 from tltlc.logic import formula as f
 from tltlc.monitor import Monitor, MonitorError, RewardOptions, Step
-from tltlc.monitor.reward import MODES
+from tltlc.monitor.progress_and_reward import MODES
 from tltlc.resolve import spec
 
 FAR = {"distance(s1)": 20.0, "distance(s2)": 20.0, "distance(exit)": 20.0, "health": 1.0}

@@ -12,7 +12,7 @@ import pytest
 from tltl_runtime.spec.batch import reward_modes as batch_modes
 from tltl_runtime.training.run.settings import default_text
 from tltlc.monitor import reward_modes as scalar_modes
-from tltlc.monitor.reward import MODES
+from tltlc.monitor.progress_and_reward import MODES
 
 ROOT = Path(__file__).parents[3]
 

@@ -9,7 +9,7 @@ import pytest
 
 from tltl_runtime.cli.support.recording_files import RecordingFiles
 from tltl_runtime.stealth.env import make_env
-from tltl_runtime.stealth.recording import RecordEpisode
+from tltl_runtime.stealth.episode_recorder import RecordEpisode
 from tltl_runtime.stealth.recordings.file import read_episode
 from tltlc.diagnostics.diagnostic import TltlError
 

@@ -22,7 +22,7 @@ from tests.waiting import HANG_S
 from tltl_runtime.cli.replay import _VIEWS
 from tltl_runtime.cli.support.notation import NOTATIONS
 from tltl_runtime.stealth.env import make_env
-from tltl_runtime.stealth.recording import RecordEpisode
+from tltl_runtime.stealth.episode_recorder import RecordEpisode
 from tltl_runtime.stealth.recordings.episode import Episode
 from tltl_runtime.stealth.recordings.file import write_episode
 from tltl_runtime.stealth.recordings.summary import monitor_command

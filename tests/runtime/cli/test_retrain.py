@@ -22,7 +22,7 @@ from tests.runtime.regression.recorded_game import _game  # noqa: F401
 from tests.waiting import HANG_S
 from tltl_runtime.evaluation.figures import figures_of
 from tltl_runtime.policies.file import write_policy
-from tltl_runtime.regression.retrain.retrained import FinishedRetraining, RetrainingResult
+from tltl_runtime.regression.retrain.retraining_result import FinishedRetraining, RetrainingResult
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.stealth.world.physics import WorldError
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError

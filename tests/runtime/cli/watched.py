@@ -94,7 +94,7 @@ def log_what_happens(place: Path) -> None:
     """Patch the game in this process so that it logs each of its actions into a file."""
     import pygame
 
-    from tltl_runtime.stealth.recording import RecordEpisode
+    from tltl_runtime.stealth.episode_recorder import RecordEpisode
     from tltl_runtime.stealth.window.window import Keys, Window
 
     file = place.open("a", encoding="utf-8")

@@ -12,14 +12,14 @@ import pytest
 
 from tests.docs.blocks import ROOT
 from tests.waiting import HANG_S
-from tltl_runtime.evaluation.local import WorkerProcess
 from tltl_runtime.evaluation.player import EpisodePlayer, EpisodeRequest
+from tltl_runtime.evaluation.worker_process import WorkerProcess
 
 _MAIN = """
 import os, signal
 from pathlib import Path
 from tests.waiting import until
-from tltl_runtime.evaluation.local import WorkerProcess
+from tltl_runtime.evaluation.worker_process import WorkerProcess
 
 if __name__ == "__mp_main__":
     Path("imports").touch()

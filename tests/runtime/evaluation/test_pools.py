@@ -19,10 +19,10 @@ from tests.runtime.own_cluster import CORES, needs_ray, own_cluster
 from tests.waiting import HANG_S, until
 from tltl_runtime.evaluation import ray_pool
 from tltl_runtime.evaluation.evaluate import Pool, evaluate, local_results, results, set_up
-from tltl_runtime.evaluation.local import WorkerProcess
 from tltl_runtime.evaluation.play import episode_seed
 from tltl_runtime.evaluation.player import EpisodeRequest, PlayedEpisode, Player, RecordMode, Setup
 from tltl_runtime.evaluation.scheduler import WorkerLostError, play_all
+from tltl_runtime.evaluation.worker_process import WorkerProcess
 from tltl_runtime.policies.policy import Policy
 from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltl_runtime.stealth.levels.file import load_level

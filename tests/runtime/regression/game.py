@@ -9,7 +9,7 @@ import pytest
 from tests.runtime.evaluation.untrained import SOON, untrained
 from tests.runtime.regression.handmade import ROOM
 from tltl_runtime.policies.file import write_policy
-from tltl_runtime.regression.explain.account import ExplainedEpisode
+from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode
 from tltl_runtime.regression.suite.suite import Case, Suite, baseline_path, read_suite
 from tltl_runtime.regression.verdict.baseline import write_baseline
 from tltl_runtime.regression.verdict.baseline_run import record_baseline

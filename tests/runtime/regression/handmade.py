@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from tltl_runtime.game.episode import Kind
-from tltl_runtime.regression.explain.account import Arrival, ExplainedEpisode, NearestMiss, summaries_of
+from tltl_runtime.regression.explain.explained_episode import Arrival, ExplainedEpisode, NearestMiss, summaries_of
 from tltl_runtime.regression.explain.path_points import TrajectoryPoints
 from tltl_runtime.regression.suite.suite import Case, Suite, Thresholds, baseline_path
 from tltl_runtime.regression.verdict.baseline import Identity, Reference

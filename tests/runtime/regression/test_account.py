@@ -8,8 +8,8 @@ from math import dist
 import pytest
 
 from tests.runtime.regression.page import samples
-from tltl_runtime.regression.explain.account import ExplainedEpisode
 from tltl_runtime.regression.explain.explain import findings
+from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode
 from tltl_runtime.stealth.recordings.episode import Episode
 from tltl_runtime.support.record_json import from_json, to_json
 from tltlc.core.record import replace

@@ -9,7 +9,7 @@ import pytest
 
 from tests.runtime.regression.game import EASY
 from tests.runtime.regression.handmade import PLAYED, an_episode, reference, some_episodes, suite
-from tltl_runtime.regression.explain.account import NearestMiss
+from tltl_runtime.regression.explain.explained_episode import NearestMiss
 from tltl_runtime.regression.suite.suite import SHIPPED, baseline_path, read_suite
 from tltl_runtime.regression.verdict.baseline import (
     baseline_command,

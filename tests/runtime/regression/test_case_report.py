@@ -7,7 +7,7 @@ from pathlib import Path
 from tests.runtime.regression.game import Played, edit
 from tests.runtime.regression.handmade import some_episodes
 from tests.runtime.regression.recorded_game import _game, _recorded  # noqa: F401
-from tltl_runtime.regression.explain.account import summaries_of
+from tltl_runtime.regression.explain.explained_episode import summaries_of
 from tltl_runtime.regression.report.case_report import report_on
 from tltl_runtime.regression.suite.suite import read_suite
 from tltl_runtime.regression.verdict.baseline import baseline_of

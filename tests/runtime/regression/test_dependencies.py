@@ -14,8 +14,8 @@ from tests.runtime.regression.handmade import ROOM
 from tltl_runtime.policies.shipped import shipped_policy
 from tltl_runtime.regression.suite.dependencies import dependencies, select
 from tltl_runtime.regression.suite.suite import SHIPPED, Suite, read_suite
+from tltl_runtime.stealth.levels.default_spec import LEVELS
 from tltl_runtime.stealth.levels.file import load_level
-from tltl_runtime.stealth.levels.made_for import LEVELS
 
 SUITE = """[[case]]
 level = "levels/vault.toml"

@@ -17,7 +17,12 @@ from tltl_runtime.policies.shipped import shipped_policies
 from tltl_runtime.regression.report.case_report import CaseReport
 from tltl_runtime.regression.report.junit import junit
 from tltl_runtime.regression.report.report_json import FORMAT, VERSION, document
-from tltl_runtime.regression.retrain.retrained import BestFailedEpisode, FinishedRetraining, Outcome, RetrainingResult
+from tltl_runtime.regression.retrain.retraining_result import (
+    BestFailedEpisode,
+    FinishedRetraining,
+    Outcome,
+    RetrainingResult,
+)
 from tltl_runtime.regression.suite import suite as suite_module
 from tltl_runtime.regression.suite.suite import LEAST_EPISODES, MOST_EPISODES, Thresholds, read_suite
 from tltl_runtime.regression.verdict import confidence

@@ -15,7 +15,7 @@ from tests.runtime.regression.game import NEVER, edit, with_baseline, with_few_e
 from tests.runtime.regression.handmade import changed
 from tltl_runtime.evaluation.evaluate import Pool
 from tltl_runtime.policies.file import read_policy, write_policy
-from tltl_runtime.regression.explain.account import ExplainedEpisode
+from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode
 from tltl_runtime.regression.retrain.retrain import (
     EPISODE,
     FOLDER,

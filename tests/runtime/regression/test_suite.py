@@ -12,8 +12,8 @@ from tests import pipes
 from tests.runtime.regression.handmade import ROOM
 from tltl_runtime.policies.shipped import shipped_policy
 from tltl_runtime.regression.suite.suite import MOST_EPISODES, SHIPPED, Case, Thresholds, read_suite
+from tltl_runtime.stealth.levels.default_spec import LEVELS
 from tltl_runtime.stealth.levels.file import level_names, variants
-from tltl_runtime.stealth.levels.made_for import LEVELS
 from tltlc.diagnostics.diagnostic import TltlError
 
 POLICY = 'policy = "navigation"\n'

@@ -23,7 +23,7 @@ from tltl_runtime.evaluation.evaluate import results
 from tltl_runtime.policies.file import write_policy
 from tltl_runtime.policies.identity import spec_hash
 from tltl_runtime.policies.policy import Policy
-from tltl_runtime.regression.explain.account import ExplainedEpisode
+from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode
 from tltl_runtime.regression.suite.dependencies import dependencies
 from tltl_runtime.regression.suite.suite import Case, Suite, read_suite
 from tltl_runtime.regression.verdict.baseline import baseline_of
@@ -37,9 +37,9 @@ from tltl_runtime.regression.verdict.suite_run import (
     lock_run,
     regress,
 )
+from tltl_runtime.stealth.levels.default_spec import LEVELS
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.stealth.levels.identity import level_hash
-from tltl_runtime.stealth.levels.made_for import LEVELS
 from tltl_runtime.stealth.recordings.file import read_episode
 from tltl_runtime.stealth.recordings.versions import versions
 from tltlc.automaton.fspa import Text

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 import tltlc
-from tltl_runtime.stealth.game import Simulation
 from tltl_runtime.stealth.level import Point, StealthLevel
 from tltl_runtime.stealth.levels.file import level_names, load_level, variants
+from tltl_runtime.stealth.simulation import Simulation
 from tltl_runtime.stealth.snapshot import BRANCHES
 
 ROOT = Path(__file__).parents[3]

@@ -12,7 +12,7 @@ import pytest
 
 import tltl_runtime  # noqa: F401  (registers the environments)
 from tltl_runtime.stealth.env import GameEnv, make_env
-from tltl_runtime.stealth.recording import RecordEpisode
+from tltl_runtime.stealth.episode_recorder import RecordEpisode
 from tltlc.diagnostics.diagnostic import TltlError
 
 NOTHING = [0, 0, 0, 0, 0]

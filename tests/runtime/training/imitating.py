@@ -9,7 +9,7 @@ from typing import Any
 from tests.runtime.training.runs import run_in
 from tltl_runtime.game.recording_path import file_stem, new_path
 from tltl_runtime.stealth.env import make_env
-from tltl_runtime.stealth.recording import RecordEpisode
+from tltl_runtime.stealth.episode_recorder import RecordEpisode
 from tltl_runtime.stealth.recordings.episode import Episode
 from tltl_runtime.stealth.recordings.file import write_episode
 from tltl_runtime.training.run.run_file import TrainingRun

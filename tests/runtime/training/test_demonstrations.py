@@ -12,8 +12,8 @@ from tests import pipes
 from tests.runtime.training.imitating import SOON, recorded_episode, write_recordings
 from tests.runtime.training.test_settings import compare
 from tltl_runtime.stealth.env import make_env
+from tltl_runtime.stealth.episode_recorder import RecordEpisode
 from tltl_runtime.stealth.expert.expert import expert_episodes
-from tltl_runtime.stealth.recording import RecordEpisode
 from tltl_runtime.stealth.recordings.file import read_episode
 from tltl_runtime.training.imitation.demonstrations import (
     MOST_FAILURES,

@@ -21,7 +21,7 @@ from tltl_runtime.stealth.capabilities.vocabulary import params
 from tltl_runtime.stealth.levels.file import level_path, load_level
 from tltl_runtime.support.record_json import from_json, to_json
 from tltl_runtime.training.exploration.search import SearchProgress
-from tltl_runtime.training.ppo.penalty_weight import penalty_rise
+from tltl_runtime.training.ppo.scheduled_weights import penalty_rise
 from tltl_runtime.training.run import training_files
 from tltl_runtime.training.run.checkpoint import Checkpoint, write_checkpoint
 from tltl_runtime.training.run.metrics import METRICS, read_metrics

@@ -19,7 +19,7 @@ from tltlc.grammar.lexer import tokenize
 from tltlc.grammar.parser import parse
 from tltlc.pipeline import CompileOptions
 from tltlc.tools.fmt import STYLES, format_text
-from tltlc.tools.fmt.allowed import NO_CONSTRAINTS, required_constraints
+from tltlc.tools.fmt.layout_constraints import NO_CONSTRAINTS, required_constraints
 from tltlc.tools.lint.run import findings, view_of
 
 ALLOW = "// tltlc: allow"

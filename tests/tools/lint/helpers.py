@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable
 from tltlc.core.source import SourceFile
 from tltlc.pipeline import CompileOptions
 from tltlc.tools.lint.file_view import SpecView, View
-from tltlc.tools.lint.fixing import FixedFile, fix
+from tltlc.tools.lint.fix_application import FixedFile, fix
 from tltlc.tools.lint.rule import LintFinding, Remark
 from tltlc.tools.lint.run import lint, view_of
 

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from tests.time_limit import run_with_time_limit
 from tests.tools.lint.helpers import codes
 from tltlc.core.source import SourceFile
-from tltlc.tools.lint.fixing import fix
+from tltlc.tools.lint.fix_application import fix
 from tltlc.tools.lint.importers import importer_names, names_used_elsewhere
 
 NAMES = st.lists(st.sampled_from(["a", "b", "ab", "ba"]), min_size=1, max_size=5).map(".".join)

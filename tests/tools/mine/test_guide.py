@@ -9,7 +9,7 @@ import pytest
 
 from tests.docs.blocks import DOCS
 from tests.docs.sessions import Shell, run_page
-from tltlc.tools.mine.measure import PRICE
+from tltlc.tools.mine.score import PRICE
 from tltlc.tools.mine.templates import LONGEST_BOUND
 
 GUIDE = (DOCS / "guides" / "mining.md").read_text(encoding="utf-8")

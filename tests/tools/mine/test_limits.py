@@ -23,10 +23,10 @@ from tltlc.tools.mine.conjunctions import best_candidates
 from tltlc.tools.mine.events import MOST_EVENTS, best_events
 from tltlc.tools.mine.evidence import Evidence, LabelledTrace
 from tltlc.tools.mine.evidence_reader import read_evidence
-from tltlc.tools.mine.reading import TraceFile
 from tltlc.tools.mine.search import MiningOptions, SpecSearch
 from tltlc.tools.mine.sequences import sequences
 from tltlc.tools.mine.templates import clauses
+from tltlc.tools.mine.trace_letters import TraceFile
 
 Run = Callable[..., Outcome]
 

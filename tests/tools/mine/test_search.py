@@ -18,7 +18,7 @@ from tltlc.tools.mine.bits import Bits
 from tltlc.tools.mine.clause import Conjunction, accepted_traces, count_atoms
 from tltlc.tools.mine.confirm import Proposal, confirm, judge
 from tltlc.tools.mine.evidence import Evidence, LabelledTrace
-from tltlc.tools.mine.measure import figures
+from tltlc.tools.mine.score import figures
 from tltlc.tools.mine.search import MiningOptions, SpecSearch
 from tltlc.tools.mine.sequences import sequences
 from tltlc.tools.mine.templates import KINDS, clauses

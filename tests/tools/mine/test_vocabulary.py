@@ -8,7 +8,7 @@ from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.resolve.options import ResolveOptions
 from tltlc.tools.mine.columns import columns, common_columns
-from tltlc.tools.mine.reading import TraceFile, read_traces
+from tltlc.tools.mine.trace_letters import TraceFile, read_traces
 from tltlc.tools.mine.vocabulary import vocabulary_of_columns, vocabulary_of_library
 
 LIBRARY = """\

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 
+from tltlc.automaton.default_judge import default_judge, judge_of
 from tltlc.automaton.diagrams import OutOfSteps
 from tltlc.automaton.finite.blowup import budget_error, recursion_room
 from tltlc.automaton.finite.composition import minimal_machine as compose
@@ -18,7 +19,6 @@ from tltlc.automaton.finite.order import better_order, reorder, restore_order
 from tltlc.automaton.finite.successors import Successors
 from tltlc.automaton.fspa import Edge, Fspa, Guard, State, Verdict
 from tltlc.automaton.guards import Guards, TooManyPrimes
-from tltlc.automaton.judge import default_judge, judge_of
 from tltlc.automaton.transitions import IMPOSSIBLE, TransitionDiagrams
 from tltlc.core.source import SourceFile, Span
 from tltlc.expression.tree import SignalValue as SignalValue

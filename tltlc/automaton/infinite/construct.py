@@ -27,7 +27,7 @@ from tltlc.automaton.infinite.component import (
     parts_of,
 )
 from tltlc.automaton.infinite.delta2 import delta_2, delta_2_dually
-from tltlc.automaton.infinite.factors import factor
+from tltlc.automaton.infinite.factor_automata import factor
 from tltlc.automaton.infinite.graphs import components
 from tltlc.automaton.infinite.languages import equal_states
 from tltlc.automaton.infinite.normal_form import infinite_form

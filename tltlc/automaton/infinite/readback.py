@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from tltlc.automaton.infinite.factoring import Factoring
+from tltlc.automaton.infinite.label_factoring import Factoring
 from tltlc.automaton.infinite.normal_form import infinite_form, with_derived_operators
 from tltlc.logic.formula import FALSE, TRUE, Formula, rebuild
 from tltlc.logic.text.printer import ascii_text

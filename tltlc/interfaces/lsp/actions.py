@@ -8,8 +8,8 @@ from lsprotocol import types
 
 from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Diagnostic
-from tltlc.interfaces.lsp.analysed_text import Document
 from tltlc.interfaces.lsp.diagnostics import protocol_diagnostic
+from tltlc.interfaces.lsp.document import Document
 from tltlc.interfaces.lsp.edits import text_edit
 from tltlc.tools.lint.fixes import fixes_of_errors, fixes_of_findings
 from tltlc.tools.lint.rule import LintFinding

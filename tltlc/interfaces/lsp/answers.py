@@ -24,7 +24,7 @@ from tltlc.interfaces.lsp import (
     tokens,
 )
 from tltlc.interfaces.lsp import file_renames as moves
-from tltlc.interfaces.lsp.analysed_text import Document
+from tltlc.interfaces.lsp.document import Document
 from tltlc.interfaces.lsp.edits import text_edit
 from tltlc.interfaces.lsp.names import Occurrence, Symbol
 from tltlc.interfaces.lsp.paths import name_of

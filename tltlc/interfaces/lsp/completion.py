@@ -14,9 +14,9 @@ from tltlc.grammar.keywords import CLAUSES, DECLARATIONS, JUDGE, SEMANTICS, TEST
 from tltlc.grammar.lexer import END, Token
 from tltlc.grammar.tables import load
 from tltlc.grammar.tree import Clause, LetDecl, NameExpr, PredicateDecl, SignalDecl, SpecDecl
-from tltlc.interfaces.lsp.analysed_text import Document
 from tltlc.interfaces.lsp.cursor import Cursor, cursor, quoted_text
 from tltlc.interfaces.lsp.declaration_text import declaration_text
+from tltlc.interfaces.lsp.document import Document
 from tltlc.interfaces.lsp.paths import path_of
 from tltlc.interfaces.lsp.positions import range_of
 from tltlc.io.files import unsaved_texts

@@ -11,7 +11,7 @@ from tltlc.core.source import Span
 from tltlc.diagnostics.diagnostic import Diagnostic, Label
 from tltlc.diagnostics.shortening import shorten
 from tltlc.grammar.tree import Import
-from tltlc.interfaces.lsp.analysed_text import Document
+from tltlc.interfaces.lsp.document import Document
 from tltlc.interfaces.lsp.positions import range_of
 
 _SEVERITIES: Final = {

@@ -9,7 +9,7 @@ from lsprotocol import types
 from tltlc.core.source import Span
 from tltlc.grammar.tree import Declaration, NumberExpr, SpecDecl, Unary
 from tltlc.grammar.walk import expressions, parts
-from tltlc.interfaces.lsp.analysed_text import Document
+from tltlc.interfaces.lsp.document import Document
 from tltlc.interfaces.lsp.positions import position
 from tltlc.resolve.constants import samples
 from tltlc.resolve.problem import ResolutionError

@@ -10,7 +10,7 @@ from tltlc.diagnostics.diagnostic import Edit
 from tltlc.grammar.quotes import quote
 from tltlc.grammar.tables import load
 from tltlc.grammar.tree import Import
-from tltlc.interfaces.lsp.analysed_text import Document
+from tltlc.interfaces.lsp.document import Document
 from tltlc.interfaces.lsp.paths import is_below, path_of
 from tltlc.interfaces.lsp.workspace import Workspace
 from tltlc.resolve.imports import STANDARD_LIBRARY_NAME

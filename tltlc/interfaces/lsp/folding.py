@@ -8,7 +8,7 @@ from lsprotocol import types
 
 from tltlc.core.source import Span
 from tltlc.grammar.tree import Import, SpecDecl, TestDecl
-from tltlc.interfaces.lsp.analysed_text import Document
+from tltlc.interfaces.lsp.document import Document
 
 _Lines = tuple[int, int]
 """The first and the last line, counted from 1."""

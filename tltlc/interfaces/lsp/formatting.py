@@ -5,7 +5,7 @@ from __future__ import annotations
 from lsprotocol import types
 
 from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.interfaces.lsp.analysed_text import Document
+from tltlc.interfaces.lsp.document import Document
 from tltlc.interfaces.lsp.edits import difference, text_edit
 from tltlc.tools.fmt import format_source
 

@@ -10,12 +10,12 @@ from tltlc.core.source import Span
 from tltlc.grammar.keywords import CLAUSES, DECLARATIONS, TEST_ITEMS
 from tltlc.grammar.tree import BinaryExpr, Clause, Expr, SpecDecl, Unary
 from tltlc.grammar.walk import parts
-from tltlc.interfaces.lsp.analysed_text import Document
-from tltlc.interfaces.lsp.analysis import DocumentAnalysis
 from tltlc.interfaces.lsp.declaration_text import spec_markdown, symbol_markdown
+from tltlc.interfaces.lsp.document import Document
 from tltlc.interfaces.lsp.durations import durations, steps_text
 from tltlc.interfaces.lsp.lenses import figures_text
 from tltlc.interfaces.lsp.positions import range_of
+from tltlc.interfaces.lsp.slow_analysis import DocumentAnalysis
 from tltlc.logic import formula as build
 from tltlc.logic.text.english import english_text
 from tltlc.resolve import formulas

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from lsprotocol import types
 
 from tltlc.core.source import SourceFile, Span
-from tltlc.interfaces.lsp.analysed_text import Document
+from tltlc.interfaces.lsp.document import Document
 from tltlc.interfaces.lsp.positions import range_of
 
 

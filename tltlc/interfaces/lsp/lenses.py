@@ -7,9 +7,9 @@ from typing import Final
 from lsprotocol import types
 
 from tltlc.grammar.tree import SpecDecl
-from tltlc.interfaces.lsp.analysed_text import Document
-from tltlc.interfaces.lsp.analysis import DocumentAnalysis, SpecFigures
+from tltlc.interfaces.lsp.document import Document
 from tltlc.interfaces.lsp.positions import range_of
+from tltlc.interfaces.lsp.slow_analysis import DocumentAnalysis, SpecFigures
 
 RUN_TESTS: Final = "tltlc.runTests"
 """The command of the test lens; its arguments are the URI and the name of the spec."""

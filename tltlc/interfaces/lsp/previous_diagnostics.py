@@ -5,9 +5,9 @@ from __future__ import annotations
 from tltlc.core.record import replace
 from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Diagnostic, Edit, Label
-from tltlc.interfaces.lsp.analysed_text import Document
-from tltlc.interfaces.lsp.analysis import DocumentAnalysis
+from tltlc.interfaces.lsp.document import Document
 from tltlc.interfaces.lsp.edits import difference
+from tltlc.interfaces.lsp.slow_analysis import DocumentAnalysis
 
 
 def previous_diagnostics(before: Document, analysis: DocumentAnalysis, now: Document) -> tuple[Diagnostic, ...]:

@@ -9,7 +9,7 @@ import asyncio
 from collections.abc import Awaitable, Callable
 from typing import Final
 
-from tltlc.interfaces.lsp.analysis import DocumentAnalysis
+from tltlc.interfaces.lsp.slow_analysis import DocumentAnalysis
 
 LONG_S: Final = 0.5
 """Seconds after which an analysis gives way to a document that the user has looked at since.

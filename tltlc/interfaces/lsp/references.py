@@ -11,7 +11,7 @@ from typing import Final
 from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic, Edit, TltlError
 from tltlc.grammar.tables import load
-from tltlc.interfaces.lsp.analysed_text import Document
+from tltlc.interfaces.lsp.document import Document
 from tltlc.interfaces.lsp.edits import apply_edits
 from tltlc.interfaces.lsp.file_renames import may_import
 from tltlc.interfaces.lsp.names import MERGED, Occurrence, Symbol

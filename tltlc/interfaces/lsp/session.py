@@ -13,14 +13,14 @@ from pygls.lsp.server import LanguageServer
 from tltlc import __version__
 from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.grammar.tree import SpecDecl
-from tltlc.interfaces.lsp.analysed_text import Document
-from tltlc.interfaces.lsp.analysis import DocumentAnalysis, Request
 from tltlc.interfaces.lsp.diagnostics import project_file_diagnostic, protocol_diagnostic
+from tltlc.interfaces.lsp.document import Document
 from tltlc.interfaces.lsp.paths import name_of, path_of
 from tltlc.interfaces.lsp.positions import UTF_16
 from tltlc.interfaces.lsp.previous_diagnostics import previous_diagnostics
 from tltlc.interfaces.lsp.protocol import LOG, Protocol
 from tltlc.interfaces.lsp.queue import Queue
+from tltlc.interfaces.lsp.slow_analysis import DocumentAnalysis, Request
 from tltlc.interfaces.lsp.worker import AnalysisWorker
 from tltlc.interfaces.lsp.workspace import Workspace
 

@@ -9,8 +9,8 @@ from lsprotocol import types
 
 from tltlc.core.source import Span
 from tltlc.grammar import tree
-from tltlc.interfaces.lsp.analysed_text import Document
 from tltlc.interfaces.lsp.declaration_text import declaration_text
+from tltlc.interfaces.lsp.document import Document
 from tltlc.interfaces.lsp.positions import range_of
 
 Kind = types.SymbolKind

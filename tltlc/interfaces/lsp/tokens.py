@@ -6,7 +6,7 @@ from typing import Final
 
 from lsprotocol import types
 
-from tltlc.interfaces.lsp.analysed_text import Document
+from tltlc.interfaces.lsp.document import Document
 from tltlc.interfaces.lsp.names import Occurrence
 from tltlc.interfaces.lsp.positions import position
 from tltlc.resolve.imports import STANDARD_LIBRARY_NAME

@@ -11,7 +11,7 @@ from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
 from typing import Final
 
-from tltlc.interfaces.lsp.analysis import DocumentAnalysis, Request
+from tltlc.interfaces.lsp.slow_analysis import DocumentAnalysis, Request
 from tltlc.io.limits import COMMAND
 from tltlc.io.resources import limit
 
@@ -78,7 +78,7 @@ def answer_all(pipe: Connection) -> None:
     """Answer requests until the pipe closes; this is the main function of the process."""
     threading.Thread(target=_end_with_server, daemon=True).start()
     limit("RLIMIT_DATA", COMMAND.memory)
-    from tltlc.interfaces.lsp.analysis import analyse
+    from tltlc.interfaces.lsp.slow_analysis import analyse
 
     with suppress(EOFError, KeyboardInterrupt, BrokenPipeError):
         while True:

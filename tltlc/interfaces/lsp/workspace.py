@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator
 
 from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.interfaces.lsp.analysed_text import Document
+from tltlc.interfaces.lsp.document import Document
 from tltlc.interfaces.lsp.paths import is_below, name_of, path_of, uri_of
 from tltlc.io.files import access_log, is_file, may_be_file, read_source, unsaved_texts, walk
 from tltlc.io.limits import WORKSPACE, WORKSPACE_PARSED

@@ -13,8 +13,8 @@ from tltlc.diagnostics.diagnostic import Diagnostic, Fix, Label, TltlError
 from tltlc.diagnostics.shortening import shorten
 from tltlc.interfaces.playground.fixes import of_errors
 from tltlc.interfaces.playground.picture import picture
+from tltlc.interfaces.playground.signal_sliders import signal_values
 from tltlc.interfaces.playground.trace import Letter, idle_step, rows, shortest_traces
-from tltlc.interfaces.playground.values import signal_values
 from tltlc.io.project import project_for
 from tltlc.io.spec_file import STDIN
 from tltlc.monitor.spec_tests import run_tests

@@ -3,9 +3,9 @@
 A module defines ``reward(tables, transition, options, memory) -> (reward, memory)``, a pure
 function. ``memory`` is the mode's state from step to step, None at the start of an episode. None of
 these modes has step or terminal penalties. To add a mode, add its name to
-:data:`tltlc.monitor.reward.Mode`, a module of this name here, and another one in
+:data:`tltlc.monitor.progress_and_reward.Mode`, a module of this name here, and another one in
 ``tltl_runtime.spec.batch.reward_modes`` for many environments. Options, settings files and tests
-read the names from :data:`~tltlc.monitor.reward.Mode`.
+read the names from :data:`~tltlc.monitor.progress_and_reward.Mode`.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from tltlc.core.record import record
-from tltlc.monitor.reward import RewardOptions
+from tltlc.monitor.progress_and_reward import RewardOptions
 from tltlc.monitor.tables import MonitorTables
 
 

@@ -6,7 +6,7 @@ Harada, Russell, Policy invariance under reward transformations, ICML 1999).
 
 from __future__ import annotations
 
-from tltlc.monitor.reward import RewardOptions, approach
+from tltlc.monitor.progress_and_reward import RewardOptions, approach
 from tltlc.monitor.reward_modes import Transition
 from tltlc.monitor.tables import MonitorTables
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tltlc.monitor.guards import robustness
-from tltlc.monitor.reward import RewardOptions
+from tltlc.monitor.progress_and_reward import RewardOptions
 from tltlc.monitor.reward_modes import Transition
 from tltlc.monitor.tables import MonitorTables
 

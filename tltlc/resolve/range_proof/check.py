@@ -213,12 +213,12 @@ def _doubtful_borders(when: When, predicate: Predicate) -> list[ProofGoal]:
 
 def _proves_exactly(kind: str, predicate: Predicate, goals: Sequence[ProofGoal], whole: ConstrainedBox) -> bool:
     """Whether sympy proves the remaining goals, now or in a cached answer."""
-    from tltlc.resolve.range_proof import memory
+    from tltlc.resolve.range_proof import proof_cache
 
-    def compute() -> memory.Answer:
+    def compute() -> proof_cache.Answer:
         if sys.platform == "emscripten":
             # A browser has no sympy. Goals that only sympy can prove stay unproved.
-            return memory.Answer(False, 0)
+            return proof_cache.Answer(False, 0)
         from tltlc.resolve.range_proof.exact import proves_all
 
         # Count these steps separately, so that the answer depends on the question alone and can be cached.
@@ -227,10 +227,12 @@ def _proves_exactly(kind: str, predicate: Predicate, goals: Sequence[ProofGoal],
                 proved = proves_all(goals, whole)
             except OutOfWorkError:
                 proved = False
-            return memory.Answer(proved, _STEPS_OF_A_QUESTION - max(0, work.left))
+            return proof_cache.Answer(proved, _STEPS_OF_A_QUESTION - max(0, work.left))
 
-    text = memory.question(kind, predicate.expression, predicate.box, predicate.bools, predicate.low, predicate.high)
-    answer = memory.answer(text, compute)
+    text = proof_cache.question(
+        kind, predicate.expression, predicate.box, predicate.bools, predicate.low, predicate.high
+    )
+    answer = proof_cache.answer(text, compute)
     spend(answer.steps)
     return answer.proved
 

@@ -22,7 +22,7 @@ from tltlc.tools.diff.renaming import new_signal_names, rename_signals, with_old
 if TYPE_CHECKING:
     from tltlc.automaton.fspa import Fspa
     from tltlc.tools.diff.library import OfferedName
-    from tltlc.tools.diff.rules import Rules
+    from tltlc.tools.diff.library_settings import Rules
 
 _SHARED: Final = ("clock", "signal", "param", "atom")
 """The kinds of differences that the specs of a file share."""
@@ -82,7 +82,7 @@ def version_changes(change: FileChange, work: int = DEFAULT_WORK) -> tuple[Diagn
 
 def _changed_rules(old: Version, new: Version) -> Iterator[Diagnostic]:
     if old.rules is not None and new.rules is not None:
-        from tltlc.tools.diff.rules import changed_rules
+        from tltlc.tools.diff.library_settings import changed_rules
 
         yield from changed_rules(old.rules, new.rules)
 

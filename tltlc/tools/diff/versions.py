@@ -31,6 +31,6 @@ def version_of_artefact(path: str, automata: tuple[Fspa, ...]) -> Version:
 def version_of_library(session: Session) -> Version:
     """Return the version of a source without specs. It must compile without errors."""
     from tltlc.tools.diff.library import offers
-    from tltlc.tools.diff.rules import rules
+    from tltlc.tools.diff.library_settings import rules
 
     return Version(offers=offers(session.resolution.env), rules=rules(session.module, session.program))

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from tltlc.automaton.judge import default_judge, judge_of
+from tltlc.automaton.default_judge import default_judge, judge_of
 from tltlc.resolve.spec import Conjunct
 from tltlc.tools.lint.file_view import SpecView
 

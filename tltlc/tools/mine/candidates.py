@@ -9,7 +9,7 @@ from typing import Final
 from tltlc.io.limits import WORK
 from tltlc.tools.mine.bits import Bits, Verdicts
 from tltlc.tools.mine.clause import Conjunction, count_atoms
-from tltlc.tools.mine.measure import figures
+from tltlc.tools.mine.score import figures
 
 ALIKE: Final = 3
 """The most candidates of one length that are kept for one set of accepted traces."""

@@ -15,7 +15,7 @@ from tltlc.monitor.tables import tables
 from tltlc.pipeline import CompileOptions, compile_source
 from tltlc.tools.mine.clause import Conjunction
 from tltlc.tools.mine.evidence import Evidence, LabelledTrace
-from tltlc.tools.mine.measure import Support
+from tltlc.tools.mine.score import Support
 from tltlc.tools.mine.vocabulary import MiningVocabulary
 from tltlc.tools.witness.blocks import letter_values
 

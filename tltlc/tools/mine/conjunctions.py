@@ -8,7 +8,7 @@ from typing import Final
 from tltlc.tools.mine.bits import Bits, Verdicts, count
 from tltlc.tools.mine.candidates import ALIKE, sort_key
 from tltlc.tools.mine.clause import Conjunction, MinedClause, accepted_traces, count_atoms
-from tltlc.tools.mine.measure import figures
+from tltlc.tools.mine.score import figures
 from tltlc.tools.mine.templates import BOUNDED
 
 BEAM: Final = 60

@@ -12,7 +12,7 @@ from tltlc.tools.mine.column_diagnostics import Columns, odd_columns
 from tltlc.tools.mine.columns import columns, common_columns
 from tltlc.tools.mine.evidence import Evidence, LabelledTrace
 from tltlc.tools.mine.mutants import with_mutants
-from tltlc.tools.mine.reading import ProgressCallback, TraceFile, check_trace, ignore_progress, read_traces
+from tltlc.tools.mine.trace_letters import ProgressCallback, TraceFile, check_trace, ignore_progress, read_traces
 from tltlc.tools.mine.vocabulary import MiningVocabulary, vocabulary_of_columns, vocabulary_of_library
 
 
@@ -31,7 +31,7 @@ def read_evidence(
     Raises:
         TltlError: the errors of :func:`~tltlc.tools.mine.vocabulary.vocabulary_of_library`,
             :func:`~tltlc.tools.mine.vocabulary.vocabulary_of_columns` and
-            :func:`~tltlc.tools.mine.reading.read_traces`; the errors of a trace without columns.
+            :func:`~tltlc.tools.mine.trace_letters.read_traces`; the errors of a trace without columns.
     """
     all_columns = []
     for file in (*good, *bad):

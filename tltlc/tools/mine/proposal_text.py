@@ -11,8 +11,8 @@ from tltlc.tools.mine.bits import Bits
 from tltlc.tools.mine.clause import count_atoms
 from tltlc.tools.mine.confirm import Proposal
 from tltlc.tools.mine.evidence import Evidence
-from tltlc.tools.mine.measure import PRICE
 from tltlc.tools.mine.reasons import reasons
+from tltlc.tools.mine.score import PRICE
 
 _WIDTH: Final = 100
 _INDENT: Final = " " * 5

@@ -17,7 +17,7 @@ from tltlc.tools.mine.clause import Conjunction, MinedClause, accepted_traces, c
 from tltlc.tools.mine.conjunctions import best_candidates, conjunctions
 from tltlc.tools.mine.events import MOST_EVENTS, best_events
 from tltlc.tools.mine.evidence import Evidence
-from tltlc.tools.mine.measure import figures
+from tltlc.tools.mine.score import figures
 from tltlc.tools.mine.sequences import sequences
 from tltlc.tools.mine.templates import clauses
 

@@ -21,7 +21,7 @@ from tltlc.automaton.work import OutOfWork, Work
 from tltlc.io.limits import WORK
 from tltlc.tools.mine.bits import Bits, Samples, Verdicts, count
 from tltlc.tools.mine.clause import MinedClause
-from tltlc.tools.mine.measure import figures
+from tltlc.tools.mine.score import figures
 from tltlc.tools.mine.templates import template_clause
 from tltlc.tools.witness.blocks import atom_operand
 

@@ -11,8 +11,8 @@ import click
 from tltlc.api import cli
 
 if TYPE_CHECKING:
+    from tltl_runtime.stealth.episode_recorder import RecordEpisode
     from tltl_runtime.stealth.keyboard import Recordings
-    from tltl_runtime.stealth.recording import RecordEpisode
     from tltl_runtime.stealth.rendering.camera import View
 
 Function = TypeVar("Function", bound=Callable[..., Any])

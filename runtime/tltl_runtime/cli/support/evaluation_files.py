@@ -14,9 +14,9 @@ from tltl_runtime.evaluation.text import report_text
 from tltl_runtime.game.episode import Trajectory
 from tltl_runtime.game.recording_path import SUFFIX, new_path
 from tltl_runtime.spec.episode_summary import EpisodeSummary
+from tltl_runtime.stealth.episode_recorder import writable_folder
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.stealth.levels.identity import level_hash
-from tltl_runtime.stealth.recording import writable_folder
 from tltl_runtime.stealth.recordings.file import from_bytes, read_episode
 from tltl_runtime.stealth.recordings.versions import versions
 from tltl_runtime.stealth.rendering.plan import draw_episode

@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Final
 
+from tltl_runtime.stealth.levels.default_spec import LEVELS
 from tltl_runtime.stealth.levels.file import level_names, level_path, load_level, variants
-from tltl_runtime.stealth.levels.made_for import LEVELS
 from tltl_runtime.support.suggestion import suggestion
 from tltlc.api import Diagnostic, TltlError, fileio
 

@@ -8,7 +8,7 @@ from typing import Any, Final
 import click
 
 from tltl_runtime.cli.support.printable import plain_text
-from tltl_runtime.regression.explain.account import ExplainedEpisode
+from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode
 from tltl_runtime.regression.suite.suite import Case
 
 _EPISODES_BETWEEN_LINES: Final = 25

@@ -8,7 +8,7 @@ from typing import Final
 
 from tltl_runtime.game.geometry import Region
 from tltl_runtime.game.level import Level
-from tltl_runtime.regression.explain.account import ExplainedEpisode
+from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode
 from tltl_runtime.regression.explain.failures import end_of, failures
 from tltl_runtime.regression.explain.path_points import positions_along
 from tltl_runtime.regression.explain.stages import Subgoal, subgoal_of_all, subgoals_text

@@ -8,7 +8,7 @@ from typing import Final, TypeVar
 
 from tltl_runtime.game.episode import Kind
 from tltl_runtime.game.level import Level
-from tltl_runtime.regression.explain.account import ExplainedEpisode
+from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode
 from tltl_runtime.regression.explain.nearest_miss import approach_text, remaining_text
 from tltl_runtime.regression.explain.places import blocking_solids, place_name
 from tltl_runtime.regression.explain.stages import Subgoal, subgoal

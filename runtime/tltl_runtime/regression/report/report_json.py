@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Any, Final
 
 from tltl_runtime.evaluation.figures import Figures
-from tltl_runtime.regression.explain.account import ExplainedEpisode
+from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode
 from tltl_runtime.regression.report.case_report import CaseReport
 from tltl_runtime.regression.suite.suite import Suite
 from tltl_runtime.support.record_json import to_json

@@ -11,8 +11,8 @@ from typing import Final
 from tltl_runtime.evaluation.evaluate import Pool
 from tltl_runtime.evaluation.figures import figures_of
 from tltl_runtime.policies.file import read_policy
-from tltl_runtime.regression.explain.account import ExplainedEpisode, summaries_of
-from tltl_runtime.regression.retrain.retrained import (
+from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode, summaries_of
+from tltl_runtime.regression.retrain.retraining_result import (
     BestFailedEpisode,
     FinishedRetraining,
     RetrainingResult,
@@ -27,7 +27,6 @@ from tltl_runtime.regression.verdict.play import PreparedCase, play_episodes
 from tltl_runtime.regression.verdict.suite_run import WRITABLE, FinishedCase, case_folder
 from tltl_runtime.support.record_json import to_json
 from tltl_runtime.training.run.checkpoint import read_checkpoint
-from tltl_runtime.training.run.folder import lock_training
 from tltl_runtime.training.run.initial_policy import initial_policy_of, weights_hash
 from tltl_runtime.training.run.metrics import METRICS
 from tltl_runtime.training.run.record import recorded_end
@@ -43,6 +42,7 @@ from tltl_runtime.training.run.run_file import (
     read_run,
 )
 from tltl_runtime.training.run.settings import read_settings
+from tltl_runtime.training.run.training_lock import lock_training
 from tltlc.api import Diagnostic, Fspa, TltlError, fileio, label_text, replace
 
 FOLDER: Final = "retrained"

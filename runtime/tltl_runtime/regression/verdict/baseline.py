@@ -9,7 +9,7 @@ from pathlib import Path
 from shlex import join
 from typing import Final
 
-from tltl_runtime.regression.explain.account import ExplainedEpisode
+from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode
 from tltl_runtime.regression.suite.suite import SHIPPED, Suite, baseline_path
 from tltl_runtime.regression.verdict.verdict import FIGURES
 from tltl_runtime.support.load_errors import LoadErrors

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Final
 
 from tltl_runtime.evaluation.evaluate import Pool
-from tltl_runtime.regression.explain.account import ExplainedEpisode, summaries_of
+from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode, summaries_of
 from tltl_runtime.regression.suite.level_texts import level_texts
 from tltl_runtime.regression.suite.result_cache import cache_text, inputs_hash, read_cache
 from tltl_runtime.regression.suite.suite import LEAST_EPISODES, Case, Suite

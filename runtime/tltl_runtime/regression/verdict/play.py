@@ -16,7 +16,7 @@ from tltl_runtime.game.registry import registered_game
 from tltl_runtime.policies.file import MAX_BYTES, from_bytes
 from tltl_runtime.policies.fit import differences
 from tltl_runtime.policies.identity import spec_hash
-from tltl_runtime.regression.explain.account import ExplainedEpisode, explain_episode, summaries_of
+from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode, explain_episode, summaries_of
 from tltl_runtime.regression.suite.named_files import policy_file
 from tltl_runtime.regression.suite.suite import Case
 from tltl_runtime.regression.verdict.baseline import Identity, Reference

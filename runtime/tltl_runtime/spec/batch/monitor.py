@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike
 from torch import Tensor
 
 from tltl_runtime.spec.batch.guards import PrimeSets, Transitions
+from tltl_runtime.spec.batch.progress_and_reward import VERDICTS, Outcomes
 from tltl_runtime.spec.batch.reward_modes import BatchTransition, reward_mode
-from tltl_runtime.spec.batch.rewards import VERDICTS, Outcomes
 from tltl_runtime.spec.batch.samples import BatchSamples
 from tltlc.api import Fspa, RewardOptions, monitors
 

@@ -9,7 +9,7 @@ from typing import Final
 from tltl_runtime.stealth.capabilities.spec_places import SpecPlaces
 from tltl_runtime.stealth.capabilities.vocabulary import OfferedSignal, offered_signals, params
 from tltl_runtime.stealth.level import StealthLevel, entity_names
-from tltl_runtime.stealth.levels.made_for import is_packaged
+from tltl_runtime.stealth.levels.default_spec import is_packaged
 from tltl_runtime.stealth.signals import signal_list
 from tltl_runtime.stealth.world.player import DECISION
 from tltl_runtime.support.suggestion import suggestion

@@ -15,6 +15,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from tltl_runtime.stealth.expert.enemy_prediction import Outlook, Watch
 from tltl_runtime.stealth.expert.lattice import (
     ACTIONS,
     CROUCHED,
@@ -27,7 +28,6 @@ from tltl_runtime.stealth.expert.lattice import (
 )
 from tltl_runtime.stealth.expert.lines import LinesOfSight, lines_of
 from tltl_runtime.stealth.expert.routes import shut_barriers
-from tltl_runtime.stealth.expert.watch import Outlook, Watch
 from tltl_runtime.stealth.level import Point, StealthLevel
 from tltl_runtime.stealth.snapshot import Snapshot
 from tltl_runtime.stealth.world.player import DECISION, Action, PlayerKind

@@ -9,7 +9,7 @@ from typing import Any, Final
 
 from tltl_runtime.game.level_name import split_overlays
 from tltl_runtime.spec.spec_files import source_of, spec_files, up_to_first_file
-from tltl_runtime.stealth.levels.made_for import LEVELS, SPECS
+from tltl_runtime.stealth.levels.default_spec import LEVELS, SPECS
 from tltlc.api import SourceFile, TltlError, fileio
 
 _QUOTED: Final = re.compile(r"\"([^\"\n]+)\"|'([^'\n]+)'")

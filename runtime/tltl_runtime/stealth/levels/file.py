@@ -18,7 +18,7 @@ from tltl_runtime.stealth.enemies.grid import is_too_large
 from tltl_runtime.stealth.level import Box, EnemyKind, Mover, Region, Solid, StealthLevel, entity_names
 from tltl_runtime.stealth.levels import check, overlay, parts
 from tltl_runtime.stealth.levels.bounds_check import check_room
-from tltl_runtime.stealth.levels.made_for import LEVELS, read_default_spec
+from tltl_runtime.stealth.levels.default_spec import LEVELS, read_default_spec
 from tltl_runtime.stealth.levels.path_check import check_paths
 from tltl_runtime.stealth.levels.regions import named_regions, part_regions
 from tltl_runtime.support.checked_table import CheckedTable, wrong_value

@@ -15,7 +15,7 @@ from tltl_runtime.stealth.observation.sensors import choose_sensors
 from tltl_runtime.stealth.signals import AXES, LevelSignal, Reader, level_signals, position_readers
 
 if TYPE_CHECKING:
-    from tltl_runtime.stealth.game import Simulation
+    from tltl_runtime.stealth.simulation import Simulation
 
 _HALF_TIME_S: Final = 60.0
 """The time that is observed as 0.5; time is unbounded, but the observation must be bounded."""

@@ -39,7 +39,7 @@ def resimulate(episode: Episode) -> int | None:
     Raises:
         TltlError: TLT0730, pybullet is not installed. The other functions here do not need it.
     """
-    from tltl_runtime.stealth.game import Simulation
+    from tltl_runtime.stealth.simulation import Simulation
     from tltl_runtime.stealth.world.physics import WorldError
 
     names = [(column, signal.name) for column, signal in enumerate(episode.fspa.signals)]

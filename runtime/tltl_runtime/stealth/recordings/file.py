@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from tltl_runtime.spec.episode_summary import End
 from tltl_runtime.stealth.level import StealthLevel
-from tltl_runtime.stealth.levels.fault import fault
+from tltl_runtime.stealth.levels.level_object_check import fault
 from tltl_runtime.stealth.recordings.arrays import ARRAYS, Array, Arrays, shape_of, sizes, snapshots, to_arrays
 from tltl_runtime.stealth.recordings.episode import Episode
 from tltl_runtime.stealth.recordings.numpy_archive import ArchiveError, read_array, read_members

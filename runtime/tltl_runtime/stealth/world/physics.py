@@ -30,7 +30,7 @@ from tltl_runtime.stealth.world.bodies import COMPOUND, STOPS, WORLD, set_filter
 from tltl_runtime.stealth.world.bullet import pybullet
 from tltl_runtime.stealth.world.capsules import Capsules
 from tltl_runtime.stealth.world.geometry import TOUCH, Bounds, boxes_by_cell, depth, group_boxes, is_inside, sides
-from tltl_runtime.stealth.world.moving import MoverBody, push
+from tltl_runtime.stealth.world.mover_bodies import MoverBody, push
 from tltl_runtime.stealth.world.player import DECISION, SUBSTEPS, PlayerKind, PlayerState, control
 from tltl_runtime.stealth.world.stairs import lift
 

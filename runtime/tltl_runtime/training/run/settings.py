@@ -84,7 +84,7 @@ class Imitation:
 
 @record
 class Reward:
-    """The settings of rewards: :class:`~tltlc.monitor.reward.RewardOptions` and a schedule.
+    """The settings of rewards: :class:`~tltlc.monitor.progress_and_reward.RewardOptions` and a schedule.
 
     With the ``penalty_schedule`` ``rising``, a ``discounted`` terminal penalty of mode ``progress``
     rises to the undiscounted one as the pass rate rises from one half to 1.

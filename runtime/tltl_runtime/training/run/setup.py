@@ -21,8 +21,8 @@ from tltl_runtime.training.imitation.demonstrations import Attempt
 from tltl_runtime.training.imitation.imitation_data import ImitationData, read_demonstrations, record_expert
 from tltl_runtime.training.ppo.distributed import ProcessGroup, cores
 from tltl_runtime.training.ppo.environment import TrainingEnv
-from tltl_runtime.training.ppo.penalty_weight import penalty_rise
 from tltl_runtime.training.ppo.random_streams import Purpose, stream
+from tltl_runtime.training.ppo.scheduled_weights import penalty_rise
 from tltl_runtime.training.run.checkpoint import Checkpoint, checkpoint_error, level_changed_error, read_checkpoint
 from tltl_runtime.training.run.initial_policy import read_initial_policy
 from tltl_runtime.training.run.run_file import (

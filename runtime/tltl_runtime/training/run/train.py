@@ -18,16 +18,15 @@ from tltl_runtime.training.imitation.demonstrations import Attempt
 from tltl_runtime.training.imitation.gail import Gail
 from tltl_runtime.training.ppo.checkpoint_restore import restore_checkpoint
 from tltl_runtime.training.ppo.distributed import ProcessGroup, join_process_group
-from tltl_runtime.training.ppo.penalty_weight import scheduled_weights
 from tltl_runtime.training.ppo.policy import card_of, policy_of
 from tltl_runtime.training.ppo.process_exchange import gather_iteration, process_state, set_generators
 from tltl_runtime.training.ppo.random_streams import Purpose, stream
 from tltl_runtime.training.ppo.recent_episodes import RecentEpisodes, Standstill
+from tltl_runtime.training.ppo.scheduled_weights import scheduled_weights
 from tltl_runtime.training.run.checkpoint import BestPolicy, Checkpoint, checkpoint_error, deep_copy
 from tltl_runtime.training.run.confirmation import confirm
-from tltl_runtime.training.run.folder import lock_training
+from tltl_runtime.training.run.named_classes import class_of, device_of
 from tltl_runtime.training.run.report import Confirmation, TrainingReport
-from tltl_runtime.training.run.requirements import class_of, device_of
 from tltl_runtime.training.run.run_file import CHECKPOINT, TrainingRun, identity
 from tltl_runtime.training.run.settings import algorithm_name, rsl_config
 from tltl_runtime.training.run.setup import (
@@ -38,6 +37,7 @@ from tltl_runtime.training.run.setup import (
     start_or_resume,
 )
 from tltl_runtime.training.run.training_files import TrainingFiles
+from tltl_runtime.training.run.training_lock import lock_training
 from tltl_runtime.training.runner import Iteration, Runner
 from tltlc.api import replace
 

@@ -2,7 +2,7 @@
 marked texts endless.
 
 So no test depends on how long it takes to build an automaton. The environment variable ``BEGUN``
-names a file that gets a line for each such analysis.
+names a file that gets a line for each such slow_analysis.
 """
 
 from __future__ import annotations
@@ -14,11 +14,11 @@ from typing import Final
 NEVER_ENDS: Final = "// an analysis of this text never ends\n"
 
 if "--multiprocessing-fork" in sys.orig_argv and "BEGUN" in os.environ:
-    from tltlc.interfaces.lsp import analysis
+    from tltlc.interfaces.lsp import slow_analysis
 
-    _analyse = analysis.analyse
+    _analyse = slow_analysis.analyse
 
-    def _analyse_or_never_end(request: analysis.Request) -> analysis.DocumentAnalysis:
+    def _analyse_or_never_end(request: slow_analysis.Request) -> slow_analysis.DocumentAnalysis:
         if NEVER_ENDS in request.source.text:
             with open(os.environ["BEGUN"], "a", encoding="utf-8") as file:  # noqa: PTH123
                 file.write(f"{request.source.name}\n")
@@ -26,4 +26,4 @@ if "--multiprocessing-fork" in sys.orig_argv and "BEGUN" in os.environ:
                 pass
         return _analyse(request)
 
-    analysis.analyse = _analyse_or_never_end
+    slow_analysis.analyse = _analyse_or_never_end

@@ -6,14 +6,14 @@ from collections.abc import Iterable, Sequence
 from functools import cache
 
 from tltl_runtime.evaluation.figures import figures_of
-from tltl_runtime.regression.explain.account import ExplainedEpisode, explain_episode, summaries_of
 from tltl_runtime.regression.explain.explain import findings
+from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode, explain_episode, summaries_of
 from tltl_runtime.regression.report.case_report import CaseReport
 from tltl_runtime.regression.report.page.contents import ReportedCase, SuiteReport
 from tltl_runtime.regression.verdict.verdict import Verdict
 from tltl_runtime.stealth.env import make_env
+from tltl_runtime.stealth.episode_recorder import RecordEpisode
 from tltl_runtime.stealth.expert.expert import Expert, play_episode
-from tltl_runtime.stealth.recording import RecordEpisode
 from tltl_runtime.stealth.recordings.episode import Episode
 from tltl_runtime.stealth.recordings.episode_summary import summary_of
 

@@ -11,7 +11,7 @@ from xml.etree import ElementTree
 import pytest
 
 from tests.runtime.regression.page import samples
-from tltl_runtime.regression.explain.account import ExplainedEpisode
+from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode
 from tltl_runtime.regression.report.page.automaton import counts_table, draw_automaton, picture
 from tltl_runtime.regression.report.page.traffic import Traffic, traffic
 from tltl_runtime.stealth.recordings.episode import Episode

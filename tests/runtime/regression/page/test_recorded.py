@@ -11,7 +11,7 @@ import pytest
 
 from tests.runtime.regression.page import samples
 from tests.runtime.regression.page.test_packing import unstepped
-from tltl_runtime.regression.report.page.stealth.recorded import recording_data
+from tltl_runtime.regression.report.page.stealth.recording_data import recording_data
 from tltl_runtime.stealth.recordings.episode import Episode
 
 

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from tltl_runtime.stealth.env import make_env
+from tltl_runtime.stealth.episode_recorder import RecordEpisode
 from tltl_runtime.stealth.expert.expert import Expert, play_episode
-from tltl_runtime.stealth.recording import RecordEpisode
 from tltl_runtime.stealth.recordings.episode import Episode
 from tltl_runtime.stealth.snapshot import BRANCHES
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from tltl_runtime.stealth.expert.movers import Clocks, swept_bounds
-from tltl_runtime.stealth.game import Simulation
 from tltl_runtime.stealth.levels.file import load_level
+from tltl_runtime.stealth.simulation import Simulation
 from tltlc.core.record import replace
 
 

@@ -8,12 +8,12 @@ import pytest
 
 from tests.runtime.stealth.enemy_levels import box, level
 from tltl_runtime.stealth.env import make_env
+from tltl_runtime.stealth.episode_recorder import RecordEpisode
 from tltl_runtime.stealth.expert.expert import Expert, play_episode
 from tltl_runtime.stealth.expert.sneaker import Sneaker
 from tltl_runtime.stealth.expert.walker import Walker
-from tltl_runtime.stealth.game import Simulation
 from tltl_runtime.stealth.level import Solid, Start, StealthLevel
-from tltl_runtime.stealth.recording import RecordEpisode
+from tltl_runtime.stealth.simulation import Simulation
 from tltlc.core.record import replace
 
 GOAL = (8.2, 7.2, 0.0)

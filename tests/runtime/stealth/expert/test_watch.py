@@ -8,9 +8,9 @@ from contextlib import closing, contextmanager
 import numpy as np
 import pytest
 
-from tltl_runtime.stealth.expert.watch import Watch
-from tltl_runtime.stealth.game import Simulation
+from tltl_runtime.stealth.expert.enemy_prediction import Watch
 from tltl_runtime.stealth.levels.file import load_level
+from tltl_runtime.stealth.simulation import Simulation
 
 STAY = (0, 0, 0, 0, 0)
 

@@ -16,8 +16,8 @@ import pytest
 import tltlc
 from tests.golden.cases import Case, cases
 from tltl_runtime.stealth.level import Box, Solid, StealthLevel, entity_names
+from tltl_runtime.stealth.levels.default_spec import LEVELS
 from tltl_runtime.stealth.levels.file import level_names, load_level, variants
-from tltl_runtime.stealth.levels.made_for import LEVELS
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.diagnostics.render import render
 

@@ -9,8 +9,8 @@ import pytest
 
 from tests.calls import calls
 from tltl_runtime.stealth.levels import parts
-from tltl_runtime.stealth.levels.fault import fault
 from tltl_runtime.stealth.levels.file import load_level, read_level
+from tltl_runtime.stealth.levels.level_object_check import fault
 from tltl_runtime.support.checked_table import CheckedTable
 from tltl_runtime.support.toml_tree import Entry, read_tree
 from tltlc.core.record import replace

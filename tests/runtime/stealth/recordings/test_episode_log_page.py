@@ -14,7 +14,7 @@ import pytest
 
 from tests.docs.blocks import DOCS, blocks
 from tltl_runtime.stealth.env import make_env
-from tltl_runtime.stealth.recording import RecordEpisode
+from tltl_runtime.stealth.episode_recorder import RecordEpisode
 from tltl_runtime.stealth.recordings.arrays import ARRAYS, Array
 from tltl_runtime.stealth.recordings.file import FORMAT, VERSION, AxisNames, Meta, to_bytes
 from tltlc.monitor import RewardOptions

@@ -7,8 +7,8 @@ from contextlib import closing
 import pytest
 
 from tltl_runtime.stealth.env import make_env
+from tltl_runtime.stealth.episode_recorder import RecordEpisode
 from tltl_runtime.stealth.expert.expert import Expert
-from tltl_runtime.stealth.recording import RecordEpisode
 from tltl_runtime.stealth.recordings.episode_summary import opened_barriers, seen_steps, summary_of, was_chased
 
 

@@ -20,9 +20,9 @@ from hypothesis import strategies as st
 
 from tltl_runtime.game.recording_path import SUFFIX
 from tltl_runtime.stealth.env import make_env
+from tltl_runtime.stealth.episode_recorder import RecordEpisode
 from tltl_runtime.stealth.level import StealthLevel
 from tltl_runtime.stealth.levels.file import level_names, load_level, variants
-from tltl_runtime.stealth.recording import RecordEpisode
 from tltl_runtime.stealth.recordings.arrays import ARRAYS
 from tltl_runtime.stealth.recordings.check import check, check_replay, resimulate
 from tltl_runtime.stealth.recordings.episode import Episode

@@ -9,10 +9,10 @@ import pytest
 
 from tltl_runtime.game.episode import Cause
 from tltl_runtime.stealth.env import make_env
-from tltl_runtime.stealth.game import Simulation
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.stealth.rendering.hud import end_screen, hud, start_screen
 from tltl_runtime.stealth.rendering.interpolation import interpolate
+from tltl_runtime.stealth.simulation import Simulation
 from tltlc import compile_text
 from tltlc.automaton.text import label_text
 from tltlc.core.record import replace

@@ -11,13 +11,13 @@ import pytest
 from numpy.typing import NDArray
 
 from tltl_runtime.stealth.enemies.enemy import Enemies, PlayerView
-from tltl_runtime.stealth.game import Simulation
 from tltl_runtime.stealth.level import Box
 from tltl_runtime.stealth.levels.file import level_names, load_level
 from tltl_runtime.stealth.rendering.camera import VIEWS, View, camera, pixels, sight_lines
 from tltl_runtime.stealth.rendering.cone import SightField
 from tltl_runtime.stealth.rendering.render import Renderer
 from tltl_runtime.stealth.rendering.scene import PLAYER
+from tltl_runtime.stealth.simulation import Simulation
 from tltl_runtime.stealth.snapshot import Snapshot
 from tltl_runtime.stealth.world.player import PlayerState
 

@@ -17,8 +17,8 @@ import tltl_runtime  # noqa: F401  (registers the environments)
 from tests.runtime.stealth.xvfb import MISSING, screen
 from tests.waiting import HANG_S
 from tltl_runtime.stealth.env import GameEnv, make_env
-from tltl_runtime.stealth.game import Simulation
 from tltl_runtime.stealth.levels.file import load_level
+from tltl_runtime.stealth.simulation import Simulation
 from tltl_runtime.stealth.window.screen import Screen
 
 NAMES = ("tltl/Navigation-v0", "tltl/CoverAndHide-v0", "tltl/Branching-v0")

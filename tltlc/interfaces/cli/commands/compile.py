@@ -89,7 +89,7 @@ def command(
             print("waiting for changes, until Ctrl-C", file=sys.stderr)
 
     if watch:
-        from tltlc.interfaces.cli.watching import repeat
+        from tltlc.interfaces.cli.repeated_runs import repeat
         from tltlc.io.spec_file import STDIN, split
 
         if any(split(spec)[0] == STDIN for spec in specs):

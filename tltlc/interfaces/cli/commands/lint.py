@@ -76,7 +76,7 @@ def _lint_file(
     from tltlc.io.project import project_for
     from tltlc.io.spec_file import STDIN, read
     from tltlc.io.writing import rewrite
-    from tltlc.tools.lint.fixing import fix
+    from tltlc.tools.lint.fix_application import fix
     from tltlc.tools.lint.run import lint
 
     if fixing and path == STDIN:

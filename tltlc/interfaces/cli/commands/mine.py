@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from tltlc.pipeline import CompileOptions
     from tltlc.tools.mine.confirm import Proposal
     from tltlc.tools.mine.evidence import Evidence
-    from tltlc.tools.mine.reading import TraceFile
     from tltlc.tools.mine.search import SpecSearch
+    from tltlc.tools.mine.trace_letters import TraceFile
     from tltlc.tools.mine.vocabulary import MiningVocabulary
 
 ENDINGS: Final = (".csv", ".jsonl")
@@ -176,7 +176,7 @@ def _column_messages(words: MiningVocabulary, predicates: str | None) -> Iterato
 def _read_traces(arguments: Sequence[str]) -> list[TraceFile]:
     """Read the traces that the command line names; those of a folder in order of their names."""
     from tltlc.io.files import is_dir, read_bytes
-    from tltlc.tools.mine.reading import TraceFile
+    from tltlc.tools.mine.trace_letters import TraceFile
 
     files = []
     for argument in arguments:

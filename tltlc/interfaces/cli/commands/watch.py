@@ -37,7 +37,7 @@ def command(paths: tuple[str, ...], settings: CompileSettings) -> int:
     Changes in imported files count, and so do new files in a folder. `tltlc compile --watch` also writes files.
     """
     from tltlc.interfaces.cli.folders import files_in_folders
-    from tltlc.interfaces.cli.watching import repeat
+    from tltlc.interfaces.cli.repeated_runs import repeat
     from tltlc.io.spec_file import STDIN
 
     arguments = paths or (".",)

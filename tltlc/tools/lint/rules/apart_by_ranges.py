@@ -9,8 +9,8 @@ from tltlc.automaton.finite.contradiction import contradiction
 from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import Label
 from tltlc.logic.text.phrases import phrase
+from tltlc.tools.lint.atom_relations import is_impossible, relations
 from tltlc.tools.lint.file_view import SpecView, View
-from tltlc.tools.lint.relations import is_impossible, relations
 from tltlc.tools.lint.rule import LintRule, Remark
 
 _MOST_LABELS: Final = 4

@@ -10,9 +10,9 @@ from tltlc.diagnostics.diagnostic import Label
 from tltlc.grammar.tree import BinaryExpr
 from tltlc.logic.formula import TRUE, Formula, and_, atom, eventually, not_, or_, rebuild
 from tltlc.resolve.spec import Conjunct
+from tltlc.tools.lint.atom_relations import relations
 from tltlc.tools.lint.file_view import Expression, SpecView, View, operand_text, without_brackets
 from tltlc.tools.lint.goals import conjuncts, goals
-from tltlc.tools.lint.relations import relations
 from tltlc.tools.lint.rule import LintRule, Remark
 
 

@@ -9,8 +9,8 @@ from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import Label
 from tltlc.logic.formula import not_
 from tltlc.resolve.spec import Conjunct
+from tltlc.tools.lint.atom_relations import relations
 from tltlc.tools.lint.file_view import SpecView, View
-from tltlc.tools.lint.relations import relations
 from tltlc.tools.lint.removal_advice import removal_help
 from tltlc.tools.lint.rule import LintRule, Remark
 

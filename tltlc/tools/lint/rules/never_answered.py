@@ -10,8 +10,8 @@ from tltlc.grammar.tree import BinaryExpr, Clause, Unary
 from tltlc.logic.formula import Formula, always, and_
 from tltlc.logic.text.phrases import is_state
 from tltlc.resolve.spec import Conjunct
+from tltlc.tools.lint.atom_relations import relations
 from tltlc.tools.lint.file_view import Expression, SpecView, View, operand_text
-from tltlc.tools.lint.relations import relations
 from tltlc.tools.lint.rule import LintRule, Remark
 
 

@@ -6,12 +6,12 @@ from collections.abc import Sequence
 from typing import Any, Final
 
 from tltl_runtime.game.geometry import Box
-from tltl_runtime.regression.explain.account import ExplainedEpisode
+from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode
 from tltl_runtime.regression.report.page.contents import ReportedCase
 from tltl_runtime.regression.report.page.heat import Heat, failed_ends, time_spent
 from tltl_runtime.regression.report.page.packing import runs, x_steps, y_steps
 from tltl_runtime.regression.report.page.stealth.level_map import map_data
-from tltl_runtime.regression.report.page.stealth.recorded import recording_data
+from tltl_runtime.regression.report.page.stealth.recording_data import recording_data
 from tltlc.api import label_text
 
 _RESOLUTION_CM: Final = 5

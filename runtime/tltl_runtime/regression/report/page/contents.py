@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from tltl_runtime.game.episode import RecordedEpisode
 from tltl_runtime.game.level import Level
-from tltl_runtime.regression.explain.account import ExplainedEpisode
+from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode
 from tltl_runtime.regression.report.case_report import CaseReport
 from tltl_runtime.regression.verdict.verdict import Verdict
 from tltlc.api import EMPTY, Fspa, record

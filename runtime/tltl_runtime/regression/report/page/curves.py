@@ -13,7 +13,7 @@ from typing import Final
 from markupsafe import Markup
 
 from tltl_runtime.game.episode import RecordedEpisode
-from tltl_runtime.regression.explain.account import ExplainedEpisode
+from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode
 from tltl_runtime.regression.report.page.markup import coordinate, element
 from tltl_runtime.support.number_text import percent
 

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from typing import Final
 
 from tltl_runtime.game.geometry import Box
-from tltl_runtime.regression.explain.account import ExplainedEpisode
+from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode
 from tltl_runtime.regression.explain.path_points import POSITION_INTERVAL_S, positions_along
 from tltlc.api import record
 

@@ -6,8 +6,8 @@ import torch
 from torch import Tensor
 
 from tltl_runtime.spec.batch.guards import PrimeSets
+from tltl_runtime.spec.batch.progress_and_reward import approach
 from tltl_runtime.spec.batch.reward_modes import BatchTransition
-from tltl_runtime.spec.batch.rewards import approach
 from tltlc.api import Fspa, RewardOptions, monitors
 
 

@@ -14,21 +14,21 @@ from pathlib import Path
 import pytest
 
 from tltlc.expression.tree import Const, Expression, Op, ParamValue, SignalValue
-from tltlc.resolve.range_proof import memory
+from tltlc.resolve.range_proof import proof_cache
 
-YES, NO = memory.Answer(True, 7), memory.Answer(False, 8)
+YES, NO = proof_cache.Answer(True, 7), proof_cache.Answer(False, 8)
 
 
-def refuse() -> memory.Answer:
+def refuse() -> proof_cache.Answer:
     raise AssertionError("the answer should have been remembered")
 
 
 def test_an_answer_is_computed_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("TLTLC_CACHE_DIR", str(tmp_path / "new"))
-    assert memory.answer("one", lambda: YES) == YES
-    assert memory.answer("two", lambda: NO) == NO
-    assert memory.answer("one", refuse) == YES
-    assert memory.answer("two", refuse) == NO
+    assert proof_cache.answer("one", lambda: YES) == YES
+    assert proof_cache.answer("two", lambda: NO) == NO
+    assert proof_cache.answer("one", refuse) == YES
+    assert proof_cache.answer("two", refuse) == NO
     assert [path.name for path in (tmp_path / "new").iterdir()] == ["predicates.json"]
 
 
@@ -52,34 +52,34 @@ def test_an_answer_is_computed_once(tmp_path: Path, monkeypatch: pytest.MonkeyPa
 )
 def test_a_damaged_cache_is_ignored(content: bytes, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("TLTLC_CACHE_DIR", str(tmp_path))
-    memory.answer("one", lambda: NO)
+    proof_cache.answer("one", lambda: NO)
     file = tmp_path / "predicates.json"
     (key,) = json.loads(file.read_text())["answers"]
     file.write_bytes(content.replace(b"KEY", key.encode()))
-    assert memory.answer("one", lambda: NO) == NO
-    assert memory.answer("one", refuse) == NO
+    assert proof_cache.answer("one", lambda: NO) == NO
+    assert proof_cache.answer("one", refuse) == NO
 
 
 def test_a_cache_folder_that_cannot_be_created_is_ignored(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "file").write_text("")
     monkeypatch.setenv("TLTLC_CACHE_DIR", str(tmp_path / "file" / "below"))
-    assert memory.answer("one", lambda: YES) == YES
+    assert proof_cache.answer("one", lambda: YES) == YES
 
 
 def test_the_cache_folder_depends_on_the_environment(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("TLTLC_CACHE_DIR", "")
-    assert memory.cache_folder() is None
+    assert proof_cache.cache_folder() is None
     monkeypatch.delenv("TLTLC_CACHE_DIR")
     if sys.platform.startswith("linux"):
         monkeypatch.setenv("XDG_CACHE_HOME", "/somewhere")
-        assert memory.cache_folder() == Path("/somewhere/tltlc")
+        assert proof_cache.cache_folder() == Path("/somewhere/tltlc")
 
 
 def ask(name: str, high: float, value: float = 2.0) -> str:
     signal, param = SignalValue(name), ParamValue("p")
     expression: Expression = Op("*", (Op("-", (signal, param)), Const(value)))
     box: dict[SignalValue | ParamValue, tuple[float, float]] = {signal: (0.0, high), param: (0.0, 1.0)}
-    return memory.question("range", expression, box, frozenset(), -1.0, 1.0)
+    return proof_cache.question("range", expression, box, frozenset(), -1.0, 1.0)
 
 
 def test_the_cache_key_depends_on_everything_but_names() -> None:

@@ -15,7 +15,7 @@ def level_faults() -> Iterator[None]:
     try:
         yield
     except RuntimeError as error:
-        from tltl_runtime.stealth.world.faults import player_fault
+        from tltl_runtime.stealth.world.physics_errors import player_fault
 
         fault = player_fault(error)
         if fault is None:

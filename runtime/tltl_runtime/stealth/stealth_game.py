@@ -33,12 +33,12 @@ from tltl_runtime.stealth.recordings.episode import Episode
 from tltl_runtime.stealth.recordings.episode_summary import summary_of
 from tltl_runtime.stealth.recordings.file import from_bytes, read_episode, to_bytes
 from tltl_runtime.stealth.snapshot import CHOICES
-from tltl_runtime.stealth.world.faults import player_fault
+from tltl_runtime.stealth.world.physics_errors import player_fault
 from tltl_runtime.stealth.world.player import DECISION
 from tltlc.api import Diagnostic, Fspa, RewardOptions, TltlError
 
 if TYPE_CHECKING:
-    from tltl_runtime.stealth.recording import RecordEpisode
+    from tltl_runtime.stealth.episode_recorder import RecordEpisode
 
 
 class StealthLevelFiles(LevelFiles[StealthLevel]):
@@ -79,7 +79,7 @@ class StealthGame(Game[StealthLevel, Episode]):
     choices = CHOICES
     clock_s = DECISION
     level_files = StealthLevelFiles()
-    modules = (__name__, "tltl_runtime.stealth.recording")
+    modules = (__name__, "tltl_runtime.stealth.episode_recorder")
 
     def load_level(self, name: str, variant: str = "v0") -> StealthLevel:
         """Load a shipped level, by name, or one from a ``.toml`` file, in one of its variants."""
@@ -145,7 +145,7 @@ class StealthGame(Game[StealthLevel, Episode]):
 
     def recorder(self, env: gymnasium.Env[Any, Any], player: str = "unknown") -> RecordEpisode:
         """Return an environment that records its episodes."""
-        from tltl_runtime.stealth.recording import RecordEpisode
+        from tltl_runtime.stealth.episode_recorder import RecordEpisode
 
         return RecordEpisode(env, player)
 
