@@ -54,18 +54,18 @@ def _parse(source: SourceFile) -> object:
     except json.JSONDecodeError as error:
         where = Label(source, Span(error.pos, min(error.pos + 1, len(source.text))), _remark(error.msg))
         raise TltlError([Diagnostic("TLT0601", f"`{source.name}` is not JSON", (where,), RECOMPILE)]) from None
-    except _NotFiniteError as error:
+    except _NonFiniteNumberError as error:
         raise _not_finite(source.name, str(error)) from None
     except JsonLimitError as error:
         raise TltlError([Diagnostic("TLT0006", f"`{source.name}` cannot be read: {error}", help=RECOMPILE)]) from None
 
 
-class _NotFiniteError(Exception):
+class _NonFiniteNumberError(Exception):
     """Raised for ``NaN`` and ``Infinity``, which Python's parser would accept."""
 
 
 def _refuse(constant: str) -> None:
-    raise _NotFiniteError(constant)
+    raise _NonFiniteNumberError(constant)
 
 
 def _not_finite(name: str, constant: str) -> TltlError:

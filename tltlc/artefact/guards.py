@@ -22,11 +22,11 @@ _BITS_OF_A_STEP = 512
 """The most atoms that one cube operation reads; if there are more atoms, an operation counts as several."""
 
 
-class _OutOfWorkError(Exception):
+class _TooManyCubesError(Exception):
     """Raised when the work limit is reached."""
 
 
-class _Work:
+class _CubeBudget:
     """Counts cube operations, so that the result does not depend on the machine's speed."""
 
     def __init__(self) -> None:
@@ -35,7 +35,7 @@ class _Work:
     def spend(self, amount: int = 1) -> None:
         self.left -= amount
         if self.left < 0:
-            raise _OutOfWorkError
+            raise _TooManyCubesError
 
 
 def guard_problems(fspa: Fspa) -> Iterator[tuple[Path, str]]:
@@ -45,7 +45,7 @@ def guard_problems(fspa: Fspa) -> Iterator[tuple[Path, str]]:
     some sample does not take exactly one edge.  Indices must be in range.  Large automata are
     checked up to a fixed amount of work (:data:`WORK_LIMIT`).
     """
-    work = _Work()
+    work = _CubeBudget()
     leaving: list[list[int]] = [[] for _ in fspa.states]
     for index, edge in enumerate(fspa.edges):
         leaving[edge.source].append(index)
@@ -69,7 +69,7 @@ def guard_problems(fspa: Fspa) -> Iterator[tuple[Path, str]]:
             if not _covers_all([cube for index in edges for cube in cubes[index]] + pairs, work):
                 yield ("states", state), f"some samples lead nowhere from state {state}"
                 return
-    except _OutOfWorkError:
+    except _TooManyCubesError:
         return
 
 
@@ -84,7 +84,7 @@ def _cube(prime: Implicant) -> Cube:
 
 
 def _guard_problem(
-    primes: Sequence[Implicant], cubes: Sequence[Cube], pairs: Sequence[Cube], work: _Work
+    primes: Sequence[Implicant], cubes: Sequence[Cube], pairs: Sequence[Cube], work: _CubeBudget
 ) -> str | None:
     """Return why the cubes are not the prime implicants of a guard within D; None if they are.
 
@@ -125,7 +125,7 @@ def _consensus(one: Cube, other: Cube) -> Cube | None:
     return (one[0] | other[0]) & ~opposed, (one[1] | other[1]) & ~opposed
 
 
-def _intersect(one: Cube, other: Cube, pairs: Sequence[Cube], work: _Work) -> bool:
+def _intersect(one: Cube, other: Cube, pairs: Sequence[Cube], work: _CubeBudget) -> bool:
     """Whether some sample within D is in both cubes."""
     work.spend()
     if one[0] & other[1] or one[1] & other[0]:
@@ -135,7 +135,7 @@ def _intersect(one: Cube, other: Cube, pairs: Sequence[Cube], work: _Work) -> bo
     return not any(_lies_in(both, pair) for pair in pairs)
 
 
-def _covers_all(cubes: Sequence[Cube], work: _Work) -> bool:
+def _covers_all(cubes: Sequence[Cube], work: _CubeBudget) -> bool:
     """Whether every sample is in some cube; splits on the atom that occurs in most cubes."""
     work.spend(1 + len(cubes))
     if (0, 0) in cubes:

@@ -85,7 +85,7 @@ def _rabin(pairs: int) -> tuple[str, str]:
 
 
 def _body(fspa: Fspa) -> Iterator[str]:
-    labels, finite = _Labels(fspa), fspa.semantics == "finite"
+    labels, finite = _EdgeLabels(fspa), fspa.semantics == "finite"
     leaving: list[list[str]] = [[] for _ in fspa.states]
     for edge, marks in zip(fspa.edges, fspa.marks(), strict=True):
         sets = f" {{{' '.join(map(str, sorted(pair_marks(marks))))}}}" if marks else ""
@@ -95,7 +95,7 @@ def _body(fspa: Fspa) -> Iterator[str]:
         yield from leaving[state.id]
 
 
-class _Labels:
+class _EdgeLabels:
     """Guards as expressions over the numbers of atoms, true on exactly the letters that take the edge.
 
     They are built from the primes, as everything else that uses guards is: a guard's text is only

@@ -42,10 +42,10 @@ _ZERO: Final = Real(0.0)
 
 def state_statements(tables: MonitorTables, state: int, atoms: Sequence[str]) -> tuple[Statement, ...]:
     """Return the statements of a state; ``atoms`` are the variables of the atoms' values."""
-    return _State(tables, state, atoms).statements()
+    return _StateCode(tables, state, atoms).statements()
 
 
-class _State:
+class _StateCode:
     def __init__(self, tables: MonitorTables, state: int, atoms: Sequence[str]) -> None:
         self._tables, self._state, self._atoms = tables, state, atoms
         self._at_goal = tables.fspa.judge == "goal"

@@ -27,7 +27,7 @@ _SAVING_S = 20.0
 
 
 @record
-class _Options:
+class _Table1Options:
     """The options of the command."""
 
     folder: Path
@@ -76,7 +76,7 @@ def command(folder: Path, shipped: bool, minutes: float | None, workers: Any) ->
         busy = Diagnostic("TLT0931", title, help="wait for its end, or name another folder with --out")
         check_no_training(folder)
         with lock_folder(folder, busy, _ELSEWHERE):
-            options = _Options(folder, shipped, minutes, workers)
+            options = _Table1Options(folder, shipped, minutes, workers)
             try:
                 text = _table(options)
             except KeyboardInterrupt:
@@ -88,7 +88,7 @@ def command(folder: Path, shipped: bool, minutes: float | None, workers: Any) ->
     return report.status
 
 
-def _table(options: _Options) -> str:
+def _table(options: _Table1Options) -> str:
     """Return the table over the paper's number of episodes, and the table over all episodes."""
     from tltl_runtime.regression.table1.paper_table import LEVELS, MODELS, RUNS, VARIANTS, TableRow, markdown
     from tltl_runtime.regression.table1.table_cells import EPISODES, SEED, cell_episodes, figures
@@ -120,7 +120,7 @@ def _table(options: _Options) -> str:
     return "\n".join((*tables, footer))
 
 
-def _training_result(options: _Options, level: str, model: Model) -> TrainedModel | None:
+def _training_result(options: _Table1Options, level: str, model: Model) -> TrainedModel | None:
     """Return the result of a model's training; None for the expert.
 
     If the training is unfinished, it continues now.

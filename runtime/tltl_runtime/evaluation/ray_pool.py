@@ -41,7 +41,7 @@ class RayWorker:
     def __init__(self, ray: Any, setup: Any) -> None:
         self._ray, self._setup = ray, setup
         # No restarts: Ray would silently play the episode again that killed the actor.
-        self.actor = ray.remote(num_cpus=1, max_restarts=0)(_Actor).remote()
+        self.actor = ray.remote(num_cpus=1, max_restarts=0)(_EvaluationActor).remote()
 
     def play(self, task: EpisodeRequest) -> Future[PlayedEpisode]:
         """Start to play an episode; the future raises :class:`WorkerLostError` if the actor ends."""
@@ -66,7 +66,7 @@ class RayWorker:
             future.set_exception(WorkerLostError(lines[-1 if getattr(error, "actor_init_failed", False) else 0]))
 
 
-class _Actor:
+class _EvaluationActor:
     """An actor that makes its player in the first call of ``play``, where an error is reported.
 
     If the constructor of an actor fails, Ray reports only that it failed.

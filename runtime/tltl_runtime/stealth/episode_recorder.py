@@ -45,7 +45,7 @@ class RecordEpisode(EpisodeRecorder[Episode], RecordConstructorArgs):
         self._player = player
         self._folder = None if folder is None else writable_folder(Path(folder))
         self._names = tuple(signal.name for signal in self._judge.task.fspa.signals)
-        self._rows: _Rows | None = None
+        self._rows: _EpisodeRows | None = None
         self._over = False
 
     @property
@@ -58,7 +58,7 @@ class RecordEpisode(EpisodeRecorder[Episode], RecordConstructorArgs):
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
         """Begin a new episode and discard the previous one."""
         observation, info = self.env.reset(seed=seed, options=options)
-        self._rows = _Rows(self._game.level, self._game.seed, self._game.snapshot(), self._signals())
+        self._rows = _EpisodeRows(self._game.level, self._game.seed, self._game.snapshot(), self._signals())
         self._over = False
         return observation, info
 
@@ -86,7 +86,7 @@ class RecordEpisode(EpisodeRecorder[Episode], RecordConstructorArgs):
         return [float(sample[name]) for name in self._names]
 
 
-class _Rows:
+class _EpisodeRows:
     """The data of an episode that is still being played."""
 
     def __init__(self, level: StealthLevel, seed: int, snapshot: Snapshot, signals: list[float]) -> None:

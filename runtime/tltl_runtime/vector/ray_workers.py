@@ -120,7 +120,7 @@ class RayWorkers:
     def _start_actors(self, most: int) -> list[Any]:
         """Start ``most`` actors; return those that get a core, and end the others."""
         # Ray would restart a lost actor and continue silently, with its environments back at their beginning.
-        actors = [self._ray.remote(num_cpus=1, max_restarts=0)(_Actor).remote() for _ in range(most)]
+        actors = [self._ray.remote(num_cpus=1, max_restarts=0)(_EnvironmentActor).remote() for _ in range(most)]
         started: list[Any] = []
         try:
             started = [actors[index] for index in wait_for_actors(self._ray, actors, max(self._timeout, TO_START_S))]
@@ -141,7 +141,7 @@ class RayWorkers:
         return answer
 
 
-class _Actor:
+class _EnvironmentActor:
     """A share of the environments, somewhere in the cluster."""
 
     def begin(

@@ -10,7 +10,7 @@ from rich.console import Console
 
 from tests.runtime.training.reports import a_report
 from tests.runtime.training.runs import run_in
-from tltl_runtime.cli.support.training_picture import Picture
+from tltl_runtime.cli.support.training_picture import TrainingDisplay
 from tltl_runtime.training.exploration.search import SearchProgress
 from tltl_runtime.training.run.report import TrainingReport
 from tltlc.core.record import replace
@@ -21,7 +21,7 @@ SEARCHED = SearchProgress(steps=6400, replayed=3200, seconds=80.0, places=1200, 
 def _lines(folder: Path, columns: int, lines: int, report: TrainingReport | SearchProgress | None) -> list[str]:
     console = Console(width=columns, height=lines, file=StringIO(), force_terminal=True, color_system=None)
     run = run_in(folder, exploration__ways=10, stop__steps=12_000_000)
-    picture = Picture(run, console)
+    picture = TrainingDisplay(run, console)
     if isinstance(report, TrainingReport):
         picture.show_report(report)
     elif report is not None:

@@ -19,9 +19,9 @@ from tltl_runtime.stealth.env import make_env
 from tltl_runtime.training.exploration.replayed_starts import Episodes, EpisodeStart, ReplayedStartEnv
 from tltl_runtime.training.exploration.reverse_curriculum import ReverseCurriculum
 from tltl_runtime.training.exploration.search import (
-    Exploration,
     FailedEpisode,
     SearchProgress,
+    SearchSettings,
     SuccessfulEpisode,
     TrajectorySearch,
 )
@@ -46,14 +46,16 @@ def env() -> Iterator[WorkerVectorEnv]:
     vector_env.close()
 
 
-def run_search(env: WorkerVectorEnv, exploration: Exploration) -> tuple[list[SuccessfulEpisode], list[SearchProgress]]:
+def run_search(
+    env: WorkerVectorEnv, exploration: SearchSettings
+) -> tuple[list[SuccessfulEpisode], list[SearchProgress]]:
     search = TrajectorySearch(env, exploration, np.random.SeedSequence(7))
     reports = list(search.run())
     return search.demonstrations, reports
 
 
 def test_demonstrations_meet_the_spec_when_they_are_replayed(env: WorkerVectorEnv) -> None:
-    demonstrations, reports = run_search(env, Exploration(ways=3, steps=20_000, parts=4, imitation=0))
+    demonstrations, reports = run_search(env, SearchSettings(ways=3, steps=20_000, parts=4, imitation=0))
     assert len(demonstrations) >= 3
     assert reports[-1].lengths == tuple(sorted(len(demonstration.actions) for demonstration in demonstrations))
     assert reports[-1].places > 10
@@ -67,7 +69,7 @@ def test_demonstrations_meet_the_spec_when_they_are_replayed(env: WorkerVectorEn
 
 
 def test_a_given_player_plays_first(env: WorkerVectorEnv) -> None:
-    exploration = Exploration(ways=4, steps=20_000, parts=4, imitation=0)
+    exploration = SearchSettings(ways=4, steps=20_000, parts=4, imitation=0)
     demonstrations, reports = run_search(env, exploration)
     single_env = make_env("navigation", "v0", NEAR)
     ahead = []
@@ -109,7 +111,7 @@ def test_if_a_player_fails_the_search_continues_from_its_cells(
 
     draw = TrajectorySearch._draw
     monkeypatch.setattr(TrajectorySearch, "_draw", recorded_draw)
-    exploration = Exploration(ways=2, steps=20_000, parts=4, imitation=0)
+    exploration = SearchSettings(ways=2, steps=20_000, parts=4, imitation=0)
     search = TrajectorySearch(env, exploration, np.random.SeedSequence(7), player=walk)
     list(search.run())
     assert len(search.demonstrations) >= 2
@@ -120,7 +122,7 @@ def test_if_a_player_fails_the_search_continues_from_its_cells(
 
 
 def test_a_search_from_failures_finds_demonstrations_with_their_seeds(env: WorkerVectorEnv) -> None:
-    exploration = Exploration(ways=2, steps=20_000, parts=4, imitation=0)
+    exploration = SearchSettings(ways=2, steps=20_000, parts=4, imitation=0)
     # Failures are demonstrations without their last three actions, shortly before the switch.
     failures = [
         FailedEpisode(demonstration.seed, demonstration.actions[:-3], 0)
@@ -144,7 +146,7 @@ def test_a_search_from_failures_finds_demonstrations_with_their_seeds(env: Worke
 
 
 def test_any_number_of_workers_finds_the_same_demonstrations(env: WorkerVectorEnv) -> None:
-    exploration = Exploration(ways=2, steps=20_000, parts=4, imitation=0)
+    exploration = SearchSettings(ways=2, steps=20_000, parts=4, imitation=0)
     other = envs(2)
     assert run_search(env, exploration)[0] == run_search(other, exploration)[0]
     other.close()
@@ -152,7 +154,7 @@ def test_any_number_of_workers_finds_the_same_demonstrations(env: WorkerVectorEn
 
 def test_a_search_ends_at_its_limit() -> None:
     env = envs(1, FAR)
-    demonstrations, reports = run_search(env, Exploration(ways=1, steps=200, parts=4, imitation=0))
+    demonstrations, reports = run_search(env, SearchSettings(ways=1, steps=200, parts=4, imitation=0))
     env.close()
     assert not demonstrations
     assert reports[-1].steps == 200
@@ -242,7 +244,7 @@ def test_each_cell_is_counted_once(env: WorkerVectorEnv) -> None:
         return step_result
 
     env.step = recording_step  # type: ignore[method-assign]
-    demonstrations, reports = run_search(env, Exploration(ways=8, steps=20_000, parts=4, imitation=0))
+    demonstrations, reports = run_search(env, SearchSettings(ways=8, steps=20_000, parts=4, imitation=0))
     assert len(demonstrations) == 8
     assert len(visited) / 2 < reports[-1].places <= len(visited)
 

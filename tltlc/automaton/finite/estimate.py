@@ -32,7 +32,7 @@ _Table = dict[int, dict[int, tuple[int, int]]]
 """By letter and state: the state that the letter leads to, and 1 if the trace may end with it, else 0."""
 
 
-class _OutOfSteps(Exception):
+class _EstimateStopped(Exception):
     """Raised when the count has used up its steps."""
 
 
@@ -54,7 +54,7 @@ class Estimate:
             return False
         try:
             return self._exceeds(machines, conjunction, budget)
-        except _OutOfSteps:
+        except _EstimateStopped:
             return False
 
     def _exceeds(self, machines: Sequence[Machine], conjunction: bool, budget: int) -> bool:
@@ -80,7 +80,7 @@ class Estimate:
     def _spend(self, steps: int) -> None:
         self._remaining -= steps
         if self._remaining < 0:
-            raise _OutOfSteps
+            raise _EstimateStopped
 
     def _table(self, machine: Machine) -> _Table:
         """Return the moves of a machine, for the letters that ``exclusive`` allows."""

@@ -58,7 +58,7 @@ class Site(Protocol):
         """Return the response for a refused request."""
 
 
-class State(Enum):
+class ConnectionState(Enum):
     """The state of a connection.
 
     To make room, connections with the least value are closed first.
@@ -129,7 +129,7 @@ class Connection(asyncio.Protocol):
     """One connection: reads a request, writes the answer, and then reads the next request."""
 
     def __init__(self, site: Site, connections: OpenConnections) -> None:
-        self.state = State.IDLE
+        self.state = ConnectionState.IDLE
         self.since = 0.0
         self._site = site
         self._connections = connections
@@ -146,8 +146,8 @@ class Connection(asyncio.Protocol):
     @property
     def gives_way(self) -> bool:
         """Whether this connection may be closed to make room for a new one."""
-        is_sending = self.state is State.READING and self._head is not None
-        is_waiting = self.state is State.ANSWERING and not self._client_has_ended
+        is_sending = self.state is ConnectionState.READING and self._head is not None
+        is_waiting = self.state is ConnectionState.ANSWERING and not self._client_has_ended
         return not is_sending and not is_waiting
 
     # --- callbacks of asyncio -----------------------------------------------------------------
@@ -157,17 +157,17 @@ class Connection(asyncio.Protocol):
         self._transport = cast("asyncio.Transport", transport)
         # With this limit, asyncio calls `resume_writing` once everything is sent.
         self._transport.set_write_buffer_limits(high=0)
-        self._enter(State.IDLE)
+        self._enter(ConnectionState.IDLE)
         if not self._connections.add(self):
             self._refuse(HTTPStatus.SERVICE_UNAVAILABLE)
             self._close()
 
     def data_received(self, data: bytes) -> None:
         """Take received data; ignore it after the last answer."""
-        if self.state is State.LEAVING:
+        if self.state is ConnectionState.LEAVING:
             return
         self._buffer += data
-        if self.state in (State.IDLE, State.READING):
+        if self.state in (ConnectionState.IDLE, ConnectionState.READING):
             self._advance()
         elif len(self._buffer) > _MOST_BYTES:
             self.abort()
@@ -178,9 +178,9 @@ class Connection(asyncio.Protocol):
         Return whether the connection stays open for pending answers.
         """
         self._client_has_ended = True
-        if self.state is State.WRITING:
+        if self.state is ConnectionState.WRITING:
             return True
-        if self.state is State.ANSWERING:
+        if self.state is ConnectionState.ANSWERING:
             self._probe_client()
             return True
         self._end()
@@ -188,7 +188,7 @@ class Connection(asyncio.Protocol):
 
     def resume_writing(self) -> None:
         """Continue once everything is sent."""
-        if self.state is State.WRITING:
+        if self.state is ConnectionState.WRITING:
             self._on_sent()
 
     def connection_lost(self, exc: Exception | None) -> None:
@@ -208,7 +208,7 @@ class Connection(asyncio.Protocol):
     def _close(self) -> None:
         """Close the connection after the written data is sent."""
         self._hung_up.set()
-        self._enter(State.LEAVING)
+        self._enter(ConnectionState.LEAVING)
         self._transport.close()
 
     def _end(self) -> None:
@@ -216,7 +216,7 @@ class Connection(asyncio.Protocol):
 
         Refuse an incomplete request, which can never be completed.
         """
-        if self.state is State.READING:
+        if self.state is ConnectionState.READING:
             self._refuse(HTTPStatus.BAD_REQUEST)
         self._close()
 
@@ -225,19 +225,19 @@ class Connection(asyncio.Protocol):
 
         If the client has hung up, sending one fails, and asyncio closes the connection.
         """
-        if self.state is not State.ANSWERING or self._is_http_1_0:
+        if self.state is not ConnectionState.ANSWERING or self._is_http_1_0:
             return
         self._transport.write(_INTERIM)
         self._timer = asyncio.get_running_loop().call_later(_INTERIM_S, self._probe_client)
 
-    def _enter(self, state: State) -> None:
+    def _enter(self, state: ConnectionState) -> None:
         """Change the state, and start the timer for its time limit."""
         limits = self._connections.limits
         seconds = {
-            State.IDLE: limits.idle_s,
-            State.READING: limits.request_s,
-            State.WRITING: limits.write_s,
-            State.LEAVING: limits.linger_s,
+            ConnectionState.IDLE: limits.idle_s,
+            ConnectionState.READING: limits.request_s,
+            ConnectionState.WRITING: limits.write_s,
+            ConnectionState.LEAVING: limits.linger_s,
         }.get(state)
         loop = asyncio.get_running_loop()
         self.state, self.since = state, loop.time()
@@ -246,7 +246,7 @@ class Connection(asyncio.Protocol):
         self._timer = None if seconds is None else loop.call_later(seconds, self._on_timeout)
 
     def _on_timeout(self) -> None:
-        if self.state is State.READING:
+        if self.state is ConnectionState.READING:
             self._refuse(HTTPStatus.REQUEST_TIMEOUT)
         else:
             self.abort()
@@ -255,8 +255,8 @@ class Connection(asyncio.Protocol):
         """Read as much of a request as has arrived."""
         if not self._buffer:
             return
-        if self.state is State.IDLE:
-            self._enter(State.READING)
+        if self.state is ConnectionState.IDLE:
+            self._enter(ConnectionState.READING)
         try:
             if self._head is None and not self._read_head():
                 return
@@ -270,7 +270,7 @@ class Connection(asyncio.Protocol):
         head, body, self._head = self._head, bytes(self._buffer[:length]), None
         del self._buffer[:length]
         self._is_http_1_0 = head.is_http_1_0
-        self._enter(State.ANSWERING)
+        self._enter(ConnectionState.ANSWERING)
         if self._client_has_ended:
             self._probe_client()
         self._task = asyncio.get_running_loop().create_task(self._answer(head, body))
@@ -318,7 +318,7 @@ class Connection(asyncio.Protocol):
         }
         first = f"HTTP/1.1 {response.status.value} {response.status.phrase}"
         head = "\r\n".join([first, *(f"{name}: {value}" for name, value in headers.items()), "", ""])
-        self._enter(State.WRITING)
+        self._enter(ConnectionState.WRITING)
         self._transport.write(head.encode("latin-1") + (response.body if with_body else b""))
         if self._transport.get_write_buffer_size() == 0:
             self._on_sent()
@@ -331,15 +331,15 @@ class Connection(asyncio.Protocol):
         if self._closes:
             self._leave()
         else:
-            self._enter(State.IDLE)
+            self._enter(ConnectionState.IDLE)
             self._advance()
-            if self._client_has_ended and self.state in (State.IDLE, State.READING):
+            if self._client_has_ended and self.state in (ConnectionState.IDLE, ConnectionState.READING):
                 self._end()
 
     def _leave(self) -> None:
         if self._client_has_ended:
             self._close()
             return
-        self._enter(State.LEAVING)
+        self._enter(ConnectionState.LEAVING)
         if self._transport.can_write_eof():
             self._transport.write_eof()

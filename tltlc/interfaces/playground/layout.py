@@ -63,10 +63,10 @@ def layout(boxes: Mapping[int, StateBox], texts: Mapping[Ends, Size], corner: Po
     edges to the row below get no places, because they stand over and under the boxes. No edge may
     lead from the row below to another box.
     """
-    return _Places(boxes, texts, corner).layout()
+    return _LayoutPass(boxes, texts, corner).layout()
 
 
-class _Places:
+class _LayoutPass:
     """Computes columns from left to right, levels from top to bottom, then the curves of edges."""
 
     def __init__(self, boxes: Mapping[int, StateBox], texts: Mapping[Ends, Size], corner: Point) -> None:

@@ -46,10 +46,10 @@ def picture(fspa: Fspa, notation: Notation = "english") -> tuple[str | None, str
     drawing = folded_drawing(fspa)
     if len(drawing.states) > MOST_STATES or len(drawing.edges) > MOST_EDGES:
         return None, f"The automaton has {len(fspa.states)} states and {len(fspa.edges)} edges, too many for a picture."
-    return _Picture(fspa, drawing, notation).svg(), " ".join(notes(fspa, drawing))
+    return _PictureText(fspa, drawing, notation).svg(), " ".join(notes(fspa, drawing))
 
 
-class _Picture:
+class _PictureText:
     """Texts and places of one picture."""
 
     def __init__(self, fspa: Fspa, drawing: Drawing, notation: Notation) -> None:

@@ -27,14 +27,14 @@ _Clause = tuple[str, int]
 """The text of a clause, and its rank."""
 
 
-class _Context(NamedTuple):
+class _SentenceContext(NamedTuple):
     """How many levels of clauses may still nest (``depth``), and whether traces never end (``endless``)."""
 
     depth: int
     endless: bool
 
-    def deeper(self) -> _Context:
-        return _Context(self.depth - 1, self.endless)
+    def deeper(self) -> _SentenceContext:
+        return _SentenceContext(self.depth - 1, self.endless)
 
 
 def english_text(formula: Formula, *, endless: bool = False) -> str:
@@ -53,7 +53,7 @@ def english_text(formula: Formula, *, endless: bool = False) -> str:
         return "Nothing remains to be done."
     if formula is FALSE:
         return "The spec is violated."
-    text, _ = _clause(formula, "now", _Context(_DEEPEST, endless))
+    text, _ = _clause(formula, "now", _SentenceContext(_DEEPEST, endless))
     return f"{text[0].upper()}{text[1:]}."
 
 
@@ -62,7 +62,7 @@ def clause_text(formula: Formula, *, endless: bool = False) -> str:
 
     ``endless`` has the same meaning as in :func:`english_text`.
     """
-    return _clause(formula, "now", _Context(_DEEPEST, endless))[0]
+    return _clause(formula, "now", _SentenceContext(_DEEPEST, endless))[0]
 
 
 def invariant_text(invariant: Formula, *, endless: bool = False) -> str:
@@ -78,7 +78,7 @@ def recurring_text(recurring: Formula) -> str:
     if reach.op != "F":
         return clause_text(recurring, endless=True)
     (goal,) = reach.args
-    return f"reach {object_phrase(goal)}" if is_state(goal) else _last_clause(body, _Context(_DEEPEST, True))
+    return f"reach {object_phrase(goal)}" if is_state(goal) else _last_clause(body, _SentenceContext(_DEEPEST, True))
 
 
 def goal_texts(reach: Formula, *, endless: bool = False) -> tuple[tuple[str, str], ...]:
@@ -86,7 +86,7 @@ def goal_texts(reach: Formula, *, endless: bool = False) -> tuple[tuple[str, str
 
     A link is ``then`` or ``then or at the same time``; the link of the first goal is empty.
     """
-    return tuple(_linked_goals(reach.args[0], _Context(_DEEPEST, endless)))
+    return tuple(_linked_goals(reach.args[0], _SentenceContext(_DEEPEST, endless)))
 
 
 def without_constants(formula: Formula) -> Formula:
@@ -97,7 +97,7 @@ def without_constants(formula: Formula) -> Formula:
     return simplify(formula) if has_constants else formula
 
 
-def _clause(node: Formula, when: str, context: _Context) -> _Clause:
+def _clause(node: Formula, when: str, context: _SentenceContext) -> _Clause:
     """Return the instruction that makes ``node`` hold at the moment ``when``."""
     if is_state(node):
         return f"{imperative(node, 'have', 'avoid')} {when}", _rank_of_state(node)
@@ -154,7 +154,7 @@ def _join_clauses(clauses: Sequence[_Clause]) -> _Clause:
     return f"{separator.join(texts[:-1])}{separator}and {texts[-1]}", _SCOPED
 
 
-def _reach_clause(node: Formula, when: str, context: _Context) -> _Clause:
+def _reach_clause(node: Formula, when: str, context: _SentenceContext) -> _Clause:
     """Return the clause of ``F``: a goal, or a sequence of goals."""
     (body,) = node.args
     if _without_negation(body).op == "G":
@@ -164,12 +164,12 @@ def _reach_clause(node: Formula, when: str, context: _Context) -> _Clause:
     return f"reach {_goals(body, context)}", _PLAIN if is_literal(body) else _LIST
 
 
-def _goals(body: Formula, context: _Context) -> str:
+def _goals(body: Formula, context: _SentenceContext) -> str:
     """Return the goals of ``F body``, one after another."""
     return "".join(f", {link} {goal}" if link else goal for link, goal in _linked_goals(body, context))
 
 
-def _linked_goals(body: Formula, context: _Context) -> Iterator[tuple[str, str]]:
+def _linked_goals(body: Formula, context: _SentenceContext) -> Iterator[tuple[str, str]]:
     """Yield the goals of ``F body`` in order, each with the word that links it to the previous one."""
     link = ""
     while True:
@@ -197,7 +197,7 @@ def _next_goal(body: Formula) -> tuple[str, Formula | None]:
     return ("then or at the same time", rest) if rest.op == "F" else ("", None)
 
 
-def _goal(body: Formula, context: _Context) -> str:
+def _goal(body: Formula, context: _SentenceContext) -> str:
     """Return the last goal of a sequence.
 
     It is a choice, or a state together with what must hold from that step on.
@@ -218,7 +218,7 @@ def _goal(body: Formula, context: _Context) -> str:
     return f"a {_step_noun(body, context)}"
 
 
-def _throughout_clause(body: Formula, context: _Context) -> _Clause:
+def _throughout_clause(body: Formula, context: _SentenceContext) -> _Clause:
     """Return the clause of ``G``: what to keep, what to avoid, or what to do whenever something holds."""
     if _has_parts(body):
         return _join_clauses([_throughout_clause(part, context) for part in _parts_throughout(body)])
@@ -272,7 +272,7 @@ def _implication(body: Formula) -> tuple[Formula | None, Formula | None]:
     return None, None
 
 
-def _until_clause(node: Formula, context: _Context) -> _Clause:
+def _until_clause(node: Formula, context: _SentenceContext) -> _Clause:
     """Return the clause of ``U W R M``."""
     left, right = node.args
     if node.op in ("U", "M"):
@@ -288,7 +288,7 @@ def _until_clause(node: Formula, context: _Context) -> _Clause:
     return f"{keep} {until} {_step_noun(stop, context)}, or throughout if there is none", _CLAUSE
 
 
-def _next_clause(node: Formula, context: _Context) -> _Clause:
+def _next_clause(node: Formula, context: _SentenceContext) -> _Clause:
     """Return the clause of ``X`` and ``N``, single or several in a row."""
     ops = ("X", "N") if context.endless else (node.op,)
     count, body = 0, node
@@ -306,7 +306,7 @@ def _next_clause(node: Formula, context: _Context) -> _Clause:
     return f"{moment}, {_last_clause(body, context)}", _CLAUSE
 
 
-def _bounded_clause(operator: Bounded, context: _Context) -> _Clause:
+def _bounded_clause(operator: Bounded, context: _SentenceContext) -> _Clause:
     """Return the clause of a bounded operator, ``F[0,n] p`` or ``G[0,n] p``."""
     steps, body = operator.steps, operator.body
     if operator.op == "F":
@@ -319,7 +319,7 @@ def _bounded_clause(operator: Bounded, context: _Context) -> _Clause:
     return f"at each of {steps + 1} steps from here on, {_last_clause(body, context)}", _CLAUSE
 
 
-def _step_noun(node: Formula, context: _Context) -> str:
+def _step_noun(node: Formula, context: _SentenceContext) -> str:
     """Return a noun for a moment at which ``node`` holds."""
     if _is_about_end(node):
         return f"step that is {'not ' if node.op == 'X' else ''}the last"
@@ -330,13 +330,13 @@ def _step_noun(node: Formula, context: _Context) -> str:
     )
 
 
-def _inner_clause(node: Formula, context: _Context, when: str = "at that step") -> str:
+def _inner_clause(node: Formula, context: _SentenceContext, when: str = "at that step") -> str:
     """Return the clause as part of another one, in brackets unless it is plain."""
     text, rank = _clause(node, when, context.deeper())
     return text if rank == _PLAIN else f"({text})"
 
 
-def _last_clause(node: Formula, context: _Context, when: str = "at that step") -> str:
+def _last_clause(node: Formula, context: _SentenceContext, when: str = "at that step") -> str:
     """Return the clause as the last part of another one, in brackets if it is a list."""
     text, rank = _clause(node, when, context.deeper())
     return f"({text})" if rank == _SCOPED else text

@@ -17,7 +17,7 @@ _AMOUNT: Final = re.compile(r"(<=|>=|[<>≤≥])\s*([0-9.eE+-]+)\s*(\S*)\Z")
 """Matches the end of ``expect progress >= 50 %``."""
 
 
-class Declarations:
+class DeclarationPrinter:
     """Writes the declarations of a source on a page. No line begins at an offset in ``joints``."""
 
     def __init__(self, source: SourceFile, page: Page, one_line: OneLinePrinter, joints: Set[int]) -> None:

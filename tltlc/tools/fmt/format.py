@@ -9,7 +9,7 @@ from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.grammar import tree
 from tltlc.grammar.lexer import MAX_TOKENS
 from tltlc.grammar.parser import is_too_large, parse
-from tltlc.tools.fmt.declarations import Declarations
+from tltlc.tools.fmt.declarations import DeclarationPrinter
 from tltlc.tools.fmt.flat import OneLinePrinter
 from tltlc.tools.fmt.layout_constraints import NO_CONSTRAINTS, LayoutConstraints, required_constraints
 from tltlc.tools.fmt.page import Page
@@ -76,7 +76,7 @@ def _check_size(name: str, text: str) -> None:
 
 def _lay_out(module: tree.Module, style: Style, constraints: LayoutConstraints) -> str:
     page = Page(module.source, module.comments)
-    declarations = Declarations(module.source, page, OneLinePrinter(module.source, style), constraints.joints)
+    declarations = DeclarationPrinter(module.source, page, OneLinePrinter(module.source, style), constraints.joints)
     for declaration in module.declarations:
         start = declaration.span.start
         page.put_comments(start, 0, gaps=True)

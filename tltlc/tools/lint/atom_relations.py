@@ -27,7 +27,7 @@ searched before a proof is tried.
 
 
 @record
-class _Declarations:
+class _DeclaredSignals:
     signals: tuple[Signal, ...]
     params: tuple[Param, ...]
 
@@ -52,7 +52,7 @@ def is_impossible(spec: SpecView) -> bool:
 
 def _impossible_pairs(spec: SpecView, names: Collection[str]) -> Iterator[Formula]:
     """Yield conjunctions of two atoms, or negations, that are proved never to hold."""
-    declared = _Declarations(spec.fspa.signals, spec.fspa.params)
+    declared = _DeclaredSignals(spec.fspa.signals, spec.fspa.params)
     simple = [candidate for candidate in spec.fspa.atoms if candidate.name in names and _is_simple(candidate)]
     pairs = [pair for pair in combinations(simple, 2) if _signals(pair[0]) & _signals(pair[1])]
     for pair in pairs[:_MOST_PAIRS]:
@@ -63,7 +63,7 @@ def _impossible_pairs(spec: SpecView, names: Collection[str]) -> Iterator[Formul
 
 
 @lru_cache(maxsize=1024)
-def _never_hold_together(pair: tuple[Atom, Atom], signs: tuple[bool, ...], declared: _Declarations) -> bool:
+def _never_hold_together(pair: tuple[Atom, Atom], signs: tuple[bool, ...], declared: _DeclaredSignals) -> bool:
     """Whether two atoms provably never have these truth values at one step."""
     conditions = tuple(
         Condition(">" if holds else "<=", (member.expression, Const(0.0)))

@@ -21,7 +21,7 @@ from tltlc.resolve.spec import Atom, Param, Signal
 Sign = Literal["positive", "not positive", "negative", "not negative"]
 
 
-class Declarations(Protocol):
+class DeclaredNames(Protocol):
     """Anything that declares signals and params, for example an automaton."""
 
     @property
@@ -45,7 +45,7 @@ _RANGES: Final[dict[Sign, tuple[float, float]]] = {
 }
 
 
-def can_be(sign: Sign, atom: Atom, declarations: Declarations, tries: int = _MOST_POINTS) -> bool:
+def can_be(sign: Sign, atom: Atom, declarations: DeclaredNames, tries: int = _MOST_POINTS) -> bool:
     """Whether a search finds values of signals and params for which an atom has this sign.
 
     The search tries at most ``tries`` points. It is limited to the work of a check of a predicate.
@@ -63,7 +63,7 @@ def can_be(sign: Sign, atom: Atom, declarations: Declarations, tries: int = _MOS
     return False
 
 
-def is_always(sign: Sign, atom: Atom, declarations: Declarations) -> bool:
+def is_always(sign: Sign, atom: Atom, declarations: DeclaredNames) -> bool:
     """Whether an atom provably has this sign for all values of its signals and params.
 
     False if the proof fails or takes too much work.
@@ -78,7 +78,7 @@ def is_always(sign: Sign, atom: Atom, declarations: Declarations) -> bool:
         return False
 
 
-def _by_name(declarations: Declarations) -> tuple[dict[str, Signal], dict[str, Param]]:
+def _by_name(declarations: DeclaredNames) -> tuple[dict[str, Signal], dict[str, Param]]:
     return (
         {signal.name: signal for signal in declarations.signals},
         {param.name: param for param in declarations.params},

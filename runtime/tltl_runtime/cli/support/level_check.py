@@ -41,7 +41,7 @@ def command(
     """Hold levels against compiled specs, or where there are none against the spec that each is made for."""
     if plan is not None and plan.suffix.lower() != ".png":
         raise click.UsageError(f"--plan writes a .png, not `{plan}`", click.get_current_context())
-    check = _Check(inputs, settings, report, sensors)
+    check = _LevelCheck(inputs, settings, report, sensors)
     checked: list[tuple[StealthLevel, Reach]] = []
     for path, variant in map(split_level, levels):
         for name in level_names() if path == "all" else (path,):
@@ -53,7 +53,7 @@ def command(
         _draw(plan, checked)
 
 
-class _Check:
+class _LevelCheck:
     """Checks levels, and reports each message only once, even if it applies to several variants."""
 
     def __init__(

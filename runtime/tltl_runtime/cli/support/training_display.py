@@ -11,7 +11,7 @@ from typing import Final, Protocol
 from rich.console import Console
 from rich.live import Live
 
-from tltl_runtime.cli.support.training_picture import Picture
+from tltl_runtime.cli.support.training_picture import TrainingDisplay
 from tltl_runtime.cli.support.training_text import (
     SEARCH_IS_LOST,
     SEARCHED_AGAIN,
@@ -58,7 +58,7 @@ def display(run: TrainingRun, again: str) -> Iterator[Display]:
     if not console.is_terminal or console.is_dumb_terminal:
         yield _LineDisplay(run, again)
         return
-    picture = Picture(run, console)
+    picture = TrainingDisplay(run, console)
     with Live(get_renderable=picture.picture, console=console, refresh_per_second=2) as live:
         live.refresh()
         yield picture

@@ -43,7 +43,7 @@ _BAR: Final = 24, 10
 """The width of a bar, in characters: in a picture of full width, and in a narrower one."""
 
 
-class Picture:
+class TrainingDisplay:
     """Draws the last report.  Between reports, the times go on."""
 
     def __init__(self, run: TrainingRun, console: Console) -> None:

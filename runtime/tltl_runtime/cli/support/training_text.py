@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 from tltl_runtime.support.number_text import duration, number, share
-from tltl_runtime.training.exploration.search import Exploration, SearchProgress
+from tltl_runtime.training.exploration.search import SearchProgress, SearchSettings
 from tltl_runtime.training.imitation.demonstrations import Attempt
 from tltl_runtime.training.imitation.imitation_data import ImitationSummary
 from tltl_runtime.training.run.report import Confirmation, TrainingReport
@@ -58,7 +58,7 @@ def search_line(progress: SearchProgress) -> str:
     return f"searching: {spent}, {progress.places:,} places, {ways}"
 
 
-def search_end(exploration: Exploration) -> str:
+def search_end(exploration: SearchSettings) -> str:
     """Say in a sentence when the search ends."""
     ways = f"{exploration.ways} way{'s' * (exploration.ways != 1)}"
     return f"The search ends when {ways} are found, at the latest after {exploration.steps:,} steps."

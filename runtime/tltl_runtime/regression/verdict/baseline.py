@@ -99,7 +99,7 @@ def read_baseline(path: Path) -> tuple[Reference, ...]:
         raise _REFUSALS.unreadable_error(name, "it is something else")
     _REFUSALS.check_version(name, document.get("version"), VERSION)
     try:
-        parsed = from_json(_Document, document, "baseline")
+        parsed = from_json(_BaselineDocument, document, "baseline")
     except (RecordJsonError, RecursionError) as error:
         raise _REFUSALS.broken_error(name, str(error)) from None
     texts = {sha256: "\n".join(lines) for sha256, lines in parsed.texts.items()}
@@ -253,7 +253,7 @@ class _StoredReference:
 
 
 @record
-class _Document:
+class _BaselineDocument:
     format: str
     version: int
     references: tuple[_StoredReference, ...]

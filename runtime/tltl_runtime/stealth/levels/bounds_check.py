@@ -7,7 +7,7 @@ from typing import Final
 
 from tltl_runtime.stealth.enemies.grid import RADIUS
 from tltl_runtime.stealth.level import Box, Point, StealthLevel
-from tltl_runtime.stealth.levels.parts import Places
+from tltl_runtime.stealth.levels.parts import NamedParts
 from tltl_runtime.stealth.world.geometry import box_around
 from tltl_runtime.stealth.world.mover_path import MoverPath
 from tltl_runtime.stealth.world.player import PlayerKind
@@ -19,7 +19,7 @@ _EPSILON: Final = 1e-6
 _Boxes = list[tuple[str, Box]]
 
 
-def check_room(level: StealthLevel, places: Places, start: Label) -> list[Diagnostic]:
+def check_room(level: StealthLevel, places: NamedParts, start: Label) -> list[Diagnostic]:
     """Return TLT0806 for things outside the bounds, and TLT0807 for things inside an obstacle.
 
     ``start`` is the label of the player's start.
@@ -37,7 +37,7 @@ def check_room(level: StealthLevel, places: Places, start: Label) -> list[Diagno
 
 
 def _check_bounds(
-    level: StealthLevel, boxes: _Boxes, goals: list[tuple[str, Point]], places: Places, start: Label
+    level: StealthLevel, boxes: _Boxes, goals: list[tuple[str, Point]], places: NamedParts, start: Label
 ) -> Iterator[Diagnostic]:
     """Yield TLT0806 for each thing that is outside the bounds."""
     moving = [(mover.name, Box(*box_around(point, mover.size))) for mover in level.movers for point in mover.path]
@@ -55,7 +55,7 @@ def _check_bounds(
         yield Diagnostic("TLT0806", "the start is outside the level's bounds", (start,), help_)
 
 
-def _check_start(level: StealthLevel, boxes: _Boxes, places: Places, start: Label) -> Iterator[Diagnostic]:
+def _check_start(level: StealthLevel, boxes: _Boxes, places: NamedParts, start: Label) -> Iterator[Diagnostic]:
     """Yield TLT0807 for each thing that overlaps the player's start, also movers at their initial positions."""
     begins = [
         (mover.name, Box(*box_around(MoverPath(mover).position_at(mover.offset), mover.size))) for mover in level.movers
@@ -66,7 +66,7 @@ def _check_start(level: StealthLevel, boxes: _Boxes, places: Places, start: Labe
             yield Diagnostic("TLT0807", f"the start is inside `{name}`", (start, *places.position_labels(name)), help_)
 
 
-def _check_goals(goals: list[tuple[str, Point]], solids: _Boxes, places: Places) -> Iterator[Diagnostic]:
+def _check_goals(goals: list[tuple[str, Point]], solids: _Boxes, places: NamedParts) -> Iterator[Diagnostic]:
     """Yield TLT0807 for each goal that is inside a solid; it names the first such solid."""
     for goal, point in goals:
         if name := _first_overlap(_body_box(point, 0.01, 0.1), solids):
@@ -74,7 +74,7 @@ def _check_goals(goals: list[tuple[str, Point]], solids: _Boxes, places: Places)
             yield Diagnostic("TLT0807", title, places.position_labels(goal, name), "move one of them")
 
 
-def _check_routes(level: StealthLevel, solids: _Boxes, places: Places) -> Iterator[Diagnostic]:
+def _check_routes(level: StealthLevel, solids: _Boxes, places: NamedParts) -> Iterator[Diagnostic]:
     """Yield TLT0807 for each point of a route that is blocked; it names the first solid there."""
     for enemy in level.enemies:
         for point in enemy.route:

@@ -7,13 +7,13 @@ from collections import Counter
 from collections.abc import Iterable
 
 from tltl_runtime.stealth.level import StealthLevel, entity_names
-from tltl_runtime.stealth.levels.parts import CELL_TYPES, Places
+from tltl_runtime.stealth.levels.parts import CELL_TYPES, NamedParts
 from tltl_runtime.stealth.signals import readers
 from tltl_runtime.support.suggestion import MOST_SUGGESTIONS, suggestion
 from tltlc.api import Diagnostic, SourceFile, replace
 
 
-def check_names(names: Iterable[str], places: Places) -> list[Diagnostic]:
+def check_names(names: Iterable[str], places: NamedParts) -> list[Diagnostic]:
     """Return TLT0804 for each name that a spec could not declare as an entity."""
     from tltlc.api import syntax
 
@@ -30,7 +30,7 @@ def check_names(names: Iterable[str], places: Places) -> list[Diagnostic]:
     return diagnostics
 
 
-def check_references(level: StealthLevel, places: Places) -> list[Diagnostic]:
+def check_references(level: StealthLevel, places: NamedParts) -> list[Diagnostic]:
     """Return TLT0805 for names that refer to nothing, and for barriers that nothing or two things open."""
     # Leave out the aliases: their targets are among the names to check.
     signals = readers(replace(level, signals=()))

@@ -127,7 +127,7 @@ class _Loading:
         self.log: list[Diagnostic] = []
         self.files: list[tuple[str, str]] = []
         self.changes: list[str] = []
-        self.places = parts.Places({}, {}, [])
+        self.places = parts.NamedParts({}, {}, [])
         self.root = self._read(path, path.name)
         self.table = CheckedTable(self.root, f"the level `{path.stem}`", self.log)
         self.variants = self._variants()

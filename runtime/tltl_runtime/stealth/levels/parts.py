@@ -46,7 +46,7 @@ _VARIABLES: Final = ("health", "stamina", "crouching", "grounded", "visible", "s
 
 
 @record
-class Places:
+class NamedParts:
     """Labels of names, positions and references in the level's files, for later checks."""
 
     names: dict[str, Label]
@@ -79,7 +79,7 @@ class Places:
         self.references.extend((kind, name, table.label_of(key)) for name in names)
 
 
-def solids(table: CheckedTable, places: Places, shift: Point = (0.0, 0.0, 0.0), prefix: str = "") -> list[Solid]:
+def solids(table: CheckedTable, places: NamedParts, shift: Point = (0.0, 0.0, 0.0), prefix: str = "") -> list[Solid]:
     """Read the walls, low obstacles, platforms and stairs of a level or a part."""
     solids = []
     for kind in _SOLIDS:
@@ -133,7 +133,7 @@ def _stairs(table: CheckedTable, name: str, shift: Point) -> list[Solid]:
     return boxes
 
 
-def movers(table: CheckedTable, places: Places, shift: Point = (0.0, 0.0, 0.0), prefix: str = "") -> list[Mover]:
+def movers(table: CheckedTable, places: NamedParts, shift: Point = (0.0, 0.0, 0.0), prefix: str = "") -> list[Mover]:
     """Read the movers of a level or a part; in files, a path is that of the middle of the base."""
     movers = []
     for item in table.tables("mover"):
@@ -149,7 +149,7 @@ def movers(table: CheckedTable, places: Places, shift: Point = (0.0, 0.0, 0.0), 
     return movers
 
 
-def switches(table: CheckedTable, places: Places) -> list[Switch]:
+def switches(table: CheckedTable, places: NamedParts) -> list[Switch]:
     """Read the switches of a level."""
     switches = []
     for item in table.tables("switch"):
@@ -160,7 +160,7 @@ def switches(table: CheckedTable, places: Places) -> list[Switch]:
     return switches
 
 
-def barriers(table: CheckedTable, places: Places) -> list[Barrier]:
+def barriers(table: CheckedTable, places: NamedParts) -> list[Barrier]:
     """Read the barriers and lasers of a level."""
     barriers = []
     for kind, key in (("solid", "barrier"), ("laser", "laser")):
@@ -174,7 +174,7 @@ def barriers(table: CheckedTable, places: Places) -> list[Barrier]:
     return barriers
 
 
-def unlocks(table: CheckedTable, places: Places) -> list[Unlock]:
+def unlocks(table: CheckedTable, places: NamedParts) -> list[Unlock]:
     """Read the random unlocks of a level."""
     unlocks = []
     for item in table.tables("unlock"):
@@ -190,7 +190,7 @@ def unlocks(table: CheckedTable, places: Places) -> list[Unlock]:
     return unlocks
 
 
-def exits(table: CheckedTable, places: Places) -> list[Exit]:
+def exits(table: CheckedTable, places: NamedParts) -> list[Exit]:
     """Read the exits of a level."""
     exits = []
     for item in table.tables("exit"):
@@ -201,7 +201,7 @@ def exits(table: CheckedTable, places: Places) -> list[Exit]:
     return exits
 
 
-def enemies(table: CheckedTable, kinds: dict[str, EnemyKind], places: Places) -> list[Enemy]:
+def enemies(table: CheckedTable, kinds: dict[str, EnemyKind], places: NamedParts) -> list[Enemy]:
     """Read the enemies of a level; ``kinds`` are the valid enemy kinds, by asset name."""
     enemies = []
     for item in table.tables("enemy"):
@@ -250,7 +250,7 @@ def start(table: CheckedTable) -> Start:
     return start
 
 
-def sensors(table: CheckedTable | None, entities: tuple[str, ...], places: Places) -> Sensors:
+def sensors(table: CheckedTable | None, entities: tuple[str, ...], places: NamedParts) -> Sensors:
     """Read the agent's sensors; by default all ``entities``, ``_VARIABLES`` and no map."""
     if table is None:
         return Sensors(entities, _VARIABLES, None)

@@ -11,7 +11,7 @@ from tltl_runtime.stealth.enemies.grid import grid_of
 from tltl_runtime.stealth.enemies.segments import Corners, is_blocked
 from tltl_runtime.stealth.level import Enemy, Mover, Point, StealthLevel
 from tltl_runtime.stealth.levels.bounds_check import point_text
-from tltl_runtime.stealth.levels.parts import Places
+from tltl_runtime.stealth.levels.parts import NamedParts
 from tltlc.api import Diagnostic
 
 _EPSILON: Final = 1e-6
@@ -19,7 +19,7 @@ _MOST_WARNINGS: Final = 10
 """The most warnings about one mover or enemy."""
 
 
-def check_paths(level: StealthLevel, places: Places) -> tuple[Diagnostic, ...]:
+def check_paths(level: StealthLevel, places: NamedParts) -> tuple[Diagnostic, ...]:
     """Return warnings about movers and enemies (TLT0809).
 
     There is a warning if two neighbouring points of a mover's path are equal, or if the mover passes
@@ -35,7 +35,7 @@ def check_paths(level: StealthLevel, places: Places) -> tuple[Diagnostic, ...]:
     return tuple(warnings)
 
 
-def _mover_warnings(mover: Mover, level: StealthLevel, places: Places) -> Iterator[Diagnostic]:
+def _mover_warnings(mover: Mover, level: StealthLevel, places: NamedParts) -> Iterator[Diagnostic]:
     stops = [*mover.path, mover.path[0]] if mover.closed else mover.path
     if any(dist(start, end) < _EPSILON for start, end in pairwise(stops)):
         title = f"two neighbouring points in the path of `{mover.name}` are the same"
@@ -52,7 +52,7 @@ def _mover_warnings(mover: Mover, level: StealthLevel, places: Places) -> Iterat
             yield _warning(f"`{mover.name}` runs into `{solid.name}`", places, mover.name, solid.name, help_=help_)
 
 
-def _enemy_warnings(enemy: Enemy, level: StealthLevel, places: Places) -> Iterator[Diagnostic]:
+def _enemy_warnings(enemy: Enemy, level: StealthLevel, places: NamedParts) -> Iterator[Diagnostic]:
     distance = max(0.0, dist(enemy.route[0], level.start.position) - level.start.spread)
     if distance <= enemy.kind.attack_range:
         title = f"`{enemy.name}` begins where it can hit the player at once, {distance:.2g} m from the start"
@@ -76,5 +76,5 @@ def _can_walk(level: StealthLevel, start: Point, end: Point, *, shut: bool) -> b
     return stands and floor.area(start[:2]) == floor.area(end[:2])
 
 
-def _warning(title: str, places: Places, *names: str, help_: str) -> Diagnostic:
+def _warning(title: str, places: NamedParts, *names: str, help_: str) -> Diagnostic:
     return Diagnostic("TLT0809", title, places.position_labels(*names), help_, "warning")

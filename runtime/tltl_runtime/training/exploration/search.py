@@ -50,7 +50,7 @@ Player = Callable[[Mapping[str, NDArray[Any]]], NDArray[np.int64]]
 
 
 @record
-class Exploration:
+class SearchSettings:
     """The settings of the search before the training, and of how its demonstrations are used.
 
     The search ends when ``ways`` episodes with different seeds have met the spec (0: no search), or
@@ -144,7 +144,7 @@ class TrajectorySearch:
     def __init__(
         self,
         env: WorkerVectorEnv,
-        exploration: Exploration,
+        exploration: SearchSettings,
         seed: np.random.SeedSequence,
         failures: Sequence[FailedEpisode] = (),
         player: Player | None = None,

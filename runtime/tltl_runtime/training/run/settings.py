@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, Final, Literal
 
 from tltl_runtime.policies.network import Network, Shapes, model_config
-from tltl_runtime.training.exploration.search import Exploration
+from tltl_runtime.training.exploration.search import SearchSettings
 from tltl_runtime.training.run.choices import EntropySchedule, Method, PenaltySchedule, Pool
 from tltl_runtime.training.run.settings_file import read_values
 from tltlc.api import Diagnostic, RewardOptions, TltlError, fileio, monitors, record, replace
@@ -83,7 +83,7 @@ class Imitation:
 
 
 @record
-class Reward:
+class RewardSettings:
     """The settings of rewards: :class:`~tltlc.monitor.progress_and_reward.RewardOptions` and a schedule.
 
     With the ``penalty_schedule`` ``rising``, a ``discounted`` terminal penalty of mode ``progress``
@@ -154,9 +154,9 @@ class TrainingSettings:
     ppo: Ppo
     rollout: Rollout
     network: Network
-    exploration: Exploration
+    exploration: SearchSettings
     imitation: Imitation
-    reward: Reward
+    reward: RewardSettings
     stop: Stop
     classes: Classes
     method: Method
@@ -199,9 +199,9 @@ def read_settings(path: Path | None = None) -> TrainingSettings:
         ppo=ppo,
         rollout=rollout,
         network=Network(**values["network"]),
-        exploration=Exploration(**values["exploration"]),
+        exploration=SearchSettings(**values["exploration"]),
         imitation=Imitation(**values["imitation"]),
-        reward=Reward(**values["reward"], gamma=ppo.gamma),
+        reward=RewardSettings(**values["reward"], gamma=ppo.gamma),
         stop=Stop(**values["stop"]),
         classes=Classes(**values["classes"]),
         **values[""],

@@ -79,7 +79,7 @@ def test_steps_of_stairs_and_points_of_paths_count_as_things(tmp_path: Path) -> 
 def stairs(count: int) -> Callable[[], object]:
     source = SourceFile("room.toml", "".join(STAIRS.format(number) for number in range(count)))
     table = CheckedTable(Entry(read_tree(source), Label(source, Span(0, 0))), "the level", [])
-    return lambda: parts.solids(table, parts.Places({}, {}, []))
+    return lambda: parts.solids(table, parts.NamedParts({}, {}, []))
 
 
 def test_the_work_for_stairs_grows_with_their_number() -> None:

@@ -21,7 +21,7 @@ options.
 """
 
 
-class Check(click.Command):
+class CheckCommand(click.Command):
     """The command; the options for levels appear once ``--level`` is given."""
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
@@ -38,7 +38,7 @@ class Check(click.Command):
 
 
 @click.command(
-    cls=Check,
+    cls=CheckCommand,
     epilog="""\b
 Examples:
   tltlc check                                    all .tltl files in this folder and its subfolders

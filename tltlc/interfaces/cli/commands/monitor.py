@@ -68,17 +68,17 @@ def command(spec: str, trace: str, as_json: bool, settings: CompileSettings, for
 def _open_trace(trace: str) -> Iterator[Stream]:
     """Open a trace to read it line by line; raise TLT0001 now, or later while it is read."""
     if trace == STDIN:
-        yield _TraceFile(standard_input(), STDIN_NAME)
+        yield _OpenTrace(standard_input(), STDIN_NAME)
         return
     try:
         file = Path(trace).open("rb")  # noqa: SIM115 (closed below; only the opening may fail with TLT0001)
     except (OSError, ValueError) as error:
         raise input_error(trace, error) from None
     with file:
-        yield _TraceFile(file, trace)
+        yield _OpenTrace(file, trace)
 
 
-class _TraceFile:
+class _OpenTrace:
     """A file that raises TLT0001 if reading fails."""
 
     def __init__(self, file: BinaryIO, name: str) -> None:

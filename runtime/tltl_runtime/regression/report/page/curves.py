@@ -29,7 +29,7 @@ _GAP: Final = 0.5
 def progress_curves(episodes: Mapping[int, RecordedEpisode]) -> Markup:
     """Plot progress, in [0, 1], over time, in seconds, for each recorded episode."""
     longest = max((float(recording.times[-1]) for recording in episodes.values()), default=0.0)
-    frame = _Frame(max(1.0, longest))
+    frame = _CurveAxes(max(1.0, longest))
     lines = [
         element(
             "polyline",
@@ -53,7 +53,7 @@ def progress_distribution(now: Sequence[ExplainedEpisode], before: Sequence[Expl
     Failed episodes are in tenths of [0, 1]; the last bar shows the successful ones.  The bars of ``now``
     are filled, the bars of the baseline are outlines around them.
     """
-    frame = _Frame(_BINS + _GAP + 1.0)
+    frame = _CurveAxes(_BINS + _GAP + 1.0)
     bars = []
     for kind, episodes in (("now", now), ("before", before)):
         for bin_, share in enumerate(_shares(episodes)):
@@ -92,7 +92,7 @@ def _shares(episodes: Sequence[ExplainedEpisode]) -> list[float]:
     return [count / max(1, len(episodes)) for count in counts]
 
 
-def _corners(frame: _Frame, episode: RecordedEpisode) -> list[tuple[float, float]]:
+def _corners(frame: _CurveAxes, episode: RecordedEpisode) -> list[tuple[float, float]]:
     """Return the points at which a curve starts, ends or changes its value; it is straight in between."""
     values, times = episode.progress.tolist(), episode.times.tolist()
     rows = {0, len(values) - 1}
@@ -102,7 +102,7 @@ def _corners(frame: _Frame, episode: RecordedEpisode) -> list[tuple[float, float
     return [(frame.x(times[row]), frame.y(values[row])) for row in sorted(rows)]
 
 
-class _Frame:
+class _CurveAxes:
     """The axes of a diagram: x from 0 to ``x_most``, y from 0 to 1."""
 
     def __init__(self, x_most: float) -> None:
@@ -122,7 +122,7 @@ class _Frame:
 
 def _diagram(
     description: str,
-    frame: _Frame,
+    frame: _CurveAxes,
     x_label: str,
     contents: Sequence[Markup],
     ticks: Sequence[tuple[float, str]],

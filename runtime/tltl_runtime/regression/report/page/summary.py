@@ -28,7 +28,7 @@ class _Mean:
 
 
 @record
-class _Bar:
+class _PassRateBar:
     """A bar of a pass rate: its class, place and size, and the SVG path of its confidence interval's whiskers.
 
     The units are percent across; the drawing is 22 units high.
@@ -51,7 +51,7 @@ class _PassRate:
     now: str
     before: str
     description: str
-    bars: tuple[_Bar, ...]
+    bars: tuple[_PassRateBar, ...]
 
 
 @record
@@ -123,11 +123,11 @@ def _pass_rate(now: Figures, before: Figures | None) -> _PassRate:
     return _PassRate(_pass_text(now), _pass_text(before), description, (bar, _bar(before, "before", top=15, height=7)))
 
 
-def _bar(figures: Figures, kind: str, top: int, height: int) -> _Bar:
+def _bar(figures: Figures, kind: str, top: int, height: int) -> _PassRateBar:
     low, high = (coordinate(100 * end) for end in figures.pass_interval)
     above, middle, below = coordinate(top + height / 6), coordinate(top + height / 2), coordinate(top + 5 * height / 6)
     whiskers = f"M{low},{middle}H{high}M{low},{above}V{below}M{high},{above}V{below}"
-    return _Bar(kind, top, coordinate(100 * figures.pass_rate), height, whiskers)
+    return _PassRateBar(kind, top, coordinate(100 * figures.pass_rate), height, whiskers)
 
 
 def _rate_words(figures: Figures) -> str:
