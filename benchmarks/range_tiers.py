@@ -28,7 +28,7 @@ from tltlc.resolve.options import ResolveOptions
 from tltlc.resolve.range_proof import check, continuity, elimination, exact, jumps, proof, witness
 from tltlc.resolve.range_proof.proof import holds_at_once
 from tltlc.resolve.range_proof.region import ConstrainedBox
-from tltlc.resolve.resolution import resolution
+from tltlc.resolve.resolution import resolve
 
 FOLDERS: Final = {"standard library": "stdlib_predicates", "examples": "examples", "tests": "tests"}
 SEED: Final = 1
@@ -86,7 +86,7 @@ def _questions_of_folder(folder: str) -> Iterator[Question]:
 
         module, _ = parse(read_source(str(path), path.name))
         with patch.object(range_proof, "check_predicate", ask):
-            resolution(module, ResolveOptions())
+            resolve(module, ResolveOptions())
         yield from questions
 
 

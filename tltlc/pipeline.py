@@ -20,7 +20,7 @@ from tltlc.grammar.parser import parse
 from tltlc.io.files import MAX_ARTEFACT_BYTES, read_source
 from tltlc.io.resources import resource_limits
 from tltlc.resolve.options import ResolveOptions
-from tltlc.resolve.resolution import Resolution, resolution
+from tltlc.resolve.resolution import Resolution, resolve
 
 if TYPE_CHECKING:
     import os
@@ -92,7 +92,7 @@ class Session:
     def resolution(self) -> Resolution:
         """The names, specs and tests of the declarations that can be read; the imported files are read."""
         options = self.options
-        return resolution(self.module, ResolveOptions(options.library_dirs, options.params, self._proofs))
+        return resolve(self.module, ResolveOptions(options.library_dirs, options.params, self._proofs))
 
     @property
     def source_diagnostics(self) -> tuple[Diagnostic, ...]:

@@ -389,7 +389,9 @@ ROWS: list[tuple[str, str | None]] = [
 
 def errors(source: SourceFile) -> tuple[Diagnostic, ...]:
     module, diagnostics = parse(source)
-    return tuple(diagnostic for diagnostic in (*diagnostics, *resolve(module)[1]) if diagnostic.severity == "error")
+    return tuple(
+        diagnostic for diagnostic in (*diagnostics, *resolve(module).diagnostics) if diagnostic.severity == "error"
+    )
 
 
 def edited_specs(clause: str) -> list[str]:

@@ -17,7 +17,8 @@ def resolve_text(text: str, name: str = "<test>", **options: object) -> tuple[Re
     """Resolve a text that parses, and return the program and all diagnostics of the resolution."""
     module, errors = parse(SourceFile(name, text))
     assert errors == ()
-    return resolve(module, ResolveOptions(**options))  # type: ignore[arg-type]
+    result = resolve(module, ResolveOptions(**options))  # type: ignore[arg-type]
+    return result.program, result.diagnostics
 
 
 def valid_program(text: str, name: str = "<test>", **options: object) -> ResolvedFile:

@@ -59,7 +59,8 @@ def test_mutated_programs_raise_no_exception(number: int, seed: int, edits: int)
         else:
             tokens.insert(place, rng.choice(tokens))
     module, _ = parse(SourceFile("<fuzz>", "".join(tokens)))
-    program, diagnostics = resolve(module)
+    result = resolve(module)
+    program, diagnostics = result.program, result.diagnostics
     assert all(diagnostic.title for diagnostic in diagnostics)
     assert all(spec.parts for spec in program.specs)
 
@@ -69,7 +70,7 @@ def test_suggestions_for_misspelt_names_take_linear_work() -> None:
         declared = "".join(f"signal player_near_{number}: bool\n" for number in range(names))
         used = "".join(f"spec s{number} = G player_naer_{number}\n" for number in range(names))
         module, _ = parse(SourceFile("<many>", declared + used))
-        _, diagnostics = resolve(module)
+        diagnostics = resolve(module).diagnostics
         assert len(diagnostics) == names
         assert "did you mean `player_near_" in diagnostics[0].labels[0].message
 

@@ -42,20 +42,11 @@ class Resolution:
     diagnostics: tuple[Diagnostic, ...]
 
 
-def resolve(module: Module, options: ResolveOptions | None = None) -> tuple[ResolvedFile, tuple[Diagnostic, ...]]:
-    """Return the specs and tests of a module that resolve, and all diagnostics.
+def resolve(module: Module, options: ResolveOptions | None = None) -> Resolution:
+    """Return the specs and tests of a module that resolve, all diagnostics, the names and the modules.
 
     Reads the files that the module imports. Never raises on bad input: everything in error is
     reported and left out.
-    """
-    result = resolution(module, options)
-    return result.program, result.diagnostics
-
-
-def resolution(module: Module, options: ResolveOptions | None = None) -> Resolution:
-    """Like :func:`resolve`, but also return the environment and the modules.
-
-    Tools that look at expressions and names themselves need these.
     """
     options = options or ResolveOptions()
     env, groups, modules = _declare_names(module, options)

@@ -42,7 +42,8 @@ def formula(text: str) -> object:
     source = f"clock 3 Hz  signal p: bool  spec s = {text}"
     module, diagnostics = parse(SourceFile("a", source))
     assert not diagnostics
-    program, diagnostics = resolve(module, ResolveOptions())
+    result = resolve(module, ResolveOptions())
+    program, diagnostics = result.program, result.diagnostics
     assert not diagnostics
     return program.specs[0].formula
 

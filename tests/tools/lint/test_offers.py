@@ -174,7 +174,9 @@ The list is empty where the intention is unclear.
 
 def errors(source: SourceFile) -> tuple[Diagnostic, ...]:
     module, syntax_errors = parse(source)
-    return tuple(diagnostic for diagnostic in (*syntax_errors, *resolve(module)[1]) if diagnostic.severity == "error")
+    return tuple(
+        diagnostic for diagnostic in (*syntax_errors, *resolve(module).diagnostics) if diagnostic.severity == "error"
+    )
 
 
 def all_fixes(source: SourceFile) -> Iterator[tuple[Diagnostic, Fix]]:
