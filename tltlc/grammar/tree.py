@@ -1,8 +1,9 @@
-"""The syntax tree: frozen nodes with spans, as close to the text as later stages need.
+"""The nodes of the syntax tree: frozen records, each with its span in the source text.
 
-Formulas and arithmetic share one expression grammar, since LALR(1) cannot distinguish them before
-the end of a bracket; :mod:`tltlc.resolve` assigns the types. Each operator is stored under one
-canonical spelling: ``not and or implies iff F G X N U W R M then`` and ``+ - * / ^ < <= > >=``.
+Formulas and arithmetic are both expressions, since an LALR(1) parser that reads an opening bracket
+cannot know which of them follows; :mod:`tltlc.resolve` finds the types. Each operator is stored
+under one canonical spelling: ``not and or implies iff F G X N U W R M then`` and
+``+ - * / ^ < <= > >=``.
 """
 
 from __future__ import annotations
@@ -61,13 +62,16 @@ class CallExpr:
 
 @record
 class TemporalInterval:
-    """``[low, high]`` of a temporal operator, in samples or seconds; ``low`` is None for ``within`` and ``for``."""
+    """The bound of a temporal operator, in steps or as a time: ``[0, 20]`` or ``within 20 steps``.
+
+    ``low`` is None for the words ``within``, ``for`` and ``after``.
+    """
 
     low: NumberExpr | None
     high: NumberExpr
     span: Span
     words: bool
-    """True for ``within 20 steps``, ``for 20 steps``, ``after 3 steps``, False for ``F[0,20]``."""
+    """True for a bound in words, ``within 20 steps``, False for one in brackets, ``F[0,20]``."""
 
 
 @record
@@ -122,7 +126,7 @@ class WhenCase:
 
 @record
 class WhenExpr:
-    """A case distinction; only in predicates."""
+    """``when condition: value … otherwise: value``, which only predicates may contain."""
 
     cases: tuple[WhenCase, ...]
     otherwise: Expr
@@ -148,7 +152,10 @@ class Import:
 
 @record
 class Interval:
-    """``in [low, high]``; the limits are constant expressions (``-1``, ``2 m``, ``inf``)."""
+    """A range, ``in [low, high]``.
+
+    Both ends are constant expressions, such as ``-1``, ``2 m``, ``inf``.
+    """
 
     low: Expr
     high: Expr
@@ -168,7 +175,10 @@ class Parameter:
 
 @record
 class SignalDecl:
-    """``signal distance(target: entity): length in [0 m, inf]``; ``type`` is None for a bare ``in``."""
+    """``signal distance(target: entity): length in [0 m, inf]``.
+
+    ``type`` is None if only a range is given, as in ``signal coins in [0, 50]``.
+    """
 
     name: str
     parameters: tuple[Parameter, ...]
@@ -260,7 +270,10 @@ class Clause:
 
 @record
 class SpecDecl:
-    """``spec NAME { clauses }``; ``spec NAME = FORMULA`` has one ``require``, and ``block`` is False."""
+    """``spec NAME { clauses }``, or ``spec NAME = FORMULA``.
+
+    ``block`` is True for the first form. The second has one clause, a ``require`` with the formula.
+    """
 
     name: str
     clauses: tuple[Clause, ...]

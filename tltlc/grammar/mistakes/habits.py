@@ -1,4 +1,4 @@
-"""Forms that people know from other languages or a word processor, and their form in this language."""
+"""Report forms that people know from other languages or a word processor."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _EQUAL: Final = {"==": _EQUAL_FORM, "=": _EQUAL_FORM, "!=": _UNEQUAL_FORM, "<>":
 
 
 def equality(failure: ParseFailure) -> Diagnostic | None:
-    """Report ``a == b``, ``a != true``, ``a <> 3``, and ``a = b`` where a comparison was meant."""
+    """Report comparisons of other languages: ``a == b``, ``a != true``, ``a <> 3``, ``a = b``."""
     sign, at = failure.token.text, failure.stop.index
     is_expectation = failure.tokens[0].text == "expect"
     if sign not in _EQUAL or not (failure.token.type != "EQUAL" or failure.wants_operator or is_expectation):
@@ -74,7 +74,7 @@ def equality(failure: ParseFailure) -> Diagnostic | None:
 
 
 def _is_atom(failure: ParseFailure, start: int, stop: int) -> bool:
-    """Whether some tokens are a name, with or without arguments."""
+    """Whether the tokens from index ``start`` up to ``stop`` are a name, perhaps with arguments."""
     kinds = [token.type for token in failure.tokens[start:stop]]
     rest = outer_indices(failure.tokens, start + 1, stop)
     return kinds[:1] == ["NAME"] and all(failure.tokens[index].type in ("LPAR", "RPAR") for index in rest)
@@ -99,7 +99,7 @@ def chained_comparison(failure: ParseFailure) -> Diagnostic | None:
 
 
 def arrow_sign(failure: ParseFailure) -> Diagnostic | None:
-    """Report ``a => b`` and ``a =< b``."""
+    """Report arrows that are no operators: ``a => b`` and ``a =< b``."""
     at = failure.stop.index
     after = failure.tokens[at + 1 :][:2]
     if (
@@ -141,7 +141,7 @@ def dash_comment(failure: ParseFailure) -> Diagnostic | None:
 
 
 def foreign_unit(failure: ParseFailure) -> Diagnostic | None:
-    """Report ``20 seconds`` and ``3 feet``."""
+    """Report units that the language does not know: ``20 seconds``, ``3 feet``."""
     number, token = failure.previous_token, failure.token
     if number is None or number.type != "NUMBER" or token.type != "NAME" or "UNIT" not in failure.allowed_terminals:
         return None
@@ -169,7 +169,7 @@ def foreign_unit(failure: ParseFailure) -> Diagnostic | None:
 
 
 def doubled_operator(failure: ParseFailure) -> Diagnostic | None:
-    """Report ``a and then b``, ``a then then b``."""
+    """Report two operators side by side: ``a and then b``, ``a then then b``."""
     before, token = failure.previous_token, failure.token
     if before is None or before.type not in INFIX or token.type not in INFIX or not failure.wants_operand:
         return None
@@ -184,7 +184,7 @@ def doubled_operator(failure: ParseFailure) -> Diagnostic | None:
 
 
 def prefix_between_formulas(failure: ParseFailure) -> Diagnostic | None:
-    """Report ``reach a next b`` and ``keep a not b``."""
+    """Report an operator of one formula between two: ``reach a next b``, ``keep a not b``."""
     token, keyword, following = failure.token, failure.tokens[0].text, failure.stop.index + 1
     is_last = following + 1 >= len(failure.tokens) or is_first_on_line(failure.source, failure.tokens, following)
     if is_last and (keyword, token.type) in (("keep", "ALWAYS"), ("reach", "EVENTUALLY")):
@@ -202,7 +202,11 @@ def prefix_between_formulas(failure: ParseFailure) -> Diagnostic | None:
 
 
 def value_end(tokens: Sequence[Token], at: int, step: int) -> int:
-    """Return where the value before (``step`` -1) or after (``step`` 1) the operator at ``at`` begins or ends."""
+    """Return where a value beside the operator at index ``at`` begins or ends.
+
+    With ``step`` -1, return the index of the first token of the value before the operator; with
+    ``step`` 1, the index after the last token of the value behind it.
+    """
     index, depth = at + step, 0
     while 0 <= index < len(tokens):
         kind = tokens[index].type
