@@ -187,9 +187,9 @@ def _signed_ends(b: Interval) -> Interval:
 
 
 def _round_outwards(x: float, towards: float, negative: bool | None = None) -> float:
-    """Move two floats outwards, because library functions may err by one.
+    """Return the second float after ``x`` towards ``towards``; library functions may err by one.
 
-    Never crosses 0 if the sign is known.
+    Returns 0 instead of a value of the wrong sign, if ``negative`` gives the sign.
     """
     value = nextafter(nextafter(x, towards), towards)
     if negative is not None and (value > 0) == negative:
