@@ -51,7 +51,7 @@ def vocabulary_of(
 
 
 def _by_proposition(hoa: Hoa, options: Mapping[str, str]) -> dict[str, str]:
-    """Return the predicates by the names of the propositions of the file.
+    """Return a dict from the names of propositions in the file to predicates.
 
     The command line splits ``NAME=PREDICATE`` at the first ``=``, but a name may contain ``=``. So
     this takes the longest name of a proposition that matches.
