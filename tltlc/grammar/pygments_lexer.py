@@ -56,7 +56,7 @@ _KEYWORD_BEFORE: Final = {"FOR": {"NUMBER"}, "WITHIN": {"NUMBER"}, "AFTER": {"NU
 
 
 class TltlLexer(Lexer):  # type: ignore[misc]
-    """Specifications in truncated linear temporal logic."""
+    """A Pygments lexer for specs in truncated linear temporal logic."""
 
     name = "TLTL"
     aliases: ClassVar = ["tltl"]

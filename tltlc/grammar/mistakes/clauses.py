@@ -116,7 +116,7 @@ def clause_inside_formula(failure: ParseFailure) -> Diagnostic | None:
         return None
     title = f"{quote_token(failure.token)} begins a clause, and stands in no formula"
     start, stop, clause = formula_start(failure), formula_stop(failure), _clause_keyword(failure)
-    # The operator would apply to all that follows, although the keyword may be meant for the next operand only.
+    # An operator in its place would apply to all that follows, but the keyword may be meant for one operand only.
     diagnostic, is_alone = None, not has_token(failure, at + 1, stop, INFIX - {"THEN"} if word == "reach" else INFIX)
     if before.type == "THEN" and not _is_next_goal(failure, word):
         return failure.error("TLT0107", title, _BEHIND_THEN)
@@ -206,7 +206,7 @@ def joined_clauses(failure: ParseFailure) -> Diagnostic | None:
 
 
 def limit_in_other_words(failure: ParseFailure) -> Diagnostic | None:
-    """Report ``limit of 400 steps``, ``limit: 20 seconds``."""
+    """Report a limit in another form: ``limit of 400 steps``, ``limit: 20 seconds``."""
     return (
         _limit_error(failure, "a limit is a number of steps or a time") if failure.tokens[0].type == "LIMIT" else None
     )
@@ -221,7 +221,7 @@ def judge_without_at(failure: ParseFailure) -> Diagnostic | None:
 
 
 def clauses_without_braces(failure: ParseFailure) -> Diagnostic | None:
-    """Report ``spec s: keep a``, ``spec s ( keep a )`` and ``spec s = { keep a }``."""
+    """Report braces that are missing or wrong: ``spec s: keep a``, ``spec s = { keep a }``."""
     before, token = failure.previous_token, failure.token
     if before is None or failure.tokens[0].type != "SPEC":
         return None

@@ -35,7 +35,7 @@ _FILLERS: Final = frozenset(("the", "an", "to", "be", "being", "either", "both",
 _JOINED: Final[dict[str, Collection[str]]] = {"either": {"OR"}, "both": {"AND"}, "first": {"THEN"}, "to": (), "be": ()}
 """Fillers that mean something after another word, as in `next to` and `not either`.
 
-The values are the terminals of the operators that each may accompany without a meaning of its own.
+The values are the terminals of operators beside which the word means nothing, as `either` and `or`.
 """
 _COMPARISONS: Final = {
     ("at", "least"): ">=",
@@ -197,7 +197,7 @@ def _is_clear_filler(failure: ParseFailure, at: int) -> bool:
     word, kind = failure.tokens[at].text, _clause_keyword(failure)
     if word not in _JOINED:
         return True
-    # `reach both a and b` allows one after the other, and `avoid both` may forbid each of them.
+    # `reach both a and b` may mean one after the other, and `avoid both a and b` may forbid each of them.
     if at != formula_start(failure) or (word == "both" and kind not in ("keep", "require")):
         return False
     return not has_token(failure, at, formula_stop(failure), INFIX - {*_JOINED[word]})
@@ -293,7 +293,7 @@ def _prefix_word_error(failure: ParseFailure, at: int, forms: Forms, *, timed: b
     is_clear = is_clear and not (
         _clause_keyword(failure) in ("reach", "avoid") and has_token(failure, second, stop, TEMPORAL)
     )
-    # `if a then b until c` may be a rule until `c`; and a keyword would apply to the `until` and the `or` after it.
+    # `if a then b until c` may mean a rule that ends at `c`; a keyword would also apply to `until` or `or` after it.
     is_clear = is_clear and not has_token(failure, second, stop, UNCLEAR)
     keyword = failure.tokens[second].text
     if keyword in _FROM_THEN_ON:

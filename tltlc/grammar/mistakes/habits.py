@@ -81,7 +81,7 @@ def _is_atom(failure: ParseFailure, start: int, stop: int) -> bool:
 
 
 def chained_comparison(failure: ParseFailure) -> Diagnostic | None:
-    """Report ``a < b < c``, with any number of comparisons."""
+    """Report a chain of comparisons: ``a < b < c``."""
     at = failure.stop.index
     if failure.token.type not in COMPARISONS or not failure.wants_operator:
         return None
@@ -123,7 +123,7 @@ def arrow_sign(failure: ParseFailure) -> Diagnostic | None:
 
 
 def dash_comment(failure: ParseFailure) -> Diagnostic | None:
-    """Report ``-- a comment``; the parser may have read its first words as part of a formula."""
+    """Report ``-- a comment``, even if the parser has read its first words as part of a formula."""
     tokens, at = failure.tokens, failure.stop.index
     for index in range(min(at, len(tokens) - 2), -1, -1):
         first, second, after = tokens[index], tokens[index + 1], tokens[index + 2 : index + 3]
@@ -148,7 +148,7 @@ def foreign_unit(failure: ParseFailure) -> Diagnostic | None:
     title = f"there is no unit {quote_token(token)}"
     known = UNITS_ELSEWHERE.get(token.text.lower())
     if known == "%":
-        # For a value from 0 to 100, it is the number alone.
+        # A signal with values from 0 to 100 is compared with the number alone.
         help_ = (
             f"of a ratio, write `{number.text} %`, which is a hundredth of {number.text}; else `{number.text}` alone"
         )

@@ -57,7 +57,7 @@ def is_clear_word(failure: ParseFailure, word: str, left: tuple[int, int], right
     if has_token(failure, *left, {"NOT"}) and word not in (*_NEGATED.get(kind, ()), *_AS_WRITTEN):
         return False
     if word in (*CONDITIONS, "during"):
-        # `a and b if c` has two readings if `and` differs from the operator in the form of `if`.
+        # `a and b if c` has two readings if `and` differs from the operator that replaces `if`.
         left_kinds, right_kinds = ({"OR"}, {"OR"}) if kind in ("reach", "avoid") else ({"AND"}, {"AND", "OR"})
         if has_token(failure, *left, left_kinds) or has_token(failure, *right, right_kinds):
             return False
@@ -67,7 +67,7 @@ def is_clear_word(failure: ParseFailure, word: str, left: tuple[int, int], right
     if word == "but":
         return not any(has_token(failure, *side, {"OR"}) for side in sides)
     if word == "without":
-        # After a goal, it may apply to all goals of the plan.
+        # After a goal, `without` may apply to all goals of the plan.
         ambiguous = {"AND", "OR"} if kind == "reach" else {"OR"}
         is_ambiguous = has_token(failure, *left, ambiguous) or has_token(failure, *right, INFIX)
         return not is_ambiguous and all(is_of_one_step(failure, *side) for side in sides)
@@ -81,7 +81,7 @@ def is_clear_word(failure: ParseFailure, word: str, left: tuple[int, int], right
 def is_clear_here(failure: ParseFailure, word: str) -> bool:
     """Whether a word has only one meaning here, judged by what stands around it.
 
-    These are the clause, and the tokens around the brackets that are open at the failure.
+    The clause, and the tokens around the brackets that are open at the failure, decide.
     """
     clause = failure.tokens[0].text if failure.start == "clause" else ""
     if word in _STATES:

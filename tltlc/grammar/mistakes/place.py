@@ -106,8 +106,8 @@ class ParseFailure:
     ) -> Diagnostic:
         """Return an error at :attr:`token`, or at the last token if the piece ends too early.
 
-        ``write`` is the text by which a fix replaces the span. There is no fix if ``write`` is None or
-        if the span contains a comment.
+        ``write`` is the text that a fix writes in place of the span. There is no fix if ``write``
+        is None or if the span contains a comment.
         """
         if span is None:
             span = self.previous_token.span if self.is_at_end and self.previous_token else self.token.span
