@@ -126,7 +126,7 @@ def push_not(node: Formula) -> Formula:
 
 
 def shorten_implication(node: Formula) -> Formula:
-    """Shorten ``a -> b``."""
+    """Shorten an implication: ``true -> a`` becomes ``a``, and ``a -> false`` becomes ``!a``."""
     left, right = node.args
     if left is TRUE:
         return right
@@ -138,7 +138,7 @@ def shorten_implication(node: Formula) -> Formula:
 
 
 def shorten_equivalence(node: Formula) -> Formula:
-    """Shorten ``a <-> b``."""
+    """Shorten an equivalence: ``true <-> a`` becomes ``a``, and ``a <-> !a`` becomes ``false``."""
     left, right = node.args
     if left is right:
         return TRUE

@@ -13,7 +13,7 @@ from weakref import WeakKeyDictionary
 from tltlc.logic.formula import Formula, rebuild
 
 LEAST: Final = 2
-"""The smallest bound, in steps, that is printed in bounded form; ``a | X a`` is short enough."""
+"""The fewest steps of a bound that is printed in bounded form; ``a | X a`` has one step."""
 
 
 class Bounded(NamedTuple):

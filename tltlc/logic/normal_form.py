@@ -1,4 +1,4 @@
-"""Negation normal form: negation only before atoms, plus only ``and or X N F G U W R M``."""
+"""Negation normal form: ``not`` only before atoms, and else only ``and or X N F G U W R M``."""
 
 from __future__ import annotations
 

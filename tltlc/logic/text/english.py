@@ -103,7 +103,7 @@ def without_constants(formula: Formula) -> Formula:
 
 
 def _clause(node: Formula, when: str, context: _Context) -> _Clause:
-    """Return the instruction that makes ``node`` hold at a moment; ``when`` names it: ``now``."""
+    """Return the instruction to make ``node`` hold at a moment, which ``when`` names: ``now``."""
     if is_state(node):
         return f"{imperative(node, 'have', 'avoid')} {when}", _rank_of_state(node)
     if context.depth == 0:

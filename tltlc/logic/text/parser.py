@@ -1,6 +1,6 @@
 """Parse the formulas in artefacts: texts that :func:`tltlc.logic.text.printer.ascii_text` printed.
 
-The grammar of the language reads many more notations, and needs declarations.  This parser needs
+The grammar of the language reads many more notations, and needs declarations. This parser needs
 only the names of the atoms.
 """
 
