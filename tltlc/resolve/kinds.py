@@ -29,14 +29,14 @@ _DECLARATIONS = {
     "signal or param": "signal {name} in [0, 100]",
     "entity": "entity {name}",
 }
-"""By kind of name, the declaration that a message suggests for an unknown name like no other."""
+"""By kind of name, the declaration to suggest for a name that resembles no known one."""
 
 
 def lookup(use: NameExpr | CallExpr, env: Env, kinds: tuple[Kind, ...], noun: str) -> Binding:
     """Return the binding of a name: its declaration and scope.
 
-    Raises ResolutionError (TLT0201) with a suggestion if the name is unknown. Reports nothing if a
-    failed import may have declared the name.
+    Raises ResolutionError (TLT0201) with a suggestion if the name is unknown. The error
+    has no diagnostic if a failed import may have declared the name.
     """
     binding = env.scope.names.get(use.name)
     if binding is not None:
@@ -133,7 +133,7 @@ def _entities_help(env: Env) -> str:
 
 
 def entity_help(entity: str, env: Env, *, number: bool) -> str:
-    """Return a help text that shows how to use an entity in a condition, or in a number."""
+    """Return a help text that shows how to use an entity in a condition, or in arithmetic."""
     # Sorting by kind puts predicates before signals: predicates are declared to be used this way.
     for name, binding in sorted(env.scope.names.items(), key=lambda item: item[1].kind):
         declared = binding.declaration

@@ -33,7 +33,7 @@ def robustness(left: Quantity, right: Quantity) -> Expression:
     floor = (Op("min", (_margin(left, right), Const(LEAST))),) if is_lost and holding.width > 1 else ()
     if failing.width == 0 or failing.order == holding.order:
         return _max_of(share, *floor)
-    # The quotient with the smaller divisor is the greater of the two above 0 and the smaller one below 0.
+    # Of the two quotients, the one with the smaller divisor is the greater one above 0 and the smaller one below 0.
     failing_share = _share(left, right, failing)
     if holding.order < failing.order:
         return _max_of(share, *floor, failing_share)

@@ -188,9 +188,9 @@ def _is_per_time(expr: tree.BinaryExpr, env: Env) -> bool:
 
 
 def _check_speed(expr: tree.BinaryExpr, env: Env) -> None:
-    """Raise ResolutionError (TLT0304) for ``a / 1 m/s`` if there is no `s`.
+    """Raise ResolutionError (TLT0304) for ``a / 1 m/s`` if `s` is not declared.
 
-    It is read as ``(a / 1 m) / s``.
+    The parser reads it as ``(a / 1 m) / s``.
     """
     inner, per = expr.left, expr.right
     if (

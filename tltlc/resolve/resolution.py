@@ -1,4 +1,4 @@
-"""Resolve a syntax tree into a program: every name, type and unit."""
+"""Resolve a syntax tree: find out what every name, type and unit in it means."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The names that a module sees: its own and those of its imports."""
+"""The names that are visible in a module: its own and those of its imports."""
 
 from __future__ import annotations
 

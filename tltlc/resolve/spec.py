@@ -125,7 +125,8 @@ class Spec:
 class Vocabulary:
     """A list of atoms without a formula, with the signals and params that they use.
 
-    The fields are as in :class:`Spec`; ``atoms`` are in the requested order.
+    The fields are as in :class:`Spec`. ``atoms`` are the requested atoms in order, then those that
+    are only in ``exclusive``.
     """
 
     atoms: tuple[Atom, ...]

@@ -8,7 +8,7 @@ from typing import Final, cast
 from tltlc.resolve.spec import ValueType
 
 Dimension = tuple[float, float, float]
-"""The exponents of metre, second and radian."""
+"""The exponents of metre, second and radian: ``(1, -1, 0)`` for a speed."""
 
 PLAIN: Final[Dimension] = (0.0, 0.0, 0.0)
 _FREQUENCY: Final[Dimension] = (0.0, -1.0, 0.0)

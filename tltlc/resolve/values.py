@@ -1,4 +1,4 @@
-"""The values of expressions of the surface language during resolution."""
+"""The values of expressions during resolution: entities, quantities and formulas."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ LOOSEST, SUM, PRODUCT, SIGN, POWER, CLOSED = range(6)
 
 @record
 class Entity:
-    """An object of the level."""
+    """An entity: an object of the level, which predicates and signals can have as an argument."""
 
     name: str
 
@@ -60,7 +60,7 @@ class Quantity:
 
 @record
 class Unknown:
-    """A parameter whose value is unknown, for the check of a ``let`` that nothing uses."""
+    """A parameter whose value is unknown, for the check of a definition that nothing uses."""
 
     name: str
 

@@ -38,7 +38,7 @@ Ranges = Mapping[Term, Interval]
 
 
 class GiveUpError(Exception):
-    """The question is outside the supported fragment, or needs too much work."""
+    """A proof needs more than this module can do, or too much work."""
 
 
 class Prover:

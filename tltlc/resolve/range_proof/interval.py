@@ -37,7 +37,7 @@ def subtract(a: Interval, b: Interval) -> Interval:
 
 
 def multiply(a: Interval, b: Interval) -> Interval:
-    """Return the product of independent factors."""
+    """Return the product; the factors may vary independently."""
     corners = [(x, y) for x in a for y in b]
     return min(_product(x, y, -inf) for x, y in corners), max(_product(x, y, inf) for x, y in corners)
 

@@ -104,7 +104,7 @@ def _is_answer(value: object) -> bool:
 
 def _write(path: Path, answers: Mapping[str, Answer]) -> None:
     entries = {key: [answer.proved, answer.steps] for key, answer in answers.items()}
-    # If writing fails, the answers only take longer next time.
+    # If writing fails, the answers are only computed again next time.
     with suppress(OSError), temporaries() as made:
         path.parent.mkdir(parents=True, exist_ok=True)
         temporary = made.path(path)

@@ -49,7 +49,7 @@ def unproved_goals(goals: Sequence[ProofGoal], whole: ConstrainedBox) -> list[Pr
 def proves_within(value: Expression, region: ConstrainedBox, low: float, high: float, parts: int = MOST_PARTS) -> bool:
     """Whether the value is provably defined and in ``[low, high]``, up to TOLERANCE, on the region.
 
-    ``parts`` is about the most parts of the region that are tried.
+    ``parts`` limits the number of parts into which the region is divided.
     """
     if holds_at_once(value, region, low, high):
         return True
