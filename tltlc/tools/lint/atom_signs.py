@@ -35,7 +35,7 @@ class Declarations(Protocol):
 
 _MOST_POINTS: Final = 600
 _ABOVE_ZERO: Final = 1e3 * TOLERANCE
-"""A proof that a value is at least this shows that it is above 0, even after rounding."""
+"""A value that is proved to be at least this is above 0, although proofs tolerate rounding."""
 
 _RANGES: Final[dict[Sign, tuple[float, float]]] = {
     "positive": (_ABOVE_ZERO, inf),

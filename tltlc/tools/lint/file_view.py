@@ -1,4 +1,4 @@
-"""What a lint rule sees of a file: its syntax tree, names, specs and automata.
+"""What a lint rule can read of a file: its syntax tree, names, specs and automata.
 
 All of this is computed once and shared by all rules.
 """
