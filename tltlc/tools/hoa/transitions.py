@@ -121,7 +121,7 @@ class HoaTransitions:
             case "not":
                 return letters.map_leaves(lambda value: NO if value == YES else YES, self._function(term.args[0]), {})
             case "and" | "or":
-                # If one operand has this value, it is the result.
+                # If one operand has this value, the result has it, too.
                 absorbing = NO if term.op == "and" else YES
                 result = no if absorbing == YES else yes
                 for operand in term.args:
