@@ -1,8 +1,9 @@
-"""Comments that silence warnings and notes: ``// tltlc: allow TLT0421``, optionally with a reason after the codes.
+"""Comments that silence warnings and notes, such as ``// tltlc: allow TLT0421``.
 
-A comment at the end of a line, or on its own lines above it, applies to each clause and declaration
-that has a part on that line; only the head and the last line of a block count. Before the first
-declaration, a comment applies to the whole file.
+A reason may follow the codes. A comment at the end of a line applies to that line. A comment on a
+line of its own applies to the next line with a clause or declaration. It silences diagnostics of
+every clause and declaration that has a part on the line; of a block, only the head and the closing
+brace count. A comment before the first declaration applies to the whole file.
 """
 
 from __future__ import annotations
@@ -23,10 +24,10 @@ _BRACE: Final = re.compile(r"(?:\s|//[^\n]*\n)*\{")
 
 @record
 class Allowance:
-    """A code that a comment allows, with the comment and the span of the code in it.
+    """A diagnostic code that a comment silences. A comment with two codes gives two allowances.
 
-    ``statements`` are the clauses and declarations that the comment applies to; None means the whole
-    file.
+    ``span`` is the place of the code in the source text. ``statements`` are the spans of the
+    clauses and declarations that the comment applies to; None means the whole file.
     """
 
     code: str
@@ -37,7 +38,7 @@ class Allowance:
 
 
 def allowances(module: Module) -> Iterator[Allowance]:
-    """Yield all codes that comments of the module allow, in order."""
+    """Yield an allowance for each code in the comments of a module, in the order of the text."""
     for comment, spans in commented_spans(module):
         for match in _code_matches(comment):
             start = comment.span.start
@@ -46,7 +47,7 @@ def allowances(module: Module) -> Iterator[Allowance]:
 
 
 def codes(comment: Comment) -> list[str]:
-    """Return the codes directly after ``allow``; the text after them is the reason."""
+    """Return the diagnostic codes after ``allow`` in a comment, without the reason after them."""
     return [match[1] for match in _code_matches(comment)]
 
 
@@ -56,11 +57,10 @@ def is_allowing(comment: Comment) -> bool:
 
 
 def commented_spans(module: Module) -> list[tuple[Comment, tuple[Span, ...] | None]]:
-    """Return the comments that allow codes, each with the clauses and declarations that it applies to.
+    """Return the comments that allow codes, each with the spans of the statements it applies to.
 
-    None means that the comment applies to the whole file.
-
-    Comments that apply to the same line share one tuple.
+    Statements are clauses and declarations. None in place of the spans means the whole file.
+    Comments on the same line get the same tuple object, which ``allow_index`` uses to group them.
     """
     comments = [comment for comment in module.comments if is_allowing(comment)]
     if not comments:
@@ -85,12 +85,15 @@ def commented_spans(module: Module) -> list[tuple[Comment, tuple[Span, ...] | No
 
 
 def statements(module: Module) -> list[Span]:
-    """Return the clauses and declarations that comments can apply to, in order."""
+    """Return the spans of the clauses and declarations that comments can apply to, in order."""
     return list(dict.fromkeys(whole for whole, _ in _statement_parts(module)))
 
 
 def _statements_by_line(module: Module) -> dict[int, dict[Span, None]]:
-    """Map each line number to the clauses and declarations that have a part on the line, in order."""
+    """Map each line number to the spans of the clauses and declarations with a part on the line.
+
+    The inner dict is an ordered set; its values have no meaning.
+    """
     statements_by_line: dict[int, dict[Span, None]] = {}
     for whole, part in _statement_parts(module):
         first, _ = module.source.position(part.start)
@@ -101,10 +104,11 @@ def _statements_by_line(module: Module) -> dict[int, dict[Span, None]]:
 
 
 def _statement_parts(module: Module) -> Iterator[tuple[Span, Span]]:
-    """Yield each clause and declaration with the part that counts: for a block, its head and its closing brace.
+    """Yield pairs of spans: a statement, and a part of it to whose lines comments apply.
 
-    In a list of entities, the first name stands for the whole declaration, and each further name for
-    itself.
+    A statement is a clause or a declaration. A block has two parts, its head and its closing brace.
+    In a list of entities, the first name is the part of the whole declaration, and each further
+    name is a statement of its own.
     """
     for declaration in module.declarations:
         span = declaration.span

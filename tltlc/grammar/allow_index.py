@@ -1,5 +1,6 @@
-"""Find the diagnostics that comments silence (:mod:`tltlc.grammar.allow_comments`), and the comments that
-silence a diagnostic.
+"""Find out which diagnostics are silenced by comments, and which comments silence a diagnostic.
+
+:mod:`tltlc.grammar.allow_comments` describes the comments.
 """
 
 from __future__ import annotations
@@ -25,10 +26,10 @@ def drop_silenced(modules: Iterable[Module], reported: Iterable[Diagnostic]) -> 
 
 
 class AllowIndex:
-    """All codes that the comments of modules allow, in order, and which of them have silenced a diagnostic.
+    """The codes that comments in some modules allow, and which of them have silenced a diagnostic.
 
-    The comments are indexed by the statements that they apply to, so that a diagnostic does not need
-    a pass over all comments.
+    The comments are indexed by the clauses and declarations that they apply to, so that a lookup
+    does not search all comments.
     """
 
     def __init__(self, modules: Iterable[Module]) -> None:
@@ -39,18 +40,18 @@ class AllowIndex:
                 self._files[module.source] = _FileAllowances(file_allowances)
 
     def allowances(self, source: SourceFile) -> Sequence[Allowance]:
-        """Return the codes that the comments of one file allow."""
+        """Return the codes that the comments of one file allow, in the order of the text."""
         file = self._files.get(source)
         return file.allowances if file else ()
 
     def silences(self, diagnostic: Diagnostic) -> bool:
-        """Whether a comment allows a diagnostic; each comment that allows it counts as used from then on."""
+        """Return whether a comment silences a diagnostic, and mark all comments that do as used."""
         label = diagnostic.labels[0] if diagnostic.labels else None
         file = self._files.get(label.source) if label else None
         return label is not None and file is not None and file.silences(diagnostic.code, label.span.start)
 
     def has_silenced(self, allowance: Allowance) -> bool:
-        """Whether an allowed code has silenced a diagnostic."""
+        """Whether an allowed code has silenced a diagnostic, in a call of :meth:`silences`."""
         return id(allowance) in self._files[allowance.source].used
 
 
@@ -62,7 +63,7 @@ class _FileAllowances:
         self.used: set[int] = set()
         self._answers: dict[tuple[str, Span | None], bool] = {}
         self._by_statement: dict[Span | None, list[dict[str, list[Allowance]]]] = {}
-        # Comments that apply to the same line share its statements.
+        # Comments that apply to the same line share one tuple of statements: look its identity up.
         codes_by_line: dict[int, dict[str, list[Allowance]]] = {}
         for allowance in allowances:
             codes = codes_by_line.get(id(allowance.statements))
@@ -74,15 +75,18 @@ class _FileAllowances:
         self._statements = _StatementSpans(statement for statement in self._by_statement if statement is not None)
 
     def silences(self, code: str, offset: int) -> bool:
-        """Whether comments allow a code at an offset; the comments that allow it count as used."""
+        """Return whether comments allow a code at an offset; mark all comments that do as used."""
         # The end of a statement is inclusive: an offset right after its last character belongs to it, too.
         statements = {None, *self._statements.spans_at(offset), *self._statements.spans_at(offset - 1)}
-        # A list, not a generator: every comment that allows the code counts as used.
+        # A list, not a generator: `any` must not stop before all comments are marked.
         is_allowed = [self._allow(code, statement) for statement in statements]
         return any(is_allowed)
 
     def _allow(self, code: str, statement: Span | None) -> bool:
-        """Whether comments allow a code in a statement, or in the whole file for None; such comments count as used."""
+        """Return whether comments allow a code in a statement; mark all comments that do as used.
+
+        The statement None means the whole file.
+        """
         if (code, statement) not in self._answers:
             allowances = [
                 allowance for codes in self._by_statement.get(statement, ()) for allowance in codes.get(code, ())
@@ -93,13 +97,16 @@ class _FileAllowances:
 
 
 class _StatementSpans:
-    """Spans that do not overlap, except that one may contain another."""
+    """Spans of statements, to be looked up by offset.
+
+    Of two spans that overlap, one contains the other.
+    """
 
     def __init__(self, spans: Iterable[Span]) -> None:
         self._spans = sorted(spans, key=lambda span: (span.start, -span.end))
         self._starts = [span.start for span in self._spans]
         self._outer: list[int] = []
-        """For each span, the index of the span around it, or -1."""
+        """For each span, the index in ``_spans`` of the smallest span that contains it, or -1."""
         open_: list[int] = []
         for index, span in enumerate(self._spans):
             while open_ and self._spans[open_[-1]].end <= span.start:

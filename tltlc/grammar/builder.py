@@ -39,16 +39,17 @@ OPERATORS = {
     "DIVIDE": "/",
     "POWER": "^",
 }
-"""The canonical spelling of each operator, by terminal."""
+"""By terminal of the grammar, the spelling under which the tree stores the operator."""
 
 MOST_REPETITIONS = 100_000
-"""The most repetitions of a step in a test."""
+"""The most times that a test may repeat a step, as in ``step 3x alive``."""
 
 
 class Builder:
-    """Builds the nodes of one file; errors go to ``diagnostics``.
+    """Builds the syntax tree of one file, and collects errors in ``diagnostics``.
 
-    Each method takes the span of its rule, then the values that the rule keeps; an absent part is None.
+    The parser calls ``make_NAME`` for the rule NAME of the grammar. Each method takes the span of
+    the text that the rule matched, then the values of the rule's parts, None for an absent one.
     """
 
     def __init__(self, source: SourceFile, docs: dict[int, str]) -> None:

@@ -1,4 +1,7 @@
-"""Check on the tree what the grammar accepts but the language forbids; at most one error per clause."""
+"""Check the syntax tree for what the grammar accepts but the language forbids.
+
+A clause gets at most one error.
+"""
 
 from __future__ import annotations
 
@@ -32,7 +35,7 @@ def check(source: SourceFile, declarations: Iterable[Declaration]) -> Iterator[D
 
 
 def check_clauses(source: SourceFile, declarations: Iterable[Declaration]) -> Iterator[Diagnostic]:
-    """Yield the errors inside the expressions and clauses of declarations."""
+    """Yield the errors inside clauses and expressions, but none about a spec as a whole."""
     for declaration in declarations:
         match declaration:
             case tree.SpecDecl():
@@ -47,7 +50,10 @@ def check_clauses(source: SourceFile, declarations: Iterable[Declaration]) -> It
 
 
 def check_formula(source: SourceFile, formula: Expr, *, in_reach: bool = False) -> Iterator[Diagnostic]:
-    """Yield the first error inside an expression; ``in_reach`` if it is the sequence of a ``reach`` clause."""
+    """Yield the first error in an expression, if there is one.
+
+    ``in_reach`` is True in a ``reach`` clause, where ``then`` needs fewer brackets.
+    """
     yield from _only_first(_expression_errors(source, formula, in_reach))
 
 

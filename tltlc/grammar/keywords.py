@@ -1,4 +1,4 @@
-"""The keywords that begin declarations, clauses and lines of tests, each with the form of its statement."""
+"""The keywords that begin declarations, clauses and lines of tests, with their syntax."""
 
 from __future__ import annotations
 
@@ -38,10 +38,10 @@ TEST_ITEMS: Final = {
 }
 
 CASES: Final = "cases are written `when x > 3: 1 otherwise: -1`"
-"""The help for cases in another form."""
+"""The help for a case distinction that is written in the syntax of another language."""
 
 OPERATORS: Final = {"reach": "eventually", "keep": "always", "avoid": "always not", "require": ""}
-"""The operators that mean the same inside a formula as clauses with these keywords."""
+"""For each clause keyword, the operator that means the same inside a formula."""
 
 CONDITIONS: Final = ("if", "when", "whenever", "while")
 """English words that begin a condition."""
@@ -83,7 +83,7 @@ SYNONYMS: Final[dict[str, dict[str, str]]] = {
     },
     "test_item": {"assert": "expect"},
 }
-"""Words that other languages or people use for our keywords, by the kind of statement."""
+"""By kind of statement, words that people write in place of a keyword, each with that keyword."""
 
 UNITS_ELSEWHERE: Final = {
     **dict.fromkeys(("meter", "meters", "metre", "metres"), "m"),
@@ -97,7 +97,7 @@ UNITS_ELSEWHERE: Final = {
     **dict.fromkeys(("kmh", "kph"), "km/h"),
     "mps": "m/s",
 }
-"""Other names of units."""
+"""Names of units that the language does not have, each with the unit of the language."""
 
 JUDGE: Final = ("goal", "limit")
 SEMANTICS: Final = ("finite", "infinite")
@@ -111,7 +111,7 @@ _OTHER_WORDS: Final = frozenset(
     pudding relate retire reverse roach steep stems stop stops strong_next strong_until ten tent text the thin tree
     """.split()
 )
-"""Words that look like words of the language but mean something else."""
+"""English words that resemble a word of the language but are no misspelling of it."""
 
 
 @lru_cache(maxsize=1000)

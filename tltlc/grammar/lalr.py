@@ -1,4 +1,4 @@
-"""The LALR(1) parser: turns tokens into a tree with the tables that lark built."""
+"""The LALR(1) parser. It turns tokens into a tree, with the tables that lark built."""
 
 from __future__ import annotations
 
@@ -11,7 +11,10 @@ from tltlc.grammar.tables import ParserTables
 
 
 class UnexpectedTokenError(Exception):
-    """The token at ``index`` does not fit the grammar; ``states`` is the parser's stack before the token."""
+    """The token at ``index`` does not fit the grammar.
+
+    ``states`` is the parser's stack of states before the token.
+    """
 
     def __init__(self, index: int, states: list[int]) -> None:
         super().__init__(index)
@@ -22,8 +25,9 @@ class UnexpectedTokenError(Exception):
 def run(tables: ParserTables, start: str, tokens: Sequence[Token], builder: object) -> Any:
     """Parse the tokens as the nonterminal ``start``, and return the builder's value for it.
 
-    A reduction by a rule with the action ``name`` calls ``builder.make_name(span, *kept values)``.
-    Raises UnexpectedTokenError.
+    The last token must be ``$END``. A reduction by a rule with the action ``name`` calls
+    ``builder.make_name(span, *values)`` with the values that the rule keeps. Without such a method,
+    the list of these values is the result. Raises UnexpectedTokenError.
     """
     actions, gotos = tables.actions, tables.gotos
     rules = [
@@ -64,9 +68,10 @@ def run(tables: ParserTables, start: str, tokens: Sequence[Token], builder: obje
 
 
 def stack_after(tables: ParserTables, start: str, tokens: Sequence[Token]) -> list[int]:
-    """Return the parser's stack after tokens that begin a text of the nonterminal ``start``.
+    """Return the parser's stack of states after ``tokens``.
 
-    The next token may still change the stack: some reductions wait for it.
+    The tokens are the beginning of a text of the nonterminal ``start``. The parser may still reduce
+    the stack when it sees the next token.
     """
     try:
         run(tables, start, [*tokens, Token(BAD, "", 0, 0)], None)
@@ -76,7 +81,7 @@ def stack_after(tables: ParserTables, start: str, tokens: Sequence[Token]) -> li
 
 
 def allowed_terminals(tables: ParserTables, states: Sequence[int]) -> set[str]:
-    """Return the terminals that may follow where the parser has this stack of states."""
+    """Return the terminals that the parser accepts next if this is its stack of states."""
     return {terminal for terminal in tables.actions[states[-1]] if _accepts(tables, list(states), terminal)}
 
 
@@ -96,9 +101,11 @@ def _accepts(tables: ParserTables, states: list[int], terminal: str) -> bool:
 
 
 def _terminal_of(tables: ParserTables, state: int, tokens: Sequence[Token], index: int) -> str:
-    """Return the terminal of a token in this state: an unreserved word is a name where a name can stand.
+    """Return the terminal of a token in this state of the parser.
 
-    If the name and the word can both stand, it is the word if a number follows (``F within 20 steps p``).
+    An unreserved word, such as ``within``, is a name where the grammar allows no such keyword, and
+    a keyword where it allows no name. Where it allows both, the word is a keyword if a number
+    follows (``F within 20 steps p``).
     """
     token = tokens[index]
     soft = tables.soft.get(token.text)

@@ -19,7 +19,7 @@ BAD: Final = "BAD"
 
 
 class Token(NamedTuple):
-    """A terminal with the half-open range of offsets that it covers."""
+    """A piece of text with its terminal, ``type``, and its half-open range of character offsets."""
 
     type: str
     text: str
@@ -28,7 +28,7 @@ class Token(NamedTuple):
 
     @property
     def span(self) -> Span:
-        """The range of offsets that the token covers."""
+        """The range of character offsets that the token covers."""
         return Span(self.start, self.end)
 
 
@@ -44,7 +44,11 @@ class Tokens(NamedTuple):
 
 
 def tokenize(text: str) -> Tokens:
-    """Return the tokens of a text, at most one more than :data:`MAX_TOKENS`; unreadable parts become ``BAD`` tokens."""
+    """Split a text into tokens; unreadable parts become ``BAD`` tokens.
+
+    Stops after :data:`MAX_TOKENS` tokens and then adds ``$END``, so that a caller can tell that the
+    text is too long.
+    """
     tables = load()
     words, signs = tables.words, tables.signs
     tokens: list[Token] = []

@@ -1,4 +1,4 @@
-"""Limit how deep a text may nest, so that all later stages can walk the tree recursively."""
+"""Limits on how deep a text may nest, so that all later stages can walk its tree recursively."""
 
 from __future__ import annotations
 
@@ -17,7 +17,10 @@ MAX_BRACKETS: Final = 200
 """The most brackets that may be open at once."""
 
 MAX_DEPTH: Final = 1000
-"""The greatest depth of an expression's tree, in nodes; chains of operators count, with or without brackets."""
+"""The greatest depth of an expression's tree, in nodes.
+
+A chain such as ``a & b & c`` is nested, too.
+"""
 
 _OPENING = {"LPAR", "LSQB", "LBRACE"}
 _CLOSING = {"RPAR", "RSQB", "RBRACE"}
@@ -38,7 +41,7 @@ def bracket_depth_error(source: SourceFile, tokens: Sequence[Token]) -> Diagnost
 
 
 def expression_depth_error(source: SourceFile, expression: Expr) -> Diagnostic | None:
-    """Return an error if an expression nests too deep, else None; does not recurse."""
+    """Return an error if an expression nests too deep, else None. Does not recurse itself."""
     level: list[Expr] = [expression]
     for _ in range(MAX_DEPTH):
         level = [child for parent in level for child in children(parent)]
@@ -52,7 +55,10 @@ def expression_depth_error(source: SourceFile, expression: Expr) -> Diagnostic |
 def drop_deep_declarations(
     source: SourceFile, declarations: Iterable[Declaration]
 ) -> tuple[tuple[Declaration, ...], list[Diagnostic]]:
-    """Return the declarations without those, or their clauses, that nest too deep, and an error for each."""
+    """Drop the declarations, and the clauses of specs, that nest too deep.
+
+    Return what is left, and an error for each declaration or clause that was dropped.
+    """
     kept: list[Declaration] = []
     diagnostics: list[Diagnostic] = []
     for declaration in declarations:
@@ -75,7 +81,7 @@ def drop_deep_declarations(
 def drop_deep_clauses(
     source: SourceFile, clauses: Iterable[tree.Clause]
 ) -> tuple[tuple[tree.Clause, ...], list[Diagnostic]]:
-    """Return the clauses without those that nest too deep, and an error for each."""
+    """Drop the clauses that nest too deep; return the others, and an error for each dropped one."""
     kept: list[tree.Clause] = []
     diagnostics: list[Diagnostic] = []
     for clause in clauses:

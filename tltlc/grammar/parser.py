@@ -23,7 +23,7 @@ MAX_CHARACTERS: Final = 1 << 20
 
 
 def parse(source: SourceFile) -> tuple[Module, tuple[Diagnostic, ...]]:
-    """Return the declarations that can be read, and all syntax errors; never raises."""
+    """Return a module with all readable declarations, and all syntax errors; never raises."""
     lexed = _tokens(source)
     if lexed is None:
         return Module(source, (), ()), (_too_large_error(source),)
@@ -33,7 +33,10 @@ def parse(source: SourceFile) -> tuple[Module, tuple[Diagnostic, ...]]:
 
 
 def parse_formula(source: SourceFile) -> tuple[Expr | None, tuple[Diagnostic, ...]]:
-    """Return the formula, or None if it cannot be read, and all syntax errors; never raises."""
+    """Parse a text that is one formula.
+
+    Return its tree, or None, and all syntax errors; never raises.
+    """
     lexed = _tokens(source)
     if lexed is None:
         return None, (_too_large_error(source),)

@@ -19,7 +19,7 @@ from tltlc.grammar.tables import load
 __all__ = ["TltlLexer"]
 
 Class: TypeAlias = Any
-"""A token type of Pygments, which has no type annotations."""
+"""A token type of Pygments. It is ``Any`` because Pygments has no type annotations."""
 
 _DECLARATIONS: Final = "IMPORT SIGNAL ENTITY PARAM CLOCK PREDICATE LET EXCLUSIVE SPEC TEST".split()
 _CLAUSES: Final = "REACH KEEP AVOID REQUIRE LEVEL LIMIT JUDGE SEMANTICS TAG".split()
@@ -43,12 +43,12 @@ CLASSES: Final[dict[str, Class]] = {
     "COMMENT": pygments.Comment.Single,
     "BAD": pygments.Error,
 }
-"""The Pygments type of each terminal; word operators and names are distinguished further."""
+"""The Pygments type of each terminal. ``_pygments_type`` refines it for operators and names."""
 
 _HEADS: Final = frozenset({"SIGNAL", "PARAM", "PREDICATE", "LET"})
 """Declarations whose head may have a colon before a type."""
 _CHOOSING: Final = frozenset({"EXPECT", "SEMANTICS", "AT"})
-"""After these, a name is one of a fixed set: a verdict, `infinite`, `goal`."""
+"""Keywords after which a name is one of a fixed set: a verdict, `infinite`, `goal`."""
 
 # An unreserved word is a keyword after, or before, one of these terminals.
 _KEYWORD_AFTER: Final = {"AT": {"JUDGE"}, "FOR": {"STRING"}, "TIMES": {"NUMBER"}, "AS": {"NAME", "STRING"}}
@@ -56,7 +56,7 @@ _KEYWORD_BEFORE: Final = {"FOR": {"NUMBER"}, "WITHIN": {"NUMBER"}, "AFTER": {"NU
 
 
 class TltlLexer(Lexer):  # type: ignore[misc]
-    """Specifications in truncated linear temporal logic."""
+    """A Pygments lexer for specs in truncated linear temporal logic."""
 
     name = "TLTL"
     aliases: ClassVar = ["tltl"]

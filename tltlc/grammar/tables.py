@@ -25,11 +25,12 @@ STARTS = ("module", "declaration", "clause", "test_item", "expression")
 
 @record
 class GrammarRule:
-    """What a reduction does: pop ``size`` values and pass those of ``keep`` to the builder's method ``action``.
+    """A rule of the grammar: how the parser reduces ``size`` values to one value of ``origin``.
 
-    ``keep`` contains positions among the popped values: ``-1`` for an absent optional part, and
-    ``-2 - i`` for a list at position i, whose items are spliced in. ``action`` is empty if the one
-    kept value passes through, and ``*`` if the kept values form a list.
+    It pops ``size`` values and passes those in ``keep`` to the builder's method ``make_`` +
+    ``action``. An entry of ``keep`` is the position of a popped value, ``-1`` for an absent
+    optional part, or ``-2 - i`` for a list at position i, whose items are passed one by one.
+    ``action`` is empty if the only kept value is the result, ``*`` if the list of kept values is.
     """
 
     origin: str
@@ -43,8 +44,10 @@ class ParserTables:
     """The tables of the parser and the lexer.
 
     ``actions[state]`` maps a terminal to the next state (shift) or to ``~rule`` (reduce).
-    ``gotos[state]`` maps a nonterminal to the next state. ``words`` and ``signs`` map each spelling to
-    its terminal. ``soft`` does so for the words that are names where a name can stand.
+    ``gotos[state]`` maps a nonterminal to the next state. ``words`` and ``signs`` map each spelling
+    to its terminal. ``soft`` does so for the unreserved words, which can be names, too. ``starts``
+    and ``ends`` map each nonterminal of ``STARTS`` to its first and its accepting state.
+    ``patterns`` has regular expressions for the terminals that are not lists of texts.
     """
 
     rules: tuple[GrammarRule, ...]
@@ -112,7 +115,10 @@ def build(grammar: bytes) -> dict[str, Any]:
 
 
 def _breadth_first(table: Any) -> dict[int, int]:
-    """Return new numbers for lark's states, breadth-first by symbol, so that a grammar always gives the same file."""
+    """Return a new number for each of lark's states, so that a grammar always gives the same file.
+
+    The numbers count the states breadth-first, in the order of the symbols.
+    """
     order = {table.start_states[start]: number for number, start in enumerate(STARTS)}
     queue = list(order)
     for state in queue:
@@ -143,7 +149,7 @@ def _action(rule: Any) -> tuple[str, list[int]]:
 
 
 def _distinct(rows: list[dict[str, int]]) -> list[dict[str, int]]:
-    """Return the rows without repetition, in order."""
+    """Return the rows without duplicates, in order of first appearance."""
     distinct: list[dict[str, int]] = []
     for row in rows:
         if row not in distinct:
@@ -173,7 +179,7 @@ def _spellings(terminals: Any) -> dict[str, Any]:
 
 
 def _texts(pattern: Any) -> list[str] | None:
-    """Return the fixed texts that a terminal's pattern lists, or None if it is a real regular expression."""
+    """Return the texts that a terminal's pattern lists, or None if it is no list of texts."""
     if pattern.type == "str":
         return [pattern.value]
     listed = re.fullmatch(r"\(\?:(.*)\)", pattern.value, re.DOTALL)

@@ -1,7 +1,7 @@
 """Check the operands of ``then``: an operand with two possible readings needs brackets (TLT0102).
 
-Outside ``reach``, an operand is an atom, a negated atom or in brackets. In ``reach``, ``then`` is
-clearly the loosest operator, so only an operand that begins with a bare temporal operator is refused.
+Outside ``reach``, an operand must be an atom, a negated atom or in brackets. In ``reach``, ``then``
+binds loosest, so only an operand that begins with a temporal operator needs brackets.
 """
 
 from __future__ import annotations
@@ -21,7 +21,10 @@ _SHORT: Final = 60
 
 
 def check_then(source: SourceFile, formula: Expr, *, in_reach: bool) -> Iterator[Diagnostic]:
-    """Yield an error for each operand of a ``then`` in ``formula`` that lacks brackets."""
+    """Yield an error for each operand of a ``then`` in ``formula`` that lacks brackets.
+
+    ``in_reach`` is True for the formula of a ``reach`` clause.
+    """
     pending = [(formula, in_reach)]
     while pending:
         part, lenient = pending.pop()
@@ -65,7 +68,7 @@ def _check_operand(source: SourceFile, sequence: list[Expr], position: int, leni
 
 
 def _leading_operator(operand: Expr) -> tree.Unary | None:
-    """Return the temporal operator that begins an operand, or None; brackets hide it."""
+    """Return the temporal operator that begins an operand, or None; none in brackets counts."""
     while isinstance(operand, tree.BinaryExpr):
         operand = operand.left
     while isinstance(operand, tree.Unary) and operand.op == "not":
@@ -83,7 +86,7 @@ def _is_plain(operand: Expr) -> bool:
 
 
 def _readings_help(source: SourceFile, operand: Expr, neighbour: Expr, last: bool) -> str:
-    """Return a help that shows both ways to put the brackets."""
+    """Return a help text that shows both places where the brackets can be put."""
     text, neighbour_text = _text(source, operand), _text(source, neighbour)
     inner: Expr
     if isinstance(operand, tree.Unary):
@@ -106,9 +109,10 @@ def _readings_help(source: SourceFile, operand: Expr, neighbour: Expr, last: boo
 
 
 def _fixes(source: SourceFile, sequence: list[Expr], position: int, lenient: bool) -> tuple[Fix, ...]:
-    """Return fixes: brackets around the operand, or around its nearer half and the neighbour.
+    """Return fixes: brackets around the operand, or around ``then`` and the two formulas beside it.
 
-    Leave out a fix that would lose the order of the operands.
+    For ``F a then b``, these are ``(F a) then b`` and ``F (a then b)``. Return no fix if brackets
+    around the operand are the only one and would lose the order of the operands.
     """
     operand = sequence[position]
     bare = [element for element in sequence if _lacks_brackets(element, lenient)]
@@ -130,7 +134,7 @@ def _fixes(source: SourceFile, sequence: list[Expr], position: int, lenient: boo
 
 
 def _names_its_step(operand: Expr) -> bool:
-    """Whether an operand after `then`, which means "later", itself says at which step: `next a`, `always a`."""
+    """Whether an operand says by itself at which step it holds, as `next a` and `always a` do."""
     leading = _leading_operator(operand)
     return leading is not None and (leading.op != "F" or leading is not operand)
 
@@ -145,7 +149,7 @@ def _lacks_brackets(operand: Expr, lenient: bool) -> bool:
 
 
 def _operand_beside_then(operand: Expr, last: bool) -> Expr | None:
-    """Return the operand of a unary or binary operator that stands beside the `then`, or None."""
+    """Return the part of an operand that stands beside `then`, as ``a`` in ``F a then b``."""
     if isinstance(operand, tree.BinaryExpr):
         return operand.left if last else operand.right
     return operand.operand if isinstance(operand, tree.Unary) and not last else None

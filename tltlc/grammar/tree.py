@@ -1,8 +1,9 @@
-"""The syntax tree: frozen nodes with spans, as close to the text as later stages need.
+"""The nodes of the syntax tree: frozen records, each with its span in the source text.
 
-Formulas and arithmetic share one expression grammar, since LALR(1) cannot distinguish them before
-the end of a bracket; :mod:`tltlc.resolve` assigns the types. Each operator is stored under one
-canonical spelling: ``not and or implies iff F G X N U W R M then`` and ``+ - * / ^ < <= > >=``.
+Formulas and arithmetic are both expressions, since an LALR(1) parser that reads an opening bracket
+cannot know which of them follows; :mod:`tltlc.resolve` finds the types. Each operator is stored
+under one canonical spelling: ``not and or implies iff F G X N U W R M then`` and
+``+ - * / ^ < <= > >=``.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ class NumberExpr:
 
 @record
 class Constant:
-    """``true`` or ``false``."""
+    """The constant ``true`` or ``false``."""
 
     value: bool
     span: Span
@@ -51,7 +52,7 @@ class Argument:
 
 @record
 class CallExpr:
-    """``name(arguments)``: a predicate, a signal of an entity, a ``let`` or a function."""
+    """A call ``name(arguments)`` of a predicate, a signal of an entity, a ``let`` or a function."""
 
     name: str
     arguments: tuple[Argument, ...]
@@ -61,13 +62,16 @@ class CallExpr:
 
 @record
 class TemporalInterval:
-    """``[low, high]`` of a temporal operator, in samples or seconds; ``low`` is None for ``within`` and ``for``."""
+    """The bound of a temporal operator, in steps or as a time: ``[0, 20]`` or ``within 20 steps``.
+
+    ``low`` is None for the words ``within``, ``for`` and ``after``.
+    """
 
     low: NumberExpr | None
     high: NumberExpr
     span: Span
     words: bool
-    """True for ``within 20 steps``, ``for 20 steps``, ``after 3 steps``, False for ``F[0,20]``."""
+    """True for a bound in words, ``within 20 steps``, False for one in brackets, ``F[0,20]``."""
 
 
 @record
@@ -102,7 +106,7 @@ class GroupExpr:
 
 @record
 class Quantified:
-    """``all x in (s1, s2): body`` (``all`` True) or ``any x in (…): body``."""
+    """A quantifier: ``all x in (s1, s2): body`` (``all`` is True) or ``any x in (…): body``."""
 
     all: bool
     variable: str
@@ -113,7 +117,7 @@ class Quantified:
 
 @record
 class WhenCase:
-    """``when condition: value``."""
+    """A case of a :class:`WhenExpr`: ``when condition: value``."""
 
     condition: Expr
     value: Expr
@@ -122,7 +126,7 @@ class WhenCase:
 
 @record
 class WhenExpr:
-    """A case distinction; only in predicates."""
+    """A case distinction, ``when condition: value … otherwise: value``; only in predicates."""
 
     cases: tuple[WhenCase, ...]
     otherwise: Expr
@@ -148,7 +152,10 @@ class Import:
 
 @record
 class Interval:
-    """``in [low, high]``; the limits are constant expressions (``-1``, ``2 m``, ``inf``)."""
+    """A range, ``in [low, high]``.
+
+    Both ends are constant expressions, such as ``-1``, ``2 m``, ``inf``.
+    """
 
     low: Expr
     high: Expr
@@ -157,7 +164,7 @@ class Interval:
 
 @record
 class Parameter:
-    """``name: type = default`` in the head of a signal, predicate or ``let``."""
+    """A parameter of a signal, predicate or ``let``: ``name: type = default``."""
 
     name: str
     type: str | None
@@ -168,7 +175,10 @@ class Parameter:
 
 @record
 class SignalDecl:
-    """``signal distance(target: entity): length in [0 m, inf]``; ``type`` is None for a bare ``in``."""
+    """A declaration of a signal: ``signal distance(target: entity): length in [0 m, inf]``.
+
+    ``type`` is None if only a range is given, as in ``signal coins in [0, 50]``.
+    """
 
     name: str
     parameters: tuple[Parameter, ...]
@@ -181,7 +191,7 @@ class SignalDecl:
 
 @record
 class EntityDecl:
-    """``entity a, b``."""
+    """A declaration of entities: ``entity a, b``."""
 
     names: tuple[NameExpr, ...]
     doc: str
@@ -190,7 +200,7 @@ class EntityDecl:
 
 @record
 class ParamDecl:
-    """``param level_size: length in [2 m, 10 km] = 20 m``."""
+    """A declaration of a param: ``param level_size: length in [2 m, 10 km] = 20 m``."""
 
     name: str
     type: str | None
@@ -203,7 +213,7 @@ class ParamDecl:
 
 @record
 class ClockDecl:
-    """``clock 20 Hz`` or ``clock 0.05 s``."""
+    """A declaration of the clock: ``clock 20 Hz`` or ``clock 0.05 s``."""
 
     value: NumberExpr
     span: Span
@@ -211,7 +221,7 @@ class ClockDecl:
 
 @record
 class PredicateDecl:
-    """``predicate near(target: entity) in [-1, 1] = expression``."""
+    """A predicate: ``predicate near(target: entity) in [-1, 1] = expression``."""
 
     name: str
     parameters: tuple[Parameter, ...]
@@ -224,7 +234,7 @@ class PredicateDecl:
 
 @record
 class LetDecl:
-    """``let name(parameters) = formula``."""
+    """A definition: ``let name(parameters) = formula``."""
 
     name: str
     parameters: tuple[Parameter, ...]
@@ -236,7 +246,7 @@ class LetDecl:
 
 @record
 class ExclusiveDecl:
-    """``exclusive A, B, …``."""
+    """A declaration of atoms that never hold together: ``exclusive A, B, …``."""
 
     atoms: tuple[Expr, ...]
     span: Span
@@ -260,7 +270,10 @@ class Clause:
 
 @record
 class SpecDecl:
-    """``spec NAME { clauses }``; ``spec NAME = FORMULA`` has one ``require``, and ``block`` is False."""
+    """A spec: ``spec NAME { clauses }``, or ``spec NAME = FORMULA``.
+
+    ``block`` is True for the first form. The second has one clause, a ``require`` with the formula.
+    """
 
     name: str
     clauses: tuple[Clause, ...]
@@ -272,7 +285,7 @@ class SpecDecl:
 
 @record
 class TestStep:
-    """``step 3x alive, not near(s1)``."""
+    """A line of a test with a sample: ``step 3x alive, not near(s1)``."""
 
     times: int
     atoms: tuple[Expr, ...]
@@ -281,7 +294,7 @@ class TestStep:
 
 @record
 class TestExpect:
-    """``expect pending``, ``expect progress >= 0.5``, ``expect state "G p"``.
+    """A line of a test: ``expect pending``, ``expect progress >= 0.5``, ``expect state "G p"``.
 
     ``kind`` is ``verdict``, ``progress`` or ``state``. ``value`` is the verdict, the number or the
     label. ``comparison`` is one of ``< <= > >=`` for progress, else None.
@@ -295,7 +308,7 @@ class TestExpect:
 
 @record
 class TestDecl:
-    """``test "…" for SPEC { step … expect … }``."""
+    """A test: ``test "…" for SPEC { step … expect … }``."""
 
     title: str
     spec: NameExpr

@@ -1,4 +1,4 @@
-"""Typos: find the known word that a misspelt word stands for.
+"""Find the known word that a misspelt word is meant to be.
 
 A word that resembles a known word may have its own meaning: `doorB` is not `doorA`, and `unlocked` is
 not `locked`. So only these count as typos: one letter too many, one too few, two exchanged neighbours,
@@ -23,10 +23,11 @@ _NEGATING: Final = ("no", "nt")
 
 
 def likely_name(name: str, known: Iterable[str]) -> str | None:
-    """Return the known name that a name is or most likely misspells; None if none or several are as likely.
+    """Return the known name that ``name`` equals or most likely misspells, or None.
 
-    A name that differs only in capital letters and underscores comes first, then a name that ends with
-    a dot and the given name. Among more than 2,000 names, no other typos are looked for.
+    The first choice is a known name that differs only in capital letters and underscores, the
+    second one that ends with a dot and ``name``. The third is the name with the fewest typos, if no
+    other has as few; with more than 2,000 known names, typos are not looked for.
     """
     names = tuple(dict.fromkeys(known))
     matches = [candidate for candidate in names if _plain(candidate) == _plain(name)]
@@ -43,7 +44,7 @@ def likely_name(name: str, known: Iterable[str]) -> str | None:
 
 
 def count_typos(word: str, known: str) -> int | None:
-    """Return how many typos turn the known word into the word; None if they are different words."""
+    """Return how many typos turn ``known`` into ``word``; None if they are different words."""
     most = 0 if len(known) < 2 else 2 if len(known) >= _LONG else 1
     if abs(len(word) - len(known)) > most or not _begin_alike(word, known):
         return None
@@ -60,10 +61,10 @@ def _plain(name: str) -> str:
 
 
 def _count_typos_in_parts(name: str, known: str) -> int | None:
-    """Return the number of typos in all parts of a name.
+    """Return the number of typos in all words of a name; ``nearDoor`` has two words.
 
-    None if a part is a different word, or if the two names differ in their numbers or in how many
-    parts they have.
+    Return None if a word is a different one, or if the two names differ in their digits or in their
+    number of words.
     """
     if name.count(".") != known.count("."):
         return None

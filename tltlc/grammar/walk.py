@@ -45,8 +45,8 @@ def parts(expression: Expr) -> Iterator[Expr]:
 def operands(expression: Expr, op: str, *, through_brackets: bool = False) -> list[Expr]:
     """Return the operands of a chain such as ``a & b & c`` or ``a then b then c``, in order.
 
-    If the expression is not an ``op``, return it alone. With ``through_brackets``, ``a & (b & c)`` has
-    three operands.
+    If the expression has no operator ``op`` at its top, return it alone. With ``through_brackets``,
+    ``a & (b & c)`` has three operands.
     """
     chain: list[Expr] = []
     pending = [expression]
@@ -63,7 +63,10 @@ def operands(expression: Expr, op: str, *, through_brackets: bool = False) -> li
 
 
 def conjuncts(expression: Expr) -> list[Expr]:
-    """Return the operands of the outermost ``and``, through brackets, in order; else the expression alone."""
+    """Return the operands of the outermost chain of ``and``, in order.
+
+    Brackets around a part of the chain do not matter. Without a chain, return the expression alone.
+    """
     return operands(expression, "and", through_brackets=True)
 
 

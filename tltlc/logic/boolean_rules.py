@@ -1,8 +1,8 @@
 """Rewrites of ``not``, ``and``, ``or``, ``implies`` and ``iff``.
 
 The laws are listed in :mod:`tltlc.logic.rewrite`. Each function takes a formula and returns an
-equal one that is no longer. It returns the same object if the rule does not apply. Operands keep
-their order.
+equivalent one that is not larger. It returns the same object if the rule does not apply. Operands
+keep their order.
 """
 
 from __future__ import annotations
@@ -67,7 +67,10 @@ def _makes_redundant(op: str, operand: Formula, part: Formula) -> bool:
 
 
 def resolve(node: Formula) -> Formula:
-    """Inside an operand, drop the parts that the other operands rule out."""
+    """Inside an operand, drop the parts that the other operands rule out.
+
+    ``a & (!a | b)`` becomes ``a & b``.
+    """
     if len(node.args) > _MOST_OPERANDS:
         return node
     inner_op = "or" if node.op == "and" else "and"
@@ -92,7 +95,7 @@ def _rules_out(op: str, operand: Formula, inner: Formula) -> bool:
 
 
 def factor(node: Formula) -> Formula:
-    """Factor out the parts that all operands share."""
+    """Factor out the parts that all operands share: ``(a | b) & (a | c)`` becomes ``a | b & c``."""
     inner_op = "or" if node.op == "and" else "and"
     if any(part.op != inner_op for part in node.args):
         return node
@@ -106,7 +109,7 @@ def factor(node: Formula) -> Formula:
 
 
 def push_not(node: Formula) -> Formula:
-    """Push ``not`` inwards if the result is no longer."""
+    """Push ``not`` inwards if this does not make the formula larger."""
     (inner,) = node.args
     match inner.op:
         case "true" | "false" | "not":
@@ -123,7 +126,7 @@ def push_not(node: Formula) -> Formula:
 
 
 def shorten_implication(node: Formula) -> Formula:
-    """Shorten ``a -> b``."""
+    """Shorten an implication: ``true -> a`` becomes ``a``, and ``a -> false`` becomes ``!a``."""
     left, right = node.args
     if left is TRUE:
         return right
@@ -135,7 +138,7 @@ def shorten_implication(node: Formula) -> Formula:
 
 
 def shorten_equivalence(node: Formula) -> Formula:
-    """Shorten ``a <-> b``."""
+    """Shorten an equivalence: ``true <-> a`` becomes ``a``, and ``a <-> !a`` becomes ``false``."""
     left, right = node.args
     if left is right:
         return TRUE

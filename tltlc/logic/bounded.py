@@ -1,4 +1,4 @@
-"""Recognise bounded operators in their expansions into nexts.
+"""Recognise the formulas that are expansions of bounded operators.
 
 ``F[0,2] p`` is the formula ``p | X(p | X p)``, and ``G[0,2] p`` is ``p & N(p & N p)``. Texts print
 the bounded form, which stays short for any bound.
@@ -13,7 +13,7 @@ from weakref import WeakKeyDictionary
 from tltlc.logic.formula import Formula, rebuild
 
 LEAST: Final = 2
-"""The smallest bound that is printed in bounded form: ``a | X a`` is short enough as it is."""
+"""The fewest steps of a bound that is printed in bounded form; ``a | X a`` has one step."""
 
 
 class Bounded(NamedTuple):
@@ -29,9 +29,10 @@ _counted_down: WeakKeyDictionary[Formula, Formula | None] = WeakKeyDictionary()
 
 
 def bounded_operator(node: Formula) -> Bounded | None:
-    """Return the bounded operator that all operands of an ``or`` or ``and`` together expand, or None.
+    """Return the bounded operator whose expansion is ``node``, or None if there is none.
 
-    Results are cached: the labels of n states that count down a bound take n steps, not n².
+    ``p | X(p | X p)`` is the expansion of ``F[0,2] p``. Results are cached, so that the labels of n
+    states that count down a bound take time proportional to n, not n².
     """
     chain: list[Formula] = []
     inner = node
@@ -46,7 +47,7 @@ def bounded_operator(node: Formula) -> Bounded | None:
 
 
 def count_down(node: Formula) -> Formula | None:
-    """Return the formula of a bound with one step less, or None.
+    """Return ``node`` with a bound that is one step shorter, or None.
 
     For ``X(p | X(p | X p))`` the result is ``X(p | X p)``. It is None unless ``node`` is an ``X``
     or ``N`` of such a form with at least two steps. Over ``or``, the shorter formula implies the
@@ -64,7 +65,7 @@ def count_down(node: Formula) -> Formula | None:
 
 
 def count_down_from(node: Formula, known: Container[Formula]) -> Iterator[Formula]:
-    """Yield the formulas that ``node`` counts down to, up to but excluding one that is ``known``."""
+    """Apply :func:`count_down` repeatedly and yield the results until one is ``known`` or None."""
     shorter = count_down(node)
     while shorter is not None and shorter not in known:
         yield shorter
@@ -110,9 +111,9 @@ def operands_with_bounds(node: Formula) -> list[Formula]:
 
 
 def _bounded_ending_in(last: Formula, node: Formula, before: Sequence[Formula]) -> Bounded | None:
-    """Return the bounded operator whose expansion ends with ``last``, or None.
+    """Return the bounded operator whose expansion ends with the operand ``last``, or None.
 
-    The expansion begins among the operands before ``last``.
+    ``before`` are the operands before ``last``; the expansion begins among them.
     """
     inner = last.args[0]
     rest = bounded_operator(inner)
@@ -128,7 +129,7 @@ def _next_op(node: Formula) -> str:
 
 
 def _operands(body: Formula, node: Formula) -> tuple[Formula, ...]:
-    """Return the operands that ``body`` becomes inside an ``or`` or ``and``, which are flat."""
+    """Return the operands that ``body`` adds to ``node``; nested operands are flattened."""
     return body.args if body.op == node.op else (body,)
 
 

@@ -21,7 +21,7 @@ class Formula:
     """A node: ``op``, its ``args`` (formulas), and for an atom its ``name``.
 
     Do not construct it directly; use the functions of this module. ``and`` and ``or`` have two or
-    more operands, none with the same operator.
+    more operands, none of which has the same operator again.
     """
 
     __slots__ = ("__weakref__", "args", "name", "op")
@@ -76,7 +76,7 @@ class Formula:
     def bottom_up(self, known: Container[Formula] = ()) -> Iterator[Formula]:
         """Yield every distinct subformula after its operands, the formula itself last, without recursion.
 
-        Skips subformulas in ``known``, and subformulas that occur only inside these.
+        Skips the subformulas in ``known``, and those that occur only inside one in ``known``.
         """
         seen: set[Formula] = set()
         stack = [(self, False)]
@@ -169,12 +169,12 @@ def weak_next(operand: Formula) -> Formula:
 
 
 def eventually(operand: Formula) -> Formula:
-    """Return ``F``: now or at some later sample of the trace."""
+    """Return ``F operand``: it holds now or at some later sample of the trace."""
     return _intern("F", (operand,))
 
 
 def always(operand: Formula) -> Formula:
-    """Return ``G``: now and at every later sample of the trace."""
+    """Return ``G operand``: it holds now and at every later sample of the trace."""
     return _intern("G", (operand,))
 
 
@@ -211,11 +211,14 @@ def then(left: Formula, right: Formula) -> Formula:
 
 
 FlatNodes = list[tuple[Op, tuple[int, ...], str]]
-"""Nodes as tuples: operator, indices of the operands, and name. Operands come before the nodes that use them."""
+"""Formulas as plain data: a tuple for each subformula, operands before the formulas that use them.
+
+A tuple contains the operator, the indices of the operands in this list, and the name of an atom.
+"""
 
 
 def flatten(formulas: Iterable[Formula]) -> tuple[FlatNodes, list[int]]:
-    """Return the distinct nodes of formulas as plain data, and the index of each formula."""
+    """Return the distinct subformulas as plain data, and the index of each formula in that list."""
     nodes: FlatNodes = []
     index: dict[Formula, int] = {}
     places = []
@@ -228,7 +231,7 @@ def flatten(formulas: Iterable[Formula]) -> tuple[FlatNodes, list[int]]:
 
 
 def unflatten(nodes: FlatNodes) -> list[Formula]:
-    """Return the formulas of all nodes, in order."""
+    """Return the formula of each tuple that :func:`flatten` made, in the same order."""
     formulas: list[Formula] = []
     for op, args, name in nodes:
         formulas.append(_intern(op, tuple(formulas[argument] for argument in args), name))

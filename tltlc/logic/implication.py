@@ -1,6 +1,6 @@
-"""Cheap, sound answers about formulas on finite traces.
+"""Quick proofs about formulas on finite traces, such as that one implies another.
 
-Each function may give no answer where a proof would be long.
+What a function proves is true. Where a proof would be long, it gives up.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from tltlc.logic.formula import FALSE, TRUE, Formula, Op
 from tltlc.logic.signature import signature
 
 DUAL: Final[dict[Op, Op]] = {"X": "N", "N": "X", "F": "G", "G": "F", "U": "R", "R": "U", "W": "M", "M": "W"}
-"""The operator that replaces another when negation moves to its operands: ``!X a`` is ``N !a``."""
+"""The dual of each operator, which replaces it as negation moves inwards: ``!X a`` is ``N !a``."""
 
 _MOST_PAIRS: Final = 400
 _DEEPEST: Final = 40
@@ -34,7 +34,7 @@ def syntactically_implies(premise: Formula, conclusion: Formula) -> bool:
 
 @lru_cache(maxsize=8192)
 def complement(formula: Formula, depth: int = _COMPLEMENT_DEPTH) -> Formula:
-    """Return the negation, pushed inwards through ``depth`` operators, without double negations."""
+    """Return the negation, with ``not`` pushed inwards through up to ``depth`` operators."""
     if formula.op == "not":
         return formula.args[0]
     if formula is TRUE or formula is FALSE:
@@ -106,7 +106,7 @@ def _implies(p: Formula, q: Formula, known: dict[tuple[Formula, Formula], bool],
 
 
 def _prove(p: Formula, q: Formula, known: dict[tuple[Formula, Formula], bool], depth: int) -> bool:
-    """Whether one proof step shows the implication; each line is a law of finite traces."""
+    """Whether one law of finite traces shows that ``p`` implies ``q``. Each line is a law."""
 
     def shows(premise: Formula, conclusion: Formula) -> bool:
         return _implies(premise, conclusion, known, depth)

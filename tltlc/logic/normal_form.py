@@ -1,4 +1,4 @@
-"""Negation normal form: negation only before atoms, plus only ``and or X N F G U W R M``."""
+"""Negation normal form: ``not`` only before atoms, and else only ``and or X N F G U W R M``."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _Signed = tuple[Formula, bool]
 
 
 def negation_normal_form(formula: Formula) -> Formula:
-    """Return an equal formula over literals, ``and``, ``or`` and temporal operators.
+    """Return an equivalent formula over literals, ``and``, ``or`` and temporal operators.
 
     The two are equal on every finite trace. ``a -> b`` becomes ``!a | b``, and ``a <-> b`` becomes
     ``a & b | !a & !b``. Negation turns each operator into its dual (``!X a`` is ``N !a``). Operands
@@ -50,7 +50,7 @@ def _is_normal(node: Formula) -> bool:
 
 
 def _strip(signed: _Signed) -> _Signed:
-    """Return the same formula without leading negations."""
+    """Return the same signed formula with its leading negations moved into the sign."""
     node, positive = signed
     while node.op == "not":
         node, positive = node.args[0], not positive
@@ -75,7 +75,7 @@ def _expand(signed: _Signed) -> tuple[Op, tuple[_Signed, ...]]:
 
 
 def _gather(op: Op, operands: tuple[_Signed, ...]) -> tuple[_Signed, ...]:
-    """Return the operands with nested ones of the same operator flattened, each once, in order."""
+    """Flatten operands that have the operator ``op``, too; return each operand once, in order."""
     gathered: list[_Signed] = []
     seen: set[_Signed] = set()
     stack = list(reversed(operands))

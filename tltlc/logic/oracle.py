@@ -1,6 +1,7 @@
-"""The meaning of formulas, computed slowly from the definitions (semantics, sections 1 and 2).
+"""The meaning of formulas, computed slowly from the definitions.
 
-Tests compare everything faster in this package with this module.
+The definitions are in ``docs/semantics.md``, sections 1 and 2. Tests compare all faster code with
+this module.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ def holds(formula: Formula, trace: Sequence[Collection[str]], position: int = 0)
 
 
 def robustness_of_state(formula: Formula, values: Mapping[str, float]) -> float:
-    """Return the robustness, in [-1, 1], of a formula without temporal operators in one state.
+    """Return the robustness, in [-1, 1], of a formula without temporal operators at one sample.
 
     ``values`` maps each atom to a value in [-1, 1]. True is 1, an atom is its value, ``not`` is the
     negative, ``and`` the minimum, and ``or`` the maximum (paper, section III). ``a -> b`` is read

@@ -22,9 +22,9 @@ _MOST_STEPS: Final = 50
 class Rewrite:
     """A rewrite of formulas whose outermost operator is in ``ops``.
 
-    ``apply`` returns an equal formula with no more atoms, constants and operators than before. It
-    returns the same object if the rewrite does not match. ``law`` holds equations ``left = right``,
-    separated by ``;``, that are instances of the rewrite.
+    ``apply`` returns an equivalent formula with no more atoms, constants and operators than before.
+    It returns the same object if the rewrite does not match. ``law`` contains examples of the
+    rewrite, ``before = after``, separated by ``;``, which tests check.
     """
 
     name: str
@@ -152,7 +152,7 @@ _BY_OP: Final[dict[str, tuple[Rewrite, ...]]] = {
 
 
 def simplify(formula: Formula, known: dict[Formula, Formula] | None = None) -> Formula:
-    """Return a formula that is equal on every finite trace and no longer (see :func:`size`).
+    """Return a formula that is equivalent on every finite trace and not larger (see :func:`size`).
 
     Operands keep their order. Passes from the leaves to the root repeat until nothing changes, at
     most 12 times. ``known`` caches the result of a pass for each subformula, for further calls with
@@ -170,7 +170,7 @@ def simplify(formula: Formula, known: dict[Formula, Formula] | None = None) -> F
 def size(formula: Formula) -> int:
     """Return the number of atoms, constants and operators in the printed formula.
 
-    ``a & b & c`` counts five.
+    The size of ``a & b & c`` is 5.
     """
     sizes: dict[Formula, int] = {}
     for node in formula.bottom_up():

@@ -1,7 +1,7 @@
 """Rewrites of the temporal operators over finite traces.
 
 The laws are listed in :mod:`tltlc.logic.rewrite`. Each function takes a formula and returns an
-equal one that is no longer. It returns the same object if the rule does not apply.
+equivalent one that is not larger. It returns the same object if the rule does not apply.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from tltlc.logic.implication import DUAL, complement, syntactically_implies, val
 
 
 def push_not(node: Formula) -> Formula:
-    """Push ``not`` through a temporal operator if the result is no longer."""
+    """Push ``not`` through a temporal operator if this does not make the formula larger."""
     (inner,) = node.args
     if not inner.is_temporal or (len(inner.args) == 2 and all(part.op != "not" for part in inner.args)):
         return node
@@ -125,7 +125,10 @@ def merge_at_last(node: Formula) -> Formula:
 
 
 def fold_expansion(node: Formula) -> Formula:
-    """Replace the expansion of ``F G U W R M``, a part for this sample and a part for the rest, by the operator."""
+    """Replace the expansion of a temporal operator by the operator: ``a | X F a`` becomes ``F a``.
+
+    An expansion has a part about this sample and a part about the rest of the trace.
+    """
     inner_op = "or" if node.op == "and" else "and"
     for index, part in enumerate(node.args):
         if part.op in ("X", "N"):
@@ -177,7 +180,7 @@ def merge_weak_and_strong(node: Formula) -> Formula:
 
 
 def _positions(node: Formula, part: Formula) -> list[int] | None:
-    """Return the positions of ``part``, or of each of its operands, among the operands.
+    """Return the positions of ``part``, or of each of its operands, among the operands of ``node``.
 
     Returns None if any is missing.
     """

@@ -49,7 +49,7 @@ def expand_bound(expr: Unary, operand: Formula, env: Env) -> Formula:
 
 
 def _drop_bound(op: str, steps: int, operand: Formula) -> Formula:
-    """Apply ``F`` or ``G`` without its bound. ``X`` and ``N`` keep their ``steps`` nexts."""
+    """Apply ``F`` or ``G`` without its bound, or ``X`` or ``N`` with its bound, ``steps`` times."""
     if op in ("F", "G"):
         return eventually(operand) if op == "F" else always(operand)
     for _ in range(steps):

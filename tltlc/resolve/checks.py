@@ -27,8 +27,9 @@ _NEVER_NEGATIVE = ("length", "time", "speed")
 def check_predicates(context: Context) -> None:
     """Check the range and continuity of every predicate in use, each once, and log the findings.
 
-    A range must hold for all values of the params. A jump counts only at the current values of the
-    params: `near(exit, close = 3 m)` would jump in a level of 2 m, but the level has another size.
+    A range must hold for all values of the params. A jump is reported only if it occurs with the
+    current values of the params: `near(exit, close = 3 m)` would jump in a level of 2 m, but the
+    level has another size.
 
     All checks together have a limited number of steps. One warning (TLT0503) names the predicates
     that were not checked.
@@ -87,7 +88,7 @@ def _jumps_at_param_values(instance: Instance, context: Context) -> bool:
 
 
 def _variables_read(instance: Instance, kind: type[N]) -> list[N]:
-    """Return the signals or params that a predicate reads."""
+    """Return the nodes of a predicate that read signals, or params, as ``kind`` says."""
     return [node for node in nodes(instance.expression) if isinstance(node, kind)]
 
 

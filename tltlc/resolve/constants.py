@@ -51,7 +51,7 @@ def interval(declared: Interval, dimension: Dimension, env: Env) -> tuple[float 
 
 
 def samples(value: NumberExpr, env: Env) -> int:
-    """Return a number of samples, written in steps or as a time (rounded up).
+    """Convert a bound or a limit, in steps or as a time, to a number of samples; round a time up.
 
     A number without a unit counts samples. A time needs a clock. Raises ResolutionError (TLT0312,
     TLT0313 without a clock).
@@ -80,7 +80,7 @@ def samples(value: NumberExpr, env: Env) -> int:
             advice="declare how often the game is sampled, e.g. `clock 20 Hz` (`clock 0.15 s` for levels of tltlc), "
             "or write the bound in steps",
         )
-    # The tolerance keeps 0.15 s at 20 Hz at 3 samples.
+    # Subtract a tolerance, so that a rounding error of the division does not add a sample.
     return _sample_count(in_si[0] / period - 1e-9, value, env)
 
 
@@ -96,7 +96,7 @@ _OVERRIDE = re.compile(r"([-+]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]
 
 
 def parse_override(text: str) -> tuple[float, Dimension | None] | None:
-    """Return the value of ``--param NAME=25 m`` in SI units and its dimension.
+    """Return the value of an option ``--param NAME=25 m`` in SI units, and its dimension.
 
     The dimension is None without a unit. The result is None if the text is not a value.
     """

@@ -18,14 +18,14 @@ from tltlc.resolve.problem import Log, ResolutionError, problem
 from tltlc.resolve.spec import Atom, Bound, Param, Signal, ValueType
 
 LARGEST_EXPANSION = 100_000
-"""The most nodes of a formula as a tree that bounds, quantifiers and lets may expand to."""
+"""The most nodes in the tree of a formula whose bounds, quantifiers and lets are expanded."""
 MOST_EXPANSIONS = 50_000
-"""The most uses of lets and quantifiers that the formulas of a program may expand."""
+"""The most times that lets and quantifiers may be expanded in one run of resolution."""
 
 
 @record
 class SignalInfo:
-    """A declared signal. With parameters, it stands for one signal per choice of entities."""
+    """A declared signal. If it has parameters, there is one signal for each choice of entities."""
 
     name: str
     parameters: tuple[str, ...]
@@ -38,13 +38,13 @@ class SignalInfo:
     place: Label
 
     def signal_of(self, entities: tuple[str, ...]) -> Signal:
-        """Return the signal of these entities."""
+        """Return the signal that has these entities as its arguments."""
         return Signal(self.name, self.type, self.low, self.high, self.doc, entities)
 
 
 @record
 class Instance:
-    """A predicate with its arguments, to be checked.
+    """A predicate with its arguments, whose range and continuity are to be checked.
 
     Entities are replaced by parameter names, so that all entities share one check.
     """
@@ -56,7 +56,7 @@ class Instance:
     source: SourceFile
     span: Span
     use: Label | None = None
-    """The use that passes numbers to the predicate, or None. The findings depend on these numbers."""
+    """The place that passes numbers to the predicate, on which the findings depend, or None."""
 
 
 class Context:
@@ -108,7 +108,7 @@ class Context:
         self._sizes: dict[Formula, int] = {}
 
     def signal(self, info: SignalInfo, entities: tuple[str, ...]) -> Signal:
-        """Return the signal of these entities and record that it is used."""
+        """Return the signal with these entities as its arguments, and record that it is used."""
         signal = info.signal_of(entities)
         return self.signals.setdefault(signal.name, signal)
 
@@ -121,7 +121,7 @@ class Context:
         span: Span,
         arguments: tuple[str, ...] = (),
     ) -> Formula:
-        """Return the atom of that base with these arguments.
+        """Return the atom with this base name and these arguments, and record it.
 
         Raises ResolutionError if the name already belongs to another expression (TLT0216), or if
         the arithmetic of all atoms together is too large (TLT0315).
@@ -160,9 +160,9 @@ class Context:
         return size
 
     def recursion_error(self, declaration: int, source: SourceFile, span: Span) -> ResolutionError:
-        """Return the problem of a let or predicate that uses itself.
+        """Return the error for a let or predicate that uses itself; mark its cycle as reported.
 
-        Its diagnostic is None if the cycle has already been reported.
+        The diagnostic of the error is None if the cycle was already reported.
         """
         active = list(self.expanding)
         cycle = active[active.index(declaration) :]
@@ -179,7 +179,7 @@ class Context:
         )
 
     def names_in(self, expr: Expr) -> tuple[str, ...]:
-        """Return the names in an expression."""
+        """Return the distinct names in an expression, in order of appearance."""
         names = self._names.get(id(expr))
         if names is None:
             unique = dict.fromkeys(part.name for part in parts(expr) if isinstance(part, (NameExpr, CallExpr)))
@@ -204,7 +204,7 @@ class Context:
     def check_size(
         self, formula: Formula, subject: str, source: SourceFile, span: Span, *, is_bound: bool = False
     ) -> Formula:
-        """Return the formula; raise ResolutionError if an expansion has made it too large."""
+        """Return the formula unchanged; raise ResolutionError if expansion made it too large."""
         if self.tree_size(formula) > LARGEST_EXPANSION:
             raise expansion_error(subject, source, span, is_bound=is_bound)
         return formula
@@ -215,7 +215,7 @@ _FEWER_USES: Final = "it multiplies with each use inside another: say the same w
 
 
 def expansion_error(subject: str, source: SourceFile, span: Span, *, is_bound: bool = False) -> ResolutionError:
-    """Return the problem of an expansion past the limit.
+    """Return the error for a formula that is too large after expansion.
 
     ``subject`` names the bound, let, quantifier or parameter.
     """

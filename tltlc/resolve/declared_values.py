@@ -1,4 +1,4 @@
-"""The values of declared params and signals where they are used."""
+"""Uses of declared params and signals in expressions, as quantities."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tltlc.resolve.values import Env, Quantity
 
 
 def param(binding: Binding, env: Env) -> Quantity:
-    """Return the value of a declared param."""
+    """Return a declared param as a quantity."""
     declaration = binding.declaration
     assert isinstance(declaration, ParamDecl)
     declared = env.context.params.get(declaration.name)
@@ -29,7 +29,7 @@ def param(binding: Binding, env: Env) -> Quantity:
 
 
 def signal(expr: NameExpr | CallExpr, binding: Binding, env: Env) -> Quantity:
-    """Return the value of a declared signal for the entities given as arguments."""
+    """Return a declared signal, with the entities given as its arguments, as a quantity."""
     declaration = binding.declaration
     assert isinstance(declaration, SignalDecl)
     pairs = match(expr, binding, declaration.parameters, env.scope)
@@ -45,7 +45,7 @@ def signal(expr: NameExpr | CallExpr, binding: Binding, env: Env) -> Quantity:
 
 
 def signal_value(signal: Signal) -> Quantity:
-    """Return the value of a signal."""
+    """Return a signal as a quantity, with its range and dimension."""
     low = -inf if signal.low is None else signal.low
     high = inf if signal.high is None else signal.high
     dimension = units.TYPES[signal.type]

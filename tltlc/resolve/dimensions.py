@@ -32,10 +32,10 @@ def same_dimension(left: Quantity, right: Quantity, at: Expr, env: Env) -> Dimen
 
 
 def _keeps_value(written_unit: str | None, expected_unit: str | None, actual: Dimension) -> bool:
-    """Whether a fix may keep the written number and write the wanted unit after it.
+    """Whether a fix may keep the written number and put the expected unit after it.
 
-    This holds if no unit was written, or if the wanted unit continues it (``m`` in ``m/s``). If no
-    unit is wanted, the written unit must be the SI unit.
+    This holds if no unit was written, or if the written unit begins the expected one, as ``m``
+    begins ``m/s``. If no unit is expected, the written unit must be the SI unit.
     """
     if expected_unit is None:
         return written_unit == units.si_unit(actual)
@@ -72,7 +72,7 @@ def _has_dimension(dimension: Dimension, declaration: Declaration) -> bool:
 
 
 def mismatch(expected: Dimension, actual: Dimension, at: Expr, env: Env, why: str) -> ResolutionError:
-    """Return the problem of a quantity of the wrong dimension at ``at``."""
+    """Return the error for the expression ``at``, which has the wrong dimension."""
     while isinstance(at, GroupExpr):
         at = at.inner
     unit = units.si_unit(expected)

@@ -104,7 +104,7 @@ def _formula(expr: Expr, env: Env) -> FormulaGenerator:
 
 
 def _resolve_once(expr: CallExpr | BinaryExpr, env: Env) -> FormulaGenerator:
-    """Resolve a call or comparison once for each choice of the local names in it."""
+    """Resolve a call or comparison, once for each combination of values of its local names."""
     values, names = env.context.values, env.context.names_in(expr)
     memo = (id(expr), env.symbolic, env.unbounded, tuple([env.local.get(name) for name in names]))
     if memo not in values:
@@ -140,7 +140,7 @@ def _resolve_name(expr: NameExpr | CallExpr, env: Env) -> FormulaGenerator:
 
 
 def _bool_atom(value: Quantity, doc: str, expr: NameExpr | CallExpr, env: Env) -> Formula:
-    """Return a bool as an atom: robustness 1 where it is true, -1 where it is false."""
+    """Return a bool as an atom, whose robustness is 1 where the bool is true, else -1."""
     if value.is_constant:
         return logic.TRUE if value.low else logic.FALSE
     if env.symbolic:
@@ -150,7 +150,7 @@ def _bool_atom(value: Quantity, doc: str, expr: NameExpr | CallExpr, env: Env) -
 
 
 def _atom(value: Quantity, robustness: Expression, doc: str, expr: NameExpr | CallExpr, env: Env) -> Formula:
-    """Return the atom that has the name of a value."""
+    """Return the atom with the name of ``value`` and the given robustness."""
     base, arguments = value.call or (value.text, ())
     return env.context.atom(base, robustness, doc, env.scope.source, expr.span, arguments)
 
@@ -184,7 +184,7 @@ def _use_let(expr: NameExpr | CallExpr, binding: Binding, env: Env) -> FormulaGe
 
 
 def _expand_let(declaration: LetDecl, binding: Binding, inside: Env, span: Span, user: Env) -> FormulaGenerator:
-    """Expand the body of a let with the values of its parameters, once per combination of values."""
+    """Expand the body of a let with the values of its parameters, once for each combination."""
     context, source = inside.context, user.scope.source
     key = id(declaration)
     if key in context.broken:

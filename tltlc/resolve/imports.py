@@ -22,7 +22,7 @@ _NO_FILE: Final = "there is no file `{}` beside this one"
 
 @record
 class LoadedModule:
-    """A parsed module, its name in messages, and the module that each of its imports leads to."""
+    """A parsed module, its name in messages, and the module that each of its imports loads."""
 
     module: Module
     title: str
@@ -76,7 +76,10 @@ def standard_library() -> Path:
 
 
 def library_with(name: str) -> str | None:
-    """Return the standard library that declares a name, to suggest its import."""
+    """Return the name of the standard library that declares ``name``, or None.
+
+    Messages suggest to import it.
+    """
     return _names_of_libraries().get(name)
 
 
@@ -112,7 +115,7 @@ class _Visit:
         self.pending = iter([d for d in module.declarations if isinstance(d, Import)])
 
     def add(self, declaration: Import, loaded: LoadedModule) -> None:
-        """Record the module that an import leads to."""
+        """Record the module that an import loads."""
         self.imports.append((declaration, loaded))
         self.complete = self.complete and loaded.complete
 
@@ -207,7 +210,7 @@ def _similar_help(suggestion: str | None) -> str | None:
 
 
 def _quoted_library(target: str, folders: tuple[Path, ...]) -> str | None:
-    """Return the name of the library that a path in quotes means, or None."""
+    """Return the name of the library that was written like a path, in quotes, or None."""
     name = target.removesuffix(".tltl")
     return name if any(is_file(folder / f"{name}.tltl") for folder in folders) and "/" not in name else None
 

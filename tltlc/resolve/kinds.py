@@ -29,14 +29,14 @@ _DECLARATIONS = {
     "signal or param": "signal {name} in [0, 100]",
     "entity": "entity {name}",
 }
-"""The declaration to suggest for an unknown name without a similar known one, by its kind."""
+"""By kind of name, the declaration to suggest for a name that resembles no known one."""
 
 
 def lookup(use: NameExpr | CallExpr, env: Env, kinds: tuple[Kind, ...], noun: str) -> Binding:
-    """Return the binding of a name.
+    """Return the binding of a name: its declaration and scope.
 
-    Raises ResolutionError (TLT0201) with a suggestion if the name is unknown. Reports nothing if a
-    failed import may have declared the name.
+    Raises ResolutionError (TLT0201) with a suggestion if the name is unknown. The error
+    has no diagnostic if a failed import may have declared the name.
     """
     binding = env.scope.names.get(use.name)
     if binding is not None:
@@ -126,14 +126,14 @@ _ONE_ENTITY = "name one entity, and join what is said of each by `and`, `or` or 
 
 
 def _entities_help(env: Env) -> str:
-    """Return a help that lists the visible entities."""
+    """Return a help text that lists the visible entities."""
     known = [f"`{name}`" for name, binding in env.scope.names.items() if binding.kind == "entity"]
     listed = ", ".join(known[:_MOST_NAMES]) + (", …" if len(known) > _MOST_NAMES else "")
     return f"the entities are {listed}" if known else "declare one with `entity NAME`"
 
 
 def entity_help(entity: str, env: Env, *, number: bool) -> str:
-    """Return a help that shows how to use an entity as a condition, or as a number."""
+    """Return a help text that shows how to use an entity in a condition, or in arithmetic."""
     # Sorting by kind puts predicates before signals: predicates are declared to be used this way.
     for name, binding in sorted(env.scope.names.items(), key=lambda item: item[1].kind):
         declared = binding.declaration
@@ -184,7 +184,7 @@ def kind_in_words(expr: Expr, env: Env) -> str:
 
 
 def not_a_formula_error(expr: Expr, env: Env) -> ResolutionError:
-    """Return the problem of a number or an entity in place of a formula."""
+    """Return the error for a number or an entity in place of a formula."""
     advice = None
     if kind_of(expr, env) == "number":
         advice = _comparison_help(expr, env)
@@ -195,7 +195,7 @@ def not_a_formula_error(expr: Expr, env: Env) -> ResolutionError:
 
 
 def _comparison_help(expr: Expr, env: Env) -> str:
-    """Return a help that shows how to turn a number into a condition."""
+    """Return a help text that shows how to turn a number into a condition."""
     text = env.scope.source.slice(expr.span)
     is_short = len(text) <= 40 and not isinstance(expr, tree.WhenExpr)
     if _is_literal(expr):

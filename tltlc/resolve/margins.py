@@ -2,9 +2,10 @@
 
 The margin is ``left - right``. Subtraction of doubles keeps the sign: the margin is above 0 exactly
 where the left side is greater. Scaling can lose the sign: a small margin over a large width rounds
-to 0, and the width of a large range overflows. Two measures prevent this. A margin above 0 that
-might round to 0 gives at least the smaller of itself and :data:`tltlc.expression.tree.LEAST`. If
-the width overflows, the halves of both sides are subtracted instead.
+to 0, and the width of a large range overflows. Two measures prevent this. Where the quotient might
+round to 0, the robustness of a margin above 0 is at least the smaller of the margin and
+:data:`tltlc.expression.tree.LEAST`. If the width overflows, both sides are halved before they are
+subtracted.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from tltlc.expression.tree import LEAST, Const, Expression, Op
 from tltlc.resolve.values import Quantity
 
 _NEVER_LOST: Final = 2.0**-126
-"""The smallest normal 32-bit float: a quotient at least this large does not round to 0."""
+"""The smallest normal 32-bit float. A quotient of at least this size does not round to 0."""
 
 
 def robustness(left: Quantity, right: Quantity) -> Expression:
@@ -32,7 +33,7 @@ def robustness(left: Quantity, right: Quantity) -> Expression:
     floor = (Op("min", (_margin(left, right), Const(LEAST))),) if is_lost and holding.width > 1 else ()
     if failing.width == 0 or failing.order == holding.order:
         return _max_of(share, *floor)
-    # The quotient with the smaller divisor is the greater of the two above 0 and the smaller one below 0.
+    # Of the two quotients, the one with the smaller divisor is the greater one above 0 and the smaller one below 0.
     failing_share = _share(left, right, failing)
     if holding.order < failing.order:
         return _max_of(share, *floor, failing_share)
@@ -43,14 +44,14 @@ def robustness(left: Quantity, right: Quantity) -> Expression:
 
 @record
 class _MarginRange:
-    """The margins on one side of the threshold; ``width`` is the greatest of them."""
+    """The margins above 0, or below 0, by their size: from 0 to ``width``."""
 
     most: float
     least: float
 
     @property
     def width(self) -> float:
-        """The distance from ``least`` to ``most``; infinite if it overflows."""
+        """The greatest size of a margin, ``most - least``; infinite if it overflows."""
         return self.most - self.least
 
     @property

@@ -30,7 +30,7 @@ from tltlc.resolve.values import Entity, Env, Quantity, Unknown, Value, constant
 
 @record
 class PredicateUse:
-    """A predicate with its arguments: its value and its documentation.
+    """One use of a predicate: its value and its documentation.
 
     The value has the name of the atom and the declared range.
     """
@@ -40,7 +40,7 @@ class PredicateUse:
 
 
 def predicate(use: NameExpr | CallExpr, binding: Binding, env: Env, depth: int = 0) -> PredicateUse:
-    """Return the value of a predicate where it is used.
+    """Return one use of a predicate, with its arguments filled in.
 
     The name of the value is the name of the atom, e.g. ``near(s1, close=3)``.
     """
@@ -137,7 +137,7 @@ def argument_value(parameter: Parameter, argument: Expr, env: Env, binding: Bind
 
 
 def parameter_type(parameter: Parameter, binding: Binding) -> str | None:
-    """Return the value type of a parameter, or None if it takes any.
+    """Return the declared type of a parameter, or None if any value fits it.
 
     Raises ResolutionError (TLT0211) for an unknown type.
     """
@@ -153,11 +153,11 @@ _TYPES_ELSEWHERE: Final = {
     "duration": "time",
     "velocity": "speed",
 }
-"""Names of types in other languages, apart from units."""
+"""Names of types in other languages, each with the type of this language."""
 
 
 def unknown_type_error(name: str, at: Parameter | tree.SignalDecl | tree.ParamDecl, scope: Scope) -> ResolutionError:
-    """Return the problem (TLT0211) of a type that the language does not have."""
+    """Return the error (TLT0211) for a type that the language does not have."""
     known = [*units.TYPES, "entity"]
     elsewhere = units.type_of_unit(UNITS_ELSEWHERE.get(name.lower(), name)) or _TYPES_ELSEWHERE.get(name.lower())
     suggestion = elsewhere or likely_name(name, known)
@@ -169,7 +169,7 @@ def unknown_type_error(name: str, at: Parameter | tree.SignalDecl | tree.ParamDe
 
 
 def _symbolic_value(parameter: Parameter, binding: Binding, env: Env) -> Value:
-    """Return a symbolic value for a parameter: a number becomes a signal of its own."""
+    """Return a symbolic value for a parameter: for a number, a signal with the parameter's name."""
     if parameter.type == "entity":
         return Entity(parameter.name)
     type_ = parameter_type(parameter, binding)
@@ -258,9 +258,10 @@ def _note_instance(
     depth: int,
     place: Label | None,
 ) -> None:
-    """Record the predicate for the check, once for all entities.
+    """Record a predicate with its arguments, so that its range and continuity will be checked.
 
-    Entities are replaced by the names of the parameters.
+    Entities are replaced by the names of the parameters, so that uses that differ only in entities
+    are checked once.
     """
     general: dict[str, Value] = {}
     names: dict[str, str] = {}

@@ -53,7 +53,7 @@ def problem(
     related: tuple[Label, ...] = (),
     fixes: tuple[Fix, ...] = (),
 ) -> ResolutionError:
-    """Return a problem at ``span``, with a short message under the caret.
+    """Return an error at ``span``, with a short message under the caret.
 
     ``advice`` becomes the help of the diagnostic, and ``related`` its further labels.
     """

@@ -29,7 +29,7 @@ _COMPARISONS = ("<", "<=", ">", ">=")
 
 
 def quantity(expr: Expr, env: Env, depth: int = 0) -> Quantity:
-    """Return the number of an expression.
+    """Resolve an arithmetic expression to a quantity.
 
     Raises ResolutionError if it is not a number or its units do not fit.
     """
@@ -44,7 +44,10 @@ def quantity(expr: Expr, env: Env, depth: int = 0) -> Quantity:
 
 
 def condition(expr: Expr, env: Env, depth: int = 0) -> tuple[Condition, str]:
-    """Return the condition of a ``when`` and its text; raise ResolutionError if it is not one."""
+    """Resolve the condition of a ``when``; return it and its text.
+
+    Raises ResolutionError if the expression is no condition.
+    """
     while isinstance(expr, GroupExpr):
         expr = expr.inner
     if depth > ARITHMETIC.depth:
@@ -185,9 +188,9 @@ def _is_per_time(expr: tree.BinaryExpr, env: Env) -> bool:
 
 
 def _check_speed(expr: tree.BinaryExpr, env: Env) -> None:
-    """Raise ResolutionError (TLT0304) for ``a / 1 m/s`` if there is no `s`.
+    """Raise ResolutionError (TLT0304) for ``a / 1 m/s`` if `s` is not declared.
 
-    It is read as ``(a / 1 m) / s``.
+    The parser reads it as ``(a / 1 m) / s``.
     """
     inner, per = expr.left, expr.right
     if (

@@ -1,9 +1,10 @@
 """The range of an operator's result from the ranges of its arguments.
 
-This is plain interval arithmetic without outward rounding. It gives the ends that scale
-comparisons, where 0 to 1 must stay 0 to 1, and the values of constants. Each operation rounds as
-the evaluator does, so rounding never puts the value of an expression outside its range. Proofs
-about predicates use the rigorous arithmetic of :mod:`tltlc.resolve.range_proof`.
+This is plain interval arithmetic without outward rounding. It computes the values of constants and
+the ranges by which comparisons are scaled, where a range from 0 to 1 must not grow by rounding.
+Each operation rounds as the evaluator does, so rounding never puts the value of an expression
+outside its range. Proofs about predicates use the rigorous arithmetic of
+:mod:`tltlc.resolve.range_proof`.
 """
 
 from __future__ import annotations
@@ -19,9 +20,9 @@ EVERYTHING: Range = (-inf, inf)
 
 
 def range_of(op: str, args: tuple[Range, ...]) -> Range:
-    """Return the range of ``op`` (see :class:`tltlc.expression.tree.Op`).
+    """Return the range of the operator ``op`` (see :class:`tltlc.expression.tree.Op`).
 
-    Returns everything if the result is unbounded or undefined.
+    Returns ``EVERYTHING`` if the result may be unbounded or undefined.
     """
     try:
         low, high = _FUNCTIONS[op](*args)
@@ -31,7 +32,7 @@ def range_of(op: str, args: tuple[Range, ...]) -> Range:
 
 
 def overflows(op: str, args: tuple[Range, ...]) -> bool:
-    """Whether ``op`` is defined everywhere in finite ranges, but its value may overflow."""
+    """Whether ``op`` is defined everywhere in the ranges, which are finite, but may overflow."""
     if not all(isfinite(end) for arg in args for end in arg) or not _is_defined(op, args):
         return False
     return not all(isfinite(end) for end in range_of(op, args))

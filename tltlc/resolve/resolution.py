@@ -1,4 +1,4 @@
-"""Resolve a syntax tree into a program: every name, type and unit."""
+"""Resolve a syntax tree: find out what every name, type and unit in it means."""
 
 from __future__ import annotations
 
@@ -25,15 +25,15 @@ from tltlc.resolve.specs import resolve_spec, vocabulary
 from tltlc.resolve.values import Env
 
 FormulaOf = Callable[[Expr], "Formula | None"]
-"""Return the formula of an expression, or None if it is not a formula."""
+"""A function that returns the formula of an expression, or None if it is not a formula."""
 
 
 @record
 class Resolution:
     """The result of resolution: the program, its environment, its modules and the diagnostics.
 
-    ``env`` holds everything that the module sees. ``modules`` are in import order, the module
-    itself last.
+    ``env`` holds all declarations that are visible in the module. ``modules`` are in import order,
+    the module itself last.
     """
 
     program: ResolvedFile
@@ -71,7 +71,7 @@ def resolve(module: Module, options: ResolveOptions | None = None) -> Resolution
 def resolve_atoms(
     module: Module, texts: Sequence[SourceFile], options: ResolveOptions | None = None
 ) -> tuple[Vocabulary | None, FormulaOf, tuple[Diagnostic, ...]]:
-    """Resolve texts from elsewhere to atoms in the vocabulary of a module.
+    """Resolve texts from outside a module, such as an imported automaton, to atoms of the module.
 
     Each of the ``texts`` is a formula that is an atom, or the name of an atom of the module's own
     specs, written without units. Returns the vocabulary, a function that resolves further formulas
@@ -111,7 +111,10 @@ def resolve_atoms(
 
 
 def _atom(source: SourceFile, env: Env, expressions: list[Expr]) -> tuple[str, Label]:
-    """Return the name of the atom of a text and its place; raise ResolutionError if it is not an atom."""
+    """Return the name of the atom that a text names, and its place in the text.
+
+    Raises ResolutionError if the text is no atom.
+    """
     text = source.text.strip()
     start = source.text.find(text)
     here = Label(source, Span(start, start + len(text)))
@@ -147,7 +150,7 @@ def _declare_names(
 
 
 def _exclusive(scope: Scope, context: Context) -> list[tuple[str, ...]]:
-    """Return the names of the atoms of each ``exclusive`` of a module."""
+    """Return the names of the atoms of each ``exclusive`` declaration of a module."""
     env = Env(context, scope)
     groups = []
     for declaration in scope.module.declarations:

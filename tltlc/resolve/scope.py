@@ -1,4 +1,4 @@
-"""The names that a module sees: its own and those of its imports."""
+"""The names that are visible in a module: its own and those of its imports."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _MERGED = ("signal", "param", "entity")
 
 @record
 class Binding:
-    """The declaration of a name, its scope, and the import that brought it, if any."""
+    """What a name means: its declaration, the scope of the declaration, and its import, if any."""
 
     kind: Kind
     declaration: NamedDeclaration
@@ -89,7 +89,7 @@ def closest_name(name: str, scope: Scope, kinds: Iterable[Kind], local: Iterable
 
 
 class _NameBudget:
-    """How many names, and how many letters in them, the imports of a program may still offer."""
+    """How many names, and how many letters in them, further imports may still make visible."""
 
     def __init__(self) -> None:
         self._names: int = IMPORTED.values or 0
@@ -97,7 +97,10 @@ class _NameBudget:
         self._is_over = False
 
     def covers(self, declaration: Import, target: Scope, source: SourceFile, log: Log) -> bool:
-        """Whether the budget covers the names of an import; the names are counted before they are imported."""
+        """Subtract the names of an import from the budget, and return whether they fit.
+
+        If they do not, log an error.
+        """
         if self._is_over:
             return False
         chosen = target.names if declaration.names is None else [name_expr.name for name_expr in declaration.names]
@@ -117,7 +120,7 @@ class _NameBudget:
 
 
 def _import(declaration: Import, offered: Mapping[str, Binding], scope: Scope, log: Log) -> None:
-    """Make the chosen names of an imported module visible."""
+    """Make the imported names of a module visible in ``scope``; log an error for each conflict."""
     chosen = dict(offered) if declaration.names is None else {}
     for imported_name in declaration.names or ():
         if imported_name.name in offered:

@@ -51,7 +51,7 @@ class Param:
 
 @record
 class Atom:
-    """An atom: it holds iff its expression, with values in [-1, 1], is > 0.
+    """An atom. It holds where the value of its expression, which lies in [-1, 1], is above 0.
 
     ``base`` and ``arguments`` are those of the predicate or signal, as they are written. An atom that
     is a comparison, such as ``x > 3``, has its text as its base and no arguments.
@@ -123,9 +123,10 @@ class Spec:
 
 @record
 class Vocabulary:
-    """The atoms that letters consist of, without a formula.
+    """A list of atoms without a formula, with the signals and params that they use.
 
-    The fields are as in :class:`Spec`; ``atoms`` are in the requested order.
+    The fields are as in :class:`Spec`. ``atoms`` are the requested atoms in order, then those that
+    are only in ``exclusive``.
     """
 
     atoms: tuple[Atom, ...]
@@ -145,7 +146,10 @@ class TestSample:
 
 @record
 class Expect:
-    """An expectation about the prefix so far; fields as in :class:`tltlc.grammar.tree.TestExpect`."""
+    """An ``expect`` of a test: what must be true after the steps before it.
+
+    The fields are as in :class:`tltlc.grammar.tree.TestExpect`.
+    """
 
     kind: Literal["verdict", "progress", "state"]
     value: str | float

@@ -24,12 +24,12 @@ _ONCE = ("level", "limit", "judge", "semantics")
 
 
 def resolve_spec(declaration: SpecDecl, groups: tuple[tuple[str, ...], ...], env: Env) -> Spec | None:
-    """Return the resolved spec, or None if a clause is in error or no clause asks for anything.
+    """Return the resolved spec, or None if a clause is in error or no clause has a formula.
 
     Every clause in error is reported to the log.
 
-    ``groups`` holds the atom names of each ``exclusive``. The groups that share at least two atoms
-    with the formula become part of the spec.
+    ``groups`` holds the atom names of each ``exclusive`` declaration. The groups that share at
+    least two atoms with the formula become part of the spec.
     """
     log, source = env.context.log, env.scope.source
     parts: list[Conjunct] = []
@@ -78,7 +78,10 @@ def resolve_spec(declaration: SpecDecl, groups: tuple[tuple[str, ...], ...], env
 
 
 def vocabulary(used: Iterable[str], groups: Iterable[Sequence[str]], context: Context) -> Vocabulary:
-    """Return the atoms of these names, and those of each ``exclusive`` with at least two of them."""
+    """Return the vocabulary of the atoms with the names ``used``.
+
+    It contains all atoms of each ``exclusive`` group that shares at least two atoms with ``used``.
+    """
     used = list(used)
     exclusive = [group for group in groups if len(set(group).intersection(used)) > 1]
     names = list(dict.fromkeys([*used, *(name for group in exclusive for name in group)]))
@@ -94,7 +97,7 @@ def vocabulary(used: Iterable[str], groups: Iterable[Sequence[str]], context: Co
 
 
 def _conjuncts(clause: Clause, env: Env) -> list[Conjunct]:
-    """Return the formulas of a clause, with their bounds and their unbounded form if there are bounds."""
+    """Return the conjuncts of a clause, each with its bounds and its formula without bounds."""
     read = _READERS[clause.kind]
     before = len(env.context.bounds)
     parts = read(clause, env)

@@ -8,7 +8,7 @@ from typing import Final, cast
 from tltlc.resolve.spec import ValueType
 
 Dimension = tuple[float, float, float]
-"""The exponents of metre, second and radian."""
+"""The exponents of metre, second and radian: ``(1, -1, 0)`` for a speed."""
 
 PLAIN: Final[Dimension] = (0.0, 0.0, 0.0)
 _FREQUENCY: Final[Dimension] = (0.0, -1.0, 0.0)
@@ -56,7 +56,7 @@ _SI: Final[dict[Dimension, str]] = {
 
 
 def value_type(name: str) -> ValueType | None:
-    """Return the type of that name, or None if the language has no such type."""
+    """Return the type with this name, or None if the language has no such type."""
     return cast(ValueType, name) if name in TYPES else None
 
 
@@ -88,7 +88,7 @@ def time_units() -> tuple[str, ...]:
 
 
 def si_unit(dimension: Dimension) -> str | None:
-    """Return the SI unit of a literal of that dimension, or None if there is none."""
+    """Return the SI unit of a dimension, or None if it has no unit with a name."""
     return _SI.get(dimension)
 
 
@@ -106,7 +106,7 @@ def dimension_text(dimension: Dimension) -> str:
 def product(left: Dimension | None, right: Dimension | None, sign: float = 1.0) -> Dimension | None:
     """Return the dimension of ``left * right``, or of ``left / right`` if ``sign`` is -1.
 
-    None fits any dimension.
+    Returns None, which fits any dimension, if one of the two is None.
     """
     if left is None or right is None:
         return None

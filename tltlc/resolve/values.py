@@ -1,4 +1,4 @@
-"""The values of expressions of the surface language during resolution."""
+"""The values of expressions during resolution: entities, quantities and formulas."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from tltlc.resolve.scope import Scope
 from tltlc.resolve.units import Dimension, si_unit
 
 LOOSEST, SUM, PRODUCT, SIGN, POWER, CLOSED = range(6)
-"""How tightly the text of a quantity binds, from loosest to tightest."""
+"""How tightly the outermost operator in the text of a quantity binds, from loosest to tightest."""
 
 
 @record
 class Entity:
-    """An object of the level."""
+    """An entity: an object of the level, which predicates and signals can have as an argument."""
 
     name: str
 
@@ -29,12 +29,12 @@ class Entity:
 class Quantity:
     """A number that depends on signals and params.
 
-    A ``dimension`` of None fits any dimension, as for 0 and inf. ``low`` and ``high`` bound the value,
-    in SI units. ``text`` is its unique spelling in the names of atoms, and ``binding`` tells how
-    tightly that spelling binds. ``depth`` is the depth of the expression. ``is_bool`` marks a value
-    that is 0 or 1 by type. ``overflows`` marks a value whose arithmetic may overflow although all its
-    inputs have finite ranges. ``call`` is the base and the arguments of a signal or a predicate, or
-    None.
+    A ``dimension`` of None fits any dimension, as for 0 and inf. ``low`` and ``high`` bound the
+    value, in SI units. ``text`` is its unique spelling in the names of atoms, and ``binding`` says
+    how tightly the outermost operator of the spelling binds. ``depth`` is the depth of the
+    expression. ``is_bool`` marks a value that is 0 or 1 by type. ``overflows`` marks a value whose
+    arithmetic may overflow although all its inputs have finite ranges. ``call`` is the base and the
+    arguments of a signal or a predicate, or None.
     """
 
     expression: Expression
@@ -60,7 +60,7 @@ class Quantity:
 
 @record
 class Unknown:
-    """A parameter of unknown value; used to check a ``let`` before its first use."""
+    """A parameter whose value is unknown, for the check of a definition that nothing uses."""
 
     name: str
 
@@ -86,7 +86,7 @@ class Env:
     unbounded: bool = False
 
     def inside(self, scope: Scope, local: Mapping[str, Value]) -> Env:
-        """Return the environment inside a declaration of ``scope``."""
+        """Return the environment inside a declaration of ``scope``, with these local names."""
         return replace(self, scope=scope, local=local)
 
     def with_local(self, name: str, value: Value) -> Env:

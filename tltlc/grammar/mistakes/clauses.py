@@ -59,20 +59,20 @@ _LIMITS: Final = frozenset(
         *("max time N", "maximum time N", "N limit", "N timeout"),
     )
 )
-"""The phrases around the number ``N``, without its unit, that can only mean a limit of the episode."""
+"""Phrases with a number ``N`` that can only mean a limit of the episode. Units are left out."""
 _MARKS: Final = frozenset("-–—*+•·.:)")
-"""Characters that begin the lines of lists; others, such as `!`, may change the meaning of the clause after them."""
+"""Bullets that people write before the lines of a list. `!` is not among them: it means `not`."""
 _LONGEST_LIMIT: Final = 7
 _FEW: Final = 4
 """A line with a time and at most this many tokens is most likely only a time."""
 _TIMES: Final = frozenset(("step", "steps", "ms", "s", "min", "h"))
 """The units of a limit."""
 _OF_OPERATOR: Final = {"EVENTUALLY": "reach", "ALWAYS": "keep", "NOT": "avoid"}
-"""The keyword of the clause that an operator at the beginning of a line stands for."""
+"""For an operator at the beginning of a line, the clause keyword that means the same."""
 
 
 def unknown_keyword(failure: ParseFailure) -> Diagnostic | None:
-    """Report a piece that does not begin with a keyword of its kind."""
+    """Report a declaration, clause or line of a test that begins with no keyword of its kind."""
     keywords, token = KEYWORDS.get(failure.start), failure.token
     if failure.stop.index or not keywords or failure.is_at_end or token.type in OPENING.values():
         return None
@@ -93,7 +93,7 @@ def unknown_keyword(failure: ParseFailure) -> Diagnostic | None:
 
 
 def _is_clear_keyword(failure: ParseFailure, keyword: str) -> bool:
-    """Whether the keyword alone can replace the word, judged by what follows."""
+    """Whether ``keyword`` in place of the first word can have only one meaning."""
     stop = len(failure.tokens) - 1
     if keyword == "require":
         return not is_of_one_step(failure, 1, stop)
@@ -104,19 +104,19 @@ def _is_clear_keyword(failure: ParseFailure, keyword: str) -> bool:
 
 
 def clause_outside_spec(failure: ParseFailure) -> Diagnostic | None:
-    """Report a clause after a complete declaration."""
+    """Report a clause that stands outside a spec, after a complete declaration."""
     whole = failure.start == "declaration" and END in failure.allowed_terminals
     return _outside_error(failure) if whole and failure.token.text in CLAUSES and not failure.open_brackets else None
 
 
 def clause_inside_formula(failure: ParseFailure) -> Diagnostic | None:
-    """Report ``keep p implies reach q``, ``reach a then avoid b``, ``spec s = keep p``."""
+    """Report a clause inside a formula: ``keep p implies reach q``, ``spec s = keep p``."""
     word, before, at = failure.token.text, failure.previous_token, failure.stop.index
     if word not in OPERATORS or before is None or not failure.wants_operand or failure.token.type == "NAME":
         return None
     title = f"{quote_token(failure.token)} begins a clause, and stands in no formula"
     start, stop, clause = formula_start(failure), formula_stop(failure), _clause_keyword(failure)
-    # The operator would apply to all that follows, although the keyword may be meant for the next operand only.
+    # An operator in its place would apply to all that follows, but the keyword may be meant for one operand only.
     diagnostic, is_alone = None, not has_token(failure, at + 1, stop, INFIX - {"THEN"} if word == "reach" else INFIX)
     if before.type == "THEN" and not _is_next_goal(failure, word):
         return failure.error("TLT0107", title, _BEHIND_THEN)
@@ -137,7 +137,7 @@ def clause_inside_formula(failure: ParseFailure) -> Diagnostic | None:
 
 
 def synonym_inside_formula(failure: ParseFailure) -> Diagnostic | None:
-    """Report ``keep a implies never b``."""
+    """Report another word for a keyword inside a formula: ``keep a implies never b``."""
     before, at = failure.previous_token, failure.stop.index - 1
     keyword = (
         SYNONYMS["clause"].get(before.text) if before and before.type == "NAME" and failure.wants_operator else None
@@ -158,17 +158,19 @@ def synonym_inside_formula(failure: ParseFailure) -> Diagnostic | None:
 
 
 def _clause_keyword(failure: ParseFailure) -> str:
-    """Return the keyword of the clause, also inside brackets; empty outside clauses."""
+    """Return the keyword of the broken clause, or "" if it is no clause that is broken."""
     return failure.tokens[0].text if failure.start == "clause" else ""
 
 
 def _is_next_goal(failure: ParseFailure, word: str) -> bool:
-    """Whether a keyword after `then` only repeats that a goal follows."""
+    """Whether a keyword after `then` only repeats that a goal follows, as in ``a then reach b``."""
     return word == "reach" and _clause_keyword(failure) not in ("keep", "avoid")
 
 
 def _is_clear_operator(failure: ParseFailure, start: int, at: int, word: str) -> bool:
-    """Whether a keyword at this place in a formula can only mean its operator."""
+    """Whether a keyword at index ``at`` of a formula can only mean the operator of the same
+    meaning.
+    """
     before, clause = failure.tokens[at - 1].type, _clause_keyword(failure)
     if before in ("IMPLIES", "IFF", "NOT") and word != "reach":
         # `keep` after a condition may mean only as long as the condition holds.
@@ -186,7 +188,7 @@ def _operator_help(word: str, keyword: str) -> str:
 
 
 def joined_clauses(failure: ParseFailure) -> Diagnostic | None:
-    """Report ``keep a and keep b``."""
+    """Report clauses that are joined by an operator: ``keep a and keep b``."""
     word, before = failure.token.text, failure.previous_token
     if (
         failure.start != "clause"
@@ -204,14 +206,14 @@ def joined_clauses(failure: ParseFailure) -> Diagnostic | None:
 
 
 def limit_in_other_words(failure: ParseFailure) -> Diagnostic | None:
-    """Report ``limit of 400 steps``, ``limit: 20 seconds``."""
+    """Report a limit in another form: ``limit of 400 steps``, ``limit: 20 seconds``."""
     return (
         _limit_error(failure, "a limit is a number of steps or a time") if failure.tokens[0].type == "LIMIT" else None
     )
 
 
 def judge_without_at(failure: ParseFailure) -> Diagnostic | None:
-    """Report ``judge goal``."""
+    """Report ``judge goal``, where `at` is missing."""
     if failure.previous_token is None or failure.previous_token.type != "JUDGE" or failure.token.text not in JUDGE:
         return None
     text = f"at {failure.token.text}"
@@ -219,7 +221,7 @@ def judge_without_at(failure: ParseFailure) -> Diagnostic | None:
 
 
 def clauses_without_braces(failure: ParseFailure) -> Diagnostic | None:
-    """Report ``spec s: keep a``, ``spec s ( keep a )`` and ``spec s = { keep a }``."""
+    """Report braces that are missing or wrong: ``spec s: keep a``, ``spec s = { keep a }``."""
     before, token = failure.previous_token, failure.token
     if before is None or failure.tokens[0].type != "SPEC":
         return None
@@ -233,7 +235,7 @@ def clauses_without_braces(failure: ParseFailure) -> Diagnostic | None:
 
 
 def sign_behind_keyword(failure: ParseFailure) -> Diagnostic | None:
-    """Report ``reach: a``."""
+    """Report a sign after the keyword of a clause: ``reach: a``."""
     if failure.start != "clause" or failure.stop.index != 1 or failure.token.text not in (":", "="):
         return None
     word = failure.tokens[0].text
@@ -297,7 +299,10 @@ def _line_without_keyword(failure: ParseFailure, title: str) -> Diagnostic | Non
 
 
 def _limit_error(failure: ParseFailure, title: str) -> Diagnostic | None:
-    """Report a piece of a number, its unit and a few words; offer a fix if it can only be a limit."""
+    """Report a line that is only a number, its unit and a few words, such as ``20 s limit``.
+
+    Offer a fix if the line can only be a limit.
+    """
     tokens = [token for token in failure.tokens[:-1] if token.text not in (":", "=", ",")]
     if len(tokens) > _LONGEST_LIMIT:
         return None

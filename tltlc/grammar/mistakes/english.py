@@ -33,7 +33,10 @@ from tltlc.grammar.mistakes.rephrasing import (
 
 _FILLERS: Final = frozenset(("the", "an", "to", "be", "being", "either", "both", "first"))
 _JOINED: Final[dict[str, Collection[str]]] = {"either": {"OR"}, "both": {"AND"}, "first": {"THEN"}, "to": (), "be": ()}
-"""Fillers that mean something after another word, as in `next to` and `not either`, with the operators they go with."""
+"""Fillers that mean something after another word, as in `next to` and `not either`.
+
+The values are the terminals of operators beside which the word means nothing, as `either` and `or`.
+"""
 _COMPARISONS: Final = {
     ("at", "least"): ">=",
     ("at", "most"): "<=",
@@ -42,9 +45,10 @@ _COMPARISONS: Final = {
 }
 
 Forms = Mapping[str, str]
-"""The equivalents of an English form, by clause; the key "" stands for all other clauses.
+"""How an English phrase is written in the language, by the keyword of its clause.
 
-An equivalent that begins with a keyword replaces the whole clause.
+The key "" is for all other clauses. ``{a}``, ``{b}`` and ``{c}`` are parts of the phrase. A text
+that begins with a keyword replaces the whole clause.
 """
 
 _CONDITION: Final = {"reach": "{a} and {b}", "avoid": "{a} and {b}", "": "{b} implies {a}"}
@@ -71,7 +75,7 @@ _FORMS: Final[dict[str, Forms]] = {
     "nor": {"": "not ({a} or {b})"},
     "nand": {"": "not ({a} and {b})"},
 }
-"""The equivalents of `a WORD b`."""
+"""By WORD, how the English phrase `a WORD b` is written in the language."""
 
 _IN_TIME: Final = {
     "reach": "require eventually within {b} {a}",
@@ -99,16 +103,17 @@ _TIMES: Final[dict[str, Forms]] = {
     "for": _FOR_TIME,
     "after": _AFTER_TIME,
 }
-"""The equivalents of `a WORD TIME` and `WORD TIME a`; under `then`, of `c then a WORD TIME`.
+"""By WORD, how `a WORD TIME` and `WORD TIME a` are written in the language.
 
-A time applies to its own goal: with `and`, it starts at the step that reaches ``c``. ``{end}`` is the
-time as the end of a bound in brackets, ``{less}`` is one step less.
+``{b}`` is the time. The key `then` is for `c then a WORD TIME`: where its text joins ``{c}`` by
+`and`, the time begins at the step that reaches ``c``. ``{end}`` is the time as the end of a bound
+in brackets, ``{less}`` the time less one step.
 """
 _TIMED: Final = {form for forms in _TIMES.values() for form in forms.values()}
 
 _PREFIX: Final = {"reach": "{b} and {a}", "avoid": "{b} and {a}", "": "{b} implies {a}"}
 _PREFIXES: Final[dict[str, Forms]] = dict.fromkeys(CONDITIONS, _PREFIX)
-"""The equivalents of `WORD b, a` and `WORD b then a`."""
+"""By WORD, how `WORD b, a` and `WORD b then a` are written in the language."""
 
 _FROM_THEN_ON: Final = {
     "keep": "`keep b implies a` asks for `a` wherever `b` holds, `keep b implies always a` from then on, too",
@@ -126,7 +131,7 @@ _ONCE: Final = "; a clause `keep {b} implies {a}` asks for it at every step"
 
 
 def plain_english(failure: ParseFailure) -> Diagnostic | None:
-    """Report ``reach if b then a``, ``keep a while b``, ``reach a within 20 steps``."""
+    """Report an English word in a formula: ``keep a while b``, ``reach a within 20 steps``."""
     if not failure.wants_operator or failure.previous_token is None:
         return None
     for at, untimed_forms in ((failure.stop.index - 1, _PREFIXES), (failure.stop.index, _FORMS)):
@@ -148,7 +153,7 @@ def plain_english(failure: ParseFailure) -> Diagnostic | None:
 
 
 def comparison_in_words(failure: ParseFailure) -> Diagnostic | None:
-    """Report ``coins is more than 3``, ``health above 50%``."""
+    """Report a comparison in words: ``coins is more than 3``, ``health above 50%``."""
     at = failure.stop.index
     if not failure.wants_operator or failure.token.type != "NAME":
         return None
@@ -166,7 +171,7 @@ def comparison_in_words(failure: ParseFailure) -> Diagnostic | None:
 
 
 def filler_word(failure: ParseFailure) -> Diagnostic | None:
-    """Report ``reach the exit``, ``avoid being seen``."""
+    """Report a word without a meaning: ``reach the exit``, ``avoid being seen``."""
     at = failure.stop.index
     for index in (at - 1, at):
         word = failure.tokens[index]
@@ -192,7 +197,7 @@ def _is_clear_filler(failure: ParseFailure, at: int) -> bool:
     word, kind = failure.tokens[at].text, _clause_keyword(failure)
     if word not in _JOINED:
         return True
-    # `reach both a and b` allows one after the other, and `avoid both` may forbid each of them.
+    # `reach both a and b` may mean one after the other, and `avoid both a and b` may forbid each of them.
     if at != formula_start(failure) or (word == "both" and kind not in ("keep", "require")):
         return False
     return not has_token(failure, at, formula_stop(failure), INFIX - {*_JOINED[word]})
@@ -205,7 +210,10 @@ def condition_line(failure: ParseFailure) -> Diagnostic | None:
 
 
 def _without_error(failure: ParseFailure) -> Diagnostic:
-    """Report ``reach a without b``. The fix is an `avoid`, which applies to all that follows it."""
+    """Report ``reach a without b``.
+
+    The fix writes `avoid` in its place.
+    """
     help_ = "`avoid`, which begins a clause of its own and speaks of every step"
     at = failure.stop.index
     goals = _goal_starts(failure, at)
@@ -218,7 +226,7 @@ def _without_error(failure: ParseFailure) -> Diagnostic:
 
 
 def _infix_word_error(failure: ParseFailure, forms: Forms) -> Diagnostic:
-    """Report ``a WORD b``."""
+    """Report an English word between two formulas, such as ``keep a while b``."""
     at, kind = failure.stop.index, _clause_keyword(failure)
     begin, stop = _goal_starts(failure, at)[-1], formula_stop(failure)
     second = at + 1 + (failure.tokens[at + 1].text == "by")
@@ -239,7 +247,7 @@ def _infix_word_error(failure: ParseFailure, forms: Forms) -> Diagnostic:
 
 
 def _time_error(failure: ParseFailure, forms: Forms) -> Diagnostic:
-    """Report ``a WORD TIME``."""
+    """Report a time after its formula, such as ``reach a within 20 steps``."""
     at, kind = failure.stop.index, _clause_keyword(failure)
     goals, stop = _goal_starts(failure, at), formula_stop(failure)
     begin = goals[-1]
@@ -265,7 +273,7 @@ def _time_error(failure: ParseFailure, forms: Forms) -> Diagnostic:
 
 
 def _prefix_word_error(failure: ParseFailure, at: int, forms: Forms, *, timed: bool) -> Diagnostic:
-    """Report ``WORD b, a`` and ``WORD TIME a``."""
+    """Report an English word or a time before its formula: ``reach if b then a``."""
     if timed:
         return _prefix_time_error(failure, at, forms)
     stop, form = formula_stop(failure), forms.get(_clause_keyword(failure), forms[""])
@@ -285,7 +293,7 @@ def _prefix_word_error(failure: ParseFailure, at: int, forms: Forms, *, timed: b
     is_clear = is_clear and not (
         _clause_keyword(failure) in ("reach", "avoid") and has_token(failure, second, stop, TEMPORAL)
     )
-    # `if a then b until c` may be a rule until `c`; and a keyword would apply to the `until` and the `or` after it.
+    # `if a then b until c` may mean a rule that ends at `c`; a keyword would also apply to `until` or `or` after it.
     is_clear = is_clear and not has_token(failure, second, stop, UNCLEAR)
     keyword = failure.tokens[second].text
     if keyword in _FROM_THEN_ON:
@@ -328,7 +336,7 @@ def _prefix_time_error(failure: ParseFailure, at: int, forms: Forms) -> Diagnost
 
 @record
 class _Time:
-    """A time as the text gives it, with a unit of the language."""
+    """A time: a number as it stands in the text, and a unit of the language."""
 
     number: str
     unit: str
@@ -339,14 +347,15 @@ class _Time:
 
     @property
     def steps(self) -> int | None:
-        """The number of steps; None if the unit is another one."""
+        """The number of steps, or None if the time has another unit."""
         return int(self.number) if self.unit in ("step", "steps") and self.number.isdecimal() else None
 
 
 @record
 class _Parts:
-    """The parts of the text: the formula ``a``, the formula or time ``b``, and the goal before it, ``c``.
+    """The parts of an English phrase, as texts: `c then a WORD b`.
 
+    ``a`` is a formula, ``b`` a formula or a time, and ``c`` the goal before ``a``, or empty.
     ``time`` is given if ``b`` is a time.
     """
 
@@ -356,7 +365,7 @@ class _Parts:
     time: _Time | None = None
 
     def fill(self, form: str) -> str:
-        """Return the form with the parts filled in; empty if the form needs a time in steps and there is none."""
+        """Return the form with the parts filled in, or "" if it lacks a time in steps."""
         if self.time is None or self.time.steps is None:
             return "" if "{less}" in form else form.format(a=self.a, b=self.b, c=self.c, end=self.b)
         less = f"{self.time.steps - 1} steps"
@@ -366,9 +375,10 @@ class _Parts:
 def _rewrite_error(
     failure: ParseFailure, at: int, part: tuple[int, int], form: str, parts: _Parts | None
 ) -> Diagnostic:
-    """Return the error at the word ``at``, with a text for the tokens of ``part``, a start and a stop.
+    """Return the error for the word at index ``at``, with ``form`` as its replacement.
 
-    ``parts`` is None if the text has more than one reading; then the help describes the form in general.
+    ``part`` is the range of token indices to be replaced, and ``parts`` fills the form. If
+    ``parts`` is None, the text has several meanings; then the help describes the form with letters.
     """
     word, kind = failure.tokens[at], _clause_keyword(failure)
     title = f"{quote_token(word)} is no operator" if at else f"no clause begins with {quote_token(word)}"
@@ -393,7 +403,7 @@ def _rewrite_error(
 
 
 def _general_help(failure: ParseFailure, at: int, form: str) -> str:
-    """Return a help that describes a form, with letters for its parts."""
+    """Return a help text that shows a form with letters for its parts, not those of the text."""
     word, is_timed, is_prefix = failure.tokens[at].text, form in _TIMED, at == 0 or at < failure.stop.index
     time = _Time("20", "steps") if is_timed else None
     parts = _Parts("a", time.text if time else "b", "c", time)
@@ -428,13 +438,13 @@ _BEFORE_CONDITIONS: Final[Mapping[str, tuple[str | None, ...]]] = {
     "reach": (None, "AND", "OR", "THEN"),
     "avoid": (None, "AND", "OR"),
 }
-"""The tokens that may stand before `if` in these clauses; None means nothing."""
+"""By clause, the terminals that may stand before `if`; None means that nothing does."""
 _OF_THE_REST: Final = ("after", "unless", "but")
 """Words that may apply to all goals that follow, or only to the next one."""
 
 
 def _is_clear_time(failure: ParseFailure, begin: int, forms: Forms) -> bool:
-    """Whether a time can apply only to the operand that begins here."""
+    """Whether a time can apply only to the operand that begins at index ``begin``."""
     clause = failure.tokens[0].text if failure.start == "clause" else ""
     previous = failure.tokens[begin - 1].type if begin > formula_start(failure) else None
     if clause in ("reach", "avoid"):
@@ -450,13 +460,16 @@ def _is_clear_time(failure: ParseFailure, begin: int, forms: Forms) -> bool:
 
 
 def _is_clear_operand(failure: ParseFailure, start: int, stop: int) -> bool:
-    """Whether a time can apply to all of these tokens."""
+    """Whether a time can apply to all tokens from index ``start`` up to ``stop``."""
     is_one = is_of_one_step(failure, start, stop) and not has_token(failure, start, stop, UNCLEAR)
     return is_one and failure.tokens[start].text not in OPERATORS
 
 
 def _goal_starts(failure: ParseFailure, at: int) -> list[int]:
-    """Return where the goals of a `reach` before ``at`` begin; in other clauses, where the formula begins."""
+    """Return the indices where the goals of a `reach` before index ``at`` begin.
+
+    In other clauses, return the index where the formula begins.
+    """
     start = formula_start(failure)
     if _clause_keyword(failure) != "reach":
         return [start]
@@ -465,7 +478,7 @@ def _goal_starts(failure: ParseFailure, at: int) -> list[int]:
 
 
 def _is_of_every_step(failure: ParseFailure, at: int) -> bool:
-    """Whether a condition applies to every step at this place."""
+    """Whether a condition at index ``at`` is about every step, not about one."""
     is_kept = failure.tokens[0].text == "keep" and failure.start == "clause"
     return at == 0 or ((is_kept or has_always_before(failure)) and is_clear_here(failure, failure.tokens[at].text))
 
@@ -484,7 +497,7 @@ def _clause_keyword(failure: ParseFailure) -> str:
 
 
 def _read_time(failure: ParseFailure, at: int) -> tuple[_Time, int, bool]:
-    """Return a number with its unit in the language's form, the index after it, and whether the unit is certain."""
+    """Return the time at index ``at``, the index after it, and whether its unit is certain."""
     unit = failure.tokens[at + 1]
     known = UNITS_ELSEWHERE.get(unit.text.lower(), unit.text if unit.type == "UNIT" else "")
     is_clear = bool(known) or not declares_clock(failure.source)
@@ -495,7 +508,10 @@ _SEPARATORS: Final = ("then", ",", ":")
 
 
 def _condition_end(failure: ParseFailure, start: int, stop: int) -> int:
-    """Return where a condition ends: at `then`, a comma or a colon, else after a name with its arguments."""
+    """Return the index where a condition ends.
+
+    It ends at `then`, a comma or a colon, else after a name and its arguments.
+    """
     for index in outer_indices(failure.tokens, start, stop):
         if failure.tokens[index].text in _SEPARATORS:
             return index

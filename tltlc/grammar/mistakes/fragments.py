@@ -56,7 +56,7 @@ def declarations(source: SourceFile, tokens: Sequence[Token]) -> Iterator[list[T
 
 
 def lines(source: SourceFile, tokens: Sequence[Token], keywords: dict[str, str]) -> Iterator[list[Token]]:
-    """Split the body of a block into its lines."""
+    """Split the body of a block into clauses or lines of a test."""
     piece: list[Token] = []
     for index, token in enumerate(tokens):
         if piece and _begins_piece(source, tokens, index, keywords, True):
@@ -68,7 +68,7 @@ def lines(source: SourceFile, tokens: Sequence[Token], keywords: dict[str, str])
 
 
 def block_kind(piece: Sequence[Token]) -> str | None:
-    """Return ``spec`` or ``test`` if the piece is such a block in braces, even if its keyword is misspelt.
+    """Return ``spec`` or ``test`` if the piece is one in braces, even if its keyword is misspelt.
 
     Return None for any other piece, such as ``spec NAME = …``.
     """

@@ -1,4 +1,4 @@
-"""Forms that people know from other languages or a word processor, and their form in this language."""
+"""Report forms that people know from other languages or a word processor."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _EQUAL: Final = {"==": _EQUAL_FORM, "=": _EQUAL_FORM, "!=": _UNEQUAL_FORM, "<>":
 
 
 def equality(failure: ParseFailure) -> Diagnostic | None:
-    """Report ``a == b``, ``a != true``, ``a <> 3``, and ``a = b`` where a comparison was meant."""
+    """Report comparisons of other languages: ``a == b``, ``a != true``, ``a <> 3``, ``a = b``."""
     sign, at = failure.token.text, failure.stop.index
     is_expectation = failure.tokens[0].text == "expect"
     if sign not in _EQUAL or not (failure.token.type != "EQUAL" or failure.wants_operator or is_expectation):
@@ -74,14 +74,14 @@ def equality(failure: ParseFailure) -> Diagnostic | None:
 
 
 def _is_atom(failure: ParseFailure, start: int, stop: int) -> bool:
-    """Whether some tokens are a name, with or without arguments."""
+    """Whether the tokens from index ``start`` up to ``stop`` are a name, perhaps with arguments."""
     kinds = [token.type for token in failure.tokens[start:stop]]
     rest = outer_indices(failure.tokens, start + 1, stop)
     return kinds[:1] == ["NAME"] and all(failure.tokens[index].type in ("LPAR", "RPAR") for index in rest)
 
 
 def chained_comparison(failure: ParseFailure) -> Diagnostic | None:
-    """Report ``a < b < c``, with any number of comparisons."""
+    """Report a chain of comparisons: ``a < b < c``."""
     at = failure.stop.index
     if failure.token.type not in COMPARISONS or not failure.wants_operator:
         return None
@@ -99,7 +99,7 @@ def chained_comparison(failure: ParseFailure) -> Diagnostic | None:
 
 
 def arrow_sign(failure: ParseFailure) -> Diagnostic | None:
-    """Report ``a => b`` and ``a =< b``."""
+    """Report arrows that are no operators: ``a => b`` and ``a =< b``."""
     at = failure.stop.index
     after = failure.tokens[at + 1 :][:2]
     if (
@@ -123,7 +123,7 @@ def arrow_sign(failure: ParseFailure) -> Diagnostic | None:
 
 
 def dash_comment(failure: ParseFailure) -> Diagnostic | None:
-    """Report ``-- a comment``; the parser may have read its first words as part of a formula."""
+    """Report ``-- a comment``, even if the parser has read its first words as part of a formula."""
     tokens, at = failure.tokens, failure.stop.index
     for index in range(min(at, len(tokens) - 2), -1, -1):
         first, second, after = tokens[index], tokens[index + 1], tokens[index + 2 : index + 3]
@@ -141,14 +141,14 @@ def dash_comment(failure: ParseFailure) -> Diagnostic | None:
 
 
 def foreign_unit(failure: ParseFailure) -> Diagnostic | None:
-    """Report ``20 seconds`` and ``3 feet``."""
+    """Report units that the language does not know: ``20 seconds``, ``3 feet``."""
     number, token = failure.previous_token, failure.token
     if number is None or number.type != "NUMBER" or token.type != "NAME" or "UNIT" not in failure.allowed_terminals:
         return None
     title = f"there is no unit {quote_token(token)}"
     known = UNITS_ELSEWHERE.get(token.text.lower())
     if known == "%":
-        # For a value from 0 to 100, it is the number alone.
+        # A signal with values from 0 to 100 is compared with the number alone.
         help_ = (
             f"of a ratio, write `{number.text} %`, which is a hundredth of {number.text}; else `{number.text}` alone"
         )
@@ -169,7 +169,7 @@ def foreign_unit(failure: ParseFailure) -> Diagnostic | None:
 
 
 def doubled_operator(failure: ParseFailure) -> Diagnostic | None:
-    """Report ``a and then b``, ``a then then b``."""
+    """Report two operators side by side: ``a and then b``, ``a then then b``."""
     before, token = failure.previous_token, failure.token
     if before is None or before.type not in INFIX or token.type not in INFIX or not failure.wants_operand:
         return None
@@ -184,7 +184,7 @@ def doubled_operator(failure: ParseFailure) -> Diagnostic | None:
 
 
 def prefix_between_formulas(failure: ParseFailure) -> Diagnostic | None:
-    """Report ``reach a next b`` and ``keep a not b``."""
+    """Report an operator of one formula between two: ``reach a next b``, ``keep a not b``."""
     token, keyword, following = failure.token, failure.tokens[0].text, failure.stop.index + 1
     is_last = following + 1 >= len(failure.tokens) or is_first_on_line(failure.source, failure.tokens, following)
     if is_last and (keyword, token.type) in (("keep", "ALWAYS"), ("reach", "EVENTUALLY")):
@@ -202,7 +202,11 @@ def prefix_between_formulas(failure: ParseFailure) -> Diagnostic | None:
 
 
 def value_end(tokens: Sequence[Token], at: int, step: int) -> int:
-    """Return where the value before (``step`` -1) or after (``step`` 1) the operator at ``at`` begins or ends."""
+    """Return where a value beside the operator at index ``at`` begins or ends.
+
+    With ``step`` -1, return the index of the first token of the value before the operator; with
+    ``step`` 1, the index after the last token of the value behind it.
+    """
     index, depth = at + step, 0
     while 0 <= index < len(tokens):
         kind = tokens[index].type

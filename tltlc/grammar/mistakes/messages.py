@@ -38,7 +38,11 @@ _BOUNDED: Final = BEFORE_ONE - {"NOT"}
 def unexpected_token(
     source: SourceFile, tokens: Sequence[Token], error: lalr.UnexpectedTokenError, start: str
 ) -> Diagnostic:
-    """Return the error for a token that does not fit; ``tokens`` are one piece, parsed as the nonterminal ``start``."""
+    """Return the error for a token that does not fit.
+
+    ``tokens`` are one declaration, clause, line of a test or formula, parsed as the nonterminal
+    ``start``.
+    """
     failure = ParseFailure(source, tokens, error, start)
     for rule in _RULES:
         diagnostic = rule(failure)
@@ -96,7 +100,7 @@ def _wrong_bound(failure: ParseFailure) -> Diagnostic | None:
 
 
 def _bound_without_number(failure: ParseFailure) -> Diagnostic:
-    """Report ``F[-1,2] p`` and ``X[!] p``."""
+    """Report a bound in brackets without a number: ``F[-1,2] p``, ``X[!] p``."""
     operator = failure.tokens[_opening_index(failure) - 1]
     if operator.type in _NEXTS:
         return failure.error(
@@ -110,7 +114,7 @@ def _bound_without_number(failure: ParseFailure) -> Diagnostic:
 
 
 def _bound_with_one_end(failure: ParseFailure, number: str) -> Diagnostic:
-    """Report ``F[20] p`` and ``next[20] p``."""
+    """Report a bound in brackets with one number: ``F[20] p``, ``next[20] p``."""
     operator = failure.tokens[_opening_index(failure) - 1]
     if operator.type in _NEXTS:
         return failure.error(
@@ -128,7 +132,7 @@ def _opening_index(failure: ParseFailure) -> int:
 
 
 def _is_bound(failure: ParseFailure) -> bool:
-    """Whether a number of a bound is expected here, as in ``F[0,`` or ``eventually within``."""
+    """Whether the failure is where a bound has a number, as after ``F[0,``."""
     index = failure.stop.index - 1
     if failure.open_brackets and failure.open_brackets[-1].text == "[":
         index = _opening_index(failure)
@@ -172,7 +176,7 @@ def _quantifier_head(failure: ParseFailure) -> Diagnostic | None:
 
 
 def _misspelt_operator(failure: ParseFailure) -> Diagnostic | None:
-    """Report a name where an operator is expected."""
+    """Report a name where an operator is expected, such as a misspelt operator."""
     before, token = failure.previous_token, failure.token
     if before is None or not failure.wants_operator:
         return None
@@ -204,13 +208,13 @@ def _misspelt_operator(failure: ParseFailure) -> Diagnostic | None:
 
 
 def _is_before_operand(failure: ParseFailure) -> bool:
-    """Whether an operand, or an operator before one, comes after the token that does not fit."""
+    """Whether an operand or a prefix operator comes after the token that does not fit."""
     after = failure.tokens[failure.stop.index + 1]
     return after.type in OPERAND | BEFORE_ONE
 
 
 def _verb_is(failure: ParseFailure) -> Diagnostic | None:
-    """Report ``seen is true`` and ``coins is more than 3``."""
+    """Report the verb `is`: ``seen is true``, ``seen is not true``."""
     at, after = failure.stop.index, [token.text for token in failure.tokens[failure.stop.index + 1 :]]
     if (
         failure.token.text not in ("is", "are")
@@ -238,7 +242,7 @@ def _verb_is(failure: ParseFailure) -> Diagnostic | None:
 
 
 def _foreign_otherwise(failure: ParseFailure) -> Diagnostic | None:
-    """Report ``when a: 1 else: 0``."""
+    """Report `else` in place of `otherwise`: ``when a: 1 else: 0``."""
     if failure.token.text not in ("else", "default") or "OTHERWISE" not in failure.allowed_terminals:
         return None
     return failure.error(
@@ -247,14 +251,14 @@ def _foreign_otherwise(failure: ParseFailure) -> Diagnostic | None:
 
 
 def _case_form(failure: ParseFailure) -> Diagnostic | None:
-    """Report ``when a then 1``, and ``when a: 1`` without the remaining cases."""
+    """Report a broken case distinction: ``when a then 1``, ``when a: 1`` without `otherwise`."""
     if not any(token.type == "WHEN" for token in failure.tokens[: failure.stop.index]):
         return None
     return failure.error("TLT0101", failure.expectation(), CASES)
 
 
 def _names_side_by_side(failure: ParseFailure) -> Diagnostic | None:
-    """Report ``near s1``."""
+    """Report two names without an operator between them: ``near s1``."""
     before, token = failure.previous_token, failure.token
     if before is None or token.type != "NAME" or not failure.wants_operator or before.type not in ("NAME", "RPAR"):
         return None
@@ -274,7 +278,7 @@ def _names_side_by_side(failure: ParseFailure) -> Diagnostic | None:
 
 
 def _operator_for_name(failure: ParseFailure) -> Diagnostic | None:
-    """Report ``keep next``."""
+    """Report an operator where a formula is expected: ``keep next``."""
     if not failure.wants_operand:
         return None
     for word, kinds, where in (

@@ -1,4 +1,7 @@
-"""Decide whether plain English has only one reading here, so that a fix can be offered."""
+"""Decide whether an English word has only one meaning where it stands.
+
+Only then is a fix offered.
+"""
 
 from __future__ import annotations
 
@@ -11,41 +14,50 @@ from tltlc.grammar.mistakes.place import BEFORE_ONE, INFIX, UNTILS, ParseFailure
 from tltlc.grammar.mistakes.rephrasing import formula_start, formula_stop
 
 UNCLEAR: Final = INFIX - {"AND", "OR"}
-"""Operators beside which it is unclear what a word or a time applies to."""
+"""Operators beside which it is unclear what an English word or a time applies to."""
 TEMPORAL: Final = BEFORE_ONE - {"NOT"}
 QUANTIFIERS: Final = frozenset(("ALL", "ANY"))
 _ORDER: Final = ("before", "after", "followed")
 _STATES: Final = ("but", "xor", "xnor", "nor", "nand", "without")
-"""Words that join two states at one step; their forms mean the same in all clauses, also in brackets."""
+"""Words that join two conditions on the same step.
+
+What replaces them in the language means the same in all clauses, and in brackets.
+"""
 _NEGATED: Final = {
     "keep": ("before", "after", "unless", *CONDITIONS, "during"),
     "require": ("if",),
 }
 """By clause, the words for which `not a WORD b` means the same whether `not` applies to `a` or to all of it."""
 _AS_WRITTEN: Final = ("but", "xor", "xnor")
-"""More such words, for all clauses."""
+"""More words like those of ``_NEGATED``, for all clauses."""
 _IN_RULES: Final = frozenset(("AND", "OR", "IMPLIES", *QUANTIFIERS))
 
 
 def has_token(failure: ParseFailure, start: int, stop: int, kinds: Collection[str]) -> bool:
-    """Whether a token of these kinds stands outside brackets in a part."""
+    """Whether a token of ``kinds`` stands outside brackets, from index ``start`` up to ``stop``."""
     return any(failure.tokens[index].type in kinds for index in outer_indices(failure.tokens, start, stop))
 
 
 def is_of_one_step(failure: ParseFailure, start: int, stop: int) -> bool:
-    """Whether a part has no temporal operator, not even in brackets."""
+    """Whether the tokens from index ``start`` up to ``stop`` have no temporal operator.
+
+    Then the formula that they form is about one step.
+    """
     return not any(token.type in TEMPORAL | UNTILS | {"THEN"} for token in failure.tokens[start:stop])
 
 
 def is_clear_word(failure: ParseFailure, word: str, left: tuple[int, int], right: tuple[int, int], kind: str) -> bool:
-    """Whether `a WORD b` has only one reading in a clause of this kind, judged by its two sides."""
+    """Whether `a WORD b` has only one meaning in a clause of this kind, judged by `a` and `b`.
+
+    ``left`` and ``right`` are the ranges of the token indices of `a` and `b`.
+    """
     sides = (left, right)
     if any(has_token(failure, *side, UNCLEAR | TEMPORAL) for side in sides):
         return False
     if has_token(failure, *left, {"NOT"}) and word not in (*_NEGATED.get(kind, ()), *_AS_WRITTEN):
         return False
     if word in (*CONDITIONS, "during"):
-        # `a and b if c` has two readings if `and` differs from the operator in the form of `if`.
+        # `a and b if c` has two readings if `and` differs from the operator that replaces `if`.
         left_kinds, right_kinds = ({"OR"}, {"OR"}) if kind in ("reach", "avoid") else ({"AND"}, {"AND", "OR"})
         if has_token(failure, *left, left_kinds) or has_token(failure, *right, right_kinds):
             return False
@@ -55,7 +67,7 @@ def is_clear_word(failure: ParseFailure, word: str, left: tuple[int, int], right
     if word == "but":
         return not any(has_token(failure, *side, {"OR"}) for side in sides)
     if word == "without":
-        # After a goal, it may apply to all goals of the plan.
+        # After a goal, `without` may apply to all goals of the plan.
         ambiguous = {"AND", "OR"} if kind == "reach" else {"OR"}
         is_ambiguous = has_token(failure, *left, ambiguous) or has_token(failure, *right, INFIX)
         return not is_ambiguous and all(is_of_one_step(failure, *side) for side in sides)
@@ -67,7 +79,10 @@ def is_clear_word(failure: ParseFailure, word: str, left: tuple[int, int], right
 
 
 def is_clear_here(failure: ParseFailure, word: str) -> bool:
-    """Whether the form is right at this place, judged by the clause and by what stands around open brackets."""
+    """Whether a word has only one meaning here, judged by what stands around it.
+
+    The clause, and the tokens around the brackets that are open at the failure, decide.
+    """
     clause = failure.tokens[0].text if failure.start == "clause" else ""
     if word in _STATES:
         return not _is_in_call(failure)
@@ -91,7 +106,11 @@ def is_clear_here(failure: ParseFailure, word: str) -> bool:
 
 
 def is_clear_time_here(failure: ParseFailure, *, may_be_negated: bool, may_be_kept: bool) -> bool:
-    """Whether a time may apply to the formula in the open brackets, judged by what stands around them."""
+    """Whether a time can apply to the formula in the innermost open brackets.
+
+    The tokens around the brackets decide. ``may_be_negated`` allows `not` before them,
+    ``may_be_kept`` allows `always`.
+    """
     if failure.tokens[0].type == "LET" or _is_in_call(failure):
         return False
     kinds = {*_IN_RULES, *(("NOT",) if may_be_negated else ()), *(("ALWAYS",) if may_be_kept else ())}
@@ -104,7 +123,11 @@ def has_always_before(failure: ParseFailure) -> bool:
 
 
 def effective_clause(failure: ParseFailure, at: int) -> str:
-    """Return the clause that the tokens before ``at`` amount to; `always` and `eventually` count as its keyword."""
+    """Return the clause keyword that means the same as the tokens before index ``at``.
+
+    An `always` among them means ``keep``, else an `eventually` means ``reach``, else the keyword of
+    the clause counts.
+    """
     clause = failure.tokens[0].text if failure.start == "clause" else ""
     kinds = [token.type for token in failure.tokens[:at]]
     return "keep" if "ALWAYS" in kinds else "reach" if "EVENTUALLY" in kinds else clause
@@ -118,7 +141,11 @@ def _has_variable_of(failure: ParseFailure, left: tuple[int, int], right: tuple[
 
 
 def _surroundings_are(failure: ParseFailure, kinds: Collection[str]) -> bool:
-    """Whether only operators of these kinds stand before the open brackets, and only `and` and `or` after them."""
+    """Whether all operators around the open brackets have one of ``kinds`` or are harmless.
+
+    Those before a bracket must have one of ``kinds``; after the brackets, there may be only `and`
+    and `or`.
+    """
     operators = INFIX | BEFORE_ONE | QUANTIFIERS
     start, stop = _piece_formula_start(failure), formula_stop(failure)
     opening = {id(token) for token in failure.open_brackets}
@@ -134,7 +161,7 @@ def _surroundings_are(failure: ParseFailure, kinds: Collection[str]) -> bool:
 
 
 def _is_in_call(failure: ParseFailure) -> bool:
-    """Whether an open bracket belongs to a call, or to anything else but a formula."""
+    """Whether an open bracket belongs to anything but a formula, such as a call."""
     brackets = any(token.type != "LPAR" for token in failure.open_brackets)
     return brackets or any(before is not None and before.type == "NAME" for before in _tokens_before_brackets(failure))
 
@@ -150,7 +177,7 @@ def _tokens_before_brackets(failure: ParseFailure) -> list[Token | None]:
 
 
 def _piece_formula_start(failure: ParseFailure) -> int:
-    """Return the index where the formula of the whole piece begins."""
+    """Return the index where the formula of the declaration or clause begins."""
     if failure.start == "declaration":
         return next((index + 1 for index, token in enumerate(failure.tokens) if token.type == "EQUAL"), 0)
     return 1 if failure.start == "clause" else 0

@@ -17,7 +17,7 @@ from tltlc.grammar.tables import load
 
 KEYWORDS: Final = {"declaration": DECLARATIONS, "clause": CLAUSES, "test_item": TEST_ITEMS}
 NOUNS: Final = {"declaration": "declaration", "clause": "clause", "test_item": "line of a test"}
-"""The keywords of each kind of piece, and its name in messages; a piece of any other kind is a formula."""
+"""What messages call a piece of text, by its nonterminal. Any other piece is a formula."""
 
 OPENING: Final = {"LPAR": "RPAR", "LSQB": "RSQB", "LBRACE": "RBRACE"}
 CLOSING: Final = frozenset(OPENING.values())
@@ -64,23 +64,23 @@ class ParseFailure:
 
     @cached_property
     def allowed_terminals(self) -> set[str]:
-        """The terminals that could stand here."""
+        """The terminals that could stand in place of :attr:`token`."""
         tables = load()
         return lalr.allowed_terminals(tables, lalr.stack_after(tables, self.start, self.tokens[: self.stop.index]))
 
     @property
     def wants_operand(self) -> bool:
-        """Whether a formula or a number could begin here."""
+        """Whether a formula or a number could begin at :attr:`token`."""
         return self.allowed_terminals >= OPERAND
 
     @property
     def wants_operator(self) -> bool:
-        """Whether a formula could end or continue here."""
+        """Whether a formula could end at :attr:`token`, or continue with an operator."""
         return "AND" in self.allowed_terminals
 
     @cached_property
     def open_brackets(self) -> list[Token]:
-        """The brackets that are open here, outermost first."""
+        """The brackets that are open at :attr:`token`, outermost first."""
         stack: list[Token] = []
         for token in self.tokens[: self.stop.index]:
             if token.type in OPENING:
@@ -90,7 +90,7 @@ class ParseFailure:
         return stack
 
     def form(self) -> str | None:
-        """Return a help with the form of the piece, by its keyword; None if no form is known."""
+        """Return a help text with the syntax of the statement, or None if it is unknown."""
         form = KEYWORDS.get(self.start, {}).get(self.tokens[0].text)
         return f"the form is {form}" if form else None
 
@@ -106,8 +106,8 @@ class ParseFailure:
     ) -> Diagnostic:
         """Return an error at :attr:`token`, or at the last token if the piece ends too early.
 
-        ``write`` is the text by which a fix replaces the span. There is no fix if ``write`` is None or
-        if the span contains a comment.
+        ``write`` is the text that a fix writes in place of the span. There is no fix if ``write``
+        is None or if the span contains a comment.
         """
         if span is None:
             span = self.previous_token.span if self.is_at_end and self.previous_token else self.token.span
@@ -129,7 +129,7 @@ class ParseFailure:
         return f"expected {self.alternatives()}{before}{actual}"
 
     def alternatives(self) -> str:
-        """Return what could stand here, in plain words."""
+        """Return what could stand in place of :attr:`token`, in plain words."""
         if self.wants_operand:
             if self.previous_token and self.previous_token.type in ARITHMETIC:
                 return "a value"
@@ -153,7 +153,10 @@ class ParseFailure:
 
 
 def outer_indices(tokens: Sequence[Token], start: int, stop: int) -> Iterator[int]:
-    """Yield the indices from ``start`` up to ``stop`` of the tokens outside brackets, and of the outermost brackets."""
+    """Yield the indices of the tokens outside brackets, and of the outermost brackets.
+
+    The indices run from ``start`` up to ``stop``.
+    """
     depth = 0
     for index in range(start, stop):
         depth -= tokens[index].type in CLOSING

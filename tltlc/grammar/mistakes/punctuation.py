@@ -27,13 +27,13 @@ _COMMA: Final = {
     "reach": ("then", " for the one after the other; `and` asks for both at one step"),
     "avoid": ("or", ""),
 }
-"""By clause, the operator that joins formulas, with a reason for the message; in other clauses, it is `and`."""
+"""By clause, the operator to write for a comma, and the reason; in other clauses, it is `and`."""
 _NUMBER: Final = re.compile(r"[0-9]+\.[0-9]+(?:[eE][+-]?[0-9]+)?")
 _IN_THOUSANDS: Final = re.compile(r"[1-9][0-9]{0,2}(?:,[0-9]{3})+(?:\.[0-9]+)?")
 
 
 def comma(failure: ParseFailure) -> Diagnostic | None:
-    """Report ``reach a, b``, ``keep a,`` and ``3,5 m``."""
+    """Report a comma where none can stand: ``reach a, b``, ``keep a,``, ``3,5 m``."""
     before, at = failure.previous_token, failure.stop.index
     if failure.token.type != "COMMA" or before is None or not failure.wants_operator or failure.open_brackets:
         return None
@@ -68,7 +68,7 @@ def _comma_before_clause(failure: ParseFailure) -> Diagnostic:
 
 
 def _is_clear_list(failure: ParseFailure, start: int, stop: int, word: str) -> bool:
-    """Whether all commas can mean this word, judged by the operators beside them.
+    """Whether all commas can mean the operator ``word``, judged by the operators beside them.
 
     In English, the operator before the last part applies to the whole list: `a, b or c` is `a or b or c`.
     """
@@ -95,7 +95,7 @@ def _is_clear_list(failure: ParseFailure, start: int, stop: int, word: str) -> b
 
 
 def _comma_in_number(failure: ParseFailure) -> Diagnostic:
-    """Report ``2,5``, and ``1,000``, which some countries read as a thousand and others as one."""
+    """Report a comma in a number: ``2,5``, and ``1,000``, which is 1 in some countries."""
     at = failure.stop.index
     stop = at + 2
     while (
@@ -124,7 +124,10 @@ def _touches_both(failure: ParseFailure, at: int) -> bool:
 
 
 def _joined_text(failure: ParseFailure, start: int, stop: int, word: str) -> str:
-    """Return tokens with a word in place of each comma outside brackets; a comma before an operator is dropped."""
+    """Return the text of tokens, with ``word`` in place of each comma outside brackets.
+
+    A comma before an operator is left out.
+    """
     text = ""
     for end in [
         *(index for index in outer_indices(failure.tokens, start, stop) if failure.tokens[index].type == "COMMA"),
@@ -142,7 +145,10 @@ def _joined_text(failure: ParseFailure, start: int, stop: int, word: str) -> str
 
 
 def _goal_text(failure: ParseFailure, start: int, stop: int) -> str:
-    """Return tokens before `then`, with a quantifier in brackets, since it would extend over the `then`."""
+    """Return the text of tokens before a `then`, with brackets around a quantifier.
+
+    Without brackets, the quantifier would extend over the `then`.
+    """
     quantifiers = (
         index for index in outer_indices(failure.tokens, start, stop) if failure.tokens[index].type in QUANTIFIERS
     )
@@ -153,7 +159,7 @@ def _goal_text(failure: ParseFailure, start: int, stop: int) -> str:
 
 
 def missing_comma(failure: ParseFailure) -> Diagnostic | None:
-    """Report ``entity a b``, ``in [0 50]``, ``near(s1 close = 3 m)``."""
+    """Report a missing comma: ``entity a b``, ``in [0 50]``, ``near(s1 close = 3 m)``."""
     before, token = failure.previous_token, failure.token
     if before is None or "COMMA" not in failure.allowed_terminals or token.type not in ("NAME", "NUMBER"):
         return None
@@ -171,7 +177,7 @@ def missing_comma(failure: ParseFailure) -> Diagnostic | None:
 
 
 def argument_by_name(failure: ParseFailure) -> Diagnostic | None:
-    """Report ``near(s1, close: 3 m)`` and ``near(s1, close 3 m)``."""
+    """Report a named argument without `=`: ``near(s1, close: 3 m)``."""
     before = failure.previous_token
     if before is None or before.type != "NAME" or "EQUAL" not in failure.allowed_terminals or not failure.open_brackets:
         return None
@@ -186,7 +192,7 @@ def argument_by_name(failure: ParseFailure) -> Diagnostic | None:
 
 
 def empty_brackets(failure: ParseFailure) -> Diagnostic | None:
-    """Report ``alive()``."""
+    """Report a call without arguments: ``alive()``."""
     at = failure.stop.index
     kinds = [token.type for token in failure.tokens[max(0, at - 2) : at + 1]]
     if kinds != ["NAME", "LPAR", "RPAR"]:
@@ -214,7 +220,7 @@ def wrong_brackets(failure: ParseFailure) -> Diagnostic | None:
 
 
 def quoted_name(failure: ParseFailure) -> Diagnostic | None:
-    """Report ``near("door")`` and ``reach "near(door)"``."""
+    """Report a name or formula in quotes: ``near("door")``, ``reach "near(door)"``."""
     text, at = failure.token.text.strip('"'), failure.stop.index
     if failure.token.type != "STRING" or not ("NAME" in failure.allowed_terminals or failure.wants_operand):
         return None
@@ -232,14 +238,17 @@ def quoted_name(failure: ParseFailure) -> Diagnostic | None:
 
 
 def text_without_quotes(failure: ParseFailure, start: int, stop: int, text: str) -> str:
-    """Return the text between quotes, in brackets if it is several operands and not the whole formula."""
+    """Return the text from between quotes, in brackets if it is only a part of the formula.
+
+    A single operand needs no brackets.
+    """
     is_whole = (start, stop) == (formula_start(failure), formula_stop(failure))
     is_compound = any(token.type in LOOSE or token.type == "NOT" for token in tokenize(text).tokens)
     return f"({text})" if is_compound and not is_whole else text
 
 
 def invalid_name(failure: ParseFailure) -> Diagnostic | None:
-    """Report ``my-door``, where no difference can stand, and ``2nd_door``."""
+    """Report a name in a form that no name has: ``my-door``, ``2nd_door``."""
     before, token, after = failure.previous_token, failure.token, failure.tokens[failure.stop.index + 1 :][:1]
     if before is None or not after:
         return None
@@ -257,7 +266,7 @@ def invalid_name(failure: ParseFailure) -> Diagnostic | None:
 
 
 def value_of_signal(failure: ParseFailure) -> Diagnostic | None:
-    """Report ``signal seen: bool = false``."""
+    """Report a signal with a value: ``signal seen: bool = false``."""
     if (
         failure.tokens[0].type != "SIGNAL"
         or failure.token.type != "EQUAL"
@@ -269,14 +278,14 @@ def value_of_signal(failure: ParseFailure) -> Diagnostic | None:
 
 
 def type_without_name(failure: ParseFailure) -> Diagnostic | None:
-    """Report ``signal at(entity): bool``."""
+    """Report a parameter without a name: ``signal at(entity): bool``."""
     if failure.token.type != "ENTITY" or "NAME" not in failure.allowed_terminals or not failure.open_brackets:
         return None
     return failure.error("TLT0101", "a parameter has a name", "write `x: entity`", write="x: entity")
 
 
 def several_names(failure: ParseFailure) -> Diagnostic | None:
-    """Report ``signal a, b: bool``."""
+    """Report a declaration of several names: ``signal a, b: bool``."""
     word = failure.tokens[0].text
     if failure.token.type != "COMMA" or failure.start != "declaration" or failure.stop.index != 2:
         return None
@@ -284,7 +293,7 @@ def several_names(failure: ParseFailure) -> Diagnostic | None:
 
 
 def missing_in(failure: ParseFailure) -> Diagnostic | None:
-    """Report ``signal coins [0, 50]``."""
+    """Report a range without `in`: ``signal coins [0, 50]``."""
     if (
         failure.token.type != "LSQB"
         or "IN" not in failure.allowed_terminals

@@ -39,7 +39,7 @@ class _Reader:
         self._docs = lexed.docs
 
     def read_declaration(self, piece: list[Token]) -> None:
-        """Read the tokens of one declaration; a broken block still yields its good clauses."""
+        """Read the tokens of one declaration; keep the good clauses of a broken block."""
         before = len(self.diagnostics)
         kind = block_kind(piece)
         if kind:
@@ -78,7 +78,7 @@ class _Reader:
         return None
 
     def _read_line(self, line: list[Token], start: str) -> list[Any]:
-        """Return the clauses in one piece of a block, and report its errors.
+        """Read one line of a block: return its clause or test item, if any, and report its errors.
 
         If an unknown word follows a complete clause, return the clause and report the word.
         """
@@ -98,7 +98,7 @@ class _Reader:
         return []
 
     def _read(self, start: str, piece: list[Token]) -> Any:
-        """Return what the builder makes of a piece, or None after an error."""
+        """Return what the builder makes of a piece. After an error, report it and return None."""
         result = self._attempt(start, piece)
         if isinstance(result, lalr.UnexpectedTokenError):
             self._refuse(piece, start, result)

@@ -1,4 +1,7 @@
-"""Rewrite what cannot be parsed, from its own tokens; a rewrite is offered only if it can be parsed."""
+"""Suggest another text for tokens that cannot be parsed.
+
+Only a text that can be parsed is suggested.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +19,7 @@ from tltlc.grammar.tables import load
 from tltlc.grammar.tree import Clause
 
 LOOSE: Final = INFIX | {"EVENTUALLY", "ALWAYS", "NEXT", "WEAK_NEXT", "ALL", "ANY", "WHEN"}
-"""Operators that join several operands, or apply to all that follows."""
+"""Operators with which a text needs brackets to become an operand of another operator."""
 _LONGEST: Final = 90
 """The most characters of a rewrite; longer texts do not help."""
 
@@ -35,12 +38,12 @@ def suggest_rewrite(
 
 
 def span_of(tokens: Sequence[Token]) -> Span:
-    """Return the span from the first to the last of some tokens."""
+    """Return the span from the first to the last of the tokens."""
     return tokens[0].span.to(tokens[-1].span)
 
 
 def text_of(failure: ParseFailure, start: int, stop: int) -> str:
-    """Return some tokens as they stand in the text, on one line, without comments."""
+    """Return the text of the tokens from ``start`` up to ``stop`` in one line, without comments."""
     tokens = failure.tokens[start:stop]
     # A comment would swallow the rest of the line.
     lines = failure.source.slice(span_of(tokens)).splitlines() if tokens else []
@@ -48,7 +51,10 @@ def text_of(failure: ParseFailure, start: int, stop: int) -> str:
 
 
 def operand_text(failure: ParseFailure, start: int, stop: int) -> str:
-    """Return some tokens as an operand: a clause as its operator, several operands in brackets."""
+    """Return the text of the tokens from ``start`` up to ``stop`` as one operand.
+
+    A keyword of a clause becomes the operator of the same meaning; several operands get brackets.
+    """
     operator = ""
     if start < stop and failure.tokens[start].text in OPERATORS:
         operator = OPERATORS[failure.tokens[start].text]
@@ -78,7 +84,10 @@ def formula_stop(failure: ParseFailure) -> int:
 
 
 def last_index_of(failure: ParseFailure, kinds: Collection[str], start: int) -> int | None:
-    """Return the last index of a token of these kinds, outside brackets, from ``start`` to the failure, or None."""
+    """Return the last index of a token of ``kinds`` from ``start`` up to the failure, or None.
+
+    Tokens in brackets do not count.
+    """
     indices = [
         index
         for index in outer_indices(failure.tokens, start, failure.stop.index)
@@ -88,7 +97,7 @@ def last_index_of(failure: ParseFailure, kinds: Collection[str], start: int) -> 
 
 
 def _can_be_read(failure: ParseFailure, start: int, stop: int, text: str) -> bool:
-    """Whether the piece has no error with this text in place of some tokens."""
+    """Whether the piece has no error with ``text`` in place of these tokens."""
     tokens = failure.tokens
     source_text = failure.source.text
     before, after = (

@@ -1,4 +1,4 @@
-"""Characters and words that the language does not know, many of them from a word processor."""
+"""Report characters and words that the language does not know, often from word processors."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from tltlc.grammar.tables import load
 
 _QUOTES: Final = frozenset("\"'`´‘’‚“”„«»")
 _SIGNS: Final = {"−": "-", "×": "*", "÷": "/", "≔": "=", "°": "deg"}
-"""The equivalents of foreign characters, besides those that Unicode normalization finds."""
+"""Foreign characters with their equivalents in the language; Unicode normalization finds others."""
 _SUPERSCRIPTS: Final = "⁰¹²³⁴⁵⁶⁷⁸⁹"
 _HELPS: Final = {
     "#": "comments begin with `//`",
@@ -67,7 +67,7 @@ def unknown_sign(failure: ParseFailure) -> Diagnostic | None:
 
 
 def _invalid_word(failure: ParseFailure) -> Diagnostic:
-    """Report ``café`` and ``coins²``."""
+    """Report a word with characters that no name has: ``café``, ``coins²``."""
     from unicodedata import normalize
 
     text = failure.token.text
@@ -83,7 +83,7 @@ def _invalid_word(failure: ParseFailure) -> Diagnostic:
 
 
 def _foreign_quotes(failure: ParseFailure) -> Diagnostic:
-    """Report ``near('door')`` and typographic quotes."""
+    """Report quotes other than ``"``: ``near('door')``, typographic quotes."""
     at, tokens = failure.stop.index, failure.tokens
     last = next((index for index in range(at + 1, len(tokens)) if tokens[index].text in _QUOTES), None)
     title = f"{_quote_sign(failure.token.text)} means nothing here"

@@ -14,10 +14,12 @@ from tltlc.logic.text.notation import ASCII, write
 from tltlc.logic.text.phrases import bracketed_phrase, imperative, is_literal, is_state, object_phrase, phrase
 
 _PLAIN, _LIST, _CLAUSE, _SCOPED = 0, 1, 2, 3
-"""The ranks of clauses: where a reader may misread a clause that has no brackets.
+"""Ranks of English clauses, which decide where a clause needs brackets to be read correctly.
 
-A plain clause, nowhere; a list, in another list, because both have commas; a clause, beside any other
-one; a scoped clause, even as the last part of another one.
+- ``_PLAIN``: nowhere.
+- ``_LIST``: in another list, because both have commas.
+- ``_CLAUSE``: beside any other clause.
+- ``_SCOPED``: even as the last part of another clause.
 """
 
 _DEEPEST: Final = 5
@@ -66,13 +68,13 @@ def clause_text(formula: Formula, *, endless: bool = False) -> str:
 
 
 def invariant_text(invariant: Formula, *, endless: bool = False) -> str:
-    """Return a ``G`` as a clause for a list of what must hold throughout: ``keep alive`` for ``G alive``."""
+    """Return a ``G`` as an item of a list of what must hold: ``keep alive`` for ``G alive``."""
     (body,) = invariant.args
     return imperative(body, "keep", "avoid") if _is_condition(body) else clause_text(invariant, endless=endless)
 
 
 def recurring_text(recurring: Formula) -> str:
-    """Return a ``G F`` as a clause for a list of recurring goals: ``reach near(exit)`` for ``G F near(exit)``."""
+    """Return a ``G F`` as an item of a list of recurring goals: ``reach a`` for ``G F a``."""
     (body,) = recurring.args
     reach = _without_negation(body)
     if reach.op != "F":
@@ -82,7 +84,7 @@ def recurring_text(recurring: Formula) -> str:
 
 
 def goal_texts(reach: Formula, *, endless: bool = False) -> tuple[tuple[str, str], ...]:
-    """Return the goals of an ``F``, each with its link to the previous goal.
+    """Return the goals of an ``F`` in order, as pairs of a link to the previous goal and a text.
 
     A link is ``then`` or ``then or at the same time``; the link of the first goal is empty.
     """
@@ -90,7 +92,10 @@ def goal_texts(reach: Formula, *, endless: bool = False) -> tuple[tuple[str, str
 
 
 def without_constants(formula: Formula) -> Formula:
-    """Return an equal formula that is a constant, or has constants only in ``X true`` and ``N false``."""
+    """Return an equivalent formula without constants, except in ``X true`` and ``N false``.
+
+    The formula itself may be a constant.
+    """
     has_constants = any(
         (TRUE in node.args or FALSE in node.args) and not _is_about_end(node) for node in formula.walk()
     )
@@ -98,7 +103,7 @@ def without_constants(formula: Formula) -> Formula:
 
 
 def _clause(node: Formula, when: str, context: _SentenceContext) -> _Clause:
-    """Return the instruction that makes ``node`` hold at the moment ``when``."""
+    """Return the instruction to make ``node`` hold at a moment, which ``when`` names: ``now``."""
     if is_state(node):
         return f"{imperative(node, 'have', 'avoid')} {when}", _rank_of_state(node)
     if context.depth == 0:
@@ -132,7 +137,10 @@ def _clause(node: Formula, when: str, context: _SentenceContext) -> _Clause:
 
 
 def _parts(node: Formula) -> list[Formula]:
-    """Return the operands, with all operands without temporal operators joined at the place of the first."""
+    """Return the operands, with those that have no temporal operator joined to one.
+
+    The joined operand stands where the first of them stood.
+    """
     make = build.and_ if node.op == "and" else build.or_
     operands = operands_with_bounds(node)
     states = [part for part in operands if is_state(part)]
@@ -182,7 +190,7 @@ def _linked_goals(body: Formula, context: _SentenceContext) -> Iterator[tuple[st
 
 
 def _next_goal(body: Formula) -> tuple[str, Formula | None]:
-    """Return the link and the ``F`` of the next goal in ``p & X F q`` or ``p & F q``.
+    """Return the link to the next goal and its ``F``, for a body ``p & X F q`` or ``p & F q``.
 
     The ``F`` is None if no goal follows.
     """
@@ -200,7 +208,7 @@ def _next_goal(body: Formula) -> tuple[str, Formula | None]:
 def _goal(body: Formula, context: _SentenceContext) -> str:
     """Return the last goal of a sequence.
 
-    It is a choice, or a state together with what must hold from that step on.
+    It is a choice, or a condition together with what must hold from that step on.
     """
     if is_state(body):
         return phrase(body)
@@ -238,19 +246,19 @@ def _throughout_clause(body: Formula, context: _SentenceContext) -> _Clause:
 
 
 def _has_parts(body: Formula) -> bool:
-    """Whether the parts of what must hold throughout are listed one by one."""
+    """Whether the operands of ``body``, which must hold throughout, are listed one by one."""
     return body.op == "and" and not all(part.op == "atom" for part in body.args)
 
 
 def _is_condition(body: Formula) -> bool:
-    """Whether what must hold throughout is to be kept or avoided as a whole."""
+    """Whether ``body``, which must hold throughout, is one thing to keep or to avoid."""
     return is_state(body) and body.op != "implies" and not _has_parts(body)
 
 
 def _parts_throughout(body: Formula) -> list[Formula]:
     """Return the operands of an ``and`` that must hold throughout.
 
-    The atoms among them are joined at the place of the first.
+    The atoms among them are joined to one operand, which stands where the first atom stood.
     """
     atoms = [part for part in body.args if part.op == "atom"]
     joined = build.and_(*atoms)
@@ -289,7 +297,7 @@ def _until_clause(node: Formula, context: _SentenceContext) -> _Clause:
 
 
 def _next_clause(node: Formula, context: _SentenceContext) -> _Clause:
-    """Return the clause of ``X`` and ``N``, single or several in a row."""
+    """Return the clause of one ``X`` or ``N``, or of several in a row."""
     ops = ("X", "N") if context.endless else (node.op,)
     count, body = 0, node
     while body.op in ops:
@@ -331,19 +339,19 @@ def _step_noun(node: Formula, context: _SentenceContext) -> str:
 
 
 def _inner_clause(node: Formula, context: _SentenceContext, when: str = "at that step") -> str:
-    """Return the clause as part of another one, in brackets unless it is plain."""
+    """Return the clause of ``node`` as part of another clause, in brackets unless it is plain."""
     text, rank = _clause(node, when, context.deeper())
     return text if rank == _PLAIN else f"({text})"
 
 
 def _last_clause(node: Formula, context: _SentenceContext, when: str = "at that step") -> str:
-    """Return the clause as the last part of another one, in brackets if it is a list."""
+    """Return the clause of ``node`` as the last part of another, in brackets if it is scoped."""
     text, rank = _clause(node, when, context.deeper())
     return f"({text})" if rank == _SCOPED else text
 
 
 def _rank_of_state(state: Formula) -> int:
-    """Return the rank of a clause about a state, which may contain an `and` or an `or`."""
+    """Return the rank of a clause about a formula without temporal operators."""
     return _PLAIN if is_literal(state) else _LIST
 
 

@@ -1,4 +1,4 @@
-"""Print formulas: a table of spellings gives the operators, spaces and brackets."""
+"""Print formulas in a notation, which a table of spellings describes."""
 
 from __future__ import annotations
 
@@ -9,7 +9,10 @@ from tltlc.logic.bounded import LEAST, Bounded, bounded_operator, operands_with_
 from tltlc.logic.formula import Formula, Op
 
 OPERAND: Final = 6
-"""The strength of unary operators, and the least that an operator needs to stand behind one without brackets."""
+"""The strength of unary operators.
+
+A weaker operator needs brackets behind them (see ``STRENGTH``).
+"""
 
 STRENGTH: Final[Mapping[Op, int]] = {
     "iff": 1,
@@ -24,7 +27,8 @@ STRENGTH: Final[Mapping[Op, int]] = {
 
 
 class Spelling(NamedTuple):
-    """How a notation spells operators and constants: ``prefix`` before an operand, ``infix`` between two.
+    """A notation: how operators are spelt before an operand (``prefix``) and between two
+    (``infix``).
 
     ``space_before_bracket`` keeps the space between a prefix and an opening bracket.
     ``brackets_between_infix`` puts brackets around every infix operator inside another infix
@@ -81,7 +85,7 @@ WORDS: Final = Spelling(
 
 
 _Item = str | tuple[Formula, int]
-"""A text, or a formula to write and the least strength at which it needs no brackets."""
+"""A text; or a formula to be written, with the least strength at which it needs no brackets."""
 
 
 def write(formula: Formula, spelling: Spelling, least: int = 0) -> str:
@@ -116,7 +120,7 @@ def write(formula: Formula, spelling: Spelling, least: int = 0) -> str:
 
 
 def _bound(node: Formula) -> Bounded | None:
-    """Return the bounded operator that a node expands, if it is long enough to be printed that way."""
+    """Return the bounded operator that is printed for ``node``, its expansion, or None."""
     operator = bounded_operator(node) if node.op in ("or", "and") else None
     return operator if operator is not None and operator.steps >= LEAST else None
 

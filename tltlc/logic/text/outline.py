@@ -1,4 +1,4 @@
-"""Sort the requirements of a formula: goals in order, conditions throughout, recurring goals."""
+"""Sort the requirements of a formula: goals in order, permanent conditions, recurring goals."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def outline(formula: Formula, *, endless: bool = False) -> Outline:
 
 
 def _conjuncts(formula: Formula) -> list[Formula]:
-    """Return the operands of the outermost ``and``. The operands of an ``and`` below ``G`` get a ``G`` each.
+    """Return the operands of the outermost ``and``; ``G (a & b)`` gives ``G a`` and ``G b``.
 
     Bounded operators are not split.
     """

@@ -1,6 +1,6 @@
 """Parse the formulas in artefacts: texts that :func:`tltlc.logic.text.printer.ascii_text` printed.
 
-The grammar of the language reads many more notations, and needs declarations.  This parser needs
+The grammar of the language reads many more notations, and needs declarations. This parser needs
 only the names of the atoms.
 """
 
@@ -39,10 +39,10 @@ _BINARY: Final[Mapping[str, Callable[[Formula, Formula], Formula]]] = {
     "<->": build.iff,
 }
 _STRENGTH: Final = {"(": 0, **{symbol.strip(): STRENGTH[op] for op, symbol in ASCII.infix.items()}}
-"""How tightly operators between two operands bind, by their symbols; an open bracket binds least."""
+"""How tightly infix operators bind, by their symbols; an open bracket binds least."""
 
 _Operator = str | tuple[str, int]
-"""An operator or an open bracket; ``F`` or ``G`` with a bound in steps."""
+"""An operator or an open bracket; or a pair of ``F`` or ``G`` and its bound in steps."""
 
 
 class _NoFormulaError(Exception):
@@ -50,7 +50,10 @@ class _NoFormulaError(Exception):
 
 
 class FormulaParser:
-    """Parses formulas over atoms with the given names; formulas that share a bound share its expansion."""
+    """Parses formulas over atoms with the given names.
+
+    Bounded operators over the same operand share the formulas of their expansions.
+    """
 
     def __init__(self, names: Iterable[str]) -> None:
         known = [name for name in dict.fromkeys(names) if name]
@@ -148,7 +151,7 @@ class FormulaParser:
                 operands[-count:] = [_NARY[operator](*operands[-count:])]
 
     def _bounded(self, op: str, steps: int, body: Formula) -> Formula:
-        """Return ``F[0,steps] body`` or ``G[0,steps] body`` as nexts."""
+        """Return ``F[0,steps] body`` or ``G[0,steps] body``, expanded into ``X`` or ``N``."""
         expansions = self._expansions.setdefault((op, body), [body])
         while len(expansions) <= steps:
             self._remaining -= 1 + len(body.args)
@@ -162,7 +165,7 @@ class FormulaParser:
 
 
 def _strength(operator: _Operator) -> int:
-    """Return how tightly an operator binds; every operator before an operand binds alike."""
+    """Return how tightly an operator binds; all prefix operators bind alike."""
     return _STRENGTH.get(operator, OPERAND) if isinstance(operator, str) else OPERAND
 
 

@@ -23,7 +23,7 @@ _OPPOSITE: Final = {"<": ">=", ">": "<="}
 def phrase(state: Formula) -> str:
     """Return the formula in words: ``near(exit) and not seen``.
 
-    The negation of ``fuel > 5`` is ``fuel <= 5``.
+    The negation of ``fuel > 5`` is written ``fuel <= 5``.
     """
     done: dict[Formula, Formula] = {}
     for node in state.bottom_up():
@@ -38,14 +38,14 @@ def _opposite(node: Formula) -> Formula | None:
 
 
 def bracketed_phrase(state: Formula) -> str:
-    """Return the formula as a phrase that reads as one unit."""
+    """Return the formula as a phrase, in brackets unless it is a literal."""
     return phrase(state) if is_literal(state) else f"({phrase(state)})"
 
 
 def object_phrase(state: Formula) -> str:
-    """Return the formula as the object of a verb, in brackets unless it is a literal or a row of literals.
+    """Return the formula as the object of a verb, in brackets where they help to read it.
 
-    A row of literals is joined by `and` alone, or by `or` alone.
+    A literal has no brackets, and neither have literals joined by `and` alone or by `or` alone.
     """
     is_row = state.op in ("and", "or") and all(map(is_literal, state.args))
     return phrase(state) if is_row else bracketed_phrase(state)

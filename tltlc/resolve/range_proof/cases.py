@@ -1,4 +1,4 @@
-"""Split an expression with ``when`` into cases: expressions without ``when``, under constraints."""
+"""Split an expression with ``when`` into cases: expressions without ``when``, with constraints."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class TooManyCasesError(Exception):
 
 @record
 class Constraint:
-    """``difference >= 0``, or ``difference > 0`` if strict."""
+    """The constraint ``difference >= 0``, or ``difference > 0`` if ``strict``."""
 
     difference: Expression
     strict: bool
@@ -31,7 +31,7 @@ Constraints = tuple[Constraint, ...]
 
 @record
 class ConstrainedValue:
-    """The value of the whole expression where all constraints hold."""
+    """A case of an expression: the value that it has where all constraints hold."""
 
     constraints: Constraints
     value: Expression
@@ -133,7 +133,10 @@ def _split_extreme(op: str, args: tuple[Expression, ...], before: Constraints) -
 
 
 def _paths_where(condition: Condition, truth: bool, before: Constraints, extremes: bool) -> Iterator[Constraints]:
-    """Yield the constraint sets under which a condition is true (or false), each added to ``before``."""
+    """Yield the sets of constraints under which a condition has the value ``truth``.
+
+    Each set begins with the constraints ``before``.
+    """
     spend()
     if condition.op == "not":
         yield from _paths_where(_condition(condition.args[0]), not truth, before, extremes)

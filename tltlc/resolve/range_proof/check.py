@@ -201,7 +201,7 @@ def _check_continuity(predicate: Predicate) -> RangeProblem | None:
 
 
 def _doubtful_borders(when: When, predicate: Predicate) -> list[ProofGoal]:
-    """Return the proofs that are still needed where the cases of a ``when`` meet."""
+    """Return what is left to prove: that two cases of a ``when`` agree where they meet."""
     all_cases = cases(when)
     if len(all_cases) < 2:
         return []
@@ -212,7 +212,7 @@ def _doubtful_borders(when: When, predicate: Predicate) -> list[ProofGoal]:
 
 
 def _proves_exactly(kind: str, predicate: Predicate, goals: Sequence[ProofGoal], whole: ConstrainedBox) -> bool:
-    """Whether sympy proves the remaining goals, now or in a cached answer."""
+    """Whether sympy proves the remaining goals, or proved them before and the answer is cached."""
     from tltlc.resolve.range_proof import proof_cache
 
     def compute() -> proof_cache.Answer:

@@ -72,7 +72,7 @@ def proves_agreement(meeting: Meeting) -> bool:
 
 
 def agreement_goal(meeting: Meeting) -> ProofGoal:
-    """Return the goal of proving that two cases agree where they meet."""
+    """Return what is to be proved: that two cases have equal values where they meet."""
     difference = Op("-", (meeting.first.value, meeting.second.value))
     return ProofGoal(difference, meeting.constraints, 0.0, 0.0)
 

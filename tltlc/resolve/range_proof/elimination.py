@@ -38,11 +38,11 @@ Ranges = Mapping[Term, Interval]
 
 
 class GiveUpError(Exception):
-    """The question is outside the supported fragment, or needs too much work."""
+    """A proof needs more than this module can do, or too much work."""
 
 
 class Prover:
-    """Answers questions within one common step limit; raises GiveUpError when it is used up."""
+    """Proves that terms are never negative. Raises GiveUpError when its steps are used up."""
 
     def __init__(self) -> None:
         self.steps = 0
@@ -91,7 +91,7 @@ class Prover:
         return any(self.proves_nonnegative(term, limits, ranges, strict=True) for term in (f, -f))
 
     def _eliminate(self, x: Term, f: Term, limits: Sequence[Term], ranges: Ranges, strict: bool) -> bool:
-        """Whether ``f`` is provably never negative, asked for each candidate for its minimum over x."""
+        """Whether ``f`` is provably never negative at any candidate for its minimum over x."""
         if _degree(f, x) > LARGEST_DEGREE:
             raise GiveUpError
         rest = {symbol: side for symbol, side in ranges.items() if symbol != x}

@@ -1,7 +1,7 @@
 """Prove bounds with sympy, by turning expressions into quotients of polynomials.
 
-Any other function in an expression becomes a variable of its own, with the range that interval
-arithmetic gives it.
+Each term with another function, such as ``sqrt``, becomes a variable of its own, with the range
+that interval arithmetic finds for it.
 """
 
 from __future__ import annotations

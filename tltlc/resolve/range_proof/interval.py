@@ -37,7 +37,7 @@ def subtract(a: Interval, b: Interval) -> Interval:
 
 
 def multiply(a: Interval, b: Interval) -> Interval:
-    """Return the product of independent factors."""
+    """Return the product; the factors may vary independently."""
     corners = [(x, y) for x in a for y in b]
     return min(_product(x, y, -inf) for x, y in corners), max(_product(x, y, inf) for x, y in corners)
 
@@ -187,9 +187,9 @@ def _signed_ends(b: Interval) -> Interval:
 
 
 def _round_outwards(x: float, towards: float, negative: bool | None = None) -> float:
-    """Move two floats outwards, because library functions may err by one.
+    """Return the second float after ``x`` towards ``towards``; library functions may err by one.
 
-    Never crosses 0 if the sign is known.
+    Returns 0 instead of a value of the wrong sign, if ``negative`` gives the sign.
     """
     value = nextafter(nextafter(x, towards), towards)
     if negative is not None and (value > 0) == negative:

@@ -49,7 +49,7 @@ def unproved_goals(goals: Sequence[ProofGoal], whole: ConstrainedBox) -> list[Pr
 def proves_within(value: Expression, region: ConstrainedBox, low: float, high: float, parts: int = MOST_PARTS) -> bool:
     """Whether the value is provably defined and in ``[low, high]``, up to TOLERANCE, on the region.
 
-    ``parts`` limits the subdivision.
+    ``parts`` limits the number of parts into which the region is divided.
     """
     if holds_at_once(value, region, low, high):
         return True
@@ -61,7 +61,7 @@ def proves_within(value: Expression, region: ConstrainedBox, low: float, high: f
 
 
 def holds_at_once(value: Expression, region: ConstrainedBox, low: float, high: float) -> bool:
-    """Like proves_within, but with one interval evaluation."""
+    """Like :func:`proves_within`, but with a single interval evaluation on the whole region."""
     try:
         return is_within(bound(value, region), low, high)
     except UndefinedError:
@@ -83,9 +83,9 @@ def _is_defined(value: Expression, region: ConstrainedBox) -> bool:
 
 
 def _with_ratios(value: Expression, region: ConstrainedBox) -> ConstrainedBox:
-    """Return the region with bounds on each ratio in a defined value.
+    """Return the region with proved bounds on each quotient in ``value``.
 
-    The bounds are at least 0 or -1 and at most 0 or 1, where these can be proved.
+    A lower bound is 0 or -1, and an upper bound 0 or 1. A bound that cannot be proved is infinite.
     """
     known = dict(region.known)
     for node in _ratios(value):

@@ -30,7 +30,10 @@ _MOST_STEPS = WORK["check of a predicate"]
 
 @record
 class Answer:
-    """Whether a question is proved, and the steps of its proof; a cached answer counts them again."""
+    """Whether a question is proved, and the steps of its proof.
+
+    The steps are counted again each time that the cached answer is used.
+    """
 
     proved: bool
     steps: int
@@ -53,7 +56,10 @@ def answer(question: str, compute: Callable[[], Answer]) -> Answer:
 
 
 def question(kind: str, expression: Expression, box: Box, bools: frozenset[Variable], low: float, high: float) -> str:
-    """Return a text that two predicates share only if they differ in names of signals and params alone."""
+    """Return a text that identifies what is to be proved.
+
+    Two predicates have the same text only if they differ in nothing but names.
+    """
     names = {variable: f"{type(variable).__name__[0].lower()}{n}" for n, variable in enumerate(variables(expression))}
     ranges = [
         f"{name}{'?' if variable in bools else ''}:{box[variable][0]!r},{box[variable][1]!r}"
@@ -98,7 +104,7 @@ def _is_answer(value: object) -> bool:
 
 def _write(path: Path, answers: Mapping[str, Answer]) -> None:
     entries = {key: [answer.proved, answer.steps] for key, answer in answers.items()}
-    # If writing fails, the answers only take longer next time.
+    # If writing fails, the answers are only computed again next time.
     with suppress(OSError), temporaries() as made:
         path.parent.mkdir(parents=True, exist_ok=True)
         temporary = made.path(path)

@@ -71,7 +71,10 @@ class ConstrainedBox:
         return replace(self, box=box)
 
     def halves(self) -> tuple[ConstrainedBox, ConstrainedBox] | None:
-        """Return the region cut in two across its relatively longest side, or None if no side can be cut."""
+        """Return the two halves of the region, or None if no side can be cut.
+
+        The cut goes across the side that is longest on a logarithmic scale.
+        """
         widest = max(self.box, key=lambda variable: _length(self.box[variable]), default=None)
         if widest is None or _length(self.box[widest]) < 1e-9:
             return None
@@ -84,7 +87,7 @@ class ConstrainedBox:
 def _with_chains(constraints: Iterable[Constraint]) -> list[Constraint]:
     """Return the constraints, plus a constraint on ``a - c`` where ``a - b`` and ``b - c`` have one.
 
-    The bounds of the two constraints do not imply the third one.
+    Interval arithmetic does not find the third one from the two.
     """
     chained = list(constraints)
     differences = [c for c in chained if isinstance(c.difference, Op) and c.difference.op == "-"]

@@ -86,10 +86,10 @@ def find_wrong_point(
 
 
 def points(expression: Expression, box: Box, bools: frozenset[Variable]) -> Iterator[Point]:
-    """Yield candidate points.
+    """Yield the points to try, in a fixed order.
 
-    First corners and a grid, as far as they are few; then points where two variables are equal;
-    then scattered points.
+    First come the points of a grid with the corners of the box, then points where two variables are
+    equal, then scattered points.
     """
     names = list(box)
     extra = tuple(dict.fromkeys(_constants(expression)))

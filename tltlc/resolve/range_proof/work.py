@@ -1,8 +1,7 @@
-"""Limits on the work of predicate checks. Steps are counted, so every machine gives the same
-answer.
+"""Limits on the work of predicate checks.
 
-A step takes a few microseconds. Longer operations count as several. Without a limit, nothing is
-counted.
+The limits count steps, not time, so that every machine gives the same answer. A step takes a few
+microseconds; longer operations count as several. Outside :func:`step_limit`, nothing is counted.
 """
 
 from __future__ import annotations
@@ -31,7 +30,7 @@ _CURRENT: ContextVar[ProofBudget | None] = ContextVar("work", default=None)
 
 
 def current_budget() -> ProofBudget | None:
-    """Return the active limit, or None."""
+    """Return the budget of the innermost active :func:`step_limit`, or None."""
     return _CURRENT.get()
 
 

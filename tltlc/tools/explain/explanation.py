@@ -21,7 +21,7 @@ from tltlc.tools.witness.traces import Witness, accepting_trace, rejecting_trace
 from tltlc.tools.witness.transitions import Moves
 
 ANYTHING: Final = "anything"
-"""The condition of a step at which every sample leads to the same state."""
+"""What texts say for a condition that is always true."""
 _MOST_WORK: Final = 2_000_000
 """The most steps of work in the search for an infinite trace."""
 
@@ -213,7 +213,7 @@ def _failures(fspa: Fspa, guards: tuple[Formula, ...]) -> tuple[TrapCondition, .
 
 
 def _witness(moves: Moves, accept: bool) -> Witness | None:
-    """Return a trace that succeeds, or else one that fails; None if none is found.
+    """Return a trace that succeeds, if ``accept``, or one that fails; None if none is found.
 
     A finite trace that fails must end in a violated state.
     """
@@ -228,7 +228,7 @@ def _witness(moves: Moves, accept: bool) -> Witness | None:
 
 
 def _example_trace(fspa: Fspa, witness: Witness | None) -> ExampleTrace | None:
-    """Return a witness in words, with consecutive equal steps merged; None for None."""
+    """Return a witness in words, with consecutive equal steps merged, or None if there is none."""
     if witness is None:
         return None
     steps: list[TraceStep] = []

@@ -49,5 +49,5 @@ def _edges_with_less_left(fspa: Fspa, edges: Sequence[int]) -> Iterable[int]:
 
 
 def _least_atoms(edge: Edge) -> int:
-    """Return the smallest number of atoms that must hold to take an edge."""
+    """Return the smallest number of atoms that must hold for an edge to be taken."""
     return min(sum(holds for _, holds in prime) for prime in edge.guard.primes)

@@ -99,8 +99,7 @@ class Expressions:
         """Write items in ``(…)``.
 
         If they fit, they stay on this line. Otherwise they share a line of their own, or get a line
-        each. ``end`` is the offset after the closing bracket in the source, or None to search the
-        bracket.
+        each. ``end`` is the offset after the closing bracket in the source, None if it is unknown.
         """
         page, outer = self._page, self._page.indent
         if end is None:
@@ -204,7 +203,7 @@ class Expressions:
             self._put_item(item, indent + STEP if len(items) > 1 else indent, "," if place < len(items) - 1 else "")
 
     def _put_hugging(self, items: Sequence[Item], indent: int) -> None:
-        """Write the items after each other. The only large one is broken inside its brackets."""
+        """Write the items one after another, with the only large one broken inside its brackets."""
         for place, item in enumerate(items):
             comma = ", " if place < len(items) - 1 else ""
             # The brackets are broken even if they would fit on their own.

@@ -13,10 +13,10 @@ from tltlc.tools.fmt.page import WIDTH
 from tltlc.tools.fmt.style import Style
 
 _LEVEL: Final = {"-": "+", "/": "*", "W": "U", "R": "U", "M": "U"}
-"""Maps operators of the same precedence to one of them."""
+"""Maps each operator to one that represents all operators of the same precedence."""
 
 _PER: Final = ("s", "h", "ms", "min")
-"""Units after the slash of ``20 m/s``."""
+"""Units that may follow the slash in a speed, as in ``20 m/s``."""
 
 _LETTERS: Final = "abcdefghijklmnopqrstuvwxyzHz%"
 

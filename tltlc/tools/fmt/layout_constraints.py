@@ -20,8 +20,8 @@ from tltlc.grammar.tree import Comment, EntityDecl, Module
 class LayoutConstraints:
     """What the layout must keep as it is in the source.
 
-    No line begins at an offset in ``joints``. A declaration that starts at an offset in
-    ``declarations`` is copied from the source.
+    ``joints`` and ``declarations`` are offsets in the source. The layout begins no line at a joint,
+    and copies the declarations that begin at ``declarations``.
     """
 
     joints: frozenset[int]
@@ -51,7 +51,7 @@ def required_constraints(module: Module, text: str, constraints: LayoutConstrain
     old_spans = dict(zip(statements(new_module), statements(module), strict=True))
     affected: set[Span] = set()
     after = commented_spans(new_module)
-    # Comments on the same line share one tuple of places, before and after.
+    # Comments on the same line share one tuple of spans, before and after.
     pairs = {
         (id(places), id(new_places)): (places, new_places)
         for (_, places), (_, new_places) in zip(before, after, strict=True)
@@ -83,7 +83,7 @@ def _may_change(comment: Comment, places: tuple[Span, ...], text: str, list_span
 
 
 def _outermost(places: Iterable[Span]) -> set[Span]:
-    """Return the places that are not inside another of the places."""
+    """Return the spans that are not inside another one of ``places``."""
     outer: list[Span] = []
     for place in sorted(places, key=lambda place: (place.start, -place.end)):
         if not outer or place.end > outer[-1].end:

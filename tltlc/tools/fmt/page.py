@@ -21,7 +21,7 @@ _GAP: Final = 2
 """The number of blanks between a line and the comment after it."""
 
 _OPENERS: Final = ("{", "(", ":", "=")
-"""After a line with one of these ends, a comment applies to more than the next line."""
+"""Ends of lines whose comments are about several lines, so they are not aligned with later ones."""
 
 
 class Page:
@@ -55,7 +55,7 @@ class Page:
         self._indent = min(indent, _DEEPEST)
 
     def begin(self, joined: bool, indent: int) -> None:
-        """End the line, or write a space if ``joined`` and the line does not end in a comment."""
+        """End the line; or write a space, if ``joined`` and the line has not ended yet."""
         if joined and not self._at_line_start:
             self.put(" ")
         else:
@@ -94,7 +94,7 @@ class Page:
         return len(line) - len(line.lstrip(" "))
 
     def has_comment(self, end: int, start: int = 0) -> bool:
-        """Whether an unwritten comment begins before ``end`` and not before ``start``."""
+        """Whether a comment between these offsets in the source is not written yet."""
         for place in range(self._next, len(self._comments)):
             offset = self._comments[place].span.start
             if offset >= start:

@@ -51,7 +51,7 @@ def vocabulary_of(
 
 
 def _by_proposition(hoa: Hoa, options: Mapping[str, str]) -> dict[str, str]:
-    """Return the predicates by the names of the propositions of the file.
+    """Return a dict from the names of propositions in the file to predicates.
 
     The command line splits ``NAME=PREDICATE`` at the first ``=``, but a name may contain ``=``. So
     this takes the longest name of a proposition that matches.
@@ -94,7 +94,7 @@ def _with_places_in_file(message: Diagnostic, starts: Mapping[str, int], source:
         return replace(label, source=source, span=Span(label.span.start + start, label.span.end + start))
 
     mapped = f'say which predicate it is: `--atom "{message.labels[0].source.text.strip()}=…"`'
-    # Other help texts are for the author of a formula.
+    # Only these help texts fit a proposition; others are for the author of a formula.
     own_help = message.help if message.code in ("TLT0201", "TLT0655") else None
     help_ = f"{own_help}; or {mapped}" if own_help else mapped
     return replace(message, labels=tuple(map(place_in_file, message.labels)), help=help_)

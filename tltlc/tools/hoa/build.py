@@ -24,14 +24,14 @@ from tltlc.tools.hoa.transitions import NO, NOT_ALLOWED, YES, HoaTransitions, Mo
 from tltlc.tools.hoa.tree import Hoa
 
 _MOST_PROBLEMS: Final = 5
-"""At most this many states that are not deterministic, or not complete, are reported."""
+"""The most errors that are reported about states that are not deterministic or not complete."""
 
 Moves = dict[int, int]
-"""Maps each reachable state to its function from letters to :data:`~tltlc.tools.hoa.transitions.Move`."""
+"""For each reachable state, the node of its function from letters to moves, in the diagrams."""
 
 
 class FiniteAnalysis:
-    """The successors (``targets``) and verdicts of states over finite traces.
+    """The successors (``targets``) and the verdicts of states, over finite traces.
 
     ``goals`` are the accepting states.
     """

@@ -12,7 +12,8 @@ from tltlc.tools.hoa.tree import Hoa, HoaExpression
 class Acceptance:
     """An acceptance condition in disjunctive normal form, as ``clauses`` over marks.
 
-    Each different ``Fin`` or ``Inf`` of the condition has a mark.
+    Each different ``Fin`` or ``Inf`` of the condition has a number, its mark. An edge carries the
+    mark if it is in the set, or for ``Fin(!0)`` and ``Inf(!0)``, if it is not.
 
     Raises :class:`~tltlc.automaton.work.OutOfWork` if there are too many clauses.
     """

@@ -140,7 +140,9 @@ def _name(hoa: Hoa) -> str:
 
 
 def _state_names(hoa: Hoa, numbers: Sequence[int]) -> list[str]:
-    """Return a name for each state of the automaton. ``numbers`` has their numbers in the file.
+    """Return a name for each state of the automaton.
+
+    ``numbers`` are the states' numbers in the file.
 
     States that come from the same state of the file are counted: "state 3 (1 of 2)".
     """
@@ -155,7 +157,7 @@ def _state_names(hoa: Hoa, numbers: Sequence[int]) -> list[str]:
 
 
 def _label(name: str, formula_of: FormulaOf) -> Formula | Text:
-    """Return a name as a formula if tltlc prints that formula as the name, else as text."""
+    """Return a name as a formula if that formula is printed exactly like the name, else as text."""
     expression, _ = parse_formula(SourceFile("<name>", name))
     formula = None if expression is None else formula_of(expression)
     # Operators of other tools may have other precedences.
@@ -179,7 +181,9 @@ def _too_large(source: SourceFile, reason: Exception, options: ImportOptions) ->
 def load_hoa(
     path: str | os.PathLike[str], predicates: str | os.PathLike[str], options: ImportOptions | None = None
 ) -> Fspa:
-    """Return the automaton of a HOA file whose atomic propositions are predicates of the library ``predicates``.
+    """Return the automaton of a HOA file.
+
+    Its propositions are predicates of the file ``predicates``.
 
     Raises :class:`TltlError` if one of the files cannot be read, the automaton is not deterministic
     or not complete, or a proposition is no predicate.

@@ -14,7 +14,7 @@ _LARGEST: Final = 10**9
 
 @record
 class Metadata:
-    """The values of the headers, as in :class:`~tltlc.resolve.spec.Spec`; None for missing headers."""
+    """The values of tltlc's headers, as in :class:`~tltlc.resolve.spec.Spec`; None if missing."""
 
     judge: Judge | None = None
     limit_steps: int | None = None

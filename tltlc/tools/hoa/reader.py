@@ -39,7 +39,7 @@ _ONCE: Final = ("States:", "AP:", "Acceptance:", "name:")
 
 
 def read_hoa(source: SourceFile) -> Hoa:
-    """Return the syntax tree of a HOA file. The numbers in it are not checked.
+    """Return the syntax tree of a HOA file. Numbers of states, sets and atoms are not checked yet.
 
     Raises:
         TltlError: TLT0651 if the text does not follow the format; TLT0652 if the file has several
@@ -78,7 +78,7 @@ def _parser() -> Lark:
 def _without_comments(source: SourceFile) -> str:
     """Return the text with spaces in place of comments, so that all offsets stay the same.
 
-    Comments nest. Error TLT0651 if a comment does not end.
+    Comments nest. Raises TltlError, TLT0651, if a comment does not end.
     """
     pieces: list[str] = []
     code_start = comment_start = depth = 0
@@ -107,7 +107,7 @@ def _without_comments(source: SourceFile) -> str:
 def _syntax_error(source: SourceFile, error: UnexpectedInput, whole: Span, at_end: str) -> TltlError:
     """Return the error for a part of the text that cannot be parsed.
 
-    ``whole`` is the span of the part. ``at_end`` is what messages call the thing after the part.
+    ``whole`` is the span of the part. ``at_end`` is what messages call whatever follows the part.
     """
     if not isinstance(error, UnexpectedToken):
         start = whole.start + (error.pos_in_stream or 0)
@@ -162,7 +162,7 @@ def _shorten(token: str) -> str:
 class _Tree(Transformer_NonRecursive[Token, Hoa]):
     """Builds the records of :mod:`tltlc.tools.hoa.tree`, and checks the header.
 
-    Each method is called for the grammar rule of its name, and its docstring shows an example.
+    Lark calls each method for the grammar rule of the same name.
     """
 
     def __init__(self, source: SourceFile) -> None:
@@ -170,7 +170,7 @@ class _Tree(Transformer_NonRecursive[Token, Hoa]):
         self._source = source
         self._labels: dict[str, HoaExpression] = {}
         self._start = 0
-        """The offset in the file of the text that is being parsed, because labels are parsed separately."""
+        """The offset in the file at which the parsed text begins: not 0 for a label."""
 
     def automaton(self, version: Token, *items: Any) -> Hoa:
         """Build the whole automaton."""
@@ -204,34 +204,34 @@ class _Tree(Transformer_NonRecursive[Token, Hoa]):
     # The methods for items of the header return the name of the item, its value, and its span.
 
     def states(self, word: Token, count: Token) -> Any:
-        """``States: 3``."""
+        """Read the header item ``States: 3``."""
         return "States:", self._number(count), self._span(word)
 
     def start(self, targets: Targets) -> Any:
-        """``Start: 0``."""
+        """Read the header item ``Start: 0``."""
         return "Start:", targets, targets.span
 
     def atoms(self, word: Token, count: Token, *names: HoaString) -> Any:
-        """``AP: 2 "a" "b"``."""
+        """Read the header item ``AP: 2 "a" "b"``."""
         if self._number(count) != len(names):
             title = f"`AP:` says {count}, and {len(names)} {'name follows' if len(names) == 1 else 'names follow'}"
             raise format_error(self._source, self._span(word), title, "give the number of names")
         return "AP:", names, self._span(word)
 
     def alias(self, name: Token, term: HoaExpression) -> Any:
-        """``Alias: @a 0 & !1``."""
+        """Read the header item ``Alias: @a 0 & !1``."""
         return "Alias:", Alias(str(name), term, self._span(name)), self._span(name)
 
     def acceptance(self, word: Token, sets: Token, condition: HoaExpression) -> Any:
-        """``Acceptance: 2 Fin(0) & Inf(1)``."""
+        """Read the header item ``Acceptance: 2 Fin(0) & Inf(1)``."""
         return "Acceptance:", (self._number(sets), condition), self._span(word)
 
     def name(self, word: Token, text: HoaString) -> Any:
-        """``name: "G F a"``."""
+        """Read the header item ``name: "G F a"``."""
         return "name:", text, self._span(word)
 
     def header(self, name: Token, *values: Token) -> Any:
-        """Any other item, e.g. ``acc-name: Buchi``."""
+        """Read any other header item, e.g. ``acc-name: Buchi``."""
         return "", Header(str(name), tuple(map(_as_text, values)), self._span(name)), self._span(name)
 
     # The methods for the body.
@@ -239,12 +239,12 @@ class _Tree(Transformer_NonRecursive[Token, Hoa]):
     def state(
         self, label: Token | None, number: Token, name: HoaString | None, sets: Sets, *edges: HoaEdge
     ) -> HoaState:
-        """``State: 0 "F a" {0}`` and its edges."""
+        """Build a state, e.g. ``State: 0 "F a" {0}``, with its edges."""
         text = None if name is None else name.text
         return HoaState(self._number(number), text, self._label(label), sets, edges, self._span(number))
 
     def edge(self, label: Token | None, targets: Targets, sets: Sets) -> HoaEdge:
-        """``[0 & !1] 3 {0}``."""
+        """Build an edge, e.g. ``[0 & !1] 3 {0}``."""
         return HoaEdge(self._label(label), targets, sets)
 
     def _label(self, label: Token | None) -> HoaExpression | None:
@@ -265,47 +265,47 @@ class _Tree(Transformer_NonRecursive[Token, Hoa]):
         return self._labels[label]
 
     def sets(self, *numbers: Token | None) -> Sets:
-        """``{0 1}``."""
+        """Build the acceptance sets of a state or an edge, e.g. ``{0 1}``."""
         present = [number for number in numbers if number is not None]
         return Sets(tuple(map(self._number, present)), self._span(present[0], present[-1])) if present else Sets()
 
     def targets(self, *states: Token) -> Targets:
-        """``3``, or ``3 & 4``."""
+        """Build the targets of an edge, or initial states: ``3``, or ``3 & 4``."""
         return Targets(tuple(map(self._number, states)), self._span(states[0], states[-1]))
 
     def string(self, text: Token) -> HoaString:
-        """A string in double quotes."""
+        """Build a string from a text in double quotes."""
         whole = self._span(text)
         return HoaString(_ESCAPE.sub(_unescape, text[1:-1]), Span(whole.start + 1, whole.end - 1))
 
     # Boolean expressions.
 
     def any_of(self, *terms: HoaExpression) -> HoaExpression:
-        """Operands of ``|``."""
+        """Build a disjunction, or return its only operand."""
         return terms[0] if len(terms) == 1 else HoaExpression("or", terms)
 
     def all_of(self, *terms: HoaExpression) -> HoaExpression:
-        """Operands of ``&``."""
+        """Build a conjunction, or return its only operand."""
         return terms[0] if len(terms) == 1 else HoaExpression("and", terms)
 
     def negation(self, _: Token, term: HoaExpression) -> HoaExpression:
-        """``!0``."""
+        """Build a negation, e.g. ``!0``."""
         return HoaExpression("not", (term,))
 
     def atom(self, index: Token) -> HoaExpression:
-        """``0``."""
+        """Build an atom from its index, e.g. ``0``."""
         return HoaExpression("atom", (), self._number(index), False, self._span(index))
 
     def aliased(self, name: Token) -> HoaExpression:
-        """``@a``."""
+        """Build the use of an alias, e.g. ``@a``."""
         return HoaExpression("alias", (), str(name), False, self._span(name))
 
     def constant(self, word: Token) -> HoaExpression:
-        """``t`` or ``f``."""
+        """Build a constant, ``t`` (true) or ``f`` (false)."""
         return HoaExpression("true" if word.type == "TRUE" else "false")
 
     def set(self, kind: Token, outside: Token | None, number: Token) -> HoaExpression:
-        """``Fin(0)`` or ``Inf(!0)``."""
+        """Build a term of an acceptance condition, e.g. ``Fin(0)`` or ``Inf(!0)``."""
         if kind not in ("Fin", "Inf"):
             title, help_ = f"`{kind}` is no acceptance", "it is `Fin` or `Inf` of a set"
             raise format_error(self._source, self._span(kind), title, help_)

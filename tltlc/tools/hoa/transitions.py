@@ -15,20 +15,20 @@ from tltlc.tools.hoa.tree import Hoa, HoaEdge, HoaExpression, HoaState
 
 _MOST_UNLABELLED: Final = 64
 YES, NO = "yes", "no"
-"""These are strings because the diagrams could not tell True and False from 1 and 0."""
+"""The truth values in the diagrams: strings, because True and False equal the numbers 1 and 0."""
 
 Move = tuple[int, frozenset[int]]
-"""The target of an edge, and the acceptance sets of the edge and of its source."""
+"""Where a letter leads: the target state, and the acceptance sets of the edge and its source."""
 
 NOT_ALLOWED: Final = None
-"""The value of a function on letters that ``exclusive`` rules out."""
+"""The value of functions for the letters that ``exclusive`` declarations rule out."""
 
 
 class HoaTransitions:
-    """The moves of the states of a file, as functions of letters over the names in ``atoms``.
+    """The moves of the states of a file, as functions from letters over ``atoms``.
 
-    ``allowed`` is a function from letters to :data:`YES` or :data:`NO`. Letters that are not allowed
-    are ignored. Functions are numbers of nodes in the diagrams ``letters``.
+    A function is the number of its node in the decision diagrams ``letters``. ``allowed`` is a
+    function from letters to :data:`YES` or :data:`NO`; letters that are not allowed are ignored.
 
     Raises TltlError, TLT0651, if an alias is wrong.
     """
@@ -38,7 +38,7 @@ class HoaTransitions:
         self._letters, self._allowed = letters, allowed
         self._aliases: dict[str, int] = {}
         self._label_functions: dict[int, int] = {}
-        """The functions of labels, by the ``id`` of the label."""
+        """The functions from letters to the truth of a label, by the ``id`` of the label."""
         for alias in hoa.aliases:
             if alias.name in self._aliases:
                 raise format_error(hoa.source, alias.span, f"`{alias.name}` is declared again", "rename one")
@@ -68,7 +68,7 @@ class HoaTransitions:
     def _labelled_edges(self, state: HoaState) -> int:
         """Return a function from letters to the positions of the edges that they take.
 
-        It has at most two positions, because two are enough for a counterexample.
+        A letter is mapped to two positions at most: two show that the state is not deterministic.
         """
         letters = self._letters
         edges = letters.leaf(())
@@ -121,7 +121,7 @@ class HoaTransitions:
             case "not":
                 return letters.map_leaves(lambda value: NO if value == YES else YES, self._function(term.args[0]), {})
             case "and" | "or":
-                # If one operand has this value, it is the result.
+                # If one operand has this value, the result has it, too.
                 absorbing = NO if term.op == "and" else YES
                 result = no if absorbing == YES else yes
                 for operand in term.args:
@@ -140,7 +140,7 @@ class HoaTransitions:
         return letters.node(term.value, no, yes)
 
     def _is_unlabelled(self, state: HoaState) -> bool:
-        """Whether the edges of a state have no labels and stand for the letters in order.
+        """Whether the edges of a state have no labels, so that their positions give their letters.
 
         False if there are no edges.
 

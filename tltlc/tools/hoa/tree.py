@@ -46,8 +46,8 @@ class Targets:
 class HoaEdge:
     """An edge.
 
-    If ``label`` is None, the label of the state applies. If there is none, the edge is for the letter
-    of its position.
+    If ``label`` is None, the label of the state applies. If that is None, too, the position of the
+    edge among the edges of its state gives its letter.
     """
 
     label: HoaExpression | None

@@ -73,10 +73,10 @@ class _SettledSpecs:
         self._results: dict[int, bool] = {}
 
     def overlap(self, allowance: Allowance) -> bool:
-        """Whether a comment applies to any of these specs."""
+        """Whether the comment of an allowance applies to any of these specs."""
         if allowance.statements is None:
             return bool(self._specs)
-        # Comments on the same line share one tuple of places.
+        # Comments on the same line share one tuple of spans, so its identity can be the key.
         if id(allowance.statements) not in self._results:
             self._results[id(allowance.statements)] = any(map(self._covers, allowance.statements))
         return self._results[id(allowance.statements)]

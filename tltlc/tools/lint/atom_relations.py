@@ -33,7 +33,7 @@ class _DeclaredSignals:
 
 
 def relations(spec: SpecView, names: Collection[str]) -> tuple[Conjunct, ...]:
-    """Return the proved relations between these atoms, as clauses that can be added to the spec.
+    """Return the proved relations between the atoms ``names``, as clauses to add to the spec.
 
     Each has the form ``G !(p & q)``, where p and q are atoms or negated atoms over common signals
     that never hold together.
@@ -51,7 +51,7 @@ def is_impossible(spec: SpecView) -> bool:
 
 
 def _impossible_pairs(spec: SpecView, names: Collection[str]) -> Iterator[Formula]:
-    """Yield conjunctions of two atoms, or negations, that are proved never to hold."""
+    """Yield conjunctions of two atoms or negated atoms that provably never hold."""
     declared = _DeclaredSignals(spec.fspa.signals, spec.fspa.params)
     simple = [candidate for candidate in spec.fspa.atoms if candidate.name in names and _is_simple(candidate)]
     pairs = [pair for pair in combinations(simple, 2) if _signals(pair[0]) & _signals(pair[1])]
@@ -64,7 +64,7 @@ def _impossible_pairs(spec: SpecView, names: Collection[str]) -> Iterator[Formul
 
 @lru_cache(maxsize=1024)
 def _never_hold_together(pair: tuple[Atom, Atom], signs: tuple[bool, ...], declared: _DeclaredSignals) -> bool:
-    """Whether two atoms provably never have these truth values at one step."""
+    """Whether two atoms provably never have the truth values ``signs`` at one step."""
     conditions = tuple(
         Condition(">" if holds else "<=", (member.expression, Const(0.0)))
         for member, holds in zip(pair, signs, strict=True)

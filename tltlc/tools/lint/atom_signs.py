@@ -1,6 +1,6 @@
-"""Determine which signs the value of an atom can have.
+"""Find out which signs the value of an atom can have.
 
-All values of its signals and params within their ranges are considered.
+The signals and params of the atom may have any values within their ranges.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ class DeclaredNames(Protocol):
 
 _MOST_POINTS: Final = 600
 _ABOVE_ZERO: Final = 1e3 * TOLERANCE
-"""A value proved to be at least this is above 0 despite rounding."""
+"""A value that is proved to be at least this is above 0, although proofs tolerate rounding."""
 
 _RANGES: Final[dict[Sign, tuple[float, float]]] = {
     "positive": (_ABOVE_ZERO, inf),
@@ -48,8 +48,8 @@ _RANGES: Final[dict[Sign, tuple[float, float]]] = {
 def can_be(sign: Sign, atom: Atom, declarations: DeclaredNames, tries: int = _MOST_POINTS) -> bool:
     """Whether a search finds values of signals and params for which an atom has this sign.
 
-    The search tries at most ``tries`` points. It is limited to the work of a check of a predicate.
-    False means only that the search found no such values.
+    The search tries at most ``tries`` points, and stops when it has used up the steps that the
+    check of a predicate may take. False means only that the search found no such values.
     """
     try:
         with step_limit(WORK["check of a predicate"]):

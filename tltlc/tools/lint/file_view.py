@@ -1,4 +1,4 @@
-"""What a lint rule sees of a file: its syntax tree, names, specs and automata.
+"""What a lint rule can read of a file: its syntax tree, names, specs and automata.
 
 All of this is computed once and shared by all rules.
 """
@@ -29,9 +29,9 @@ _COMPARISONS = ("<", "<=", ">", ">=")
 
 @record
 class Expression:
-    """An expression of a clause, with the environment that resolves its names.
+    """An expression of a clause, with the environment in which its names are resolved.
 
-    The environment also has the values of the variables of enclosing quantifiers.
+    The environment also has the entity of each enclosing quantifier.
     """
 
     tree: Expr
@@ -120,7 +120,7 @@ class SpecView:
         return self.fspa.states[0].verdict in ("satisfied", "violated")
 
     def clauses(self, *kinds: str) -> Iterator[tuple[Clause, Expression]]:
-        """Yield the clauses of these kinds that have a formula, in order.
+        """Yield the clauses of these kinds and their expressions, in order.
 
         The kinds with formulas are ``reach keep avoid require``.
         """
@@ -174,7 +174,7 @@ class View:
 
     @property
     def used_names(self) -> MentionedNames:
-        """The names of this file that the file itself or other files use."""
+        """The names that this file mentions, or that other files use from it."""
         return MentionedNames(mentioned_names(self.module), self.used_elsewhere)
 
     def label(self, span: Span, message: str = "") -> Label:

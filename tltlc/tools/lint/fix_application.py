@@ -17,7 +17,7 @@ from tltlc.tools.lint.run import findings, view_of
 from tltlc.tools.lint.scopes import apply_edits, preserve_scopes
 
 _MOST_ROUNDS = 100
-"""No real file needs this many rounds: each round removes something."""
+"""The most rounds of fixing. No real file needs so many, because each round removes something."""
 
 
 @record
@@ -111,7 +111,7 @@ def _edits(findings: Iterable[LintFinding]) -> tuple[Edit, ...]:
 
 
 def _fixable_together(module: Module, findings: Sequence[LintFinding]) -> tuple[list[LintFinding], tuple[Edit, ...]]:
-    """Return the findings whose fixes together do not change what comments apply to, and their edits.
+    """Return findings whose fixes together do not change what comments apply to, and their edits.
 
     The search tries all findings at once and then halves, because most files have few findings that
     cannot be fixed. It stops after ``WORK["fixes tried"]`` attempts.

@@ -20,10 +20,10 @@ from tltlc.tools.lint.rule import LintFinding
 from tltlc.tools.lint.scopes import apply_edits, preserve_scopes
 
 _MOST_ERRORS: Final = 8
-"""Fixes are tried for at most this many errors."""
+"""The most errors whose fixes are tried."""
 
 ErrorFinder = Callable[[SourceFile], tuple[Sequence[Diagnostic], Iterable[Diagnostic]]]
-"""Takes a text; returns its syntax errors, and all diagnostics of its syntax and names."""
+"""A function from a text to its syntax errors, and to all diagnostics of its syntax and names."""
 
 
 @record
@@ -54,9 +54,9 @@ def fixes_of_findings(findings: Iterable[LintFinding], module: Module) -> Iterat
 
 
 def fixes_of_errors(diagnostics: Iterable[Diagnostic], source: SourceFile, errors: ErrorFinder) -> Iterator[OfferedFix]:
-    """Yield those fixes of the diagnostics that leave fewer errors in the text.
+    """Yield the fixes of diagnostics that leave fewer errors in the text.
 
-    Only diagnostics about ``source`` count; ``errors`` checks the text before and after each fix.
+    Diagnostics about other files are left out. ``errors`` checks a text before and after each fix.
     """
     candidates = [
         OfferedFix(diagnostic, fix)

@@ -50,7 +50,10 @@ class UsedNames:
 
 
 def importer_names(path: str, text: str) -> ImporterNames:
-    """Return the imports and names in the text of the file at ``path``. It need not compile."""
+    """Return the imports and names in the text of the file at ``path``.
+
+    The text need not compile.
+    """
     targets: set[str] = set()
     names: set[str] = set()
     previous = ""

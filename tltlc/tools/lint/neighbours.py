@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Final
 
 _ROOTS: Final = ("tltl.toml", ".git")
-"""A folder that contains one of these is the root of a tree."""
+"""A folder that contains a file or folder with one of these names is the root of a tree."""
 
 
 def neighbours(paths: Iterable[str]) -> dict[Path, str]:

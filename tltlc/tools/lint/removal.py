@@ -16,7 +16,8 @@ def removal_span(source: SourceFile, span: Span, comments: Sequence[Comment] = (
     """Return the span to delete in order to remove a declaration, clause or comment.
 
     The result includes the documentation above ``span``. If nothing else is on its lines, it also
-    includes the line ends, and one of two empty lines around. ``comments`` are those of the module.
+    includes the line ends, and the empty line below if there is one above, too. ``comments`` are
+    those of the module.
     """
     text = source.text
     start, end = documentation_start(source, span.start, comments), span.end

@@ -1,7 +1,7 @@
 """The help of diagnostics about a clause that the spec does not need.
 
-Removing the clause may change when the spec is judged. Then the help names the ``judge`` clause that
-keeps this moment.
+Removing the clause may change whether the spec is judged at its goal or at its limit. Then the help
+names the ``judge`` clause that keeps this as it is.
 """
 
 from __future__ import annotations
@@ -14,17 +14,17 @@ from tltlc.tools.lint.file_view import SpecView
 
 
 def removal_help(part: Conjunct, remaining: Sequence[Conjunct], spec: SpecView) -> str:
-    """Return the advice to remove ``part``, so that the parts in ``remaining`` are left."""
+    """Return the advice to remove ``part``, after which the conjuncts ``remaining`` are left."""
     if changes_judge(part, remaining, spec):
         return f"leave it out and say `judge at {spec.fspa.judge}`"
     return "leave it out"
 
 
 def changes_judge(part: Conjunct, remaining: Sequence[Conjunct], spec: SpecView) -> bool:
-    """Whether removing ``part``, so that ``remaining`` is left, changes when the spec is judged.
+    """Whether removing ``part``, which leaves ``remaining``, changes when the spec is judged.
 
-    A spec is judged at its limit if each of its parts alone would be judged at the limit. So
-    removing such a part changes nothing.
+    A spec is judged at its limit if each of its conjuncts alone would be. So removing such a
+    conjunct changes nothing.
     """
     if spec.spec.judge is not None or spec.spec.semantics == "infinite":
         return False

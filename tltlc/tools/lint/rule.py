@@ -29,7 +29,7 @@ class Remark:
 
 @record
 class LintRule:
-    """A lint rule. The page of ``code`` says what it finds, what to write instead, and why.
+    """A lint rule. The page of its code says what it finds, what to write instead, and why.
 
     ``check`` is a pure function from a file to remarks. ``supersedes`` lists codes of less specific
     diagnostics: such a diagnostic is dropped if one of its labels covers the first label of a
@@ -44,13 +44,13 @@ class LintRule:
 
 @record
 class LintFinding:
-    """A diagnostic that the linter reports: of a rule, of the compiler, or about a comment."""
+    """A diagnostic that the linter reports: from a rule, from the compiler, or about a comment."""
 
     diagnostic: Diagnostic
 
     @property
     def fix(self) -> tuple[Edit, ...]:
-        """The edits of the first safe fix, which changes the meaning of no spec; empty if none."""
+        """The edits of the first safe fix, or (). A safe fix changes the meaning of no spec."""
         return next((fix.edits for fix in self.diagnostic.fixes if fix.applicability == "safe"), ())
 
 

@@ -39,8 +39,8 @@ def lint(
 def findings(view: View, levels: Mapping[str, str] = EMPTY) -> tuple[LintFinding, ...]:
     """Return the findings of the compiler and of all rules, in the order of the text.
 
-    Findings that comments or ``levels`` silence are left out. Only a finding that is not silenced
-    supersedes others, and only those whose severity is not higher than its own.
+    Findings that comments or ``levels`` silence are left out. A finding that is left
+    supersedes others, as its rule says, if their severity is not higher than its own.
     """
     all_findings = [LintFinding(diagnostic) for diagnostic in view.diagnostics]
     supersedes: dict[str, tuple[str, ...]] = {}
@@ -62,9 +62,9 @@ def findings(view: View, levels: Mapping[str, str] = EMPTY) -> tuple[LintFinding
 
 
 def apply_levels(all_findings: Iterable[LintFinding], levels: Mapping[str, str]) -> tuple[LintFinding, ...]:
-    """Return the findings with their severities set by ``levels``, which maps codes to levels.
+    """Return the findings with the severities in ``levels``, which maps codes to severities.
 
-    Findings with the level ``allow`` are left out.
+    A finding whose code is mapped to ``allow`` is left out.
     """
     reported = [finding for finding in all_findings if levels.get(finding.diagnostic.code) != "allow"]
     return tuple(
@@ -74,7 +74,10 @@ def apply_levels(all_findings: Iterable[LintFinding], levels: Mapping[str, str])
 
 
 def view_of(source: SourceFile, options: CompileOptions) -> View:
-    """Compile all specs of a file, and return the view for the rules. Errors are as in :func:`lint`."""
+    """Compile all specs of a file, and return what rules see of it.
+
+    Errors are as in :func:`lint`.
+    """
     session = Session(source, replace(options, specs=()))
     automata, module, resolved = session.automata, session.module, session.resolution
     declared = {
@@ -98,9 +101,9 @@ def _rule_findings(rule: LintRule, view: View) -> Iterator[LintFinding]:
 
 
 def _is_superseded(diagnostic: Diagnostic, superseding: Iterable[Diagnostic]) -> bool:
-    """Whether a label of the diagnostic covers the first label of one in ``superseding``.
+    """Whether a diagnostic in ``superseding`` makes this one superfluous.
 
-    Only diagnostics with at least the same severity count.
+    Its severity must be at least as high, and a label of this one must cover its first label.
     """
     places = [
         candidate.labels[0] for candidate in superseding if _RANKS[candidate.severity] >= _RANKS[diagnostic.severity]

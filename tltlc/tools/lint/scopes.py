@@ -16,7 +16,7 @@ from tltlc.tools.lint.removal import removal_span
 
 T = TypeVar("T")
 _Places = tuple[Span, ...] | None
-"""The spans of the statements that a comment applies to. None is the whole file."""
+"""The spans of the clauses and declarations that a comment applies to; None is the whole file."""
 
 
 def apply_edits(source: SourceFile, edits: Iterable[Edit]) -> SourceFile:
@@ -32,8 +32,9 @@ def apply_edits(source: SourceFile, edits: Iterable[Edit]) -> SourceFile:
 def preserve_scopes(module: Module, edits: Sequence[Edit]) -> tuple[Edit, ...] | None:
     """Return the edits, adjusted so that each remaining comment applies to the same statements.
 
-    Comments that apply only to removed statements are removed, too. Other comments are cut out of
-    the edits: they apply to the whole file, or to another statement on the same line.
+    Comments that apply only to removed statements are removed, too. An edit that would delete
+    another comment is split around it. Such a comment applies to the whole file, or to another
+    statement on the same line.
 
     Returns None if a remaining comment would apply to other statements than before. For example,
     when the first declaration of a file is removed, a comment on the next one can become a comment
@@ -96,9 +97,9 @@ class _Offsets:
 
 
 def _map_places(scopes: Sequence[tuple[Comment, _Places]], function: Callable[[_Places], T]) -> list[tuple[Comment, T]]:
-    """Return each comment with the result of ``function`` on its places.
+    """Return each comment with the result of ``function`` for the spans that it applies to.
 
-    Comments on one line share one tuple of places, so the function runs only once for each line.
+    Comments on one line share one tuple of spans, so the function runs only once for each line.
     """
     results: dict[int, T] = {}
     for _, places in scopes:
@@ -108,7 +109,7 @@ def _map_places(scopes: Sequence[tuple[Comment, _Places]], function: Callable[[_
 
 
 def _number(starts: frozenset[int] | None, numbers: dict[frozenset[int] | None, int]) -> int:
-    """Return the number of a set of starts; a new set gets the next number."""
+    """Return a number that is the same for equal sets; a new set is added to ``numbers``."""
     return numbers.setdefault(starts, len(numbers))
 
 

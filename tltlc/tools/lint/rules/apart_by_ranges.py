@@ -17,7 +17,7 @@ _MOST_LABELS: Final = 4
 
 
 def check(view: View) -> Iterator[Remark]:
-    """Yield a remark for each spec that is unsatisfiable because of the values of its atoms.
+    """Yield a remark for each spec that is unsatisfiable because of the ranges of its signals.
 
     The compiler treats atoms as independent, so it does not report such a spec.
     """

@@ -42,14 +42,14 @@ def check(view: View) -> Iterator[Remark]:
 
 
 def _fix(clause: Clause | None, view: View) -> Fix | None:
-    """Return the fix that removes the clause; None if ``clause`` is None."""
+    """Return the fix that removes the clause, or None if ``clause`` is None."""
     if clause is None:
         return None
     return removal_fix("Remove one of them", (removal_span(view.source, clause.span, view.module.comments),))
 
 
 def _clauses_of_one_part(clauses: Sequence[Clause], parts: Iterable[Conjunct]) -> dict[Span, Clause]:
-    """Return the clauses that consist of one part, by the span of that part."""
+    """Return the clauses that consist of one conjunct, by the span of the conjunct."""
     starts = [clause.span.start for clause in clauses]
     covered: dict[int, list[Span]] = {}
     for part in parts:

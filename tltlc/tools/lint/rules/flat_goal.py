@@ -34,8 +34,9 @@ def _is_flat(atom: Atom, fspa: Fspa) -> bool:
 def _awaited(fspa: Fspa, flat: Set[int]) -> list[int]:
     """Return the flat atoms that an edge towards the goal needs but the self-loop does not.
 
-    If an edge needs several atoms, progress uses the least of their values. So one atom that can be
-    negative is enough to tell near from far, and then no atom of this edge is returned.
+    Atoms are indices; ``flat`` are those whose value is never negative and can be 0. If an edge
+    needs several atoms, progress uses the least of their values. So one atom that can be negative
+    is enough to tell near from far, and then no atom of this edge is returned.
     """
     stays: dict[int, list[Implicant]] = {}
     for edge in fspa.edges:

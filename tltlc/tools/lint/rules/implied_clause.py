@@ -58,7 +58,7 @@ def _remarks(spec: SpecView, parts: Sequence[Conjunct], reasons: Sequence[Conjun
 
 
 def _relations(part: Conjunct, spec: SpecView) -> list[Conjunct]:
-    """Return the proved relations between the atoms of a part and the other atoms of the spec."""
+    """Return the proved relations between the atoms of a conjunct and other atoms of the spec."""
     own = set(part.formula.atoms())
     return [
         relation
@@ -70,7 +70,7 @@ def _relations(part: Conjunct, spec: SpecView) -> list[Conjunct]:
 def _reasons(
     part: Conjunct, others: Sequence[Conjunct], proved: Sequence[Conjunct], spec: SpecView
 ) -> tuple[Conjunct, ...]:
-    """Return a minimal set of the other parts that together imply a part; empty if they do not."""
+    """Return a minimal set of other conjuncts that imply ``part``, or () if they do not."""
     if not _share_atoms(part, others, proved, spec.spec):
         return ()
     negated = replace(part, formula=not_(part.formula))
@@ -82,9 +82,9 @@ def _reasons(
 
 
 def _share_atoms(part: Conjunct, others: Sequence[Conjunct], proved: Sequence[Conjunct], spec: Spec) -> bool:
-    """Whether other parts have an atom of the part, or an atom that excludes one of its atoms.
+    """Whether other conjuncts have an atom of ``part``, or an atom that excludes one of its atoms.
 
-    If they have none, they cannot imply the part.
+    If they have none, they cannot imply ``part``.
     """
     own = set(part.formula.atoms()).union(*(relation.formula.atoms() for relation in proved))
     for group in spec.exclusive:

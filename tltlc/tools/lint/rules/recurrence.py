@@ -13,17 +13,17 @@ from tltlc.tools.lint.goals import consists_of_implications
 from tltlc.tools.lint.rule import LintRule, Remark
 
 _WORDS = {"F": "it comes again and again", "G": "it lasts from some time on"}
-"""What the author usually means, by the inner operator of the two."""
+"""What the author usually means by ``G F`` and by ``F G``, by the inner operator."""
 _DUAL = {"G": "F", "F": "G"}
 _OF_CLAUSES = {"keep": ("G", True), "avoid": ("G", False), "reach": ("F", True)}
-"""The operator that each clause kind stands for, and whether it applies to the formula or its negation."""
+"""By kind of clause, its operator, and whether this applies to the formula or to its negation."""
 
 
 def check(view: View) -> Iterator[Remark]:
     """Yield a remark for each `G F p` and `F G p` of a spec over finite traces.
 
-    A clause counts as the outer operator that it stands for. Lets are checked only if all specs of
-    the file are over finite traces.
+    A `keep` or `avoid` clause counts as an outer `G`, and a `reach` clause as an outer `F`. Lets
+    are checked only if all specs of the file are over finite traces.
     """
     finite = [spec for spec in view.specs if spec.spec.semantics == "finite"]
     for spec in finite:

@@ -10,7 +10,10 @@ from tltlc.tools.lint.file_view import SpecView, View
 from tltlc.tools.lint.rule import LintRule, Remark
 
 _WORK: Final = 200_000
-"""Work after which two specs count as different: a note must not take longer than compiling."""
+"""The most steps of work for the comparison of two specs; after these, they count as different.
+
+A note must not take longer than the compilation.
+"""
 
 
 def check(view: View) -> Iterator[Remark]:
@@ -34,9 +37,9 @@ def check(view: View) -> Iterator[Remark]:
 
 
 def _form(fspa: Fspa) -> object:
-    """Return a key. Only specs with equal keys can accept the same traces.
+    """Return a key: automata with different keys are judged differently or accept different traces.
 
-    Over finite traces, specs with equal keys do accept the same traces.
+    Over finite traces, automata with equal keys do accept the same traces.
     """
     settings = (fspa.semantics, fspa.judge, fspa.limit_steps, fspa.level, fspa.spec_size)
     return settings if fspa.semantics == "infinite" else (*settings, _edges(fspa))
@@ -65,7 +68,7 @@ def _edges(fspa: Fspa) -> tuple[object, ...]:
 
 
 def _accept_the_same(one: Fspa, other: Fspa) -> bool:
-    """Whether two automata with the same form accept the same traces."""
+    """Whether two automata with the same key accept the same traces."""
     if one.semantics == "finite":
         return True
     from tltlc.automaton.compare import are_equivalent

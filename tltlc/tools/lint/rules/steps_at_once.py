@@ -24,10 +24,11 @@ A note must not take longer than the compilation.
 
 
 def check(view: View) -> Iterator[Remark]:
-    """Yield a remark for each predicate whose atoms, holding together, shorten the path to the goal.
+    """Yield a remark for each predicate of which several goals can be met at one step.
 
-    The path is longer if these atoms are declared exclusive. Also yields a remark for each goal that
-    asks for several of these atoms at one step.
+    An example is a step with ``near(s1)`` and ``near(s2)``, if the path to the goal would be longer
+    with these atoms declared exclusive. Also yields a remark for each goal that asks for several of
+    these atoms at one step.
     """
     entities = {binding.name for binding in view.env.scope.names.values() if binding.kind == "entity"}
     for spec in view.specs:
