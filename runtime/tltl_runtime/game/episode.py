@@ -43,7 +43,7 @@ class RecordedEpisode(Protocol):
 
     @property
     def actions(self) -> NDArray[Any]:
-        """The number of the choice in each branch, (n, branches)."""
+        """The index of the choice in each branch of the action, from 0, (n, branches)."""
 
     @property
     def times(self) -> NDArray[np.float64]:
@@ -79,12 +79,17 @@ class RecordedEpisode(Protocol):
 
 
 Kind = Literal["success", "killed", "violated", "limit", "no way", "stopped"]
-"""The kind of an episode's end.  ``no way``: the limit came while the expert had no route to a goal."""
+"""How an episode ended.
+
+``killed``: the player died.  ``violated``: the spec was broken otherwise.  ``limit``: time ran out.
+``no way``: time ran out for the expert, which had no route to a goal.  ``stopped``: the episode is
+unfinished.
+"""
 
 
 @record
 class Cause:
-    """Why an episode ended: the ``kind`` of its end, the cause, the time and place, and a ``text`` for people.
+    """Why an episode ended: the ``kind`` of its end, by what, when and where, and a ``text`` for people.
 
     ``by`` depends on the kind: the enemies and lasers that killed the player, those with the most
     damage first; the atoms that violated the spec; or the entities that cannot be reached. ``time``
@@ -105,8 +110,8 @@ class Cause:
 class Trajectory:
     """The player's path, the automaton's states, and the end of an episode of n decisions.
 
-    It is small: hundreds of trajectories fit into memory.  ``points`` is (n + 1, 2), in metres;
-    ``states`` is (n + 1,).
+    It is much smaller than a recorded episode, so hundreds fit into memory.  ``points`` are the x and y
+    of the feet, (n + 1, 2), in metres; ``states`` is (n + 1,).
     """
 
     points: NDArray[np.float32]

@@ -36,7 +36,10 @@ class Game(ABC, Generic[LevelT, EpisodeT]):
     """Finds and reads the files of levels."""
 
     modules: tuple[str, ...]
-    """The modules that a process needs to play.  A server of worker processes imports them once."""
+    """The modules that a process needs to play.
+
+    A fork server imports them once, so that the worker processes that it starts need not.
+    """
 
     @property
     def branches(self) -> tuple[int, ...]:
@@ -157,7 +160,10 @@ class Game(ABC, Generic[LevelT, EpisodeT]):
 
     @abstractmethod
     def observers(self, episode: EpisodeT, begin_s: float, end_s: float) -> tuple[str, ...]:
-        """Return the enemies that saw the player in this interval of time, in the order of the level."""
+        """Return the enemies that saw the player between two times, in the order of the level.
+
+        The times are in seconds since the reset.
+        """
 
     @abstractmethod
     def shut_barriers(self, episode: EpisodeT) -> tuple[str, ...]:

@@ -15,7 +15,7 @@ LevelT = TypeVar("LevelT", bound=Level)
 class LevelFiles(ABC, Generic[LevelT]):
     """Finds and reads the files of levels.
 
-    ``name`` is the name of a level that comes with the game, or the path of a file.
+    In all methods, ``name`` is the name of a level that comes with the game, or the path of a file.
     """
 
     @abstractmethod
@@ -56,4 +56,7 @@ class LevelFiles(ABC, Generic[LevelT]):
 
     @abstractmethod
     def candidates(self, name: str, variant: str, file_name: str) -> Iterator[Path]:
-        """Yield the paths where the file may be that the ``files`` of a level call ``file_name``."""
+        """Yield the paths at which one of a level's files may be.
+
+        ``file_name`` is the name of the file in the ``files`` of the level.
+        """

@@ -28,7 +28,7 @@ def split_level(argument: str) -> tuple[str, str | None]:
 
 
 def with_overlays(variant: str, overlays: Iterable[str]) -> str:
-    """Return a variant with added overlays, as :func:`split_overlays` takes it apart.
+    """Return a variant with added overlays; :func:`split_overlays` is the inverse.
 
     An overlay is a name or the path of a ``.toml`` file. Paths that contain a ``+`` are made absolute.
     """

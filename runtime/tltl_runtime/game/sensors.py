@@ -12,7 +12,8 @@ from tltlc.api import record
 class MapSensor:
     """The semantic map around the agent: ``extent`` by ``extent`` cells of ``cell`` metres.
 
-    ``extent`` is odd.
+    ``extent`` is odd, so that the agent is in the middle cell.  ``types`` are the types of things that
+    the map shows, such as ``wall``.
     """
 
     types: tuple[str, ...]
@@ -22,7 +23,10 @@ class MapSensor:
 
 @record
 class Sensors:
-    """What an agent senses: the vectors to ``entities``, the values of the signals ``variables``, and a map or none."""
+    """The parts of an agent's observation: vectors to ``entities``, values of signals, and a map.
+
+    ``variables`` are the names of the signals.  ``map`` is None if the agent has no map.
+    """
 
     entities: tuple[str, ...]
     variables: tuple[str, ...]

@@ -173,7 +173,7 @@ def writable_folder(folder: Path) -> Path:
     """Return the folder, after creating it if it is missing and writing a file into it as a test.
 
     Raises:
-        TltlError: TLT0005, the folder is not writable. It is better to know before an hour of play.
+        TltlError: TLT0005, the folder is not writable, which the player should know before an hour of play.
     """
     try:
         folder.mkdir(parents=True, exist_ok=True)

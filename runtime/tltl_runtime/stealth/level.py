@@ -21,9 +21,9 @@ from tltlc.api import record
 class Solid:
     """An object that stands still and blocks bodies.
 
-    ``kind`` is how the agent senses it: a ``low`` obstacle hides a crouching body, a ``wall`` hides
-    any body, and a ``platform`` is made to stand on. The kind does not change the physics: every
-    solid stops bodies and sight within its box.
+    ``kind`` is its type on the agent's semantic map: a ``low`` obstacle hides a crouching body, a
+    ``wall`` hides any body, and a ``platform`` is made to stand on. The kind does not change the
+    physics: every solid stops bodies and sight within its box.
     """
 
     name: str
@@ -88,7 +88,7 @@ class EnemyKind:
     """The parameters of a kind of enemy.
 
     It is a shared asset: an edit changes all levels that use it. ``branches`` names the branches of
-    its behaviour tree beside patrol, chase, search and return.
+    its behaviour tree in addition to patrol, chase, search and return.
     """
 
     name: str
@@ -167,7 +167,7 @@ class StealthLevel:
     signals: tuple[tuple[str, str], ...] = ()
     """Aliases of signals, for specs that use other names, such as (``open_right``, ``open(right)``)."""
     regions: tuple[Region, ...] = ()
-    """The regions that the level names, followed by the parts that it uses."""
+    """The regions that the level names, followed by one region for each part that it uses."""
 
 
 def entity_names(level: StealthLevel) -> tuple[str, ...]:

@@ -58,7 +58,7 @@ class Simulation:
     def step(self, action: Sequence[int]) -> None:
         """Play one decision, :data:`~tltl_runtime.stealth.world.player.DECISION` seconds long.
 
-        ``action`` has the number of the choice for each branch, see
+        ``action`` has the index of the choice for each branch, see
         :data:`~tltl_runtime.stealth.snapshot.CHOICES`.
         """
         self.world.step(action)

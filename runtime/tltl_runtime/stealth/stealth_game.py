@@ -108,7 +108,7 @@ class StealthGame(Game[StealthLevel, Episode]):
         return fixed_places(level)
 
     def solids(self, level: StealthLevel) -> dict[str, Box]:
-        """Return the boxes of the solids but the floor, by name."""
+        """Return the boxes of all solids except the floor, by name."""
         return {solid.name: solid.box for solid in level.solids if solid.kind != "floor"}
 
     def barriers(self, level: StealthLevel) -> dict[str, Box]:
@@ -138,7 +138,7 @@ class StealthGame(Game[StealthLevel, Episode]):
         params: Mapping[str, float] | None = None,
         render_mode: str | None = None,
     ) -> TltlEnv:
-        """Make a level with a spec."""
+        """Make an environment of a level with a spec."""
         from tltl_runtime.stealth.env import make_env
 
         return make_env(level, variant, spec, sensors=sensors, reward=reward, params=params, render_mode=render_mode)
@@ -178,7 +178,7 @@ class StealthGame(Game[StealthLevel, Episode]):
         return cause(episode)
 
     def observers(self, episode: Episode, begin_s: float, end_s: float) -> tuple[str, ...]:
-        """Return the enemies that saw the player in this interval of time."""
+        """Return the enemies that saw the player between two times, in seconds since the reset."""
         shots = [shot for shot in episode.snapshots if begin_s <= shot.time <= end_s]
         enemies = enumerate(episode.level.enemies)
         return tuple(enemy.name for row, enemy in enemies if any(shot.sees[row] for shot in shots))

@@ -55,8 +55,8 @@ class Runner(OnPolicyRunner):
         with redirect_stdout(io.StringIO()):
             super().__init__(env, train_cfg, log_dir, device)
         if not self.is_distributed:
-            # In this layout, convolutions of small maps take two thirds of the time.  rsl-rl cannot average
-            # gradients in this layout over processes.
+            # In the channels-last layout, convolutions of small maps take two thirds of the time.  rsl-rl cannot
+            # average gradients in this layout over processes.
             for model in (self.alg.actor, self.alg.critic):
                 model.to(memory_format=torch.channels_last)
         for group in self.alg.optimizer.param_groups:

@@ -65,7 +65,7 @@ def cluster() -> Iterator[Any]:
 def keep_sigterm_handler() -> Iterator[None]:
     """Restore the handler of SIGTERM at the end of this context, because Ray replaces it.
 
-    With Ray's handler, the command would end with another status and without cleanup.
+    With Ray's handler, the process would end with another exit status and without cleanup.
     """
     before = signal.getsignal(signal.SIGTERM)
     try:

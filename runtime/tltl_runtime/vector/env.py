@@ -33,7 +33,10 @@ TLTL_INFO: Final[Mapping[str, DTypeLike]] = {
     "progress": np.float64,
     "success": np.bool_,
 }
-"""The keys of a TltlEnv's ``info`` that each step returns; the end of an episode also returns the others."""
+"""The keys of a TltlEnv's ``info`` that each step returns, and their types in NumPy.
+
+The other keys are only returned with a reset and at the end of an episode.
+"""
 
 _ALL: Final = slice(None)
 _SEEDS: Final = 2**31

@@ -1,4 +1,4 @@
-"""Workers of a Ray cluster that step environments, with the methods of the processes in ``workers``."""
+"""Workers of a Ray cluster that step environments, with the same methods as the local workers."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ from tltlc.api import replace
 class RayWorkers:
     """Actors that step environments, one on each free core; actor w has the w-th slice of ``shares``.
 
-    Actors share no memory. So actions are sent with each command, and the answer brings the new rows
-    back to ``rows``. Everything else is as in :class:`~tltl_runtime.vector.workers.Workers`. ``info``
-    are the further columns of ``rows``.
+    Actors share no memory. So actions are sent with each command, and the new rows that come back are
+    copied to ``rows``. Everything else is as in :class:`~tltl_runtime.vector.workers.Workers`. ``info``
+    has the types of the info columns of ``rows``, by name.
 
     Raises:
         TltlError: TLT0730, Ray is not installed; TLT0852, there is no cluster, or no worker starts.
@@ -161,6 +161,6 @@ class _EnvironmentActor:
         return None, None
 
     def do(self, command: str, arguments: tuple[Any, ...], actions: NDArray[Any]) -> tuple[Any, NDArray[Any]]:
-        """Return the result of a command, and the rows of the share after it."""
+        """Carry out a command, after storing ``actions``; return its result and the environments' rows after it."""
         self._table["action"] = actions
         return getattr(self._share, command)(*arguments), self._table

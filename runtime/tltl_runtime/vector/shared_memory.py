@@ -1,7 +1,8 @@
 """Memory that processes share: one row for each environment.
 
 A row stores an observation, an action, the results of a step and the episode being played. The rows
-are a structured NumPy array over one anonymous block, which no process can leave behind.
+are a structured NumPy array over one anonymous block, which the system frees when the processes end,
+however they end.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ Columns = Any
 
 
 class Rows:
-    """``count`` rows for environments of the same ``spaces``, which are stored by name.
+    """``count`` rows, one for each environment; ``spaces`` are their two common spaces, by name.
 
     An instance can only be passed to a process while that process is being started.
 

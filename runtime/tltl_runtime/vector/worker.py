@@ -24,11 +24,11 @@ CLOSE: Final = "close"
 def work(connection: Connection, functions: Any, rows: Rows, first: int, autoreset: AutoresetMode) -> None:
     """Serve commands until ``close`` arrives or the other end is gone.
 
-    ``functions`` is a ``CloudpickleWrapper`` of the functions that make the environments, whose
-    rows begin at ``first``. A command is a pair: the name of a method of :class:`Share`, and its
-    arguments. The answer is a pair, too: ``done`` and the result, or ``failed`` and a traceback. After
-    ``failed`` the worker ends. The first answer comes without a command, when all environments are
-    made.
+    ``functions`` is a ``CloudpickleWrapper`` of the functions that make the environments. The first
+    environment uses row ``first`` of ``rows``, the next one the next row, and so on. A command is a
+    pair: the name of a method of :class:`Share`, and its arguments. The answer is a pair, too: ``done``
+    and the result, or ``failed`` and a traceback. After ``failed`` the worker ends. The first answer
+    comes without a command, when all environments are made.
     """
     # The parent process handles Ctrl-C.
     signal.signal(signal.SIGINT, signal.SIG_IGN)

@@ -1,4 +1,4 @@
-"""Start, command, watch and stop worker processes, from the side of their owner."""
+"""Start, command, watch and stop worker processes, in the process that uses them."""
 
 from __future__ import annotations
 

@@ -8,7 +8,10 @@ from tltl_runtime.stealth.levels.file import changes, level_names, load_level, v
 
 
 def rows() -> Iterator[dict[str, str]]:
-    """Yield a row for each variant of each level of the package: its changes, or the level's description."""
+    """Yield a row for each variant of each level of the package.
+
+    ``doc`` is what the overlays of the variant change or, without overlays, what the level is about.
+    """
     for name in level_names():
         for variant in variants(name):
             doc = " ".join(changes(name, variant)) or load_level(name, variant).doc

@@ -19,8 +19,8 @@ def policy_place(policy: Path | None, level: str | None, command: str) -> tuple[
 
     Level and variant are None if those in the policy's card are to be played.  ``policy`` is a path, or
     ``LEVEL`` or ``LEVEL:VARIANT`` for the policy that comes with a level.  Without ``policy``, the policy
-    that comes with ``level`` is used.  At least one of the two must be given.  ``command`` is the command
-    for messages; it takes a policy as its argument.
+    that comes with ``level`` is used.  At least one of the two must be given.  ``command`` is a command
+    that takes a policy as its argument, for suggestions in messages.
 
     Raises:
         TltlError: TLT0853, no policy comes with the level; TLT0800, the level does not exist; TLT0001,

@@ -16,9 +16,10 @@ _EPISODES_BETWEEN_LINES: Final = 25
 
 
 class RegressionDisplay:
-    """A callback for each played episode.  As a context manager, it clears the bar at the end.
+    """Shows the progress of a case; call it after each played episode.
 
-    ``most``, for example ``at most``, is printed before the number of episodes.
+    As a context manager, it removes the bar at the end.  ``most``, for example ``at most``, is printed
+    before the number of episodes of the case.
     """
 
     def __init__(self, most: str = "") -> None:
@@ -37,7 +38,7 @@ class RegressionDisplay:
             click.echo(f"{plain_text(case.name)}: {text}", err=True)
 
     def clear(self) -> None:
-        """Remove the bar of a finished case, so that other lines can be printed."""
+        """Remove the bar, so that other lines can be printed."""
         if self._bar is not None:
             self._bar.stop()
             self._bar = None

@@ -57,9 +57,9 @@ def senses_options(command: Function) -> Function:
 
 
 def option_of(key: str, sensors: Sensors) -> str:
-    """Return the option that selects ``entities``, ``variables`` or ``map`` as in these sensors.
+    """Return the command-line option that selects one part of these sensors, quoted for a shell.
 
-    It is quoted for a shell.
+    ``key`` is the part: ``entities``, ``variables`` or ``map``.
     """
     if key == "map" and sensors.map is not None:
         value = f"cell={sensors.map.cell!r},extent={sensors.map.extent},types={','.join(sensors.map.types)}"

@@ -44,7 +44,7 @@ _BAR: Final = 24, 10
 
 
 class TrainingDisplay:
-    """Draws the last report.  Between reports, the times go on."""
+    """Draws the last report of a training.  Between reports, the times that it shows go on."""
 
     def __init__(self, run: TrainingRun, console: Console) -> None:
         self._run, self._console = run, console

@@ -1,4 +1,8 @@
-"""Explanations: sentences that say what a policy does differently from the baseline, with example episodes."""
+"""Explanations: sentences that say what a policy does differently from the baseline, with example episodes.
+
+A *stage* is a part of the spec: the automaton's states at one distance from acceptance, with the
+subgoal that leads on from them.
+"""
 
 from __future__ import annotations
 
@@ -46,9 +50,10 @@ class Finding:
 def findings(
     level: Level, fspa: Fspa, now: Sequence[ExplainedEpisode], before: Sequence[ExplainedEpisode]
 ) -> tuple[Finding, ...]:
-    """Compare the episodes with those of the baseline: stages, ends of failures, lengths and regions.
+    """Compare the episodes ``now`` with those of the baseline, ``before``.
 
-    ``level`` is the level that was played now.
+    The findings say which stages the episodes complete, how they fail, how long successes are, and which
+    regions they pass through.  ``level`` is the level that was played now.
     """
     return (
         *_stages(fspa, now, before),

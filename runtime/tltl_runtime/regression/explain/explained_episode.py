@@ -29,9 +29,9 @@ class Arrival:
 
 @record
 class NearestMiss:
-    """How near a failed episode came to leaving the state in which it failed, towards acceptance.
+    """How near a failed episode came to taking an edge towards acceptance, from the state in which it failed.
 
-    ``robustness``, in [-1, 1], is the greatest robustness of a guard of such an edge, and ``place`` is
+    ``robustness``, in [-1, 1], is the greatest robustness of the guard of such an edge, and ``place`` is
     where the player was then.  ``atom`` is the atom that limited the robustness: it had to hold, or had
     to be false if ``wanted`` is False.  If the atom had to hold and depends on a single distance,
     ``target`` is the entity that the distance is measured to, and ``distance``, in metres, is the least
@@ -51,10 +51,11 @@ class ExplainedEpisode:
     """An episode of a case: its ``summary``, and what explains the result.
 
     ``arrivals`` are the entries into states, from the first sample on.  ``cause``, ``by`` and ``place``
-    describe the end of the episode.  ``seen_by`` are the enemies that saw the player shortly before.
-    ``broke`` are the atoms that broke the spec; ``arrived`` says that without them a transition towards
-    acceptance would have been possible.  ``way`` is the simplified trajectory.  ``shut`` are the solid
-    barriers that were closed at the end.
+    say how, by what and where the episode ended, as in :class:`~tltl_runtime.game.episode.Cause`.
+    ``seen_by`` are the enemies that saw the player in the last 3 seconds.  ``broke`` are the atoms that
+    broke the spec; ``arrived`` says that without them the last step would have been a transition
+    towards acceptance.  ``way`` is the simplified trajectory.  ``shut`` are the solid barriers that were
+    closed at the end.
     """
 
     json_inlined = MappingProxyType(
@@ -87,7 +88,7 @@ def explain_episode(summary: EpisodeSummary, episode: RecordedEpisode) -> Explai
     game, positions = registered_game(), _positions(episode)
     cause = game.cause(episode)
     return ExplainedEpisode(
-        # Verdicts and reports need no more, and files hold no more.
+        # Neither verdicts and reports nor the files of a baseline have these fields.
         summary=replace(summary, verdict=None, seconds=None, state=None, label=None),
         cause=cause.kind,
         by=cause.by,

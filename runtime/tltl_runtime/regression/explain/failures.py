@@ -18,9 +18,9 @@ _T = TypeVar("_T")
 _FailureKind = tuple[Kind, tuple[str, ...]]
 
 _FEW: Final = 3
-"""The most kinds of ends that get a text each, and also the least number of episodes of such a kind.
+"""At most this many groups of failures, the largest, get a text of their own.
 
-One tenth of all episodes is enough, too.
+Such a group has at least as many episodes as this number, or a tenth of all episodes.
 """
 
 

@@ -20,12 +20,15 @@ POSITION_INTERVAL_S: Final = 0.1
 _TOLERANCE_M: Final = 0.2
 """The greatest error of the simplified trajectory, in metres.
 
-It is less than the distance of a player's centre from a wall.
+It is less than the distance of a player's centre from a wall, so that no trajectory crosses a wall.
 """
 
 
 def simplified_trajectory(episode: RecordedEpisode) -> TrajectoryPoints:
-    """Return the points of an episode's trajectory that matter.  Each change of the automaton's state gets one."""
+    """Return few points that approximate an episode's trajectory to 0.2 m.
+
+    There is a point at each change of the automaton's state.
+    """
     times, places = episode.times, episode.positions[:, :2]
     changes = (np.flatnonzero(np.diff(episode.states)) + 1).tolist()
     rows = {0, *changes, len(times) - 1}

@@ -15,14 +15,17 @@ _NEAR_M: Final = 2.5
 """A place is near an entity if it is within this many metres."""
 
 _BESIDE: Final = 0.99
-"""A box hides a target only if the line to the target meets the box before this share of its length."""
+"""A box hides a target only if the line from the player to the target meets it in this first share of the line."""
 
 _TOUCHING_M: Final = 0.7
 """A solid blocks a player if it is within this many metres of the player's centre."""
 
 
 def place_name(level: Level, point: Point) -> str:
-    """Describe where a point is: ``in the corridor``, else ``near `s2```, else ``in the north-east``."""
+    """Describe where a point is, by its region, else by an entity near it, else by a compass direction.
+
+    Examples: ``in the corridor``, ``near `s2```, ``in the north-east``.
+    """
     for region in level.regions:
         if _distance(point, region.box) == 0.0:
             return f"in the {region.name.replace('_', ' ')}"

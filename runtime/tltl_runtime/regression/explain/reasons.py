@@ -72,7 +72,7 @@ def _uncertain_change_text(figure: str, now: Sequence[EpisodeSummary], before: S
 
 
 def obstacles(level: Level, fspa: Fspa) -> Iterator[str]:
-    """Describe what no player can reach in the level.
+    """Describe the entities of the spec that no player can reach in the level.
 
     If several things have the same cause, only the first one is described.
     """

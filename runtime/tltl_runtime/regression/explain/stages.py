@@ -54,9 +54,9 @@ def target_of(fspa: Fspa, atom: int) -> str | None:
 
 
 def near_enough(fspa: Fspa, atom: int, params: Mapping[str, float]) -> float | None:
-    """Return the distance to its target, in metres, below which an atom holds.
+    """Return the distance, in metres, to which the player must approach an atom's target for it to hold.
 
-    None if the atom has no target or depends on params that are not in ``params``.
+    None if the atom has no target (see :func:`target_of`) or depends on params not in ``params``.
     """
     target, expression = target_of(fspa, atom), fspa.atoms[atom].expression
     if (
@@ -83,7 +83,7 @@ def _holds(
 
 
 def subgoal(fspa: Fspa, state: int) -> Subgoal:
-    """Return what leads from a state towards acceptance."""
+    """Return the subgoal of a state: what leads from the state towards acceptance."""
     subgoals = [_subgoal(fspa, prime) for edge in monitors.tables(fspa).improving[state] for prime in edge.guard.primes]
     distinct = list(dict.fromkeys(subgoal for subgoal in subgoals if subgoal is not None))
     if len(distinct) < 2:

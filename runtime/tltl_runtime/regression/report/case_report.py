@@ -125,7 +125,10 @@ def _headline(
 
 
 def report_on_broken(case: Case, error: TltlError) -> CaseReport:
-    """Return the report on a case that cannot be played: a failure of the level, not of the suite."""
+    """Return the report on a case that cannot be played.
+
+    Its verdict is ``fail``, because the level has an error, not the suite.
+    """
     causes = ("it cannot be played", *map(_one_line, error.diagnostics))
     # Name the variant as for a level that loads, without the paths of overlay files.
     variant = variant_text(case.variant)

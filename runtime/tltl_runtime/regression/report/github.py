@@ -1,4 +1,4 @@
-"""The findings of a suite as workflow commands of GitHub Actions, which annotates the changed files with them."""
+"""Workflow commands of GitHub Actions, which annotate the changed files with the verdicts of a suite."""
 
 from __future__ import annotations
 

@@ -46,9 +46,9 @@ from tltl_runtime.training.run.training_lock import lock_training
 from tltlc.api import Diagnostic, Fspa, TltlError, fileio, label_text, replace
 
 FOLDER: Final = "retrained"
-"""The name of the folder, in the folder of a run, that has a folder with the training of each case."""
+"""The name of a folder in the folder of a run.  It has a folder for the training of each case."""
 EPISODE: Final = "met.episode.npz"
-"""The file, in the folder of a training, with an episode of the retrained policy that met the spec."""
+"""The name of a file in the folder of a training: an episode of the retrained policy that met the spec."""
 
 _RESULT: Final = "retrained.json"
 _VERSION: Final = 1
@@ -170,9 +170,9 @@ def retraining_result(
 ) -> RetrainingResult:
     """Return the result of the finished training in ``run.folder``.
 
-    The retrained policy plays fresh episodes, unless the result is cached.  It stops as soon as it is
-    certain whether the pass rate reaches the case's threshold.  After each episode, ``on_episode``
-    gets the number of episodes so far and the last episode.
+    The retrained policy plays fresh episodes, unless the result is cached.  Playing stops as soon as it
+    is certain whether the pass rate reaches the case's threshold.  After each episode, ``on_episode``
+    is called with the number of episodes so far and the last episode.
 
     Raises:
         TltlError: the policy's file cannot be read; errors from playing; TLT0005, a file cannot be
@@ -269,7 +269,7 @@ def _inputs(
     error: float,
     judged_episodes: Sequence[ExplainedEpisode],
 ) -> str:
-    """Return the hash of everything that the outcome depends on.
+    """Return the hash of everything that the result depends on, for the cache.
 
     ``judged_episodes`` are the episodes by which the case was judged.
     """

@@ -22,9 +22,10 @@ _SPEC: Final = re.compile(r"^spec\s*=.*$", re.MULTILINE)
 
 
 def level_texts(name_or_path: str, variant: str, files: Texts) -> Texts:
-    """Return the names and texts of a level's ``files``, which are names with SHA-256 hashes, in order.
+    """Return the name and the text of each file of a level, in order.
 
-    A file that was edited since, and so has another hash, is left out.
+    ``files`` are the names of the files, each with its SHA-256.  A file that was edited since, and so
+    has another hash, is left out.
     """
     level_files = registered_game().level_files
     texts = []

@@ -82,7 +82,7 @@ def _is_level(path: Path) -> bool:
 def level_with_fitting_policy(level: str) -> str | None:
     """Return the level of the package whose policy may play ``level``; None if there is none.
 
-    Both levels have specs of the same name: ``level`` may be a copy of that one.
+    The two levels have specs of the same name, because ``level`` may be a copy of the other.
     """
     game = registered_game()
     with suppress(TltlError):

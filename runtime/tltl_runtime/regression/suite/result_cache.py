@@ -16,7 +16,7 @@ T = TypeVar("T")
 
 
 def inputs_hash(parts: Sequence[Any]) -> str:
-    """Return the SHA-256, in hexadecimal, of JSON data and of the source code."""
+    """Return the SHA-256, in hexadecimal, of ``parts``, which are JSON data, and of the source code."""
     return hashlib.sha256(json.dumps([*parts, sources_hash()], sort_keys=True).encode()).hexdigest()
 
 

@@ -60,7 +60,7 @@ class Thresholds:
 class Case:
     """A regression test: a policy plays a level in a variant, and a spec judges the episodes.
 
-    ``level`` and ``variant`` are arguments of :meth:`~tltl_runtime.game.game.Game.load_level`.
+    ``level`` and ``variant`` name the level, as for :meth:`~tltl_runtime.game.game.Game.load_level`.
     ``reference`` is the variant whose figures the case is compared with.  ``spec`` is ``FILE:NAME``, or
     None for the policy's own spec.  ``episodes`` is the most that are played.  ``place`` distinguishes
     levels of the same name: it is the level's path relative to the suite, or empty for a level of the

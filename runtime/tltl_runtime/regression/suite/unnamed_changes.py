@@ -16,9 +16,9 @@ from tltl_runtime.regression.verdict.baseline import Reference, text_sha256
 def unnamed_changes(
     suite: Suite, left_out: Sequence[Case], references: Sequence[Reference]
 ) -> dict[str, tuple[str, ...]]:
-    """Return the files of ``left_out`` cases that differ from the baseline, each with the cases' names.
+    """Return the files of ``left_out`` cases that differ from the baseline, each with its cases' names.
 
-    Only files of the levels that the baseline recorded count, by their names in the baseline.
+    Only the files of levels are compared.  They have the names that the baseline gives them.
     """
     cases_of: dict[str, tuple[str, ...]] = {}
     for case in left_out:

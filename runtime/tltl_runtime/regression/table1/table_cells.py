@@ -24,7 +24,7 @@ from tltlc.api import fileio, record
 
 EPISODES: Final = 100
 SEED: Final = 25_000
-"""The seed of the evaluations.  A training uses the seeds of their episodes only by chance."""
+"""The seed of the evaluations.  It is unlikely that a training played episodes with the same seeds."""
 
 
 @record
@@ -85,7 +85,7 @@ def _policy_episodes(policy: Path, level: str, variant: str, pool: Pool) -> Iter
 
 
 def _expert_episodes(level: str, variant: str, pool: Pool) -> Generator[EpisodeResult]:
-    """Play the careful expert's episodes on this machine, with the same seeds as the policies."""
+    """Play the scripted expert's episodes on this machine, with the same seeds as the policies."""
     tasks = [EpisodeRequest(index) for index in range(EPISODES)]
     workers = 0 if pool == "ray" else pool
 
@@ -97,13 +97,19 @@ def _expert_episodes(level: str, variant: str, pool: Pool) -> Generator[EpisodeR
 
 
 class _ExpertPlayer:
-    """Plays episodes with the careful expert, as :class:`~tltl_runtime.evaluation.player.Player` does with a policy."""
+    """Plays episodes with the scripted expert.
+
+    :class:`~tltl_runtime.evaluation.player.Player` does so with a policy.
+    """
 
     def __init__(self, level: str, variant: str) -> None:
         self._game = registered_game()
         self._env = self._game.recorder(self._game.make_env(level, variant))
         self._seeds: deque[int] = deque()
-        """The seeds of the next episodes.  One expert plays them all: it keeps what it knows of the level."""
+        """The seeds of the next episodes.
+
+        One expert plays them all, because it keeps what it has computed about the level.
+        """
         self._episodes = self._game.expert_episodes(self._env, iter(self._seeds.popleft, None))
 
     def play(self, task: EpisodeRequest) -> PlayedEpisode:

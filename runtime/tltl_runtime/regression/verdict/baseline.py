@@ -36,8 +36,8 @@ class Identity:
     ``level`` and ``spec`` are names.  ``level_hash`` is from
     :meth:`~tltl_runtime.game.game.Game.level_hash`, ``spec_hash`` from
     :func:`~tltl_runtime.policies.identity.spec_hash`.  ``policy`` is the SHA-256 of the policy's
-    file.  ``files`` are the files that the level was loaded from, each with its SHA-256.  ``place``
-    is the ``place`` of the case.
+    file.  ``files`` are the files that the level was loaded from, each with its SHA-256.
+    ``versions`` are those of the software that played.  ``place`` is the ``place`` of the case.
     """
 
     level: str
@@ -68,7 +68,7 @@ class Reference:
 
 
 def write_baseline(path: Path, references: tuple[Reference, ...]) -> None:
-    """Write the baseline of a suite; raises TltlError, TLT0005."""
+    """Write the baseline of a suite.  Raises TltlError, TLT0005, if the file cannot be written."""
     references_without_texts = tuple(
         _StoredReference(reference.played, reference.accounts, reference.sources) for reference in references
     )

@@ -1,9 +1,10 @@
 """The statistics of a verdict: anytime-valid tests of a pass rate and of means against a baseline.
 
-Both tests may be evaluated after each episode.  Both bet at fair odds against the hypothesis that
-they try to refute.  If the hypothesis holds, the stake is never negative and its mean stays 1.  Such
-a stake ever exceeds 1/e with probability e at most, whenever you stop (J. Ville 1939; H. Robbins,
-Ann. Math. Stat. 41 (1970), 1397-1409; G. Shafer, J. R. Stat. Soc. A 184 (2021), 407-431).
+Both tests may be evaluated after each episode.  A test begins with a stake of 1 and bets it, episode
+by episode, against the hypothesis that it tries to refute.  The odds are fair if the hypothesis holds:
+the stake is never negative, and its mean does not grow.  So it exceeds 1/e at any time with
+probability e at most, and if it does, the hypothesis is refuted with error e (J. Ville 1939;
+H. Robbins, Ann. Math. Stat. 41 (1970), 1397-1409; G. Shafer, J. R. Stat. Soc. A 184 (2021), 407-431).
 """
 
 from __future__ import annotations
@@ -36,10 +37,10 @@ _TINY: Final = 1e-6
 def rate_interval(successes: int, failures: int, error: float) -> tuple[float, float]:
     """Return a confidence interval for a rate that may be evaluated after every episode.
 
-    The episodes are independent.  With probability 1 - ``error`` at least, the rate lies in the
-    intervals after all episodes of a sequence, whatever its length.  Each side has half of the error.
-    The bet against a rate is spread evenly over the rates above it, equally spaced on the scale
-    arcsin(sqrt(rate)), and likewise below it.
+    The episodes must be independent.  With probability 1 - ``error`` at least, the rate lies in all
+    intervals that are computed after the episodes of a sequence, whatever its length.  Each end of the
+    interval has half of the error.  The bet against a rate is spread evenly over the rates above it,
+    equally spaced on the scale arcsin(sqrt(rate)), and likewise below it.
 
     Raises:
         ValueError: a count is negative, or ``error`` is not in (0, 1).

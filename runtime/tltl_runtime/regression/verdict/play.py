@@ -143,8 +143,8 @@ def judge_case(
 ) -> JudgedCase:
     """Play a case until its verdict is settled.
 
-    After each episode, ``on_episode`` gets the number of episodes so far and the last episode.
-    ``error`` is the case's share of the suite's error.
+    After each episode, ``on_episode`` is called with the number of episodes so far and the last
+    episode.  ``error`` is the case's share of the suite's error.
     """
     played: list[CaseEpisode] = []
     before = summaries_of(reference.accounts)

@@ -21,7 +21,7 @@ from tltl_runtime.support.record_json import to_json
 from tltlc.api import Diagnostic, TltlError, fileio, label_text, record, replace
 
 CASES: Final = "cases"
-"""The name of the folder, in the folder of a run, that contains a folder for each case."""
+"""The name of a folder in the folder of a run.  It has a folder for each case."""
 
 _REPORT: Final = "case.json"
 _VERSION: Final = 3
@@ -30,7 +30,7 @@ _RECORDINGS: Final = 3
 
 _EDITED: Final = "TLT0905"
 WORKER_ERRORS: Final = frozenset({"TLT0730", "TLT0850", "TLT0852"})
-"""The codes of errors of worker processes: they are no faults of the case."""
+"""The codes of errors of worker processes.  They stop the run, because the case is not at fault."""
 
 WRITABLE: Final = "see that there is room, and that you may write there, or name another folder with --out"
 """The help if a file cannot be written to the folder of a run."""

@@ -14,10 +14,10 @@ cases):
    else ``review``.
 
 A statement on the pass rate is certain if it follows from the confidence interval of the rate, whose
-error over all looks is e (:func:`~tltl_runtime.regression.verdict.confidence.rate_interval`).  Means
+error over all evaluations is e (:func:`~tltl_runtime.regression.verdict.confidence.rate_interval`).  Means
 are compared over equal seeds.  A figure has certainly changed if both of these hold: the means differ
 by its threshold at least; and the p-value of the hypothesis that the policy's mean is within the
-threshold of the recorded one is e/4 at most, over all looks
+threshold of the recorded one is e/4 at most, over all evaluations
 (:func:`~tltl_runtime.regression.verdict.confidence.mean_p_value`).  So e bounds the probability of a
 certain verdict that is wrong, by the rate or by the figures, for every pass rate.
 """

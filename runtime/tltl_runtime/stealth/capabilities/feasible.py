@@ -99,7 +99,10 @@ def _ends(low: float | None, high: float | None) -> ranges.Interval:
 
 
 def _upper_bound(expression: expressions.Expression, box: Mapping[ranges.Variable, ranges.Interval]) -> float:
-    """Return an upper bound of an expression in a box; infinity if the bound is unknown."""
+    """Return an upper bound of an expression whose variables are in the intervals of ``box``.
+
+    The bound is infinite if it is unknown.
+    """
     highest = -inf
     try:
         for case in ranges.cases(expression):
@@ -132,7 +135,10 @@ def _may_accept(fspa: Fspa, impossible: frozenset[int]) -> bool:
 
 
 class _ObstacleSearch:
-    """Finds the obstacle in the way to an entity, by searching changed versions of the level."""
+    """Finds the obstacle in the way to an entity.
+
+    It removes obstacles, or makes jumps higher, and checks whether the player then reaches the entity.
+    """
 
     def __init__(self, level: StealthLevel, reach: Reach) -> None:
         self._level, self._reach = level, reach

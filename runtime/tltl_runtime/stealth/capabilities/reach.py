@@ -50,7 +50,7 @@ _EDGE: Final = 0.28
 A contact counts as ground if it points upwards by more than 30 degrees.
 """
 _EDGE_DEPTH: Final = 0.16
-"""How far below a top the feet are at that distance, in metres."""
+"""How far below a top the feet are when the body touches the edge of the top from the side, in metres."""
 _TOUCH: Final = 0.02
 _THROW: Final = 3.0
 _PHYSICS_STEP: Final = 1 / 60

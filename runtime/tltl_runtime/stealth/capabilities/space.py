@@ -35,10 +35,10 @@ approximate this well enough.
 _ROUNDING: Final = 1e-5
 
 Field = NDArray[np.bool_]
-"""[rows, columns] of cells; rows run along y."""
+"""A mask of cells, [rows, columns]; rows run along y."""
 
 Space = NDArray[np.bool_]
-"""[slabs, rows, columns]"""
+"""A mask of boxes of space, [slabs, rows, columns]."""
 
 
 class SpaceBudgetError(Exception):
@@ -75,7 +75,7 @@ class SpaceGrid:
         (x0, y0, z0), (x1, y1, z1) = bounds.low, bounds.high
         self.origin = (x0, y0)
         self._widths = [(width, kind.radius - sqrt(kind.radius**2 - width**2)) for width in _WIDTHS]
-        """Each width, with how much shorter the body is at each end, that far from its axis."""
+        """Distances from the body's axis, each with how much shorter the body is there at each end, in metres."""
         self._height = kind.crouched_height
         ends = {z for box in boxes for _, shorter in self._widths for z in self._blocked_heights(box, shorter)}
         inside = sorted({round(z, 6) for z in (*ends, *cuts) if z0 < z < z1})
@@ -88,7 +88,7 @@ class SpaceGrid:
         self.shape = (len(self.lows), len(self.south), len(self.west))
 
     def free_space(self, boxes: Iterable[Box]) -> Space:
-        """Return the space that boxes leave free."""
+        """Return where the player's feet can be, given the boxes that stop the body."""
         self.budget.spend(prod(self.shape))
         free: Space = np.ones(self.shape, dtype=np.bool_)
         for box in boxes:
@@ -119,7 +119,7 @@ class SpaceGrid:
         return overlapping
 
     def distance(self, space: Space, point: Point, most: float = inf) -> float:
-        """Return the least distance from a space to a point; infinite if more than ``most``."""
+        """Return the least distance from a space to a point, in metres; infinite if more than ``most``."""
         offsets_by_axis = [
             _interval_distances(lows, highs, value)
             for (lows, highs), value in zip(self._ends(), point[::-1], strict=True)

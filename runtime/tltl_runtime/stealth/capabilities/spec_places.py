@@ -11,7 +11,8 @@ class SpecPlaces:
     """The labels of things in the source of a spec, for diagnostics.
 
     A thing that the source does not mention has the label of the spec's name. An artefact has no
-    source: then ``spec`` is None, and there are no labels.
+    source: then ``spec`` is None, and there are no labels. Each method returns a tuple with the label of
+    what it finds, or an empty tuple.
     """
 
     def __init__(self, spec: Spec | None) -> None:

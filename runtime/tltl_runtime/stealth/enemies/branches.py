@@ -1,6 +1,6 @@
 """The branches of the enemies' behaviour: chase, search, return and patrol, and optional branches.
 
-A branch sets the target of its guard; the guard moves after the tick.
+A branch only sets where its enemy, the *guard*, goes. The guard moves after the tick of the tree.
 """
 
 from __future__ import annotations

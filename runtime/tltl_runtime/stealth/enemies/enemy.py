@@ -69,7 +69,7 @@ class Enemies:
         self.damage = 0.0
 
     def set_open(self, barrier: int, opened: bool) -> None:
-        """Open or shut the barrier with this index. Shut it only where no enemy stands."""
+        """Open or shut the barrier with this index. The caller must not shut it where an enemy stands."""
         if opened == (barrier not in self._shut):
             return
         (self._shut.discard if opened else self._shut.add)(barrier)
@@ -212,7 +212,7 @@ class EnemyGuard:
         return min(range(len(self.route)), key=lambda i: hypot(self.route[i][0] - self.x, self.route[i][1] - self.y))
 
     def next_gap(self) -> Place | None:
-        """Pick one of the three nearest unvisited narrow places off the route, or None."""
+        """Pick at random one of the three nearest unvisited narrow places off the route; None if there is none."""
         if self._gaps_of is not self.floor:
             self._gaps_of = self.floor
             gaps = self.floor.gaps(self.floor.area((self.x, self.y)))

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 GOALS: Final = 512
 """The number of goals for which paths are searched at once."""
 ARRIVED: Final = 8
-"""The code in place of a move where the cell is the goal; a greater code means that there is no path."""
+"""The code that replaces a move, 0 to 7, if the cell is the goal; a greater code means that there is no path."""
 
 _MOVES: Final = ((1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (1, -1), (-1, 1), (-1, -1))
 _NO_PATH: Final = 255
@@ -68,9 +68,10 @@ def _unpack_bits(words: NDArray[np.uint64]) -> NDArray[np.uint8]:
 
 
 def nearest_numbers(number: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Return the number of the numbered cell that is nearest to each cell, like ``number`` [rows, columns].
+    """Return for each cell the number of the nearest numbered cell, int64 [rows, columns].
 
-    Numbers spread by one cell per round, straight before diagonal, so the result is approximate.
+    In ``number`` [rows, columns], -1 marks cells without a number. Numbers spread by one cell per round,
+    straight before diagonal, so the result is approximate.
     """
     number = number.copy()
     while (number < 0).any():
@@ -85,7 +86,10 @@ def nearest_numbers(number: NDArray[np.int64]) -> NDArray[np.int64]:
 
 
 def middles(cells: NDArray[np.bool_], most: int) -> NDArray[np.bool_]:
-    """Return a mask of the middle cells of all runs of at most ``most`` cells along the rows of ``cells``."""
+    """Return a mask of the middles of narrow runs of cells, such as passages.
+
+    A run is a sequence of true cells in a row of ``cells``. It is narrow if it has at most ``most`` cells.
+    """
     middle = np.zeros_like(cells)
     for row, line in enumerate(cells):
         edges = np.flatnonzero(np.diff(np.concatenate(([0], line.astype(np.int8), [0]))))

@@ -139,11 +139,11 @@ class Floor:
         return not crosses(*a, *b, self.obstacles)
 
     def next_point(self, a: Place, b: Place) -> Place | None:
-        """Return the next point on the path from a, a free place, to b; the line from a to it is free.
+        """Return the next point to walk to, in a straight line, on the path from a to b.
 
-        If b cannot be reached, the path leads to the reachable place nearest to b. The result is b
-        if the straight line to b is free, and a if no path leads nearer. It is None if no cell's
-        centre can be reached straight from a.
+        An enemy must be able to stand at a. If b cannot be reached, the path leads to the reachable
+        place nearest to b. The result is b if the straight line to b is free, and a if no path leads
+        nearer. It is None if no cell's centre can be reached straight from a.
         """
         entry = self.entry(a)
         if entry is None:

@@ -66,7 +66,7 @@ class Expert:
         return (self._sneaker if self._sneaks else self._walker).act(snapshot, self._destination)
 
     def goal(self, snapshot: Snapshot) -> Point | None:
-        """Return the place that the automaton sends the player to, or None if it has no goal."""
+        """Return the position to reach next, according to the automaton; None if there is none."""
         taken, sample = (self._env.get_wrapper_attr(name) for name in ("taken", "sample"))
         state = 0 if taken is None else taken.state
         positions = places(self.level, snapshot)
@@ -111,7 +111,7 @@ def expert_episodes(
 def play_episode(env: gymnasium.Env[Any, Any], expert: Expert, seed: int) -> dict[str, Any]:
     """Play one episode to its end and return its last ``info``.
 
-    To get the episode itself, pass a ``RecordEpisode``.
+    To get the episode itself, pass an ``env`` that is a ``RecordEpisode``.
     """
     _, info = env.reset(seed=seed)
     expert.reset()

@@ -1,7 +1,8 @@
 """Plan the next seconds: a beam search over decisions, with a prediction of the resulting motion.
 
-The search compares bodies on the ground by the time that has passed and the time left on their
-route. A jump or a fall is one move, which is simulated to its end before it is compared.
+A *body* is a predicted state of the player. The search compares bodies that stand on the ground, by
+the time that has passed and the time left on their route. A jump or a fall is one move, which is
+simulated until the body lands.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ from tltlc.api import record
 LONGEST_FALL: Final = 9
 """A body that is still falling after this many decisions is given up."""
 _STAMINA: Final = 0.3
-"""The worth of a full stamina, in seconds."""
+"""A full stamina counts as much as a route that is this many seconds shorter."""
 _TOUCHED: Final = 3.0
 """The cost of touching a mover, in seconds."""
 _ARRIVED: Final = 0.1

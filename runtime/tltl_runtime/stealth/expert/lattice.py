@@ -25,7 +25,7 @@ _SPACING: Final = 0.4
 _MARGIN: Final = 0.03
 """The distance to keep from obstacles, in addition to the player's radius, in metres."""
 FAR: Final = np.float32(1e6)
-"""The cost of what is impossible."""
+"""The cost of an impossible action, and of a place without a route."""
 
 Costs = NDArray[np.float32]
 """The cost of the remaining route, in decisions; the shape is [places] unless stated otherwise."""

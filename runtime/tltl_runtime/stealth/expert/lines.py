@@ -40,7 +40,7 @@ class LinesOfSight:
         self._cache: OrderedDict[tuple[int, int], NDArray[np.float32]] = OrderedDict()
 
     def visible_shares(self, x: float, y: float) -> NDArray[np.float32]:
-        """Return the share of each place, in [0, 1], where eyes at x, y see the player.
+        """Return at which share of the five points of each place, in [0, 1], eyes at x, y see the player.
 
         The result is float32 [2, places], for a standing and a crouched player.
         """

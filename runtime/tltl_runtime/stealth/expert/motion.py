@@ -1,7 +1,7 @@
 """A prediction of :mod:`~tltl_runtime.stealth.world.physics` for thousands of bodies at once.
 
-The model of the player's body agrees with the physics to within a few centimetres. Boxes push a
-capsule out. A mover counts as touched if it passes the capsule in the same decision.
+A body is a capsule, which boxes push out. Its motion agrees with the physics to within a few
+centimetres. A mover counts as touched if it passes the capsule in the same decision.
 """
 
 from __future__ import annotations
@@ -68,7 +68,7 @@ class _Boxes:
 
 
 class Motion:
-    """Bodies among static boxes."""
+    """Predicts the motion of bodies among static boxes."""
 
     def __init__(self, kind: PlayerKind, boxes: Sequence[Box]) -> None:
         self.kind = kind

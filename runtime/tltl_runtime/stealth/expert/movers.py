@@ -17,7 +17,7 @@ _TOLERANCE: Final = 1e-6
 
 
 class Clocks:
-    """The clock of each mover, in its own seconds; it stops while the player blocks the mover."""
+    """The clocks of the movers: how long each has moved, in seconds, without the time that the player blocked it."""
 
     def __init__(self, level: StealthLevel) -> None:
         self._movers = level.movers

@@ -21,7 +21,7 @@ CELL: Final = 0.25
 """The side of a cell, in metres."""
 
 Cells = NDArray[np.bool_]
-"""[layers, rows, columns]; rows run along y, columns along x."""
+"""A mask of cells, [layers, rows, columns]; rows run along y, columns along x."""
 
 _TOUCH: Final = 1e-6
 

@@ -103,7 +103,7 @@ class Walker:
 def _headings(start: Point, legs: list[tuple[bool, Point]]) -> set[tuple[int, int]]:
     """Return the directions of actions that are within 45 degrees of a leg.
 
-    A leg is whether it counts, and its end. Legs that do not count are ignored.
+    ``legs`` are pairs: whether the leg counts, and its end. Legs that do not count are ignored.
     """
     headings = set()
     for (counts, place), before in zip(legs, [start, *(place for _, place in legs)], strict=False):

@@ -48,9 +48,10 @@ def level_dependencies(level: Path, variant: str) -> Iterator[Path]:
 
 
 def file_candidates(level: Path, variant: str, name: str) -> Iterator[Path]:
-    """Yield the paths where the file may be that the ``files`` of a level call ``name``.
+    """Yield the paths at which one of a level's files may be.
 
-    It is the file of the level itself, a file beside it or in the package, or an added overlay.
+    ``name`` is the name of the file in the ``files`` of the level. The file is the level's own, one
+    beside it or in the package, or an added overlay.
     """
     if name == level.name:
         yield level

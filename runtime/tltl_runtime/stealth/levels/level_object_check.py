@@ -19,7 +19,7 @@ _THINNEST: Final = 1e-3
 def fault(level: StealthLevel) -> str | None:
     """Return a description of the first fault of a level, or None if it can be drawn and played.
 
-    Names, and the room that things need, are checked for level files only.
+    Whether names are valid, and whether things have enough room, is checked for level files only.
     """
     return next(_faults(level), None)
 

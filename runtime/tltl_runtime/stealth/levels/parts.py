@@ -75,7 +75,7 @@ class NamedParts:
         return tuple(self.positions[name] for name in names if name in self.positions)
 
     def refer(self, kind: str, table: CheckedTable, key: str, names: tuple[str, ...]) -> None:
-        """Record that a key refers to things of a kind."""
+        """Record that the value of ``key`` names things of a ``kind``, for a later check of the names."""
         self.references.extend((kind, name, table.label_of(key)) for name in names)
 
 
@@ -288,7 +288,7 @@ def enclosure(bounds: Box) -> list[Solid]:
 
 
 def _shift(point: Point, shift: Point) -> Point:
-    """Return a point of a part in the level; ``shift`` is the position of the part."""
+    """Convert a point of a part to a point of the level; ``shift`` is the position of the part."""
     return (point[0] + shift[0], point[1] + shift[1], point[2] + shift[2])
 
 

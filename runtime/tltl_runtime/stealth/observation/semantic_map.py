@@ -67,11 +67,12 @@ class SemanticMap:
         movers: Sequence[Bounds] = (),
         enemies: Sequence[Point] = (),
     ) -> NDArray[np.uint8]:
-        """Return the type ids around feet at ``position``, uint8 [extent, extent].
+        """Return the types of the cells around the player, whose feet are at ``position``.
 
-        An id is 0, or 1 + the index of the type. ``movers`` are the current corners of the movers'
-        boxes, ``enemies`` the positions of the enemies' feet. For a position outside the bounds,
-        the map of the nearest cell inside is returned.
+        The result is uint8 [extent, extent]: 0 for no type, else 1 + the index of the type in
+        ``sensor.types``. ``movers`` are the current corners of the movers' boxes, ``enemies`` the
+        positions of the enemies' feet. For a position outside the bounds, the map of the nearest cell
+        inside is returned.
         """
         x, y, z = position
         x0, y0, z0 = self._origin
@@ -97,9 +98,9 @@ class SemanticMap:
         return ids
 
     def one_hot(self, ids: NDArray[np.uint8]) -> NDArray[np.uint8]:
-        """Convert a map of ids to layers, one per type, uint8 [types, extent, extent].
+        """Convert a map from :meth:`look` to one layer per type, uint8 [types, extent, extent].
 
-        A cell of no type is zero in all layers.
+        A layer is 1 where a cell is of its type, else 0.
         """
         layers: NDArray[np.uint8] = self._rows_of_types.take(ids, axis=1)
         return layers

@@ -1,4 +1,4 @@
-"""Replace the sensors that a level declares, all or some of them, by a record or a plain mapping."""
+"""Choose an agent's sensors: those that a level declares, or others in place of all or some of them."""
 
 from __future__ import annotations
 

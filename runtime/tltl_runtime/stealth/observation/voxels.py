@@ -23,7 +23,7 @@ from tltl_runtime.stealth.levels.parts import CELL_TYPES
 from tltlc.api import record
 
 LAYER: Final = 0.25
-"""The height of a layer."""
+"""The height of a layer, in metres."""
 STANDING: Final = 1.8
 CROUCHED: Final = 0.9
 """The heights of the player's body, in metres."""
@@ -42,7 +42,11 @@ They go from the lowest up; each is uint8 [rows, columns].
 
 @record
 class Frame:
-    """The grid: row 0, column 0 begins at ``x``, ``y``; layer 0 is for feet at height ``z``."""
+    """The position and size of a grid of cells.
+
+    The cell in row 0 and column 0 has its south-west corner at ``x``, ``y``. Layer 0 is for a body whose
+    feet are at height ``z``. A cell is ``cell`` wide. All are in metres.
+    """
 
     x: float
     y: float
@@ -56,8 +60,8 @@ class Frame:
 class Voxels:
     """The layers of a level, one set for each set of shut barriers.
 
-    Each layer has a margin of ``margin`` empty cells around the level. Raises ValueError for a type
-    that is not in CELL_TYPES.
+    Each layer has a margin of ``margin`` empty cells around the level, so that a map at the border can
+    be cut out of it, too. Raises ValueError for a type that is not in CELL_TYPES.
     """
 
     def __init__(self, level: StealthLevel, sensor: MapSensor) -> None:

@@ -21,7 +21,10 @@ Arrays = Mapping[str, NDArray[Any]]
 
 @record
 class Array:
-    """What an array of the file contains: numpy's ``dtype``, the shape, the least and the greatest value."""
+    """The format of an array in the file: NumPy's ``dtype``, the shape, the least and the greatest value.
+
+    A shape has numbers, and names of axes whose lengths depend on the episode.
+    """
 
     name: str
     dtype: str
@@ -110,7 +113,7 @@ def snapshots(arrays: Arrays, modes: tuple[str, ...]) -> tuple[Snapshot, ...]:
 
 
 def sizes(level: StealthLevel, fspa: Fspa, count: int) -> dict[Size, int]:
-    """Return the lengths of the array axes for an episode of ``count`` decisions."""
+    """Return the lengths of the axes, by name, for an episode of ``count`` decisions."""
     return {
         "n": count,
         "n + 1": count + 1,
@@ -124,7 +127,7 @@ def sizes(level: StealthLevel, fspa: Fspa, count: int) -> dict[Size, int]:
 
 
 def shape_of(array: Array, known: Mapping[Size, int]) -> tuple[int, ...]:
-    """Return the shape of an array in numbers."""
+    """Return the shape of an array in numbers; ``known`` are the lengths of the axes, by name."""
     return tuple(size if isinstance(size, int) else known[size] for size in array.shape)
 
 

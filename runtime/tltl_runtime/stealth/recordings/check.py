@@ -1,4 +1,4 @@
-"""Check a recording: judge it again by its spec, and play it again in its level."""
+"""Check a recording: run its spec's automaton on it again, and play its actions again in its level."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _Difference = tuple[str, object, object]
 
 
 def check(episode: Episode) -> tuple[Diagnostic, ...]:
-    """Judge the recorded signals again, step by step, and compare the results with the recording.
+    """Run the spec's automaton on the recorded signals again, and compare the results with the recording.
 
     Atoms, states, progress, rewards and the end must be equal. Return no diagnostics if they are
     equal, else TLT0823 for the first step that differs, or the diagnostics of the monitor.
@@ -31,10 +31,10 @@ def check(episode: Episode) -> tuple[Diagnostic, ...]:
 
 
 def resimulate(episode: Episode) -> int | None:
-    """Play the actions again from the seed; return the first row that differs in any bit, or None.
+    """Play the actions again from the seed; return the first step that differs in any bit, or None.
 
-    Row 0 is the moment of the reset. The comparison includes the snapshots and those signals of the
-    spec that the game itself has.
+    Step 0 is the moment of the reset. The comparison includes the snapshots, and the signals of the
+    spec that the game supplies.
 
     Raises:
         TltlError: TLT0730, pybullet is not installed. The other functions here do not need it.

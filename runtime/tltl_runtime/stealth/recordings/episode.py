@@ -43,7 +43,7 @@ class Episode:
     progress: NDArray[np.float64]
     """(n + 1,), the best progress so far, in [0, 1]."""
     rewards: NDArray[np.float64]
-    """(n,)"""
+    """(n,), the reward of each decision."""
     verdict: str
     """The verdict of the last step: ``holding``, ``pending``, ``satisfied`` or ``violated``."""
     success: bool

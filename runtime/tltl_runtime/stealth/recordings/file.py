@@ -39,7 +39,7 @@ _ERRORS: Final = LoadErrors("an", "episode", "TLT0820", "TLT0821", "TLT0822", ag
 
 @record
 class AxisNames:
-    """The names of the entries along an axis."""
+    """The names of the entries along each axis that has names, in order."""
 
     signals: tuple[str, ...]
     atoms: tuple[str, ...]

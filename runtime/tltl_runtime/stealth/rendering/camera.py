@@ -18,12 +18,12 @@ SMALLEST, LARGEST = 16, 4096
 """The least and greatest side of a picture, in pixels; outside this range, pybullet ends the process."""
 
 _FOLLOW = (0.0, -6.6, 8.4)
-"""From the player to the camera that follows it.
+"""The vector from the player's feet to the camera that follows the player, in metres.
 
 The camera is in the south and above, so that north is up in every view.
 """
 _AHEAD = (0.0, 0.6, 0.6)
-"""From the player's feet to the point that the camera looks at."""
+"""The vector from the player's feet to the point that this camera looks at, in metres."""
 _FIELD = 50.0
 _TOP_FIELD = 8.0
 """A narrow field of view from far away, so that walls hardly lean outwards."""
@@ -77,7 +77,10 @@ def check_size(size: object) -> tuple[int, int]:
 
 
 def sight_lines(camera: Camera, width: int, height: int) -> NDArray[np.float32]:
-    """Return for each pixel the vector from the eye that has one metre of depth: (height, width, 3)."""
+    """Return for each pixel the vector from the camera to the point that it shows at a depth of one metre.
+
+    The result is (height, width, 3). Depth is measured along the direction of view.
+    """
     ahead, right, up = _axes(camera)
     half = tan(np.radians(camera.field) / 2)
     x = (2 * (np.arange(width) + 0.5) / width - 1) * half * width / height

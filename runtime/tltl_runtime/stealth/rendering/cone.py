@@ -1,4 +1,7 @@
-"""The part of the floor that an enemy sees, for pictures only; in play, ``enemy`` decides what is seen."""
+"""The part of the floor that an enemy sees, for pictures only.
+
+In play, :mod:`~tltl_runtime.stealth.enemies.enemy` decides whether an enemy sees the player.
+"""
 
 from __future__ import annotations
 
@@ -17,10 +20,10 @@ _ONLY_STANDING = 0.5
 
 
 class SightField:
-    """How well an enemy sees each place on the floor.
+    """How well an enemy would see a player at each position on the floor.
 
-    The value is 1 if the enemy sees a crouched head there, 0.5 if it sees only a standing one, else
-    0. ``boxes`` block sight.
+    The value is 1 where the enemy would see even a crouched player, 0.5 where only a standing one, 0
+    elsewhere. ``feet`` and ``yaw`` are the enemy's pose. ``boxes`` block its sight.
     """
 
     def __init__(self, kind: EnemyKind, feet: Point, yaw: float, boxes: Iterable[Box]) -> None:
@@ -37,7 +40,10 @@ class SightField:
         self._seen = np.where(crouched, 1.0, np.where(standing, _ONLY_STANDING, 0.0)).astype(np.float32)
 
     def visibility(self, places: NDArray[np.float32]) -> NDArray[np.float32]:
-        """Return how well places (n, 2) are seen, in [0, 1]: (n,)."""
+        """Return the values at positions (n, 2), in [0, 1]: (n,).
+
+        Values between 0, 0.5 and 1 are interpolated, at the borders of what the enemy sees.
+        """
         x, y = places[:, 0] - np.float32(self.eyes[0]), places[:, 1] - np.float32(self.eyes[1])
         radius = np.hypot(x, y)
         angle = (np.arctan2(y, x) - self.yaw + pi) % (2 * pi) - pi
@@ -50,7 +56,10 @@ class SightField:
     def _free(
         self, x: NDArray[np.float64], y: NDArray[np.float64], head: float, boxes: Iterable[Box]
     ) -> NDArray[np.bool_]:
-        """Return for each head at an offset ``x``, ``y`` whether the line from the eyes to it passes no box."""
+        """Return for each offset ``x``, ``y`` whether no box blocks the line from the eyes to a head there.
+
+        ``head`` is the height of the heads, in metres.
+        """
         free = np.ones(x.shape, np.bool_)
         for box in boxes:
             enter, leave = np.zeros(x.shape), np.ones(x.shape)

@@ -35,7 +35,7 @@ _MOST_LINES: Final = 10
 
 @record
 class Bar:
-    """A named number in [0, 1]."""
+    """A bar that shows a named number in [0, 1]."""
 
     name: str
     value: float

@@ -1,7 +1,7 @@
 """Layers that are painted over a picture by its depth: floor, fields of sight, glass, background.
 
-The position of a pixel in the world follows from its depth, so paint covers whatever is at a
-position. Pictures contain floats from 0 to 1.
+The depth of a pixel gives the position in the world that the pixel shows. So a layer is painted over
+the pixels whose positions it covers. Pictures contain floats from 0 to 1.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ class Canvas:
         self.picture[rows, columns] *= np.where(tile % 2 == 1, np.float32(_TILE_SHADE), np.float32(1.0))[:, None]
 
     def edges(self, bodies: NDArray[np.int32]) -> None:
-        """Draw thin dark lines where ``bodies`` changes: between bodies, or between faces."""
+        """Draw thin dark lines between bodies, given the number of the body at each pixel [height, width]."""
         edge = np.zeros(bodies.shape, np.bool_)
         edge[:, 1:] |= bodies[:, 1:] != bodies[:, :-1]
         edge[1:] |= bodies[1:] != bodies[:-1]

@@ -118,7 +118,10 @@ def draw_episode(episode: Episode, size: tuple[int, int] | None = None, notation
 def backdrop(
     level: StealthLevel, size: tuple[int, int]
 ) -> tuple[NDArray[np.uint8], Callable[[Point], tuple[float, float]]]:
-    """Return the plan without moving parts, (height, width, 3), and the function from places to pixels."""
+    """Return the plan without moving parts, (height, width, 3), and a function.
+
+    The function converts a position in the level to a pixel of the plan: x and y from the upper left.
+    """
     figure = Figure(figsize=(size[0] / DPI, size[1] / DPI), dpi=DPI, layout="constrained")
     axes = level_axes(figure, level, moving=False, start=False)
     canvas: Any = FigureCanvasAgg(figure)

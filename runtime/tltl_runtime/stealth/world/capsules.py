@@ -1,8 +1,8 @@
 """The player's body in the physics: a standing and a crouched capsule, one of which is active.
 
 The inactive capsule touches nothing and falls. It is moved back to its place below the level from
-time to time. A sleeping Featherstone body also falls, and a floor under the capsule would cost a
-quarter of the speed.
+time to time. Nothing simpler works: a sleeping Featherstone body also falls, and a floor under the
+capsule would cost a quarter of the speed.
 """
 
 from __future__ import annotations

@@ -39,7 +39,7 @@ class MoverBody:
         self._reach = (width / 2 + reach, depth / 2 + reach, rise / 2 + reach)
 
     def put(self, clock: float) -> None:
-        """Move to the position at a time of the mover's own clock."""
+        """Move to the position that the mover has after ``clock`` seconds of its own time."""
         self.clock = clock
         place = self._path.position_at(clock)
         if place != self.place:

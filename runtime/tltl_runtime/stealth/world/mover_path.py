@@ -10,7 +10,7 @@ from tltl_runtime.stealth.level import Mover, Point
 
 
 class MoverPath:
-    """The positions of a mover by the time of its own clock.
+    """The positions of a mover, by the time that it has moved.
 
     The mover moves there and back, or in a loop if its path is closed.
     """

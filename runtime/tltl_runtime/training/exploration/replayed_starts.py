@@ -1,6 +1,6 @@
-"""Begin a training episode at the level's start, or in the middle of an earlier episode, by replaying it.
+"""Begin a training episode at the level's start, or in the middle of an earlier one by replaying it.
 
-:class:`~tltl_runtime.training.exploration.reverse_curriculum.ReverseCurriculum` chooses where.
+:class:`~tltl_runtime.training.exploration.reverse_curriculum.ReverseCurriculum` chooses the starts.
 
 Equal seeds and actions give equal episodes.  So replaying the first actions of an episode reaches
 the same state again, and the agent continues from there.
@@ -27,10 +27,10 @@ Actions = list[list[int]]
 class EpisodeStart:
     """The start of an episode: its seed, and ``actions`` [n, branches] to replay first.
 
-    ``segment`` locates a start on a demonstration: how the demonstration ended (see
-    :func:`~tltl_runtime.training.exploration.search.end_of`) and the index of the segment.  It is
-    None at the level's start.  The episode is cut off after ``max_decisions`` decisions of the
-    agent; None: never.
+    For a start in a demonstration, ``segment`` is the atoms that were true when the demonstration
+    ended (see :func:`~tltl_runtime.training.exploration.search.end_of`) and the index of the segment,
+    from 0.  At the level's start it is None.  The episode is cut off after ``max_decisions``
+    decisions of the agent; None: never.
     """
 
     seed: int
@@ -43,9 +43,9 @@ class ReplayedStartEnv(gymnasium.Wrapper[Any, Any, Any, Any]):
     """An environment whose episodes begin at ``next_start``: a seed, and actions to replay.
 
     ``next_start`` keeps its value for all later episodes; setting it to None does nothing.  Until it
-    is first set, episodes begin as in the wrapped environment.  There are two environments of
-    ``make``: while the agent plays in one of them, :meth:`prepare` replays the actions for the next
-    episode in the other.
+    is first set, episodes begin as in the wrapped environment.  ``make`` is called twice: while the
+    agent plays in one environment, :meth:`prepare` replays the actions for the next episode in the
+    other.
     """
 
     def __init__(self, make: Callable[[], gymnasium.Env[Any, Any]]) -> None:
@@ -68,13 +68,13 @@ class ReplayedStartEnv(gymnasium.Wrapper[Any, Any, Any, Any]):
             self._replay = self._replay_in_spare(*next_start)
 
     def prepare(self) -> bool:
-        """Replay one action for the next episode; return False if none is left."""
+        """Take one step of the replay for the next episode; return False once it is complete."""
         return self._replay is not None and next(self._replay, self) is None
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
-        """Finish the replay and begin the episode after it; return the observation and the info there.
+        """Finish the replay; return the observation and the info at its end, where the episode begins.
 
-        ``seed`` and ``options`` count only before ``next_start`` is set.
+        ``seed`` and ``options`` are used only before ``next_start`` is first set.
         """
         if self._next_start is None:
             return self.env.reset(seed=seed, options=options)
@@ -130,7 +130,10 @@ class Episodes:
             return self._env.step(actions)
 
     def start_next(self, mask: NDArray[np.bool_]) -> None:
-        """Note that the environments in ``mask`` [num_envs] have begun their next episodes."""
+        """Record that the environments in ``mask`` [num_envs] have begun their next episodes.
+
+        Draw the starts of the episodes after these, and send them to the environments.
+        """
         rows = np.flatnonzero(mask).tolist()
         if rows:
             self._advance(rows)
@@ -146,7 +149,7 @@ class Episodes:
         return observation
 
     def is_spent(self, row: int) -> bool:
-        """Whether the agent has used up the ``max_decisions`` of the episode in this row."""
+        """Whether the agent has used up the ``max_decisions`` of the episode in environment ``row``."""
         start = self.starts[row]
         return start.max_decisions is not None and len(self.actions[row]) - len(start.actions) >= start.max_decisions
 
@@ -167,7 +170,7 @@ class Episodes:
             raise WorkerError(error.loss, tuple(map(self._with_start, error.playing))) from error
 
     def _with_start(self, playing: Playing) -> Playing:
-        """Return ``playing`` with the real seed and step; the environment knows only its own."""
+        """Return ``playing`` with the seed and step of the episode, which only this class knows."""
         row = playing.env
         return replace(playing, seed=self.starts[row].seed, episode=1, step=len(self.actions[row]))
 

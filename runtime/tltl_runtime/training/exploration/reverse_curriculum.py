@@ -5,6 +5,9 @@ agent learns most in segments from which it sometimes succeeds.  As it learns, t
 end of the demonstration to its beginning: Florensa et al., Reverse curriculum generation for
 reinforcement learning, CoRL 2017; Salimans and Chen, Learning Montezuma's Revenge from a single
 demonstration, 2018.
+
+The *end* of a demonstration is the set of atoms that are true in its last step, as the number that
+:func:`~tltl_runtime.training.exploration.search.end_of` returns.
 """
 
 from __future__ import annotations
@@ -25,13 +28,13 @@ _MAX_DEMONSTRATIONS = 6
 _MAX_ENDS = 8
 """At most this many ends are kept: the first that were found."""
 _START_SHARES = 0.2, 0.97
-"""The least share of the episodes from the level's start in all decisions, and their greatest share of episodes.
+"""How much is played from the level's start: at least this share of decisions, at most this one of episodes.
 
-The least share counts decisions, because failed episodes differ in length: some last until the
+The first share counts decisions, because failed episodes differ in length: some last until the
 spec's limit, others end soon in a violation.
 """
 _MIN_WEIGHT = 0.005
-"""Added to the weight of each segment, because one that teaches nothing now may do so again."""
+"""Added to the weight of each segment, because one that teaches nothing now may be useful later."""
 _LEARNED_RATE = 0.2
 """A segment counts as learned, at least partly, from this success rate on."""
 _WEIGHTS_BEFORE = 0.1, 0.6
@@ -49,12 +52,16 @@ start and for mean lengths.
 _MAX_FAILURES = 32
 """The number of failed episodes from the level's start that are kept: the last ones."""
 _DECISION_LIMIT = 1.5, 20
-"""The most decisions from a start: the rest of the demonstration times the first number, plus the second."""
+"""The most decisions of the agent from a start in a demonstration.
+
+They are the first number times the demonstration's remaining decisions, plus the second number.
+"""
 
 
 class ReverseCurriculum:
-    """Draws starts of episodes; ``generator`` must not be shared.
+    """Draws starts of episodes.
 
+    Nothing else may draw from ``generator``, because equal seeds must give equal trainings.
     ``demonstrations`` maps each end to the shortest known demonstrations with that end, including
     the agent's own successes.  They are kept by end because a spec may be met in several ways, and
     the shortest of all demonstrations would hide the other ways.  ``rates`` maps each end to the
@@ -111,8 +118,8 @@ class ReverseCurriculum:
         """Draw up to ``count`` decisions to imitate, each as a demonstration and an index into its actions.
 
         Decisions are drawn like starts.  A decision is dropped with the probability that the agent
-        succeeds from its segment.  A success from an earlier segment, or from the level's start,
-        counts for all later segments.
+        already succeeds from its segment.  A success from an earlier segment, or from the level's
+        start, counts for all later segments.
         """
         if not self.demonstrations:
             return []

@@ -93,9 +93,10 @@ def end_of(infos: Mapping[str, Any], row: int) -> int:
 class SearchProgress:
     """The progress of a search.
 
-    ``steps`` are the decisions without the ``replayed`` ones, ``places`` is the number of cells that
-    were reached, and ``lengths`` are the lengths of the demonstrations, in decisions.  ``complete``
-    says whether the search ended by its own criteria, not by a limit of the training.
+    ``steps`` counts decisions without the ``replayed`` ones, ``places`` counts the cells that were
+    reached, and ``lengths`` are the lengths of the demonstrations, in decisions.  ``complete`` says
+    whether the search ended because it had enough demonstrations or had taken enough steps, not
+    because the training ran out of time.
     """
 
     steps: int
@@ -109,7 +110,7 @@ class SearchProgress:
 def combined_progress(before: SearchProgress, later: SearchProgress) -> SearchProgress:
     """Combine the progress of two searches of one training, whose demonstrations are all used.
 
-    ``places`` is that of the later search.
+    ``places`` and ``complete`` are those of the later search.
     """
     return SearchProgress(
         steps=before.steps + later.steps,
@@ -267,7 +268,7 @@ class _CellArchive:
         return self._starts[state][cell]
 
     def remove(self, seed: int) -> None:
-        """Remove the cells that were reached with a seed."""
+        """Remove the cells that were reached in the episode with this seed."""
         for state in list(self._starts):
             remaining = {cell: start for cell, start in self._starts[state].items() if start.seed != seed}
             if remaining:

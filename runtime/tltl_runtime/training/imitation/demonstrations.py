@@ -29,8 +29,8 @@ MOST_FAILURES: Final = 20
 class Attempt:
     """An episode that was played to record a demonstration.
 
-    ``path`` is the file of its recording, or None if it does not meet the spec and was not kept.
-    ``kept`` is the number of demonstrations in the folder after it.
+    ``path`` is the file of its recording, or None if the episode does not meet the spec and was not
+    kept.  ``kept`` is the number of demonstrations in the folder after this attempt.
     """
 
     episode: RecordedEpisode
@@ -40,17 +40,18 @@ class Attempt:
 
 @record
 class RejectedRecording:
-    """A recording that is not a demonstration of a level and a task, and the reason in words."""
+    """A recording in the folder that is not a demonstration, and the reason in words."""
 
     path: Path
     reason: str
 
 
 class Demonstrations:
-    """The demonstrations of a level and a task in ``folder``, which need not exist yet.
+    """The demonstrations on a level in ``folder``, which need not exist yet.
 
-    A recording in the folder is a demonstration if its level, spec and params match and it meets the
-    spec.  ``rejected`` are the other recordings, including those that cannot be read.
+    A recording in the folder is a demonstration if its level is ``level``, its spec and params are those
+    of ``task``, and it meets the spec.  ``rejected`` are the other recordings, including those that
+    cannot be read.
     """
 
     def __init__(self, folder: Path, level: Level, task: Task) -> None:
@@ -120,10 +121,11 @@ def error_text(error: TltlError) -> str:
 
 
 def expert_attempts(env: EpisodeRecorder[Any], store: Demonstrations, number: int, seed: int = 0) -> Iterator[Attempt]:
-    """Let the scripted expert play until there are ``number`` demonstrations; yield each episode.
+    """Let the scripted expert play until there are ``number`` demonstrations; yield each attempt.
 
-    Seeds count up from ``seed``, or from the one after the expert's last demonstration, so that an
-    interrupted recording continues where it stopped.
+    An attempt that meets the spec is written to the folder of ``store``.  Seeds count up from
+    ``seed``, or from the seed after the expert's last demonstration, so that an interrupted recording
+    continues where it stopped.
 
     Raises:
         TltlError: TLT0920, the expert fails too often; TLT0005, a recording cannot be written.

@@ -1,4 +1,4 @@
-"""The discriminator of GAIL, which tells decisions of demonstrations from decisions of an agent."""
+"""The discriminator of GAIL: is a decision from a demonstration or from the agent?"""
 
 from __future__ import annotations
 
@@ -33,8 +33,8 @@ class Discriminator(nn.Module):
     """Predicts whether a decision is from a demonstration, as a logit.
 
     Ho and Ermon, Generative adversarial imitation learning, NIPS 2016.  ``config`` is rsl-rl's
-    configuration of a model.  The network's inputs are observations (``observations`` is an
-    example) and actions, one-hot by ``branches``.
+    configuration of a model.  The network's inputs are observations (``observations`` is an example
+    batch) and one-hot actions (``branches`` gives the number of choices of each branch).
     """
 
     def __init__(self, observations: Mapping[str, Tensor], branches: Sequence[int], config: Mapping[str, Any]) -> None:
@@ -47,14 +47,14 @@ class Discriminator(nn.Module):
         self.network = model(inputs, {"discriminator": [*inputs]}, "discriminator", 1, **options)
 
     def forward(self, decisions: Decisions) -> Tensor:
-        """Return the logits [n] of these decisions being demonstrated."""
+        """Return the logits [n] of the probabilities that these decisions are from demonstrations."""
         logits: Tensor = self.network(self._inputs(decisions)).squeeze(-1)
         return logits
 
     def reward(self, decisions: Decisions) -> Tensor:
         """Return the rewards [n] of these decisions: ``-log(1 - D)``, which is at least 0.
 
-        D is the predicted probability that a decision is demonstrated.
+        D is the predicted probability that a decision is from a demonstration.
         """
         return softplus(self(decisions))
 

@@ -74,9 +74,9 @@ class Gail(PPO):
         self.seconds = 0.0
         """The training time so far, in seconds; the caller sets it."""
         self.cloning_steps, self.cloning_s = int(gail["cloning_steps"]), float(gail["cloning_s"])
-        """The actor is cloned until this many steps, or this many seconds, are over.
+        """The actor is cloned until this many steps or seconds of the training are over.
 
-        Both are shares of the limits when the training begins; they stay when the limits change.
+        Both are computed from the limits when the training begins, and stay if the limits change later.
         """
         example = storage.observations[0].to("cpu")
         self.discriminator = Discriminator(example, gail["branches"], gail["discriminator"]).to(self.device)

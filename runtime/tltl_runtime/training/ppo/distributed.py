@@ -18,7 +18,7 @@ T = TypeVar("T")
 
 @record
 class ProcessGroup:
-    """The position of this process among those of a training, and the exchange with the others.
+    """The rank of this process among the processes of a training, and the exchange of values with them.
 
     It is process ``rank`` of ``count``, and process ``local_rank`` of ``local_count`` on this machine;
     ranks count from 0.  All processes must call the methods in the same order; otherwise they wait for
@@ -48,7 +48,7 @@ class ProcessGroup:
 
 
 def process_group() -> ProcessGroup:
-    """Return the position of this process, from torchrun's environment variables.
+    """Return the rank of this process and the number of processes, from torchrun's environment variables.
 
     Without these variables it is the only process.
     """
@@ -64,9 +64,9 @@ def cores() -> int:
 
 @contextmanager
 def join_process_group(device: str) -> Iterator[tuple[ProcessGroup, str]]:
-    """Join the process group inside the block; yield the position in it, and ``device``.
+    """Join torch's process group inside the block; yield this process's ranks, and ``device``.
 
-    A single process joins none.
+    A single process joins no group.
     """
     group = process_group()
     if group.count == 1:

@@ -32,7 +32,7 @@ class GatheredIteration:
 
 
 def gather_iteration(group: ProcessGroup, iteration: Iteration, runner: Runner) -> GatheredIteration:
-    """Gather an iteration from all processes.
+    """Collect the results of an iteration from all processes, which must all call this function.
 
     Raises TltlError, TLT0866, if a loss of any process is not a number.
     """

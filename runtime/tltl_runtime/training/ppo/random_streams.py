@@ -25,5 +25,9 @@ class Purpose(IntEnum):
 
 
 def stream(run: TrainingRun, group: ProcessGroup, purpose: Purpose, iteration: int = 0) -> np.random.SeedSequence:
-    """Return the seed of a random stream of this process, for a purpose, from an iteration on."""
+    """Return the seed of this process's random stream for a purpose.
+
+    A training that is resumed after another ``iteration`` has another stream, so that it does not
+    repeat random numbers.
+    """
     return np.random.SeedSequence(run.seed, spawn_key=(group.rank, int(purpose), iteration))

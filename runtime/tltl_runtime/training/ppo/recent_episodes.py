@@ -19,15 +19,15 @@ _MIN_EPISODES = 50
 _RISE = 0.05
 """The least increase of the best pass rate that counts."""
 _BETWEEN = 0.1, 0.8
-"""A standstill is detected only between these pass rates.
+"""A standstill is detected only if the best pass rate is at least the first and below the second number.
 
-Below them, the reverse curriculum has not reached the level's start yet.  Above them, little is
-left to find.
+Below the first, the reverse curriculum has not reached the level's start yet.  From the second on,
+little is left to find.
 """
 
 
 class RecentEpisodes:
-    """The last ``windows * episodes`` episodes of a training.
+    """The last ``windows * episodes`` episodes of a training, in windows of ``episodes`` each.
 
     ``limit_steps`` is the spec's limit, or None.  ``unbroken`` is the number of successive episodes, up
     to the last one, that met the spec.  A failed confirmation of the policy resets it.
@@ -52,17 +52,17 @@ class RecentEpisodes:
 
     @property
     def all_met(self) -> bool:
-        """Whether all episodes of all windows met the spec."""
+        """Whether the last ``windows * episodes`` episodes met the spec, all since the last failed confirmation."""
         return self.unbroken == self._count
 
     @property
     def window(self) -> EpisodeWindow:
-        """The statistics of all of the episodes."""
+        """The statistics of the episodes that are kept, at most ``windows * episodes``."""
         return self._window(tuple(self._episodes))
 
     @property
     def score(self) -> Score | None:
-        """The score in the last window; None before there are enough episodes for one."""
+        """The score of the policy in the last window; None before enough episodes for one have ended."""
         if len(self._episodes) < self._window_episodes:
             return None
         window = self._window(tuple(self._episodes)[-self._window_episodes :])
@@ -121,7 +121,7 @@ class Standstill:
         self._best, self._since = best, since
 
     def add(self, window: EpisodeWindow, steps: int) -> bool:
-        """Add the window after ``steps`` of all environments; return whether the training stands still.
+        """Add statistics after ``steps`` decisions of all environments; return whether there is a standstill.
 
         After a standstill, the count of steps begins again.
         """

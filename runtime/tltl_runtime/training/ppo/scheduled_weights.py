@@ -1,4 +1,4 @@
-"""Entropy bonus, penalty weight and inverse temperature: they depend on how often the spec is met."""
+"""Compute the entropy bonus, penalty weight and inverse temperature from the pass rate."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ def scheduled_weights(ppo: Ppo, pass_rate: float) -> ScheduledWeights:
     """Return the weights for a ``pass_rate`` of the last episodes, in [0, 1].
 
     The entropy bonus fades as the spec is met more often, because less exploration is needed.  From a
-    pass rate of one half on, the penalty weight rises, because the discounted penalty costs less than a
-    longer, safe trajectory.  The inverse temperature rises, too, because most failures then come from
-    unlikely actions that were sampled by chance.
+    pass rate of one half on, the penalty weight rises, because the discounted penalty of a failure costs
+    the agent less than a longer, safe trajectory.  The inverse temperature rises, too, because most
+    failures then come from unlikely actions that were sampled by chance.
     """
     rise = max(0.0, 2 * pass_rate - 1)
     return ScheduledWeights(
@@ -40,9 +40,10 @@ def scheduled_weights(ppo: Ppo, pass_rate: float) -> ScheduledWeights:
 
 
 def penalty_rise(run: TrainingRun) -> Callable[[int], float] | None:
-    """Return a function that maps the steps of an episode to the undiscounted minus the configured penalty.
+    """Return a function that maps the steps of a failed episode to its greatest extra penalty.
 
-    Returns None if the violation penalty does not rise during the training.
+    The extra penalty is the undiscounted penalty minus the one in the settings.  Returns None if the
+    violation penalty does not rise during the training.
     """
     limit, options = run.fspa.limit_steps, run.settings.reward.options
     if limit is None or run.settings.imitates or not run.settings.reward.penalty_rises:

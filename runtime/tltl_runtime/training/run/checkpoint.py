@@ -28,7 +28,7 @@ _MOST: Final = 2**53
 
 @record
 class BestPolicy:
-    """The best policy: its score, its weights by name, and the number of steps at which it had them."""
+    """The best policy: its score, its weights by name, and after how many steps it had these weights."""
 
     score: Score
     actor: Mapping[str, Tensor]
@@ -88,7 +88,7 @@ _FIELDS: Final[tuple[str, ...]] = Checkpoint.__match_args__
 def write_checkpoint(path: Path, checkpoint: Checkpoint) -> None:
     """Write a checkpoint.  If that fails, even by a power cut, the older file stays.
 
-    Raises TltlError, TLT0005.
+    Raises TltlError, TLT0005, if the file cannot be written.
     """
     content: dict[str, Any] = {name: getattr(checkpoint, name) for name in _FIELDS}
     for name, kind in _RECORDS.items():

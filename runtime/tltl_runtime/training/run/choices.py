@@ -1,4 +1,4 @@
-"""The values of settings that are one of a few texts, except for the network and the rewards."""
+"""Types of the settings that are one of a few words, except those of the network and the rewards."""
 
 from __future__ import annotations
 

@@ -17,9 +17,9 @@ from tltl_runtime.training.run.run_file import TrainingRun, current_level_hash
 
 
 def confirm(run: TrainingRun, policy: Policy, stream: np.random.SeedSequence) -> Confirmation:
-    """Let a policy play the fresh episodes that the settings ask for, at most up to the first failure.
+    """Let a policy play the fresh episodes that the settings ask for; stop at the first failure.
 
-    ``stream`` gives the seed of the episodes.
+    ``stream`` is the random stream that the seed of the episodes is drawn from.
 
     Raises:
         TltlError: TLT0868, the level has changed since the training began.

@@ -20,7 +20,7 @@ METRICS: Final = "metrics.jsonl"
 
 _ADVICE: Final = "see that there is room, and that you may write there"
 WINDOW_MEANS: Final = ("pass_rate", "progress", "reward", "episode_steps")
-"""The means over the last episodes."""
+"""The fields of a line that are means over the last episodes."""
 _INTEGERS: Final = ("iteration", "steps", "episodes", "window")
 """The fields of a line that are read back and must be integers."""
 _REQUIRED: Final = {*_INTEGERS, "seconds", "losses", *WINDOW_MEANS}
@@ -121,7 +121,7 @@ def read_metrics(path: Path) -> list[dict[str, Any]]:
 def truncate(path: Path, iteration: int) -> None:
     """Remove the lines of ``metrics.jsonl`` after an iteration.
 
-    Raises TltlError, TLT0001, TLT0004 or TLT0005.
+    Raises the errors of :func:`read_metrics`, and TltlError, TLT0005, if the file cannot be written.
     """
     remaining = [fields for fields in read_metrics(path) if fields["iteration"] <= iteration]
     fileio.write_file(path, "".join(map(_line_text, remaining)), _ADVICE, over_inputs=True)

@@ -12,7 +12,7 @@ from tltlc.api import Diagnostic, TltlError
 
 
 def class_of(setting: str, name: str, base: type) -> Any:
-    """Return the class called ``name``, which the setting ``classes.SETTING`` gives.
+    """Return the class called ``name``, which is the value of the setting ``classes.SETTING``.
 
     Raises TltlError, TLT0862, unless it is a subclass of ``base``.
     """

@@ -104,7 +104,7 @@ def _initial_policy(run: TrainingRun) -> dict[str, Any] | None:
 
 
 def record_so_far(folder: Path) -> dict[str, Any]:
-    """Return the fields of the record that are known of an unfinished training in a folder.
+    """Return the fields of the record that are already known of the unfinished training in a folder.
 
     Raises:
         TltlError: the files of the training cannot be read.

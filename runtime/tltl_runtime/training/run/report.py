@@ -17,10 +17,11 @@ StopReason = Literal["met", "steps", "minutes"]
 class EpisodeWindow:
     """Statistics of the last ``count`` episodes, of which ``successes`` met the spec.
 
-    ``progress`` in [0, 1], ``reward``, always with the undiscounted terminal penalty, and the length in
-    ``steps`` are means; they are 0 if there is no episode.  ``states`` maps the automaton state at the
-    end of an episode, or before its violation, to the share of episodes in [0, 1].  ``violated`` has
-    the shares of violations alone.  States in which no episode ended are left out.
+    ``progress`` in [0, 1], ``reward`` and ``steps`` (of an episode) are means; they are 0 if there is no
+    episode.  ``reward`` always has the undiscounted terminal penalty.  ``states`` maps the automaton
+    state at the end of an episode, or before its violation, to the share of episodes in [0, 1];
+    ``violated`` does so for the episodes that ended in a violation.  Both are shares of all episodes,
+    and leave out states in which none ended.
     """
 
     count: int

@@ -49,7 +49,7 @@ class InitialPolicy:
 
     ``path`` is its file; the other fields describe what the file contained when it was read.
     ``weights`` is the SHA-256, in hexadecimal, of its weights.  ``level``, ``variant`` and
-    ``level_hash`` are from its card.
+    ``level_hash`` are from its card and say on which level it was trained.
     """
 
     path: str
@@ -63,8 +63,8 @@ class InitialPolicy:
 class TrainingRun:
     """What to train, and the folder that stores it.
 
-    ``params`` are the values of the params of ``fspa`` in SI units.  ``level`` is an argument of
-    :meth:`~tltl_runtime.game.game.Game.load_level`.  ``demonstrations`` is the folder of the
+    ``params`` are the values of the params of ``fspa`` in SI units.  ``level`` is the name of a level or the
+    path of its file, as for :meth:`~tltl_runtime.game.game.Game.load_level`.  ``demonstrations`` is the folder of the
     demonstrations to imitate.  If it is None, they are in the folder of the training, and the expert's
     are recorded there.  ``initial`` is the policy whose weights the actor begins with, None for random
     weights.
@@ -98,7 +98,7 @@ _PLAIN: Final[Mapping[str, Any]] = {
 def write_run(run: TrainingRun) -> None:
     """Write ``run.json`` into the folder; create the folder if it is missing.
 
-    Raises TltlError, TLT0005.
+    Raises TltlError, TLT0005, if the file cannot be written.
     """
     (artefact,) = compiler.emit("json", run.fspa).values()
     # Paths are absolute, because the training may be resumed from another folder.
@@ -193,7 +193,7 @@ def _values(source: SourceFile, document: Mapping[str, Any], names: Sequence[str
 
 
 def identity(run: TrainingRun) -> dict[str, str]:
-    """Return everything that a checkpoint depends on, in parts that messages tell apart.
+    """Return everything that a checkpoint depends on, by name, so that a message can say what differs.
 
     ``level`` and ``spec`` are hashes, ``seed`` is the seed.  ``settings`` is a SHA-256, in
     hexadecimal, of the observation version, the params, the sensors and all settings except
@@ -229,7 +229,7 @@ def demonstrations_of(run: TrainingRun) -> Path:
 
 
 def leaves(settings: object, path: str = "") -> Iterator[tuple[str, Any]]:
-    """Yield the name, ``table.key``, and the value of each setting in JSON data."""
+    """Yield each setting in the JSON data of settings: its name, ``table.key``, and its value."""
     if not isinstance(settings, dict):
         yield path, settings
         return

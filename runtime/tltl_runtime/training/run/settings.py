@@ -27,10 +27,11 @@ _SETTING: Final = re.compile(r"(?P<head>(?P<key>\w+) = [^#]*?)\s*(?P<comment>#.*
 class Ppo:
     """The settings of rsl-rl's PPO.
 
-    The default learning rate, entropy, clip, lambda and gamma are the paper's (section VI).  As the
-    pass rate rises from one half to 1, the inverse temperature rises from 1 to ``sharpening``.  A
-    training that begins with a policy has an untrained critic, so only the critic learns in the first
-    ``warm_up`` updates.  Otherwise the policy would follow the critic's initial errors.
+    The default learning rate, entropy, clip, lambda and gamma are those of Gutiérrez-Sánchez et al.,
+    IEEE Trans. Games 2024, section VI.  As the pass rate rises from one half to 1, the inverse
+    temperature rises from 1 to ``sharpening``.  A training that begins with a policy has an untrained
+    critic, so only the critic learns in the first ``warm_up`` updates.  Otherwise the policy would
+    follow the critic's initial errors.
     """
 
     learning_rate: float
@@ -63,7 +64,7 @@ class Rollout:
 
 @record
 class Imitation:
-    """The settings of the imitation baseline (paper, section VI): behavioural cloning, then GAIL.
+    """The settings of the imitation baseline: behavioural cloning, then GAIL.
 
     ``cloning`` is the share of behavioural cloning in the limit that is reached first, of steps or of
     minutes.  If no demonstrations are given, ``demonstrations`` episodes of the expert are recorded.
@@ -176,7 +177,7 @@ class TrainingSettings:
 
     @property
     def searches(self) -> bool:
-        """Whether the training searches for demonstrations first, from which episodes then begin."""
+        """Whether the training first searches for demonstrations, in which its episodes may then begin."""
         return self.exploration.ways > 0 and not self.imitates
 
 

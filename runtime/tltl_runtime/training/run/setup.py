@@ -42,7 +42,7 @@ from tltlc.api import Diagnostic, TltlError
 
 
 def start_or_resume(run: TrainingRun, resume: bool) -> Checkpoint | None:
-    """Write ``run.json`` if needed; return the checkpoint to resume from, None for a new training.
+    """Write ``run.json`` if needed; return the checkpoint to resume from, None if there is none.
 
     Raises:
         TltlError: TLT0864, the checkpoint cannot be resumed from; TLT0868, the level has changed;
@@ -106,7 +106,7 @@ def load_imitation_data(
 
 
 def initial_policy(run: TrainingRun, group: ProcessGroup, checkpoint: Checkpoint | None) -> Policy | None:
-    """Return the policy that the training begins with; None with random weights or a checkpoint.
+    """Return the policy that the training begins with; None if it begins with random weights or a checkpoint.
 
     Raises:
         TltlError: TLT0940, the policy's file is missing or has changed; the errors of
@@ -127,12 +127,13 @@ def prepare_environment(
     imitation_data: ImitationData | None,
     initial: Policy | None,
 ) -> tuple[TrainingEnv, SearchProgress | None]:
-    """Return the environment for rsl-rl, at the start of new episodes, and the progress of a search.
+    """Search for demonstrations if needed; return the environment for rsl-rl and the search's progress.
 
-    The seeds depend on process and iteration, so that episodes differ from those played before.  The
-    progress is None if there is no search.  A search is not repeated, unless a limit broke it off
-    before it found a demonstration.  In the search, ``initial``, the policy that the training begins
-    with, plays first.  ``on_search`` is called with the progress of the search.
+    New episodes have begun in the environment.  Their seeds depend on process and iteration, so that
+    they differ from episodes played before.  The progress is None if there is no search.  A search is
+    not repeated, unless a limit broke it off before it found a demonstration.  In the search,
+    ``initial``, the policy that the training begins with, plays first.  ``on_search`` is called with
+    the progress of the search.
     """
     progress, curriculum, self_imitation = None, None, None
     iteration = checkpoint.iteration if checkpoint else 0

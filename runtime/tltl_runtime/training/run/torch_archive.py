@@ -57,8 +57,9 @@ def read_torch(data: bytes) -> Any:
 def _checked_archive(data: bytes) -> bytes:
     """Check the members of an archive; return the archive written again.
 
-    Members must be uncompressed and undamaged, and call only what makes plain data.  The archive is
-    written again, because in a malicious archive torch may see other members than Python.
+    Members must be uncompressed and undamaged, and their pickles may call only functions that make
+    plain data.  The archive is written again, because in a malicious archive torch may find other
+    members than Python does.
     """
     # torch reads a file with another beginning in its older format, even if an archive follows.
     if not data.startswith(b"PK\x03\x04"):

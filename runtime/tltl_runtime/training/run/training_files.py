@@ -32,9 +32,10 @@ class TrainingFiles:
         self._metrics: Metrics | None = None
 
     def restore(self, state: Checkpoint) -> None:
-        """Bring the files in the folder to the ``state`` of the training.
+        """Make the files in the folder fit the ``state`` with which the training begins or resumes.
 
-        The state is saved at once.  So even if the process is killed soon, the search need not be repeated.
+        Removes ``record.json`` and ``curve.png``, which are written at the end.  Writes a checkpoint at
+        once, so that the search need not be repeated if the process is killed soon.
         """
         for name in (RECORD, CURVE):
             (self._run.folder / name).unlink(missing_ok=True)

@@ -67,8 +67,8 @@ def picture(fspa: Fspa, svg: bytes, now: Traffic, before: Traffic) -> Markup:
     """Add badges to the ``svg`` of an automaton: for each state, how many episodes visited it or failed in it.
 
     The more episodes took an edge, the thicker the edge is.  The picture contains the badges and edge
-    widths for ``now`` and for ``before``; the style sheet shows one of the two.  ``data-states`` of a
-    group lists the states that the group stands for.
+    widths for ``now`` and for ``before``; the style sheet shows one of the two.  The SVG may draw a
+    chain of states as one; the attribute ``data-states`` lists all states that a node shows.
     """
     root = ElementTree.fromstring(svg)
     for node in root.iter():
@@ -105,9 +105,9 @@ def picture(fspa: Fspa, svg: bytes, now: Traffic, before: Traffic) -> Markup:
 
 
 def _edge_counts(traffic: Traffic, runs: Collection[tuple[int, ...]], drawn_edges: Set[Ends]) -> Counter[Ends]:
-    """Count for each drawn edge the episodes that took it or an edge that it stands for.
+    """Count for each drawn edge the episodes that took it, or an edge that is drawn as part of it.
 
-    A run of states is drawn as one state.
+    ``runs`` are the states of each node; a node with several states draws a chain of them as one.
     """
     first = {state: run[0] for run in runs for state in run}
     folded = [run[0] for run in runs if len(run) > 1]
@@ -148,9 +148,9 @@ def _mark_state(
 
 
 def _visits(traffic: Traffic, states: tuple[int, ...]) -> int:
-    """Return how many episodes visited a state, or any state of a run.
+    """Return how many episodes visited a state, or any of the ``states`` that are drawn as one.
 
-    A run can be entered at any of its states.
+    Such a chain of states can be entered at any of its states.
     """
     if len(states) == 1:
         return traffic.visited.get(states[0], 0)

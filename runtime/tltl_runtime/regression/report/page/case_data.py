@@ -15,13 +15,16 @@ from tltl_runtime.regression.report.page.stealth.recording_data import recording
 from tltlc.api import label_text
 
 _RESOLUTION_CM: Final = 5
-"""The resolution of trajectories, in centimetres.  At this resolution, most steps take a single letter."""
+"""The resolution of trajectories, in centimetres.
+
+At this resolution, most differences between successive points are encoded as a single character.
+"""
 
 
 def case_data(case: ReportedCase, slug: str) -> dict[str, Any] | None:
     """Return the data for the map and the automaton of a case; None if it has no level or no automaton.
 
-    ``slug`` is the address of the case.
+    ``slug`` is the case's short name in addresses within the page.
     """
     level, fspa = case.level, case.fspa
     if level is None or fspa is None:

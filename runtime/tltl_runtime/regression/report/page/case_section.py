@@ -1,4 +1,4 @@
-"""The section of a case: reasons, automaton, map with player, and curves."""
+"""The section of a case: reasons, automaton, map, playback of recorded episodes, and curves."""
 
 from __future__ import annotations
 
@@ -46,9 +46,10 @@ class _Drawings:
 
 
 def case_section(case: ReportedCase, slug: str, automaton: AutomatonPicture | None) -> Markup:
-    """Return the section of a case, with the address ``slug``.
+    """Return the section of a case.
 
-    Without level and automaton, it has only texts.  ``automaton`` is the picture of the case's automaton.
+    ``slug`` is the case's short name in addresses within the page.  Without level and automaton, the
+    section has only texts.  ``automaton`` is the picture of the case's automaton.
     """
     return render(
         "case_section.html",

@@ -30,7 +30,8 @@ class _Link:
 def episode_links(finding: Finding, episodes: Mapping[int, RecordedEpisode], slug: str) -> Markup | None:
     """Return links that play the recorded ``episodes`` of a finding; None if it has none.
 
-    ``slug`` is the address of the case.  Failed episodes start shortly before their end.
+    ``slug`` is the case's short name in addresses within the page.  The link to a failed episode starts
+    shortly before the end.
     """
     indices = [index for index in finding.episodes if index in episodes]
     if not indices:

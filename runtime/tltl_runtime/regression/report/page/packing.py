@@ -12,13 +12,14 @@ T = TypeVar("T")
 
 _DIGITS: Final = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/"
 _CONTINUATION: Final = 32
+"""Added to each digit of a number except the last."""
 
 
 def steps(values: Iterable[float], scale: float) -> str:
-    """Encode values times ``scale``, rounded to integers: the first value, then the differences.
+    """Encode numbers as a short text: the first one, then the difference of each from the one before.
 
-    Numbers are encoded as in source maps (base64 VLQ): the lowest bit is the sign, the digits have five
-    bits each, lowest first, and all but the last digit have the sixth bit set.
+    Each number is first multiplied by ``scale`` and rounded to an integer.  Integers are encoded as in
+    source maps (base64 VLQ), so that a small difference takes a single character.
     """
     integers = [round(value * scale) for value in values]
     return "".join(_vlq(after - before) for before, after in zip([0, *integers], integers, strict=False))
@@ -39,10 +40,16 @@ def runs(values: Iterable[T]) -> list[list[T | int]]:
 
 
 def x_steps(bounds: Box, xs: Sequence[float], centimetres: int = 1) -> str:
-    """Encode x, in metres, by :func:`steps`: from the western bound, in units of ``centimetres``."""
+    """Encode x coordinates, given in metres, with :func:`steps`.
+
+    The encoded numbers are distances from the western bound, in units of ``centimetres``.
+    """
     return steps((x - bounds.low[0] for x in xs), 100 / centimetres)
 
 
 def y_steps(bounds: Box, ys: Sequence[float], centimetres: int = 1) -> str:
-    """Encode y, in metres, by :func:`steps`: southwards from the northern bound, in units of ``centimetres``."""
+    """Encode y coordinates, given in metres, with :func:`steps`.
+
+    The encoded numbers are distances southwards from the northern bound, in units of ``centimetres``.
+    """
     return steps((bounds.high[1] - y for y in ys), 100 / centimetres)

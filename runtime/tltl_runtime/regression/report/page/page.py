@@ -25,7 +25,7 @@ _SCRIPTS: Final = ("packing.js", "level_map.js", "player.js", "report.js")
 
 
 def html_report(suite: SuiteReport) -> str:
-    """Render the page: verdicts, and for each case its automaton, map, curves and episode player.
+    """Render the page: verdicts, and for each case its automaton, map, curves and recorded episodes.
 
     Equal reports give equal pages, unless the layout of an automaton hits its time limit.
     """

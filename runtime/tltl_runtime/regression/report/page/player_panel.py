@@ -1,4 +1,4 @@
-"""The player of recorded episodes: buttons, a scrubbing bar, and the values at the current moment."""
+"""The panel that plays back recorded episodes: buttons, a slider, and the values at the current moment."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _FAILED: Final = {"violation": "broke the spec", "limit": "ran out of time"}
 
 
 def player_panel(fspa: Fspa, episodes: Mapping[int, RecordedEpisode]) -> Markup:
-    """Return the player of a case; the page's script loads the ``episodes`` into it.
+    """Return the playback panel of a case; the page's script loads the ``episodes`` into it.
 
     Without episodes, a note says so.
     """

@@ -31,7 +31,7 @@ class _Mean:
 class _PassRateBar:
     """A bar of a pass rate: its class, place and size, and the SVG path of its confidence interval's whiskers.
 
-    The units are percent across; the drawing is 22 units high.
+    Horizontally, the drawing is 100 units wide, one for each percent.  It is 22 units high.
     """
 
     kind: str
@@ -58,8 +58,8 @@ class _PassRate:
 class _Row:
     """The row of a judged case.
 
-    ``slug`` is the address of its section.  ``retrained`` is the outcome of a retraining, or None.
-    ``pass_rate``, ``progress`` and ``reward`` are None for a case without figures.
+    ``slug`` is the case's short name in addresses within the page.  ``retrained`` is the outcome of a
+    retraining, or None.  ``pass_rate``, ``progress`` and ``reward`` are None for a case without figures.
     """
 
     name: str
@@ -75,7 +75,8 @@ class _Row:
 def summary(suite: SuiteReport, slugs: Sequence[str]) -> Markup:
     """Return the suite, the counts of verdicts, the versions and the table of verdicts.
 
-    ``slugs`` are the addresses of the sections, first of the judged cases, then of the others.
+    ``slugs`` are the short names of the cases in addresses within the page: first of the judged cases,
+    then of the others.
     """
     reports = [case.report for case in suite.cases]
     verdicts = [report.verdict for report in reports]

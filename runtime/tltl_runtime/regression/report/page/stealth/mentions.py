@@ -28,7 +28,11 @@ NO_MENTIONS: Final = Mentions()
 
 
 def mentions(level: Level, sentences: Sequence[str]) -> Mentions:
-    """Return what sentences mention: ```far_wall```, a key of a thing, ```wall.far_wall.at```, or *the left part*."""
+    """Return the things and regions that sentences mention.
+
+    A thing is mentioned by its name (```far_wall```) or by a key of its table (```wall.far_wall.at```), a
+    region by *the* and its name (*the left part*).
+    """
     assert isinstance(level, StealthLevel)
     text = "\n".join(sentences)
     names = {*entity_names(level), *(solid.name for solid in level.solids)}

@@ -1,4 +1,4 @@
-"""A recorded episode as data for the player of the page."""
+"""A recorded episode as data for the page, which plays it back."""
 
 from __future__ import annotations
 
@@ -64,7 +64,10 @@ def _position_steps(points: Sequence[Point], bounds: Box) -> dict[str, str]:
 
 
 def _yaw_steps(yaws: Sequence[float]) -> str:
-    """Encode yaw angles in degrees, unwrapped at half a turn so that they can be interpolated."""
+    """Encode yaw angles, given in radians, as degrees.
+
+    They never jump by a full turn, so that they can be interpolated.
+    """
     return steps((degrees(yaw) for yaw in np.unwrap(yaws).tolist()), 1)
 
 
