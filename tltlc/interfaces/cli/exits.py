@@ -154,7 +154,7 @@ def is_interrupted(error: BaseException | None) -> bool:
 def _missing_resource(error: BaseException | None) -> str | None:
     """Return the message for the resource that is used up.
 
-    Return None if no exception in the chain reports such a lack.
+    Return None if neither the exception nor any of its causes reports a used-up resource.
     """
     while error is not None:
         if isinstance(error, MemoryError):
