@@ -83,9 +83,8 @@ class CommandLine(click.Group):
             if hasattr(stream, "reconfigure"):
                 # A terminal that cannot show ∧ gets an escape sequence instead of a crash.
                 stream.reconfigure(errors="backslashreplace")
-        # `obj` is True if the arguments come from the process. Then the process runs only this
-        # command,
-        # and limits may apply to all of it.
+        # `obj` is True if the arguments come from the process. Then it runs only this command, and
+        # limits may apply to the whole process.
         extra.update(obj=args is None, prog_name="tltlc", complete_var=COMPLETE_VARIABLE, standalone_mode=False)
         try:
             status = super().main(None if args is None else list(args), **extra) or 0

@@ -82,7 +82,7 @@ class Document:
 
     @cached_property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
-        """The diagnostics of syntax and names, except those that comments or the project silence."""
+        """The diagnostics of syntax and names that neither comments nor the project silence."""
         if self.is_broken:
             # Report only errors in names, and only those that the unparsed parts cannot explain.
             errors = [diagnostic for diagnostic in self.resolution.diagnostics if diagnostic.severity == "error"]

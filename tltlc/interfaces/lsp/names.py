@@ -36,7 +36,7 @@ class Symbol:
         return self.kind, self.source.name, self.span.start
 
     def is_same(self, other: Symbol) -> bool:
-        """Whether both are the same symbol; only true if their files belong to one program."""
+        """Whether both are the same symbol; their files must belong to one program."""
         if self.kind in MERGED:
             return (self.kind, self.name) == (other.kind, other.name)
         return self.key == other.key

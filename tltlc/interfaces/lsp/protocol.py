@@ -89,7 +89,7 @@ class Protocol(LanguageServerProtocol):
         return structured
 
     def _check_request(self, message: dict[str, Any]) -> None:
-        """Raise JsonRpcException if a request is malformed or comes at a wrong time."""
+        """Raise JsonRpcException if a message is malformed or comes at a wrong time."""
         method = message["method"]
         if not isinstance(method, str) or ("id" in message and not _is_id(message["id"])):
             raise JsonRpcInvalidRequest("a method is a text, an id is a number or a text")

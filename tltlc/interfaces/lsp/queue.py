@@ -34,7 +34,7 @@ class Queue:
         self._waiting: dict[str, bool] = {}
         """The documents to analyse, by URI, with whether to do so even if the analysis is known."""
         self._looks: dict[str, int] = {}
-        """When the user last looked at each document, by URI: a counter, greater for later looks."""
+        """When the user last looked at each document, by URI: a number that each look increases."""
         self._current: str | None = None
         self._current_since = 0.0
         self._task: asyncio.Task[None] | None = None
