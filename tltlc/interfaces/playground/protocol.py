@@ -1,6 +1,6 @@
 """The requests of the page and their answers, as JSON.
 
-They are the same with the server and in the browser without one.
+They are the same whether the compiler runs on a server or in the browser.
 """
 
 from __future__ import annotations
