@@ -23,8 +23,8 @@ def conjunctions(
 ) -> Iterator[list[Conjunction]]:
     """Yield conjunctions of two or more clauses, in portions, many of which are empty.
 
-    Each portion takes a short time, so that the caller can stop. At least ``least`` traces satisfy
-    each conjunction, and it has at most ``most_atoms`` atoms.
+    Each portion takes a short time, so that the caller can stop after it. At least ``least`` traces
+    satisfy each conjunction, and it has at most ``most_atoms`` atoms.
     """
     pool = _pool(clauses)
     beam: list[tuple[Conjunction, Verdicts]] = [((addition,), addition.accepts) for addition in pool]
@@ -65,7 +65,10 @@ def _pool(clauses: Sequence[MinedClause]) -> list[MinedClause]:
 def best_candidates(
     candidates: Iterable[tuple[Conjunction, Verdicts]], bits: Bits
 ) -> list[tuple[Conjunction, Verdicts]]:
-    """Return the candidates by score; only a few of the shortest for each set of accepted traces."""
+    """Return the best candidates, sorted by score.
+
+    Of the candidates that accept the same traces, only a few of the shortest are returned.
+    """
 
     def score_key(item: tuple[Conjunction, Verdicts]) -> tuple[float, int, list[int], list[tuple[int, str]]]:
         conjunction, accepts = item
