@@ -169,7 +169,7 @@ class _Places:
             nodes = nodes[number:]
 
     def _room(self, node: Node, levels: Mapping[Node, float]) -> tuple[float, float]:
-        """Return the least and greatest level that a node may have between its column neighbours."""
+        """Return the least and greatest level that a node may have beside its column neighbours."""
         nodes = self.columns[self._number(node)]
         place = nodes.index(node)
         low = levels[nodes[place - 1]] + self._apart(nodes[place - 1], node) if place else -inf
