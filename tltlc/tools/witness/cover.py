@@ -15,8 +15,8 @@ from tltlc.tools.witness.transitions import Moves, SampledEdge
 class UntakenEdge:
     """An edge, by index, that no trace takes.
 
-    If there are no obstacles, no trace reaches the source of the edge. Otherwise the obstacles are the
-    literals for which no sample was found.
+    ``obstacles`` are the literals of its guard for which no sample was found. If there are none, no
+    trace reaches the source of the edge.
     """
 
     edge: int
@@ -34,8 +34,8 @@ class Cover:
 def cover(moves: Moves) -> Cover:
     """Return traces that take every edge that samples can take.
 
-    Each trace goes on to the nearest edge that is not taken yet, and ends when it can reach no such
-    edge. Over infinite traces, the result has beginnings of traces.
+    Each trace goes on to the nearest edge that no trace has taken yet, and ends when it can reach
+    none. If the spec is over infinite traces, the result has finite beginnings of traces.
     """
     edges = moves.fspa.edges
     nearest = NearestEdges(
@@ -65,7 +65,7 @@ def _trace(moves: Moves, nearest: NearestEdges) -> Iterator[SampledEdge]:
 
 
 def _witnesses(traces: Iterable[tuple[SampledEdge, ...]]) -> Iterator[Witness]:
-    """Yield the traces as witnesses; ``new_steps`` has the steps that first take their edge."""
+    """Yield the traces as witnesses, with the steps (``new_steps``) that take an edge first."""
     taken: set[int] = set()
     for trace in traces:
         new_steps = []
