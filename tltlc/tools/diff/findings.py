@@ -132,7 +132,7 @@ def param_changed(difference: Difference, new_name: str | None, place: Label) ->
 
 
 def atom_changed(difference: Difference, others: Sequence[str], pair: SpecPair, place: Label) -> Diagnostic:
-    """TLT0757: an atom has other values. So do ``others``, which are atoms of the same predicate."""
+    """TLT0757: an atom has other values, and so have ``others``, atoms of the same predicate."""
     assert difference.value_difference is not None
     types: dict[str, ValueType] = {signal_.name: signal_.type for signal_ in (*pair.a.signals, *pair.b.signals)}
     return values_changed(f"`{difference.name}`", others, difference.value_difference, types, place)
@@ -155,7 +155,7 @@ def values_changed(
     place: Label,
     kind: str = "atom",
 ) -> Diagnostic:
-    """TLT0757: an atom or predicate has other values. The help shows a sample at which it does."""
+    """TLT0757: an atom or predicate has other values; the help shows a sample at which it has."""
     title = f"the {kind} {subject} is {'judged' if difference.differs_in_truth else 'scaled'} otherwise"
     if others:
         title += f", as {'is' if len(others) == 1 else 'are'} {name_list(others)}"
@@ -245,9 +245,9 @@ def at_old_place(place: Label) -> Label:
 
 
 def _trace(pair: SpecPair, trace: Trace) -> str:
-    """Return the text of a trace that follows a colon.
+    """Return the text of a trace, to be written after a colon.
 
-    A trace of one line stays on the line of the colon. A longer trace gets lines of its own, at most
+    A trace of one line stays on the line of the colon. A longer trace has lines of its own, at most
     ``_MOST_LINES``.
     """
     lines = step_lines(pair, trace.prefix)
