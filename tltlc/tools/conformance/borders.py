@@ -1,6 +1,6 @@
 """Comparisons over ranges of all sizes, with values next to their thresholds.
 
-They test that scaling does not change the truth of a comparison.
+They test that scaling a comparison to a value in [-1, 1] does not change whether it is true.
 """
 
 from __future__ import annotations
