@@ -45,7 +45,7 @@ class Policy:
         self.actor = _actor_of(card, rounded)
 
     def weights(self) -> dict[str, Tensor]:
-        """Return the weights by name, in half precision, in which they were given."""
+        """Return the weights by name, in half precision, as in the policy's file."""
         return {name: tensor.to(torch.float16) for name, tensor in self.actor.state_dict().items()}
 
     def logits(self, observation: Mapping[str, NDArray[Any]]) -> NDArray[np.float32]:
