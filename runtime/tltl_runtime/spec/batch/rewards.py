@@ -1,7 +1,7 @@
 """Algorithm 1 for N environments (semantics, section 4).
 
 The order of operations is the same as in :mod:`tltlc.monitor.reward`, which lists the deviations
-from the paper. Lookup tables by edge store what depends only on states.
+from the paper. What depends only on the states of an edge is looked up in tables.
 """
 
 from __future__ import annotations
@@ -20,7 +20,11 @@ VERDICTS: Final = ("satisfied", "holding", "pending", "violated")
 
 
 class Outcomes:
-    """Progress, ends and rewards of Algorithm 1; all argument and result tensors have shape [N]."""
+    """Computes progress, rewards and whether episodes end, by Algorithm 1.
+
+    All arguments and results are tensors of shape [N], except ``values``, [atoms, N]. An ``edge``
+    is the index of the edge that is taken.
+    """
 
     def __init__(self, fspa: Fspa, options: RewardOptions, device: torch.device, dtype: torch.dtype) -> None:
         self._options, self._limit = options, fspa.limit_steps
@@ -44,7 +48,7 @@ class Outcomes:
         staying = [scalar.improving[e.source] if e.source == e.target else () for e in edges]
         primes = [tuple(prime for edge in chosen for prime in edge.guard.primes) for chosen in staying]
         self.nearest = PrimeSets(primes, len(fspa.atoms), device, -1.0)
-        """Per edge on which the automaton stays, the primes of the edges that would have improved."""
+        """For each edge that keeps the state: the primes of the edges that would have improved."""
         self._approaches = any(primes) and not self._by_share
         self._size = numbers([float(fspa.spec_size or 1)])
         self._limit_number = numbers([float(self._limit or 1)])
@@ -94,5 +98,8 @@ class Outcomes:
 
 
 def approach(nearest: Tensor, size: Tensor) -> Tensor:
-    """Return what line 14 adds, ``(1 + min(0, nearest)) / S``; modifies ``nearest`` in place."""
+    """Return what line 14 of Algorithm 1 adds, ``(1 + min(0, nearest)) / S``.
+
+    Modify ``nearest`` in place.
+    """
     return nearest.clamp_(max=0.0).add_(1.0).div_(size)

@@ -31,7 +31,10 @@ class BatchTransition(NamedTuple):
 
 
 class RewardMode(Protocol):
-    """A reward of N environments. Its memory is a tensor whose last dimension has size N."""
+    """A reward of N environments.
+
+    Its memory is what it keeps from step to step: a tensor whose last dimension has size N.
+    """
 
     def __init__(self, fspa: Fspa, options: RewardOptions, device: torch.device, dtype: torch.dtype) -> None: ...
 

@@ -22,7 +22,7 @@ class Reward:
         self._leaving = PrimeSets([tuple(primes) for primes in leaving], len(fspa.atoms), device, 0.0)
 
     def start(self, count: int) -> Tensor:
-        """Return zeros: this mode remembers nothing."""
+        """Return zeros, because this mode needs no memory."""
         return torch.zeros(count, dtype=self._dtype, device=self._device)
 
     def reward(self, step: BatchTransition, memory: Tensor) -> tuple[Tensor, Tensor]:
