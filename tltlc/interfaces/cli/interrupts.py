@@ -23,7 +23,7 @@ _TEMPORARY: Final = "tltlc.io.temporary"
 """The module whose functions must not be interrupted, because files would be left behind."""
 
 _RETRY_S: Final = 0.05
-"""Seconds until an interrupt is tried again that came while uninterruptible code was running."""
+"""Seconds until the next attempt, if an interrupt comes while uninterruptible code runs."""
 
 _PATIENCE_S: Final = 1.0
 """Seconds that an import may take after an interrupt; then the process ends without cleaning up."""

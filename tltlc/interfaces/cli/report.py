@@ -18,7 +18,7 @@ _MOST_ALIKE: Final = 20
 
 
 class Report:
-    """Collects the diagnostics of a command; as a context, it catches a TltlError and reports it.
+    """Collects the diagnostics of a command; as a context manager, it reports a TltlError.
 
     Each diagnostic is reported once, even if two files import the file with the error. The text
     format is shown at once, on standard error. Machine formats form one document per run, which is

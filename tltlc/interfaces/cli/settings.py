@@ -91,7 +91,7 @@ format_option = click.option(
 
 
 def compile_settings(settings: CompileSettings, project: Project, specs: tuple[str, ...] = ()) -> CompileOptions:
-    """Return the options to compile a file of a project; ``specs`` are the names, empty for all."""
+    """Return the options to compile specs of a file; ``specs`` are their names, empty for all."""
     from tltlc.automaton.finite.build import DEFAULT_STATE_BUDGET
     from tltlc.pipeline import CompileOptions
 

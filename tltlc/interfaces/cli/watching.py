@@ -23,7 +23,7 @@ _MOST_LOOKS: Final = 10
 
 
 def repeat(work: Callable[[tuple[str, ...]], None], list_files: Callable[[], Iterable[str]] = tuple) -> NoReturn:
-    """Run ``work`` at once, and again after each change, until something like Ctrl-C is raised.
+    """Run ``work`` at once, and again after each change, until an exception such as Ctrl-C.
 
     ``work`` receives the paths that changed; the first time, none. All files are watched that the
     last run read, or looked for in vain, through :mod:`tltlc.io.files`. The files that
@@ -38,7 +38,7 @@ def repeat(work: Callable[[tuple[str, ...]], None], list_files: Callable[[], Ite
 
 
 def _run_bounded(work: Callable[[tuple[str, ...]], None], changed: tuple[str, ...]) -> None:
-    """Run ``work`` within the limits.
+    """Run ``work`` within the limits of time and memory.
 
     Report the error if it exceeds them, because the next change may fix that.
     """

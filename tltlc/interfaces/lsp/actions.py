@@ -1,4 +1,4 @@
-"""Quick fixes, as code actions of the protocol."""
+"""Quick fixes, as code actions of the Language Server Protocol."""
 
 from __future__ import annotations
 

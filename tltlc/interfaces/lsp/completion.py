@@ -187,7 +187,7 @@ def _expression_names(document: Document, place: Cursor) -> Iterator[types.Compl
 
 
 def _visible_names(document: Document, kinds: tuple[str, ...]) -> Iterator[types.CompletionItem]:
-    """Yield the visible names, one kind after the other, and imported names after others."""
+    """Yield the visible names, sorted by kind; within a kind, imported names come last."""
     scope = document.scope
     bindings = [(name, binding) for name, binding in scope.names.items() if binding.kind in kinds]
     for name, binding in sorted(bindings, key=lambda item: (kinds.index(item[1].kind), item[1].via is not None)):
@@ -208,7 +208,7 @@ def _spec_item(declaration: SpecDecl, document: Document) -> types.CompletionIte
 
 
 def _atoms(document: Document, block: tuple[Token, ...]) -> Iterator[types.CompletionItem]:
-    """Yield the atoms of the spec that the enclosing test is for."""
+    """Yield the atoms of the spec that the enclosing ``test`` block is about."""
     name = next((block[at + 1].text for at, token in enumerate(block[:-1]) if token.text == "for"), "")
     for spec in document.resolution.program.specs:
         if spec.name == name:

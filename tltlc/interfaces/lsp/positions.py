@@ -1,4 +1,4 @@
-"""Convert between character offsets in a text and positions of the protocol.
+"""Convert between character offsets in a text and positions of the Language Server Protocol.
 
 A position has a line, counted from 0, and a column, counted in units of the agreed encoding. A
 conversion takes logarithmic time, because the characters that count more than one unit are

@@ -95,7 +95,7 @@ class Queue:
                     self._set_answer(uri, analysis)
 
     def _give_way(self) -> None:
-        """Stop a long analysis if the user has since looked at a document that waits for its own.
+        """Stop a long analysis if the user has since looked at another document in the queue.
 
         If it does not take long yet, check again when it does.
         """

@@ -175,7 +175,7 @@ def _check_free(symbol: Symbol, name: str, changes: list[tuple[Document, list[Ed
 
 
 def _name_targets(document: Document, edits: list[Edit], *, shift: bool = False) -> list[tuple[int, str, int]]:
-    """Return the places of each name and of its declaration, with offsets before the edits.
+    """Return, for each name, its place and that of its declaration, as before the edits.
 
     A correct rename does not change the result.
     """

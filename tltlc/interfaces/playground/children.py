@@ -30,7 +30,7 @@ _KILLED_HELP: Final = "try again; the system does this if memory is short, and t
 
 
 class AbandonedError(Exception):
-    """The client no longer waits for the answer."""
+    """Raised if the client no longer waits for the answer."""
 
 
 class Children:

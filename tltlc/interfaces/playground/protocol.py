@@ -22,7 +22,7 @@ TOO_LARGE: Final = "this takes more memory than the playground has"
 
 
 class RequestError(ValueError):
-    """The text is not a request."""
+    """Raised if a text is not a request of the page."""
 
 
 @record

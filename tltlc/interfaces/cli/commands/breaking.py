@@ -112,7 +112,7 @@ def _files(argument: str, old: EarlierTree) -> list[str]:
 
 
 def _change(path: str, old: EarlierTree, settings: CompileSettings) -> FileChange:
-    """Compile the old and the new version of a file; raise the errors of either."""
+    """Compile the old and the new version of a file; raise TltlError if either has errors."""
     from tltlc.tools.diff.breaking import FileChange, Version
 
     before = old.old_path(path)
@@ -124,7 +124,7 @@ def _change(path: str, old: EarlierTree, settings: CompileSettings) -> FileChang
 
 
 def _version(path: str, settings: CompileSettings) -> Version:
-    """Compile a file in its current state."""
+    """Compile a file, and return what ``tltlc breaking`` compares of it."""
     from tltlc.interfaces.cli.inputs import open_input
     from tltlc.tools.diff.versions import version_of_artefact, version_of_library, version_of_specs
 
