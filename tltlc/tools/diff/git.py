@@ -287,7 +287,7 @@ def _environment() -> dict[str, str]:
 
 
 def _revision_help(repository: Path, revision: str) -> str:
-    """Return what to do about a revision that does not exist."""
+    """Return the help text for a revision that does not exist."""
     from difflib import get_close_matches
 
     output = _run(repository, "for-each-ref", f"--count={_MOST_NAMES}", "--format=%(refname:short)") or b""

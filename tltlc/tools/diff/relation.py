@@ -147,7 +147,7 @@ def _exclusive_pairs(groups: Iterable[ExclusiveGroup], own_groups: Iterable[Excl
 
 
 def different_atoms(a: Fspa | Vocabulary, b: Fspa | Vocabulary) -> tuple[str, ...]:
-    """Return the names that different atoms have in ``a`` and ``b``, in the order of ``a``."""
+    """Return the names whose atoms in ``a`` and ``b`` differ in meaning, in the order of ``a``."""
     places = {atom.name: index for index, atom in enumerate(b.atoms)}
     names = []
     for index, atom in enumerate(a.atoms):

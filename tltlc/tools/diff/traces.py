@@ -59,7 +59,7 @@ def difference_test(pair: SpecPair, description: TraceDescription, title: str) -
 
 
 def own_letter(letter: Letter, split_names: Iterable[str], fspa: Fspa, suffix: str) -> Letter:
-    """Return the atoms of one spec that hold, under the names that the spec uses.
+    """Return the atoms of a letter that belong to one spec, under the names that the spec uses.
 
     In the letter, ``suffix`` follows the names in ``split_names`` that belong to this spec.
     """

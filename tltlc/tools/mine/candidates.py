@@ -19,9 +19,9 @@ _MOST: Final = WORK["mined candidates"]
 class Candidates:
     """A collection of conjunctions of clauses, each with the set of traces that it accepts.
 
-    It keeps those conjunctions that :func:`~tltlc.tools.mine.conjunctions.best_candidates` would
-    choose from all that were added, so its size depends on the number of different sets of accepted
-    traces. If there are too many sets, it keeps those with the best scores and sets ``is_cut``.
+    It keeps only the conjunctions that :func:`~tltlc.tools.mine.conjunctions.best_candidates` would
+    choose: for each set of accepted traces, a few of the shortest. If there are too many such sets,
+    it keeps those with the best scores and sets ``is_cut``.
     """
 
     def __init__(self, bits: Bits) -> None:

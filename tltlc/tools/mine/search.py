@@ -37,7 +37,7 @@ class MiningOptions:
 class SpecSearch:
     """Searches for specs that the traces satisfy and the counterexamples violate.
 
-    ``tried_count`` is the number of candidates so far.
+    ``tried_count`` is the number of candidates that have been tried so far.
     """
 
     def __init__(self, evidence: Evidence, options: MiningOptions) -> None:
@@ -80,8 +80,8 @@ class SpecSearch:
     def ranking(self) -> list[Conjunction]:
         """Return the conjunctions found so far, the best first.
 
-        A conjunction is left out if no counterexample violates it, or if a shorter one has at least
-        the same score.
+        A conjunction is left out if no counterexample violates it, or if another one that is not
+        longer has a better score.
         """
         ranked: list[tuple[float, int, Conjunction]] = []
         for conjunction, accepts in best_candidates(self._candidates.items(), self.bits):

@@ -28,7 +28,7 @@ from tltlc.tools.witness.blocks import atom_operand
 BEAM: Final = 60
 """The most sequences of one length that are extended.
 
-This many consist of single atoms only, and this many do not.
+There may be this many whose steps are all single atoms, and this many others.
 """
 ALIKE: Final = 3
 """The most sequences that are kept for one set of accepted traces."""
@@ -88,7 +88,7 @@ def sequences(
 
 
 class _Sequences:
-    """Extends sequences by steps."""
+    """Finds the extensions of sequences by one step."""
 
     def __init__(
         self,

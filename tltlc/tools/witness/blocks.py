@@ -162,7 +162,7 @@ def _report(step: Step) -> tuple[str, ...]:
 
 
 def letter_values(fspa: Fspa, letter: Letter) -> tuple[float, ...]:
-    """Return the values of an automaton's atoms, in order, for a letter: 1 if it holds, else -1.
+    """Return the values of an automaton's atoms for a letter, in order: 1 if one holds, else -1.
 
     Test blocks use these values, too.
     """

@@ -15,8 +15,8 @@ from tltlc.tools.witness.transitions import Moves, SampledEdge
 class UntakenEdge:
     """An edge, by index, that no trace takes.
 
-    ``obstacles`` are the literals of its guard for which no sample was found. If there are none, no
-    trace reaches the source of the edge.
+    ``obstacles`` are sets of literals of its guard for which no sample was found. If there are
+    none, no trace reaches the source of the edge.
     """
 
     edge: int
@@ -25,7 +25,7 @@ class UntakenEdge:
 
 @record
 class Cover:
-    """Traces, shortest first, and the edges that no trace takes, in order."""
+    """Traces that together take as many edges as possible, shortest first, and the other edges."""
 
     traces: tuple[Witness, ...]
     untaken: tuple[UntakenEdge, ...]
