@@ -12,7 +12,7 @@ from tltlc.api import Diagnostic, TltlError
 
 
 class WorkerLostError(Exception):
-    """A worker ended before it returned its result; the message says how."""
+    """Raised if a worker ended before it returned its result; the message says how."""
 
 
 class EpisodeWorker(Protocol):

@@ -18,7 +18,7 @@ from tltl_runtime.policies.network import Network, Shapes, model_config
 
 
 class NotFiniteError(ValueError):
-    """The weights, the input or the output of a network are not finite; the message says which of them."""
+    """Raised if weights, input or output of a network are not finite; the message says which."""
 
 
 class Policy:

@@ -25,7 +25,7 @@ _PLAIN = {str: "a text", bool: "true or false", int: "a whole number", float: "a
 
 
 class RecordJsonError(ValueError):
-    """JSON that does not fit a record; the message says where, and what was expected."""
+    """Raised for JSON that does not fit a record; the message says where, and what was expected."""
 
 
 def to_json(value: object) -> Any:

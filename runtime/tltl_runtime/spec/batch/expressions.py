@@ -23,7 +23,7 @@ from tltlc.api import expressions
 
 
 class TensorExpressions:
-    """Expressions compiled to one function of ``columns``, the signals of N environments, [signals, N].
+    """Expressions, compiled to one function of the signals of N environments, [signals, N].
 
     ``source`` is the Python text of the function. ``params`` are in SI units.
     """

@@ -56,7 +56,7 @@ class PrimeSets:
     def bounding_atom(self, choice: Tensor, values: Tensor) -> Tensor:
         """Return the atom that bounds the robustness of the chosen sets, int64 [N]; -1 for none.
 
-        It is the atom of the first least literal in the first best prime of the set.
+        It is the atom of the least literal in the best prime of the set, the first one on ties.
         """
         rows = self._rows.index_select(0, choice)
         literals = self._literals_of(rows, values)

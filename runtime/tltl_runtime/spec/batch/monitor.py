@@ -69,9 +69,9 @@ class BatchStep:
 
     @cached_property
     def limiting(self) -> Tensor:
-        """The atom that bounds the nearest edge that would have improved, int64.
+        """The index of the atom that bounds the nearest edge towards acceptance, int64.
 
-        It is -1 where the scalar monitor has None.
+        It is -1 where ``limiting`` of :class:`tltlc.monitor.Step` is None.
         """
         return self._monitor.outcomes.nearest.bounding_atom(self.edge, self.values)
 

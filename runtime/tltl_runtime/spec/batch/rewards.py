@@ -48,7 +48,7 @@ class Outcomes:
         staying = [scalar.improving[e.source] if e.source == e.target else () for e in edges]
         primes = [tuple(prime for edge in chosen for prime in edge.guard.primes) for chosen in staying]
         self.nearest = PrimeSets(primes, len(fspa.atoms), device, -1.0)
-        """For each edge that keeps the state: the primes of the edges that would have improved."""
+        """For each edge that keeps the state: the primes of the edges towards acceptance."""
         self._approaches = any(primes) and not self._by_share
         self._size = numbers([float(fspa.spec_size or 1)])
         self._limit_number = numbers([float(self._limit or 1)])

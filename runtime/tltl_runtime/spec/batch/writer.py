@@ -1,4 +1,4 @@
-"""Write straight-line torch code for expressions over columns of samples."""
+"""Write torch code that computes expressions for N environments at once."""
 
 from __future__ import annotations
 

@@ -11,7 +11,7 @@ from tltlc.api import Fspa, Implicant, RewardOptions
 
 
 class Reward:
-    """The robustness of leaving the state, except into a trap; 0 if no edge leaves it."""
+    """The greatest robustness of an edge out of the state, except into a trap; 0 without one."""
 
     def __init__(self, fspa: Fspa, _: RewardOptions, device: torch.device, dtype: torch.dtype) -> None:
         self._device, self._dtype = device, dtype
