@@ -104,7 +104,10 @@ def compile_settings(settings: CompileSettings, project: Project, specs: tuple[s
 
 
 def search_steps(settings: CompileSettings) -> int:
-    """Return how many steps a search may take: as many as building an automaton may take."""
+    """Return how many steps a search may take.
+
+    They are as many as building an automaton over infinite traces may take.
+    """
     from tltlc.automaton.finite.build import DEFAULT_STATE_BUDGET
     from tltlc.automaton.work import STEPS_PER_STATE
 

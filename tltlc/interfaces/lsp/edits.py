@@ -1,4 +1,4 @@
-"""Convert edits to those of the editor's protocol, apply edits, and compute edits."""
+"""Convert edits of texts to the editor's protocol, apply them, and compute them."""
 
 from __future__ import annotations
 

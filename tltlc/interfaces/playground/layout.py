@@ -1,7 +1,7 @@
 """Place the states of a small automaton and the texts of its edges without overlaps.
 
-Columns of states alternate with columns of texts. In each column that an edge passes, it has a
-height of its own, its level, so that it crosses no state and no text; its text is above it. Traps
+Columns of states alternate with columns of texts. An edge has a height of its own in each column
+that it passes, its level, so it crosses no state and no text. Its text is above the level. Traps
 are in a row below. An edge to a trap goes straight down from its state or, if other states are
 below that state, down a lane beside them. All lengths are in pixels of the SVG; y points down.
 """

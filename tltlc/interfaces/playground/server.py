@@ -54,7 +54,7 @@ _HEADERS: Final = {
 
 
 class PageHandler:
-    """Answers ``GET`` of the page's files, and ``POST`` to :data:`_API` with the token."""
+    """Answers ``GET`` for the page's files, and ``POST`` to :data:`_API` if it has the token."""
 
     def __init__(self, children: Children, token: str) -> None:
         self.files = page_files()
@@ -292,7 +292,7 @@ class PlaygroundServer:
             for end in (reader, writer):
                 end.setblocking(False)
             self._loop.add_reader(reader, _read_all, reader)
-            # If an interrupt comes between the two calls, no descriptor stays set that is closed below.
+            # So an interrupt between the two calls leaves no descriptor set that is closed below.
             before = signal.set_wakeup_fd(-1)
             try:
                 signal.set_wakeup_fd(writer.fileno(), warn_on_full_buffer=False)
