@@ -61,8 +61,8 @@ def confirm(
 ) -> tuple[Proposal, ...]:
     """Return proposals for the first ``top`` conjunctions of ``ranked`` that differ in meaning.
 
-    A conjunction is left out if an earlier one is equivalent: both accept the same traces, not only
-    among those of the evidence.
+    A conjunction is left out if an earlier one is equivalent: both accept the same traces, of all
+    possible traces and not only of the evidence.
 
     Raises:
         TltlError: an automaton is too large, or the library has an error.

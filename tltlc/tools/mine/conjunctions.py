@@ -36,7 +36,8 @@ def conjunctions(
                 both = accepts & addition.accepts
                 if addition.atoms > room or both == accepts or count(both & bits.traces) < least:
                     continue
-                # Two bounds would multiply the numbers of states that count them.
+                # Automata count the steps of a bound in states, and two bounds would multiply
+                # these.
                 if addition.kind == BOUNDED and addition.kind in {clause.kind for clause in conjunction}:
                     continue
                 longer = tuple(sorted((*conjunction, addition), key=lambda clause: (clause.rank, clause.text)))

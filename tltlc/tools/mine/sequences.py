@@ -1,9 +1,9 @@
 """Sequences of goals, `reach a then b then c`, found by a beam search.
 
 The search inserts every step at every position of the best sequences of each length. A trace meets
-a sequence if it has an `a`, then after the first `a` a `b`, then after that `b` a `c`. So testing a
-sequence on all traces takes a few integer operations for each step. No more traces meet a longer
-sequence than meet the shorter one, so a sequence that too few traces meet is not extended.
+a sequence if it has an `a`, a `b` after the first `a`, and a `c` after the first such `b`. So
+testing a sequence on all traces takes a few integer operations for each step. No more traces meet a
+longer sequence than meet the shorter one, so a sequence that too few traces meet is not extended.
 
 A step is an atom, two atoms at once, or a choice between two such steps. Two steps are combined
 into a choice only if too few traces meet the sequence with either one alone. A trace meets a

@@ -162,9 +162,9 @@ def _report(step: Step) -> tuple[str, ...]:
 
 
 def letter_values(fspa: Fspa, letter: Letter) -> tuple[float, ...]:
-    """Return the values of an automaton's atoms for a letter, in order: 1 if one holds, else -1.
+    """Return the value of each atom of an automaton for a letter, in order.
 
-    Test blocks use these values, too.
+    It is 1 if the atom holds, and else -1. Test blocks use these values, too.
     """
     return tuple(1.0 if atom.name in letter else -1.0 for atom in fspa.atoms)
 

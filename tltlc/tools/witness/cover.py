@@ -1,4 +1,4 @@
-"""Find a small set of traces that together take every edge that samples can take."""
+"""Find a small set of traces that together take every edge for which a sample is found."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class Cover:
 
 
 def cover(moves: Moves) -> Cover:
-    """Return traces that take every edge that samples can take.
+    """Return traces that together take every edge for which a sample is found.
 
     Each trace goes on to the nearest edge that no trace has taken yet, and ends when it can reach
     none. If the spec is over infinite traces, the result has finite beginnings of traces.
@@ -65,7 +65,7 @@ def _trace(moves: Moves, nearest: NearestEdges) -> Iterator[SampledEdge]:
 
 
 def _witnesses(traces: Iterable[tuple[SampledEdge, ...]]) -> Iterator[Witness]:
-    """Yield the traces as witnesses, with the steps (``new_steps``) that take an edge first."""
+    """Yield the traces as witnesses; ``new_steps`` are the steps that take a new edge."""
     taken: set[int] = set()
     for trace in traces:
         new_steps = []

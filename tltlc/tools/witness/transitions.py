@@ -1,4 +1,4 @@
-"""Find the edges of an automaton that samples can take, with a sample for each."""
+"""Find, for the edges of an automaton, samples at which the automaton takes them."""
 
 from __future__ import annotations
 
