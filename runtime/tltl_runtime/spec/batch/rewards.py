@@ -42,7 +42,9 @@ class Outcomes:
         verdicts = [states[e.target].verdict for e in edges]
         self._violated = numbers([float(verdict == "violated") for verdict in verdicts])
         self._base = numbers([scalar.base_progress[e.target] for e in edges])
-        # The progress of a spec judged at its limit: 1 if satisfied, the share of T if undecided, else 0.
+        # The progress of a spec judged at its limit: 1 if satisfied, the share of the limit that
+        # has
+        # passed if undecided, else 0.
         self._settled = numbers([float(verdict == "satisfied") for verdict in verdicts])
         self._open = numbers([float(verdict in ("holding", "pending")) for verdict in verdicts])
         staying = [scalar.improving[e.source] if e.source == e.target else () for e in edges]
