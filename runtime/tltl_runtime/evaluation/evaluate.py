@@ -38,9 +38,9 @@ def evaluate(
     """Play ``episodes`` episodes with a policy; yield their summaries in order, as soon as possible.
 
     ``level``, ``variant`` and ``spec`` default to those that the policy was trained for; on another
-    level, the variant defaults to ``v0``.  The episodes do not depend on ``workers``.  Worker
-    processes import the main module, so put the code of a script under
-    ``if __name__ == "__main__"``.
+    level, the variant defaults to ``v0``.  If ``sampled``, actions are sampled; otherwise the
+    likeliest action is taken.  The episodes do not depend on ``workers``.  Worker processes import
+    the main module, so put the code of a script under ``if __name__ == "__main__"``.
 
     Raises:
         TltlError: the errors of :func:`set_up`, :func:`results` and ``read_policy``.
@@ -61,7 +61,8 @@ def set_up(
 ) -> Setup:
     """Check the arguments of an evaluation and return its setup.
 
-    ``level`` and ``variant`` default to those that the policy was trained for, as does ``spec``.
+    ``level``, ``variant`` and ``spec`` default to those that the policy was trained for.
+    ``recorded`` says which episodes to record.
 
     Raises:
         TltlError: the level, variant or spec does not exist; the level lacks something that the
@@ -125,7 +126,7 @@ def local_results(
 ) -> Generator[PlayedEpisode]:
     """Play the requested episodes on this machine and yield them in order, like :func:`results`.
 
-    ``make`` makes the player of each process.  It must be picklable if there are worker processes.
+    ``make`` returns the player for a process.  It must be picklable if there are worker processes.
 
     Raises:
         TltlError: TLT0850, a worker was lost; the message names its episode and the evaluation's

@@ -1,4 +1,4 @@
-"""The reported figures of an evaluation, and where failed episodes ended."""
+"""The figures (statistics) of an evaluation, and where failed episodes ended."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class FailureGroup:
 
 @record
 class Figures:
-    """The figures over a number of ``episodes``.
+    """The statistics of this number of ``episodes``.
 
     ``pass_rate`` is in [0, 1]; ``pass_interval`` is its 95 % Wilson interval.  For each episode,
     ``progress`` is the best value, in [0, 1], ``reward`` the undiscounted return, and ``steps`` the

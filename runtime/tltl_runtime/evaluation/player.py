@@ -43,7 +43,10 @@ class Setup:
 
 @record
 class EpisodeRequest:
-    """Episode ``index`` to play, with ``sampled`` actions or the likeliest ones."""
+    """A request to play episode ``index``.
+
+    If ``sampled``, actions are sampled; otherwise the likeliest actions are taken.
+    """
 
     index: int
     sampled: bool = True

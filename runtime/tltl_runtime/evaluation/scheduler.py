@@ -12,7 +12,7 @@ from tltlc.api import Diagnostic, TltlError
 
 
 class WorkerLostError(Exception):
-    """A worker ended before it returned its result; the message says how."""
+    """Raised if a worker ended before it returned its result; the message says how."""
 
 
 class EpisodeWorker(Protocol):
@@ -37,8 +37,8 @@ def play_all(
 ) -> Iterator[PlayedEpisode]:
     """Give each free worker the next request; yield the episodes in the order of the requests.
 
-    If an episode fails, the episodes that are already played are yielded before the error is raised.
-    They may have gaps.
+    If an episode fails, all episodes that are already played are yielded before the error is
+    raised, even if earlier episodes are missing.
 
     Raises:
         TltlError: TLT0850, a worker was lost; the message names its episode and the evaluation's

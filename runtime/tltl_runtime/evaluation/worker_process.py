@@ -20,9 +20,10 @@ from tltl_runtime.support.child_processes import block_interrupts
 
 
 class WorkerProcess:
-    """A worker process, with an executor of its own: if the process ends, it is known which episode was lost.
+    """A worker process.
 
-    ``make`` makes the player in the process.  It must be picklable.
+    It has an executor of its own, so that if the process ends, it is known which episode was lost.
+    ``make`` returns the player; it is called in the process, so it must be picklable.
     """
 
     def __init__(self, make: Callable[[], EpisodePlayer]) -> None:

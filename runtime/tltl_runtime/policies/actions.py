@@ -41,7 +41,8 @@ class MultiCategorical(Distribution):
     def sample(self) -> Tensor:
         """Return a sampled choice for each branch [..., branches].
 
-        The sample is the argmax of p / E with E ~ Exp(1), an exponential race.
+        It is the argmax of p / E, where p are the probabilities and E ~ Exp(1): an exponential
+        race.
         """
         return _argmax([log.exp() / torch.empty_like(log).exponential_() for log in self._logs])
 
@@ -68,7 +69,7 @@ class MultiCategorical(Distribution):
 
     @property
     def entropy(self) -> Tensor:
-        """The entropy [...]."""
+        """The sum of the entropies of the branches [...], in nats."""
         return self.std.sum(-1)
 
     @property

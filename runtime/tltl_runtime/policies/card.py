@@ -20,8 +20,9 @@ class Card:
     ``level`` and ``variant`` name the level of the training; ``level_hash`` is its
     :meth:`~tltl_runtime.game.game.Game.level_hash`.  ``fspa`` is the automaton of the spec, with
     ``params`` in SI units.  ``sensors`` are all sensors of the policy.  ``shapes`` maps the keys of
-    the observation to shapes, in the order of the network's inputs.  ``branches`` are the numbers
-    of choices of an action.  ``training`` is the record of the training as JSON data.
+    the observation to shapes, in the order of the network's inputs.  An action has several
+    branches; ``branches`` has the number of choices of each.  ``training`` is the record of the
+    training as JSON data.
     """
 
     level: str

@@ -19,8 +19,8 @@ _MOST: Final = 3
 def check_policy(card: Card, level: Level, fspa: Fspa | None = None) -> None:
     """Check that a policy can play ``level`` by the spec ``fspa``, by default the spec of its training.
 
-    Any variant of its level fits.  Another level fits if it has everything that the policy senses.
-    Another spec fits if it judges episodes in the same way; its name does not matter.
+    Any variant of its level fits.  Another level fits if it has everything that the policy
+    observes. Another spec fits if it judges episodes in the same way; its name does not matter.
 
     Raises:
         TltlError: TLT0843, the policy does not fit; the message says what differs.

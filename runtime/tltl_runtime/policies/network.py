@@ -55,7 +55,7 @@ class Network:
 
 
 def model_config(network: Network, shapes: Shapes, branches: Sequence[int] | None = None) -> dict[str, Any]:
-    """Return rsl-rl's configuration of an actor with ``branches``, or of a critic without them."""
+    """Return rsl-rl's configuration of an actor, or of a critic if ``branches`` is None."""
     config: dict[str, Any] = {
         "class_name": "MLPModel",
         "hidden_dims": list(network.hidden),

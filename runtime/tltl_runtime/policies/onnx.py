@@ -85,7 +85,7 @@ def _metadata(card: Card) -> dict[str, str]:
 
 
 def _input_names(card: Card) -> dict[str, list[str]]:
-    """Return names for the first axis of each input."""
+    """Return, for each input, the names of its entries along the first axis."""
     sensors = card.sensors
     names: Mapping[str, list[str]] = {
         "automaton": [f"state {state.id}" for state in card.fspa.states],

@@ -18,7 +18,7 @@ from tltl_runtime.policies.network import Network, Shapes, model_config
 
 
 class NotFiniteError(ValueError):
-    """The weights, the input or the output of a network are not finite; the message says which of them."""
+    """Raised if weights, input or output of a network are not finite; the message says which."""
 
 
 class Policy:
@@ -45,7 +45,7 @@ class Policy:
         self.actor = _actor_of(card, rounded)
 
     def weights(self) -> dict[str, Tensor]:
-        """Return the weights by name, in half precision, in which they were given."""
+        """Return the weights by name, in half precision, as in the policy's file."""
         return {name: tensor.to(torch.float16) for name, tensor in self.actor.state_dict().items()}
 
     def logits(self, observation: Mapping[str, NDArray[Any]]) -> NDArray[np.float32]:

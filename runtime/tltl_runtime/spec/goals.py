@@ -43,9 +43,9 @@ def next_goals(
 def _goals(implicant: Implicant, entities: list[str | None], settled: list[bool | None]) -> list[str]:
     """Return the entities that an implicant requires to be near.
 
-    ``entities`` has for each atom the entity on whose distance it depends, or None; ``settled`` has
-    the present truth of each atom that depends on none. If a literal of such an atom fails now, the
-    list is empty.
+    ``entities`` has, for each atom, the entity on whose distance it depends, or None. ``settled``
+    has, for each other atom, whether it holds now. If the implicant requires otherwise for one of
+    these, the list is empty.
     """
     goals = []
     for atom, holds in implicant:

@@ -11,8 +11,8 @@ from tltlc.api import SourceFile, TltlError, fileio, specs, syntax
 def spec_files(spec: Path) -> Iterator[Path]:
     """Yield the file of a spec and all files that it imports, directly or indirectly, each once.
 
-    The files need not compile.  If a file at another path would be imported instead of an existing
-    one, that path is included, although it does not exist.
+    The files need not compile.  Paths that do not exist are yielded, too, if a file there would be
+    imported instead of an existing one.
     """
     waiting, seen = [spec], {spec.resolve()}
     while waiting:

@@ -24,9 +24,9 @@ FARTHEST: Final = 1000.0
 class CheckedTable:
     """A table that is read key by key.
 
-    If a key is missing or its value is wrong, the method adds a diagnostic to ``log`` and returns a
-    stand-in value. ``description`` is the name of the table in messages. After the last key, call
-    :meth:`report_unknown_keys`.
+    If a key is missing or its value is wrong, the method that reads it adds a diagnostic to ``log``
+    and returns a stand-in value. ``description`` is the name of the table in messages. After the
+    last key, call :meth:`report_unknown_keys`.
     """
 
     def __init__(self, entry: Entry, description: str, log: list[Diagnostic]) -> None:

@@ -11,7 +11,7 @@ class LoadErrors:
 
     ``unreadable_code`` is the code for a file that is something else or damaged, ``version_code``
     for another version, and ``broken_code`` for invalid content. ``again`` says how to make the file
-    anew, such as "train the policy again".
+    again, such as "train the policy again".
     """
 
     article: str

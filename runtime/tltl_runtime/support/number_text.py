@@ -66,9 +66,9 @@ def short_list(names: Sequence[str], most: int) -> str:
 
 
 def column(head: str, text: str, *, width: int = WIDTH) -> str:
-    """Return ``text`` after ``head``, wrapped at words, with the following lines aligned below its beginning.
+    """Return ``text`` after ``head``, wrapped at words, with further lines below its start.
 
-    A word that is longer than the column stays whole, since it may be copied.
+    A word that is longer than the column stays whole, because users may copy it.
     """
     lines = wrap(text, max(20, width - len(head)), break_long_words=False, break_on_hyphens=False) or [""]
     return f"\n{' ' * len(head)}".join((head + lines[0], *lines[1:]))

@@ -1,4 +1,4 @@
-"""Silence libraries that write to standard error from C code, since programs may read messages there."""
+"""Silence C libraries that write to standard error, where programs may read our messages."""
 
 from __future__ import annotations
 

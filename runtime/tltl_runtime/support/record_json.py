@@ -4,9 +4,9 @@ A record becomes an object with a key per field, a mapping with text keys an obj
 list. A text, number, bool or None stays the same, and so does a field annotated as ``Any``, which
 already contains JSON data.
 
-The class of a record may have an attribute ``json_inlined``. It maps fields whose values are records
-to some of the fields of those records. The object then has these inner fields as keys of its own, in
-place of the inner objects. The inner fields have no default.
+The class of a record may have an attribute ``json_inlined``. It maps the name of a field whose
+value is another record to names of fields of that inner record. In JSON, these inner fields are
+keys of the outer object, in place of an inner object. They must not have defaults.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ _PLAIN = {str: "a text", bool: "true or false", int: "a whole number", float: "a
 
 
 class RecordJsonError(ValueError):
-    """JSON that does not fit a record; the message says where, and what was expected."""
+    """Raised for JSON that does not fit a record; the message says where, and what was expected."""
 
 
 def to_json(value: object) -> Any:

@@ -1,4 +1,4 @@
-"""Hash of all source modules; identifies the code where the version string does not, such as in a clone."""
+"""A hash of all source modules, which identifies the code even between two versions."""
 
 from __future__ import annotations
 

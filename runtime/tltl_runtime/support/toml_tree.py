@@ -1,4 +1,4 @@
-"""TOML with labels: every value has the label of its key in the file that it comes from.
+"""Read TOML so that every value has a label: the place of its key in the file.
 
 So a diagnostic about a value that an overlay changed can point into the file of the overlay.
 """
@@ -93,7 +93,7 @@ def _dotted_path(
 ) -> tuple[str | int, ...]:
     """Return the path of a dotted key in the table ``around``.
 
-    A list of tables in the path stands for its last table.
+    If a key in the path names a list of tables, the path continues in the last of them.
     """
     path = around
     keys = re.findall(_KEY, dotted)

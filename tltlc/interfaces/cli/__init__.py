@@ -1,1 +1,1 @@
-"""The command line. Only code here, and in the commands of plugins, prints."""
+"""The command line. Only this package, and the commands of plugins, print."""

@@ -45,7 +45,7 @@ BUILT_IN: Final = {
 }
 
 BOUNDED: Final = frozenset(BUILT_IN) - {"compile", "mine", "monitor", "watch", "lsp", "serve", "new", "completion"}
-"""Commands that run entirely within the limits of processor time and memory.
+"""Built-in commands whose whole run is limited by ``--max-cpu`` and ``--max-memory``.
 
 The other commands limit only parts of their work.
 """
@@ -62,9 +62,9 @@ RUNTIME_COMMANDS: Final = {
     "baseline": "Record how the policies of a suite play now.",
     "table1": "Reproduce the paper's Table I.",
 }
-"""Commands of the runtime, with what they do; they ship with tltlc but need an extra.
+"""The commands of the runtime, with their summaries for the help text.
 
-They are entry points, like the commands of plugins.
+They ship with tltlc, but each needs an extra. They are entry points, like the commands of plugins.
 """
 
 ENTRY_POINTS: Final = "tltlc.commands"
@@ -74,7 +74,7 @@ COMPLETE_VARIABLE: Final = "_TLTLC_COMPLETE"
 
 
 class CommandLine(click.Group):
-    """The group of all commands."""
+    """The click group that contains all commands."""
 
     def main(self, args: Sequence[str] | None = None, *_: Any, **extra: Any) -> NoReturn:
         """Run the command and exit. Messages go to standard error; a traceback never appears."""
@@ -83,7 +83,8 @@ class CommandLine(click.Group):
             if hasattr(stream, "reconfigure"):
                 # A terminal that cannot show ∧ gets an escape sequence instead of a crash.
                 stream.reconfigure(errors="backslashreplace")
-        # `obj` is whether the arguments are those of the process; then the process runs only this command.
+        # `obj` is True if the arguments come from the process. Then it runs only this command, and
+        # limits may apply to the whole process.
         extra.update(obj=args is None, prog_name="tltlc", complete_var=COMPLETE_VARIABLE, standalone_mode=False)
         try:
             status = super().main(None if args is None else list(args), **extra) or 0
@@ -94,7 +95,7 @@ class CommandLine(click.Group):
         sys.exit(status)
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """Parse like click, but accept ``-:NAME`` as an argument.
+        """Parse like click, but accept ``-:NAME``, the spec NAME of standard input, as an argument.
 
         Without arguments, print the help and exit with the status for wrong usage.
         """
@@ -102,7 +103,7 @@ class CommandLine(click.Group):
             click.echo(ctx.get_help(), err=True)
             raise exits.StopQuietlyError(exits.USAGE)
         if any(text.startswith("-:") for text in args):
-            # Such an argument names a spec of standard input; click would parse it as short options.
+            # click would parse such an argument as short options.
             from tltlc.io.spec_file import STDIN_NAME
 
             args = [f"{STDIN_NAME}{text[1:]}" if text.startswith("-:") else text for text in args]

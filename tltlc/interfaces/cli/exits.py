@@ -71,7 +71,7 @@ _INVALID_NUMBER: Final = re.compile(r"'([^']*)' is not a valid (float|integer)(?
 
 
 class StopQuietlyError(Exception):
-    """End the command with a status and without a message."""
+    """Raised to end the command with an exit status and without a message."""
 
     def __init__(self, status: int) -> None:
         super().__init__(status)
@@ -95,8 +95,8 @@ def interrupted_status() -> int:
 def missing_component(wanted_by: str, module: str, requirement: str) -> TltlError:
     """Return error TLT0730 for a component that is not installed.
 
-    ``wanted_by`` names what needs the component. ``requirement`` is what pip installs; extras of
-    tltlc itself are installed from its clone.
+    ``wanted_by`` names what needs the component. ``requirement`` is what pip must install; if it is
+    an extra of tltlc, the help says how to install it from a clone.
     """
     title = f"{wanted_by} needs `{module}`, which is not installed"
     is_extra = requirement.startswith("tltlc[")
@@ -154,7 +154,7 @@ def is_interrupted(error: BaseException | None) -> bool:
 def _missing_resource(error: BaseException | None) -> str | None:
     """Return the message for the resource that is used up.
 
-    Return None if no exception in the chain reports such a lack.
+    Return None if neither the exception nor any of its causes reports a used-up resource.
     """
     while error is not None:
         if isinstance(error, MemoryError):

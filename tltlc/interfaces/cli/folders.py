@@ -1,4 +1,4 @@
-"""The source files that arguments name: files themselves, or the files in a folder."""
+"""Find the source files for the arguments of a command: the files and folders that it names."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def every_source(arguments: Iterable[str], report: Report) -> list[str]:
 
 
 def files_in_folders(arguments: Iterable[str]) -> list[str]:
-    """Return the source files that are now in those arguments that are folders."""
+    """Return the source files that the folders among the arguments contain now."""
     return [file for argument in arguments if _is_folder(argument) for file in _files_inside(argument)]
 
 
@@ -75,7 +75,7 @@ def occupied_folder_error(folder: Path, advice: str) -> TltlError:
 
 
 def links_outside(path: str, arguments: Iterable[str]) -> bool:
-    """Whether a file that was found in a folder is a link to a place outside the named folders."""
+    """Whether a file was found in a folder, but is a link to a file outside all folders given."""
     arguments = tuple(arguments)
     folders = [os.path.realpath(argument) for argument in arguments if _is_folder(argument)]
     place = os.path.realpath(path)

@@ -25,7 +25,10 @@ if TYPE_CHECKING:
 
 @record
 class Input:
-    """A compiled argument: its automata in order, and the session of its source unless it is an artefact."""
+    """A compiled argument: its automata, in the order of its specs, and where they come from.
+
+    ``session`` is the compiler's session for the source text; None for an artefact.
+    """
 
     name: str
     automata: tuple[Fspa, ...]
@@ -35,7 +38,7 @@ class Input:
 
     @property
     def program(self) -> ResolvedFile | None:
-        """The specs and tests of a source; None for an artefact."""
+        """The specs and tests of the source text; None for an artefact."""
         return self.session.program if self.session else None
 
     def only_automaton(self) -> Fspa:
@@ -56,8 +59,9 @@ class Input:
 def open_input(argument: str, settings: CompileSettings, specs: Sequence[str] = ()) -> Input:
     """Read and compile an argument.
 
-    ``specs`` selects by name, in addition to a name in the argument. Raises TltlError with all
-    diagnostics of reading and compiling, at the levels of the project.
+    ``specs`` names the specs to compile, in addition to a name in the argument; without any name,
+    all are compiled. Raises TltlError with all diagnostics of reading and compiling, with the
+    severities that the project file sets.
     """
     path, name = split(argument)
     if path.endswith(".toml"):

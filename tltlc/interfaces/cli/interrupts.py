@@ -23,7 +23,7 @@ _TEMPORARY: Final = "tltlc.io.temporary"
 """The module whose functions must not be interrupted, because files would be left behind."""
 
 _RETRY_S: Final = 0.05
-"""Seconds between an interrupt in the middle of uninterruptible code and the next attempt."""
+"""Seconds until the next attempt, if an interrupt comes while uninterruptible code runs."""
 
 _PATIENCE_S: Final = 1.0
 """Seconds that an import may take after an interrupt; then the process ends without cleaning up."""
@@ -104,7 +104,7 @@ def _is_importing(frame: FrameType | None) -> bool:
 
 
 def _is_at_temporary_files(frame: FrameType | None) -> bool:
-    """Whether code runs that manages temporary files, or that enters or leaves a ``with``."""
+    """Whether the interrupted code manages temporary files, or enters or leaves a ``with``."""
     is_at_with = frame is not None and frame.f_globals.get("__name__") == "contextlib"
     return is_at_with or any(caller.f_globals.get("__name__") == _TEMPORARY for caller in _stack(frame))
 

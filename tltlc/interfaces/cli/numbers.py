@@ -8,7 +8,7 @@ from typing import Any, Final, NoReturn
 import click
 
 LARGEST: Final = 2**62
-"""The sum of two such numbers fits into 64 bits."""
+"""The largest whole number that an option accepts. The sum of two of them fits into 64 bits."""
 _MOST_DIGITS: Final = 20
 
 

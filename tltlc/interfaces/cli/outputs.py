@@ -1,4 +1,4 @@
-"""Options and file writing shared by all commands that generate files from automata."""
+"""Options and functions for all commands that generate files from automata."""
 
 from __future__ import annotations
 

@@ -15,8 +15,8 @@ class OutputPath(click.Path):
     """A file or folder to write to.
 
     ``-`` means standard output if ``stdout`` is set; else it is refused. ``kind`` is what an
-    existing path must be; "place" allows both. Without ``checked``, an existing path of the other
-    kind is reported only on writing, with TLT0005.
+    existing path must be; "place" allows both. If ``checked``, an existing path of the other kind
+    is refused at once; otherwise it is reported when the command writes, with TLT0005.
     """
 
     def __init__(

@@ -31,7 +31,7 @@ class Plugin:
 def find(group: str) -> tuple[Plugin, ...]:
     """Return the entry points of a group, without loading them.
 
-    If several distributions have the same name, only the first one on ``sys.path`` counts.
+    If a distribution is installed several times, only the first copy on ``sys.path`` counts.
     """
     entries: dict[tuple[str, str], Plugin] = {}
     first_folders: dict[str, int] = {}
@@ -45,7 +45,8 @@ def find(group: str) -> tuple[Plugin, ...]:
 def load(plugin: Plugin, wanted_by: str) -> Any:
     """Import the object that an entry point names.
 
-    Raise TLT0730, with installation help, if a component is missing.
+    Raise TLT0730, with installation help, if a component is missing. ``wanted_by`` is what needs
+    the object, for the message.
     """
     from functools import reduce
     from importlib import import_module

@@ -13,21 +13,21 @@ from tltlc.io.files import Stamp, access_log, stamp
 from tltlc.io.resources import OutOfTimeError, resource_limits
 
 PAUSE_S: Final = 0.2
-"""Seconds between two looks at the files.
+"""Seconds between two checks of the files.
 
-A change counts once the next look finds the files unchanged since.
+Work starts only when the next check finds no further change, so that files are complete.
 """
 
 _MOST_LOOKS: Final = 10
-"""After this many looks, a change counts anyway: some programs never stop writing."""
+"""Work starts after this many checks that find changes: some programs never stop writing."""
 
 
 def repeat(work: Callable[[tuple[str, ...]], None], list_files: Callable[[], Iterable[str]] = tuple) -> NoReturn:
-    """Run ``work`` at once, and again after each change, until something like Ctrl-C is raised.
+    """Run ``work`` at once, and again after each change, until an exception such as Ctrl-C.
 
-    ``work`` receives the paths that changed; the first time, none. The watched files are those that
-    the last run looked for or read through :mod:`tltlc.io.files`, whether they exist or not, and
-    those that ``list_files`` returns now.
+    ``work`` receives the paths that changed; the first time, none. All files are watched that the
+    last run read, or looked for in vain, through :mod:`tltlc.io.files`. The files that
+    ``list_files`` returns are watched, too.
     """
     changed: tuple[str, ...] = ()
     while True:
@@ -38,7 +38,7 @@ def repeat(work: Callable[[tuple[str, ...]], None], list_files: Callable[[], Ite
 
 
 def _run_bounded(work: Callable[[tuple[str, ...]], None], changed: tuple[str, ...]) -> None:
-    """Run ``work`` within the limits.
+    """Run ``work`` within the limits of time and memory.
 
     Report the error if it exceeds them, because the next change may fix that.
     """
@@ -52,9 +52,10 @@ def _run_bounded(work: Callable[[tuple[str, ...]], None], changed: tuple[str, ..
 def _changes(
     before: Mapping[str, Stamp], known: frozenset[str], list_files: Callable[[], Iterable[str]]
 ) -> tuple[str, ...]:
-    """Wait until files change, then until they stay the same or for ``_MOST_LOOKS`` more looks.
+    """Wait until files change, and then until they stop changing; return their paths.
 
-    Return their paths.
+    Stop waiting after ``_MOST_LOOKS`` further checks. ``before`` has the earlier states of files by
+    path, and ``known`` the files that ``list_files`` returned before the last run.
     """
     changed: dict[str, Stamp] = {}
     new: tuple[str, ...] = ()

@@ -18,7 +18,7 @@ _MOST_ALIKE: Final = 20
 
 
 class Report:
-    """Collects the diagnostics of a command; as a context, it catches a TltlError and reports it.
+    """Collects the diagnostics of a command; as a context manager, it reports a TltlError.
 
     Each diagnostic is reported once, even if two files import the file with the error. The text
     format is shown at once, on standard error. Machine formats form one document per run, which is
@@ -33,7 +33,7 @@ class Report:
         self._document = sys.stderr if results else sys.stdout
 
     def add(self, diagnostics: Iterable[Diagnostic]) -> None:
-        """Show diagnostics that are new, or keep them for the final document."""
+        """Show new diagnostics at once in the text format, else keep them for the document."""
         new = tuple(diagnostic for diagnostic in dict.fromkeys(diagnostics) if diagnostic not in self.diagnostics)
         if self.format == "text":
             # A full standard error must not change the exit status.
@@ -104,7 +104,10 @@ _Alike = tuple[str, str, str]
 
 
 def _first_of_each(diagnostics: Iterable[Diagnostic]) -> tuple[tuple[Diagnostic, ...], Counter[_Alike]]:
-    """Return the first diagnostics of each code in each file, and how many are left out, by kind."""
+    """Return the diagnostics to show, at most 20 of each kind, and how many are left out by kind.
+
+    The kind is severity, code and file.
+    """
     counts: Counter[_Alike] = Counter()
     shown = []
     for diagnostic in diagnostics:

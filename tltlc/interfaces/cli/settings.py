@@ -1,4 +1,4 @@
-"""The options of all commands on source files, and how they combine with a project file."""
+"""The options that commands on source files share, combined with the project file."""
 
 from __future__ import annotations
 
@@ -35,12 +35,15 @@ class CompileSettings:
 
 
 def source_options(command: Function) -> Function:
-    """Add ``--library --param --state-budget --format``; the command takes ``settings`` and ``format``."""
+    """Add ``--library --param --state-budget --format`` to a command.
+
+    The command receives their values as ``settings`` and ``format``.
+    """
     return compile_options(format_option(command))
 
 
 def compile_options(command: Function) -> Function:
-    """Add ``--library --param --state-budget``; the command takes ``settings``."""
+    """Add ``--library --param --state-budget``; the command receives them as ``settings``."""
     from functools import wraps
 
     @wraps(command)
@@ -88,7 +91,7 @@ format_option = click.option(
 
 
 def compile_settings(settings: CompileSettings, project: Project, specs: tuple[str, ...] = ()) -> CompileOptions:
-    """Return the options to compile a file of a project; ``specs`` selects by name."""
+    """Return the options to compile specs of a file; ``specs`` are their names, empty for all."""
     from tltlc.automaton.finite.build import DEFAULT_STATE_BUDGET
     from tltlc.pipeline import CompileOptions
 
@@ -101,7 +104,10 @@ def compile_settings(settings: CompileSettings, project: Project, specs: tuple[s
 
 
 def search_steps(settings: CompileSettings) -> int:
-    """Return the steps that a search may take, as many as for an automaton over infinite traces."""
+    """Return how many steps a search may take.
+
+    They are as many as building an automaton over infinite traces may take.
+    """
     from tltlc.automaton.finite.build import DEFAULT_STATE_BUDGET
     from tltlc.automaton.work import STEPS_PER_STATE
 

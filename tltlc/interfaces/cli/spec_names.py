@@ -1,4 +1,4 @@
-"""Suggest the file of a spec, if a command gets the spec's name in place of a file."""
+"""Suggest the file of a spec, if a command gets the name of the spec instead of its file."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Quick fixes, as code actions of the protocol."""
+"""Quick fixes, as code actions of the Language Server Protocol."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ def actions(
 ) -> list[types.CodeAction]:
     """Return the fixes for diagnostics that touch a span, as quick-fix actions.
 
-    ``findings`` are those of the linter. ``uri_of`` returns the URI of a file by its name, and
-    ``edit_of`` makes a workspace edit of edits by URI.
+    ``findings`` are the findings of the linter. ``uri_of`` converts a file name to a URI, and
+    ``edit_of`` converts edits, by URI, to a workspace edit.
     """
     uri = uri_of(document.source.name)
 

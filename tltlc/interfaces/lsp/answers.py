@@ -222,9 +222,10 @@ def _name(server: EditorSession, params: Any) -> Occurrence | None:
 async def _name_everywhere(
     server: EditorSession, params: Any, is_needed: Callable[[Symbol, str], bool]
 ) -> Occurrence | None:
-    """Parse the texts that ``is_needed`` selects, then return the name that a request is about.
+    """Return the name that a request is about, after parsing all texts that may use it.
 
-    Return None if there is no name at that place.
+    ``is_needed`` is whether a text must be parsed for a symbol. Return None if there is no name at
+    the place of the request.
     """
     name = _name(server, params)
     if name is not None:

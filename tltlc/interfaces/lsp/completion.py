@@ -39,7 +39,7 @@ _NAMES: Final = {"NAME"}
 
 
 def completions(document: Document, offset: int, encoding: str) -> list[types.CompletionItem]:
-    """Return what may be written at an offset, the likeliest items first."""
+    """Return what may be written at a character offset, the likeliest items first."""
     quotation = quoted_text(document.source, offset)
     if quotation is not None:
         before, span = quotation
@@ -54,9 +54,9 @@ def completions(document: Document, offset: int, encoding: str) -> list[types.Co
 def _edits(
     items: Iterable[types.CompletionItem], document: Document, span: Span, encoding: str
 ) -> list[types.CompletionItem]:
-    """Make each item replace the part of the word that is already written.
+    """Make each item replace ``span``, the part of the word that is already written.
 
-    Number the items to keep their order.
+    Number the items, so that the editor keeps their order.
     """
     at = range_of(document.source, span, encoding)
     ordered = list(items)
@@ -187,7 +187,7 @@ def _expression_names(document: Document, place: Cursor) -> Iterator[types.Compl
 
 
 def _visible_names(document: Document, kinds: tuple[str, ...]) -> Iterator[types.CompletionItem]:
-    """Yield the visible names, kind by kind, those of the text itself before imported ones."""
+    """Yield the visible names, sorted by kind; within a kind, imported names come last."""
     scope = document.scope
     bindings = [(name, binding) for name, binding in scope.names.items() if binding.kind in kinds]
     for name, binding in sorted(bindings, key=lambda item: (kinds.index(item[1].kind), item[1].via is not None)):
@@ -208,7 +208,7 @@ def _spec_item(declaration: SpecDecl, document: Document) -> types.CompletionIte
 
 
 def _atoms(document: Document, block: tuple[Token, ...]) -> Iterator[types.CompletionItem]:
-    """Yield the atoms of the spec that the enclosing test is for."""
+    """Yield the atoms of the spec that the enclosing ``test`` block is about."""
     name = next((block[at + 1].text for at, token in enumerate(block[:-1]) if token.text == "for"), "")
     for spec in document.resolution.program.specs:
         if spec.name == name:
@@ -251,7 +251,7 @@ def _open_call(piece: tuple[Token, ...]) -> tuple[str, int] | None:
 
 
 def _is_in_body(piece: tuple[Token, ...]) -> bool:
-    """Whether a place is after the ``=`` of a declaration."""
+    """Whether these tokens of a declaration contain its ``=``, so the cursor is in its body."""
     depth = 0
     for token in piece:
         depth += (token.type in ("LPAR", "LSQB")) - (token.type in ("RPAR", "RSQB"))

@@ -1,4 +1,4 @@
-"""Use the parser's own tables to find what may stand at a place of an incomplete text."""
+"""Find which terminals may follow at the cursor in an incomplete text, from the parser's tables."""
 
 from __future__ import annotations
 
@@ -22,12 +22,13 @@ _STATEMENTS: Final = ("clause", "test_item")
 
 @record
 class Cursor:
-    """A place in a text.
+    """The cursor in a text, and what may be written there.
 
-    ``word`` covers the part of a word that is written up to the place. ``piece`` has the tokens of
-    the declaration, clause or test line before that word; the parser reads it from the symbol
-    ``start``. ``around`` has the tokens of the enclosing block. ``allowed`` has the terminals that
-    may stand here; it is None if the piece already has an error before the place.
+    ``word`` is the span of the unfinished word that ends at the cursor. ``piece`` contains the
+    tokens before that word, from the start of the declaration, clause or test line; ``start`` is
+    the grammar symbol to parse them as. ``around`` contains the tokens of the enclosing block.
+    ``allowed`` are the terminals that may follow ``piece``; None if ``piece`` contains a syntax
+    error.
     """
 
     word: Span
@@ -48,7 +49,7 @@ class Cursor:
 
 
 def cursor(source: SourceFile, offset: int) -> Cursor | None:
-    """Return the place at an offset; None inside a comment or a quoted text."""
+    """Return the cursor at a character offset; None inside a comment or a quoted text."""
     before = source.text[:offset]
     start = _word_start(before)
     lexed = tokenize(before[:start])
@@ -61,7 +62,7 @@ def cursor(source: SourceFile, offset: int) -> Cursor | None:
 
 
 def _word_start(text: str) -> int:
-    """Return the offset of the word at the end of a text, or the end if there is no word."""
+    """Return where the word at the end of a text starts, or the length of the text if none does."""
     start = end = len(text)
     while start and text[start - 1] in _IN_WORD:
         start -= 1
@@ -71,9 +72,10 @@ def _word_start(text: str) -> int:
 
 
 def quoted_text(source: SourceFile, offset: int) -> tuple[str, Span] | None:
-    """Return the word before the quoted text at an offset, and the span of the text up to there.
+    """Return the word before the quoted text around an offset, and the span of the quoted part.
 
-    The word is empty if nothing precedes the text. Return None outside quoted texts.
+    The span goes from the quotation mark to the offset. The word is empty if nothing precedes the
+    quotation mark. Return None if the offset is not in a quoted text.
     """
     tokens = tokenize(source.text[:offset]).tokens[:-1]
     if not tokens or tokens[-1].type != BAD or not tokens[-1].text.startswith('"'):
@@ -105,9 +107,9 @@ def _frozen(allowed: set[str] | None) -> frozenset[str] | None:
 
 
 def _accepted_terminals(start: str, tokens: Sequence[Token]) -> set[str] | None:
-    """Return the terminals that may follow these tokens, parsed as a ``start``.
+    """Return the terminals that may follow the tokens, which are parsed as the symbol ``start``.
 
-    Return None if they have an error.
+    Return None if the tokens contain a syntax error.
     """
     end = tokens[-1].end if tokens else 0
     try:

@@ -28,7 +28,7 @@ from tltlc.resolve.spec import Spec
 from tltlc.resolve.values import Env, number_text, range_text
 
 _LONGEST: Final = 600
-"""A longer declaration is shown by its head only."""
+"""Characters; of a longer declaration, only the part before its body is shown."""
 
 _SUPPLIED_AS: Final = {
     "length": "metres",
@@ -60,7 +60,7 @@ def declaration_text(
 
 
 def symbol_markdown(symbol: Symbol, env: Env, via: str | None) -> str:
-    """Describe a name that is not a spec, in Markdown."""
+    """Describe a name that is not a spec, in Markdown; ``via`` is the file that it comes from."""
     declaration = symbol.declaration
     lines = [_code(declaration_text(declaration, symbol.source))]
     doc = getattr(declaration, "doc", "")
@@ -71,7 +71,7 @@ def symbol_markdown(symbol: Symbol, env: Env, via: str | None) -> str:
 
 
 def spec_markdown(declaration: SpecDecl, spec: Spec | None, source: SourceFile, figures: str | None) -> str:
-    """Describe a spec in Markdown: what it asks for, and its size if that is known."""
+    """Describe a spec in Markdown: what it asks for, and ``figures``, a text about its size."""
     lines = [_code(declaration_text(declaration, source, head=True))]
     lines += [declaration.doc] if declaration.doc else []
     if spec is not None:
@@ -138,7 +138,7 @@ def _article(type_: str) -> str:
 
 
 def _range(low: float | None, high: float | None, type_: str) -> str:
-    """Return the text about a range; empty if there is none."""
+    """Return the text about the range of a signal or param; empty if it has none."""
     if type_ == "bool" or (low is None and high is None):
         return ""
     ends = -inf if low is None else low, inf if high is None else high

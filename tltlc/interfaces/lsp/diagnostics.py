@@ -1,4 +1,4 @@
-"""Convert the compiler's diagnostics to those of the protocol."""
+"""Convert the compiler's diagnostics to diagnostics of the Language Server Protocol."""
 
 from __future__ import annotations
 

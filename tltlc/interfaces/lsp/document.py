@@ -1,4 +1,4 @@
-"""One state of a text, and what the compiler quickly derives from it: syntax and names."""
+"""One version of a text, with its syntax and names, which the compiler finds quickly."""
 
 from __future__ import annotations
 
@@ -27,11 +27,12 @@ if TYPE_CHECKING:
 
 
 class Document:
-    """One state of a text.
+    """One version of a text, with its syntax and names.
 
-    ``texts`` has the texts of all open documents by path; they replace the files. ``notes`` has the
-    states of the files that were read to find the project, by path. Each property is computed on first use and then
-    cached, because the text does not change.
+    ``texts`` contains the texts of all open documents, by path; they replace the files on disk.
+    ``notes`` contains the states, by path, of the files that were read to find the project; from
+    them, :meth:`is_current` sees changes. Each property is computed on first use and then cached,
+    because the text does not change.
     """
 
     def __init__(
@@ -56,7 +57,7 @@ class Document:
 
     @cached_property
     def resolution(self) -> Resolution:
-        """The meaning of the names."""
+        """The declarations that the names in the text refer to, also in imported files."""
         with unsaved_texts(self.texts), access_log() as notes:
             result = self._session.resolution
         self._notes.update(notes)
@@ -81,7 +82,7 @@ class Document:
 
     @cached_property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
-        """The diagnostics of syntax and names, without those that comments or the project allow."""
+        """The diagnostics of syntax and names that neither comments nor the project silence."""
         if self.is_broken:
             # Report only errors in names, and only those that the unparsed parts cannot explain.
             errors = [diagnostic for diagnostic in self.resolution.diagnostics if diagnostic.severity == "error"]
@@ -94,7 +95,7 @@ class Document:
 
     @property
     def is_clean(self) -> bool:
-        """Whether there are no errors so far, so automata can be built."""
+        """Whether syntax and names have no errors, so automata can be built."""
         return not any(
             diagnostic.severity == "error" for diagnostic in (*self.syntax_errors, *self.resolution.diagnostics)
         )
@@ -124,10 +125,14 @@ class Document:
 
     @cached_property
     def reads(self) -> frozenset[str]:
-        """The paths of the files that the program consists of, including this one."""
+        """The paths of this file and of all files that it imports, also indirectly."""
         return frozenset(path_of(loaded.module.source.name) for loaded in self.resolution.modules)
 
     def depends_on(self, name: str) -> bool:
-        """Whether a text is part of this document's program, or may be if an import failed."""
-        # Before the names are resolved, nothing is known.
+        """Whether a change of the file at path ``name`` may affect this document.
+
+        This is so for this file and its imports. If an import failed, any file may be the missing
+        one.
+        """
+        # Before the names are resolved, the imports are not known.
         return "resolution" not in self.__dict__ or name in self.reads or self.scope.incomplete

@@ -1,4 +1,7 @@
-"""Show times in steps after limits and bounds in seconds: the clock may be in another file."""
+"""Show, after each limit or bound that is written as a time, how many steps it is.
+
+The steps depend on the clock, which may be declared in another file.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +19,7 @@ from tltlc.resolve.problem import ResolutionError
 
 
 def hints(document: Document, span: Span, encoding: str) -> list[types.InlayHint]:
-    """Return a hint such as ``= 40 steps`` for each time that ends within a span of a document."""
+    """Return hints such as ``= 40 steps`` for the times that end within a span of a document."""
     visible = [duration for duration in durations(document) if span.start <= duration[0].span.end <= span.end]
     return [
         types.InlayHint(
@@ -32,7 +35,7 @@ def steps_text(steps: int) -> str:
 
 
 def durations(document: Document) -> Iterator[tuple[NumberExpr, int]]:
-    """Yield the limits and bounds that are written as times, with their steps."""
+    """Yield each limit or bound that is written as a time, with its number of steps."""
     for declaration in document.module.declarations:
         for number in _counts(declaration):
             if number.unit not in (None, "step", "steps"):

@@ -1,4 +1,4 @@
-"""Convert edits to those of the protocol, apply edits to a text, and compute the edit between two texts."""
+"""Convert edits of texts to the editor's protocol, apply them, and compute them."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from tltlc.interfaces.lsp.positions import range_of
 
 
 def text_edit(source: SourceFile, edit: Edit, encoding: str) -> types.TextEdit:
-    """Convert an edit of a source text to an edit of the protocol."""
+    """Convert an edit of a source text to an edit of the Language Server Protocol."""
     return types.TextEdit(range_of(source, edit.span, encoding), edit.text)
 
 

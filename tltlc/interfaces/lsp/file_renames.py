@@ -58,15 +58,15 @@ def _path_after(path: str, moves: Moves) -> str:
 
 
 def _leads_to(declaration: Import, folder: str, there: str) -> bool:
-    """Whether the import as written leads to that path."""
+    """Whether the import, as written, leads from a file in ``folder`` to the path ``there``."""
     return declaration.is_path and normpath(PurePath(folder, declaration.target)) == there
 
 
 def _target(declaration: Import, there: str, folder: str, libraries: tuple[Path, ...]) -> str | None:
-    """Return the import target for a file, as written in a file of a folder.
+    """Return how to import the file ``there`` in a file of ``folder``.
 
-    Use a name if the import had one and the new path allows it; else a path. None if the path
-    cannot be written in a source text.
+    Return a name if the import was by name and the new path allows it; else a path in quotation
+    marks. Return None if the path cannot be quoted in a source text.
     """
     if not declaration.is_path:
         for place in (folder, *map(str, libraries)):

@@ -1,4 +1,4 @@
-"""Find follow-up errors, which may only exist because a part of the text could not be parsed."""
+"""Find errors that may only follow from others, because a part of the text was not parsed."""
 
 from __future__ import annotations
 
@@ -20,10 +20,11 @@ _HEADS: Final = ("signal", "entity", "param", "predicate", "let", "spec")
 
 @record
 class UnparsedParts:
-    """What the unparsed parts of a broken text may contain.
+    """What the unparsed parts of a text with syntax errors may contain.
 
-    ``declared`` has the names that they may declare. ``imports`` and ``clock`` are whether they may
-    contain an import or a clock. ``tests`` has the spans by which diagnostics name a whole test.
+    ``declared`` has the names that they may declare. ``imports`` is whether they may contain an
+    import, and ``clock`` whether they may contain a clock. ``tests`` has, for each test, the span
+    of the spec's name, to which a diagnostic about the whole test points.
     """
 
     declared: frozenset[str]
@@ -33,7 +34,7 @@ class UnparsedParts:
     source: SourceFile
 
     def may_explain(self, diagnostic: Diagnostic) -> bool:
-        """Whether a diagnostic may be a follow-up error: an unparsed part may contain what it misses."""
+        """Whether what a diagnostic reports as missing may be in an unparsed part."""
         if diagnostic.code == _NO_SUCH_ATOM:
             # The atom may belong to a clause that is being written.
             return True

@@ -24,7 +24,10 @@ _HEADER: Final = re.compile(
 )
 _OTHER_HEADER: Final = re.compile(rb"Content-Type:", re.IGNORECASE)
 _OVERLAP: Final = 512
-"""Bytes at the end of the buffer that are searched again when more arrive; both headers fit in."""
+"""Bytes at the end of the buffer that are searched again when more arrive.
+
+A header may be cut off there; both header lines together are shorter.
+"""
 _MOST_DIGITS: Final = 9
 
 
@@ -61,7 +64,7 @@ class Frames:
         self._in_body = False
         self._json_end = JsonEnd()
         self._padding = 0
-        """How many bytes should still follow the last bracket of the last body, by its header."""
+        """How many more bytes the header announced after the last bracket of the last body."""
         self._padding_fault: Fault | None = None
         """The fault to report if those bytes are not all white space."""
         self._is_skipping = False
@@ -131,7 +134,7 @@ class Frames:
             self._json_end = JsonEnd()
 
     def _pass_over(self, skipped: bytes, *, is_long: bool) -> None:
-        """Report once that something other than a header is skipped."""
+        """Report that something other than a header is skipped, unless that is reported already."""
         if skipped.strip() and not self._is_skipping and (is_long or not _OTHER_HEADER.match(skipped)):
             self._is_skipping = True
             self._frames.append(Fault(f"a message without a header `Content-Length` is passed over: {skipped[:60]!r}"))
@@ -223,7 +226,7 @@ _PARTIAL_HEADER: Final = re.compile(
 
 
 def _partial_header_size(tail: bytes) -> int:
-    """Return how many bytes at the end of a body start the next header.
+    """Return how many bytes at the end of a body may be the start of the next header.
 
     No JSON message ends with such bytes.
     """

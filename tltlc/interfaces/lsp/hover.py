@@ -59,7 +59,7 @@ def _name(document: Document, offset: int, analysis: DocumentAnalysis | None) ->
 
 
 def _keyword(document: Document, offset: int) -> tuple[str, Span] | None:
-    """Return the form of a declaration, clause or test line, and what this clause asks for."""
+    """Describe the keyword at an offset: its syntax and, for a clause, what the clause asks for."""
     token = document.token_at(offset)
     if token is None or token.text not in _FORMS:
         return None
@@ -78,7 +78,7 @@ def _duration(document: Document, offset: int) -> tuple[str, Span] | None:
 
 
 def _operator(document: Document, offset: int) -> tuple[str, Span] | None:
-    """Return the meaning of the part of a formula that the operator at an offset forms."""
+    """Describe the subformula whose operator is at an offset."""
     for declaration in document.module.declarations:
         if not isinstance(declaration, SpecDecl) or not declaration.span.start <= offset < declaration.span.end:
             continue

@@ -23,7 +23,7 @@ class JsonEnd:
         self._in_string = False
 
     def find(self, data: bytearray, limit: int) -> int | None:
-        """Return the offset after the bracket that closes the first one.
+        """Return the offset after the bracket that closes the first bracket.
 
         Return None if that bracket is not in ``data[:limit]``. ``data`` must start with the bytes of
         the previous call.
@@ -41,9 +41,10 @@ class JsonEnd:
         return None
 
     def _leave_string(self, data: bytearray, limit: int) -> bool:
-        """Whether the string ends in these bytes.
+        """Move to the end of the string, and return whether it is in these bytes.
 
-        If it does not, the next call resumes at their end, or at an escape that they cut off.
+        If it is not, the next call resumes at the end of these bytes, or at an incomplete escape
+        there.
         """
         match = _INSIDE.match(data, self._at, limit)
         self._at = match.end() if match else limit
@@ -54,7 +55,7 @@ class JsonEnd:
         return True
 
     def _follow(self, mark: bytes) -> bool:
-        """Whether this bracket closes the first one."""
+        """Follow a bracket or quotation mark, and return whether it closes the first bracket."""
         if mark == b'"':
             self._in_string = True
             return False

@@ -12,7 +12,7 @@ from tltlc.interfaces.lsp.positions import range_of
 from tltlc.interfaces.lsp.slow_analysis import DocumentAnalysis, SpecFigures
 
 RUN_TESTS: Final = "tltlc.runTests"
-"""The command of the test lens; its arguments are the URI and the name of the spec."""
+"""The command of the lens with the test results; its arguments are the URI and the spec's name."""
 
 
 def lenses(document: Document, uri: str, analysis: DocumentAnalysis, encoding: str) -> list[types.CodeLens]:

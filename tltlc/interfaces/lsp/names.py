@@ -15,7 +15,7 @@ from tltlc.resolve.scope import Binding, NamedDeclaration, Scope
 
 Kind = Literal["signal", "param", "predicate", "let", "entity", "spec", "parameter", "variable"]
 MERGED: tuple[Kind, ...] = ("signal", "param", "entity")
-"""If several files of a program declare one name of these kinds, the declarations count as one."""
+"""Kinds whose declarations count as one if several files of a program declare the same name."""
 
 _FORMULA_CLAUSES = ("reach", "keep", "avoid", "require")
 
@@ -32,11 +32,11 @@ class Symbol:
 
     @property
     def key(self) -> tuple[str, str, int]:
-        """A key that all uses of one declaration share."""
+        """A key that identifies the declaration."""
         return self.kind, self.source.name, self.span.start
 
     def is_same(self, other: Symbol) -> bool:
-        """Whether both are the same symbol, if their files are parts of one program."""
+        """Whether both are the same symbol; their files must belong to one program."""
         if self.kind in MERGED:
             return (self.kind, self.name) == (other.kind, other.name)
         return self.key == other.key
@@ -46,7 +46,8 @@ class Symbol:
 class Occurrence:
     """A use or declaration of a name.
 
-    ``span`` covers the declared name, without an import alias before it.
+    ``span`` covers the name as declared, without the alias of its import (``lib.`` in
+    ``lib.name``).
     """
 
     span: Span
@@ -71,7 +72,7 @@ _Locals = Mapping[str, Symbol]
 
 
 class _Walk:
-    """Collects names, declaration by declaration."""
+    """Collects the occurrences of names in a module."""
 
     def __init__(self, scope: Scope, tokens: Sequence[Token]) -> None:
         self.occurrences: list[Occurrence] = []
@@ -81,7 +82,7 @@ class _Walk:
         self._visible: Mapping[str, Binding] = scope.names
         self._unaliased = {binding.name: binding for binding in scope.names.values()}
         self._label_start: int | None = None
-        """The offset of the label that is being read, to which the spans of its formula are relative."""
+        """Where the label that is being read starts; the spans in its formula count from there."""
         self._specs: dict[str, Symbol] = {}
         for declaration in scope.module.declarations:
             if isinstance(declaration, tree.SpecDecl):
@@ -120,7 +121,7 @@ class _Walk:
                         self._label(item)
 
     def _head(self, declaration: tree.SignalDecl | tree.ParamDecl | tree.PredicateDecl | tree.LetDecl) -> None:
-        """Collect names in the parameters, the range, and the value or body."""
+        """Collect names in the parameters, the range, and the value or body of a declaration."""
         local: dict[str, Symbol] = {}
         for parameter in () if isinstance(declaration, tree.ParamDecl) else declaration.parameters:
             if parameter.default is not None:

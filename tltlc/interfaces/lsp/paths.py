@@ -1,4 +1,8 @@
-"""Convert between URIs of documents and the names of files in messages."""
+"""Convert between the URIs of documents, their names in messages, and their paths.
+
+In messages, a file is named by a path, a file of the standard library by a short name, and a
+document that is not a file by its URI in angle brackets.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +15,7 @@ from tltlc.resolve.imports import STANDARD_LIBRARY_NAME, standard_library
 
 
 def name_of(uri: str) -> str:
-    """Return the name of a document: its absolute path, or ``<URI>`` if it is not a file."""
+    """Return the name for messages: the absolute path of a file, or ``<URI>`` if it is no file."""
     try:
         path = uris.to_fs_path(uri) if uri.startswith("file:") else None
     except ValueError:
@@ -21,9 +25,9 @@ def name_of(uri: str) -> str:
 
 
 def path_of(name: str) -> str:
-    """Return the absolute path for the name of a file in messages.
+    """Return the absolute path of the file that has this name in messages.
 
-    A document that is not a file keeps its name.
+    For a document that is not a file, return the name, ``<URI>``.
     """
     if name.startswith(STANDARD_LIBRARY_NAME):
         return str(standard_library().absolute() / name[len(STANDARD_LIBRARY_NAME) + 1 :])
@@ -31,7 +35,7 @@ def path_of(name: str) -> str:
 
 
 def uri_of(name: str) -> str:
-    """Return the URI for the name of a file or document in messages."""
+    """Return the URI of the file or document that has this name in messages."""
     path = path_of(name)
     return path[1:-1] if path.startswith("<") else uris.from_fs_path(path) or ""
 

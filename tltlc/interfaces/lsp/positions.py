@@ -1,8 +1,8 @@
-"""Convert between character offsets and positions of the protocol.
+"""Convert between character offsets in a text and positions of the Language Server Protocol.
 
-Lines count from 0, columns in units of the agreed encoding.
-
-A conversion takes logarithmic time, because the wide characters of a text are located only once.
+A position has a line, counted from 0, and a column, counted in units of the agreed encoding. A
+conversion takes logarithmic time, because the characters that count more than one unit are
+located only once for each text.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ UTF_16: Final = "utf-16"
 _WIDE: Final = {"utf-8": re.compile("[^\x00-\x7f]"), UTF_16: re.compile("[^\x00-\uffff]")}
 """The characters that count more than one unit; in UTF-32 there are none."""
 _TEXTS: Final = 16
-"""How many texts are cached with their wide characters; one request looks at few texts."""
+"""For how many texts the wide characters are cached; one request needs few texts."""
 
 
 @record
@@ -54,7 +54,7 @@ def _wide(text: str, encoding: str) -> _Wide:
 
 
 def position(source: SourceFile, offset: int, encoding: str = UTF_16) -> types.Position:
-    """Return the position of a character; inside a line end, that is the start of the line end."""
+    """Return the position of the character at an offset; within a line end, the end of the line."""
     at = min(max(0, offset), len(source.text))
     if at and source.text[at - 1 : at + 1] == "\r\n":
         at -= 1

@@ -11,10 +11,10 @@ from tltlc.interfaces.lsp.slow_analysis import DocumentAnalysis
 
 
 def previous_diagnostics(before: Document, analysis: DocumentAnalysis, now: Document) -> tuple[Diagnostic, ...]:
-    """Return the earlier diagnostics of the slow analysis, moved to their places in the new text.
+    """Return the diagnostics of an earlier analysis, moved to their places in the text ``now``.
 
-    ``analysis`` is that of the text ``before``. Diagnostics whose places were edited are left out,
-    and so are those that the text ``now`` reports itself.
+    ``analysis`` is the slow analysis of the text ``before``. Diagnostics whose places were edited
+    are left out, and so are the diagnostics that ``now`` already has.
     """
     edits = difference(before.source, now.source.text)
     reported = {_without_fixes(diagnostic) for diagnostic in now.diagnostics}

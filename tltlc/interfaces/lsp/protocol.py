@@ -1,6 +1,7 @@
 """Handle the messages of an editor, even malformed ones.
 
-Requests get an answer and everything else is logged; a bad message does not affect the next one.
+A malformed message is logged, and answered with an error if it may be a request. It does not
+affect the next message.
 """
 
 from __future__ import annotations
@@ -29,10 +30,10 @@ _NOTEBOOK_METHODS: Final = "notebookDocument/"
 
 
 class Protocol(LanguageServerProtocol):
-    """The protocol of pygls; it checks whole messages, so that it can answer malformed ones."""
+    """The protocol of pygls, which also answers malformed messages."""
 
     def receive(self, frame: Frame) -> None:
-        """Handle a message; answer or log a fault."""
+        """Handle a message, or answer or log a fault of its headers."""
         if isinstance(frame, Fault):
             if frame.is_answered:
                 self.refuse(None, JsonRpcInvalidRequest(frame.text))
@@ -88,7 +89,7 @@ class Protocol(LanguageServerProtocol):
         return structured
 
     def _check_request(self, message: dict[str, Any]) -> None:
-        """Raise if a request or notification has a wrong form, or comes at a wrong time."""
+        """Raise JsonRpcException if a message is malformed or comes at a wrong time."""
         method = message["method"]
         if not isinstance(method, str) or ("id" in message and not _is_id(message["id"])):
             raise JsonRpcInvalidRequest("a method is a text, an id is a number or a text")

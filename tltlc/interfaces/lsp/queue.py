@@ -1,6 +1,6 @@
 """Choose the document to analyse next: the one that the user looked at last.
 
-A long analysis of another document is given up for it, and repeated afterwards.
+A long analysis of another document is stopped for it, and repeated afterwards.
 """
 
 from __future__ import annotations
@@ -12,18 +12,18 @@ from typing import Final
 from tltlc.interfaces.lsp.slow_analysis import DocumentAnalysis
 
 LONG_S: Final = 0.5
-"""Seconds after which an analysis gives way to a document that the user has looked at since.
+"""Seconds after which an analysis may be stopped for a document that the user looked at later.
 
-The analysis is repeated afterwards. This limit is much longer than the analysis of a small file, and
-longer than a restart of the process.
+It is repeated afterwards. This is much longer than the analysis of a small file, and longer than
+a restart of the process.
 """
 
 
 class Queue:
     """Analyses documents one after another.
 
-    ``analyse`` takes a URI, and whether to ignore a known analysis. It returns None early after
-    ``give_up`` is called.
+    ``analyse(uri, again)`` analyses a document; unless ``again``, it may return a known analysis.
+    It returns None soon after ``give_up`` is called.
     """
 
     def __init__(
@@ -32,9 +32,9 @@ class Queue:
         self._analyse = analyse
         self._give_up = give_up
         self._waiting: dict[str, bool] = {}
-        """For each document to analyse: whether to do so even if its analysis is known."""
+        """The documents to analyse, by URI, with whether to do so even if the analysis is known."""
         self._looks: dict[str, int] = {}
-        """The number of the last look at each document; later looks have greater numbers."""
+        """When the user last looked at each document, by URI: a number that each look increases."""
         self._current: str | None = None
         self._current_since = 0.0
         self._task: asyncio.Task[None] | None = None
@@ -95,9 +95,9 @@ class Queue:
                     self._set_answer(uri, analysis)
 
     def _give_way(self) -> None:
-        """Give up a long analysis if the user has looked at a waiting document since.
+        """Stop a long analysis if the user has since looked at another document in the queue.
 
-        If the analysis is not long yet, check again when it is.
+        If it does not take long yet, check again when it does.
         """
         if self._timer is not None:
             self._timer.cancel()

@@ -30,7 +30,7 @@ Matches = list[tuple[Document, list[Occurrence]]]
 
 
 def references(symbol: Symbol, workspace: Workspace) -> Matches:
-    """Return every place that refers to the same symbol, by document."""
+    """Return every place in the workspace that refers to the symbol, by document."""
     documents = _documents(symbol, workspace)
     programs = _programs(symbol, documents)
     result = []
@@ -43,7 +43,11 @@ def references(symbol: Symbol, workspace: Workspace) -> Matches:
 
 
 def may_have_references(symbol: Symbol, text: str) -> bool:
-    """Whether the uses of a symbol may depend on the declarations and imports of another text."""
+    """Whether a text must be parsed to find the uses of a symbol.
+
+    It must if it contains the name, or if it may import two files that declare the same signal,
+    param or entity.
+    """
     if symbol.kind in _FILE_LOCAL:
         return False
     # A signal that two files declare is the same one in a third file that imports both.
@@ -51,7 +55,7 @@ def may_have_references(symbol: Symbol, text: str) -> bool:
 
 
 def may_refuse_rename(symbol: Symbol, text: str) -> bool:
-    """Whether renaming a symbol may depend on the declarations and imports of another text."""
+    """Whether a text must be parsed to rename a symbol, because the new name may clash there."""
     return may_have_references(symbol, text) or (symbol.kind not in _LOCAL and may_import(text))
 
 
@@ -88,7 +92,7 @@ def check_renamable(symbol: Symbol, workspace: Workspace) -> None:
 
 
 def _declares(document: Document, symbol: Symbol, source: SourceFile) -> bool:
-    """Whether a library declares the same symbol, in a program that contains the symbol's file."""
+    """Whether ``source`` declares the same symbol, in a program that contains the symbol's file."""
     if path_of(symbol.source.name) not in document.reads:
         return False
     modules = document.resolution.modules
@@ -101,7 +105,7 @@ def _declares(document: Document, symbol: Symbol, source: SourceFile) -> bool:
 
 
 def _documents(symbol: Symbol, workspace: Workspace) -> list[Document]:
-    """Return the documents that may contain a symbol, its own first."""
+    """Return the documents that may contain a symbol; the document that declares it comes first."""
     own = workspace.document_named(path_of(symbol.source.name))
     candidates = [] if symbol.kind in _FILE_LOCAL else [*workspace.all()]
     candidates = [document for document in candidates if may_have_references(symbol, document.source.text)]
@@ -112,7 +116,7 @@ def _documents(symbol: Symbol, workspace: Workspace) -> list[Document]:
 
 
 def _programs(symbol: Symbol, documents: list[Document]) -> set[str]:
-    """Return the paths of the files that are parts of one program with the symbol's file."""
+    """Return the paths of the files that belong to one program with the symbol's file."""
     known = {path_of(symbol.source.name)}
     if symbol.kind not in MERGED:
         return known | {path_of(document.source.name) for document in documents if document.reads & known}
@@ -171,7 +175,7 @@ def _check_free(symbol: Symbol, name: str, changes: list[tuple[Document, list[Ed
 
 
 def _name_targets(document: Document, edits: list[Edit], *, shift: bool = False) -> list[tuple[int, str, int]]:
-    """Return the declaration of each name of a text, with offsets before the edits.
+    """Return, for each name, its place and that of its declaration, as before the edits.
 
     A correct rename does not change the result.
     """

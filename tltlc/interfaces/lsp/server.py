@@ -106,7 +106,7 @@ class _EditorOutput:
 
 
 def _is_unforeseen(record: logging.LogRecord) -> bool:
-    """Whether a log record reports something other than a refused message."""
+    """Whether a log record is about something other than a refused message."""
     error = record.exc_info[1] if record.exc_info else None
     return not isinstance(error, JsonRpcException) and not record.msg.startswith("Unable to deserialize message")
 
@@ -121,9 +121,9 @@ def create() -> EditorSession:
 
 
 def _with_error_answers(server: EditorSession, handler: Callable[[EditorSession, Any], Any]) -> Callable[[Any], Any]:
-    """Wrap a handler: a TltlError becomes an error response.
+    """Return a handler that answers a TltlError with an error response.
 
-    A request counts as a look of the user at its document.
+    It also records that the user looks at the document, which is then analysed before others.
     """
     if iscoroutinefunction(handler):
 

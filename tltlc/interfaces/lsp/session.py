@@ -1,4 +1,4 @@
-"""The state of one editor's session, and the notifications that the server sends."""
+"""The session of one editor: its documents and analyses, and the notifications to the editor."""
 
 from __future__ import annotations
 
@@ -28,13 +28,13 @@ if TYPE_CHECKING:
     from pygls.server import ServerErrors
 
 SOON_S: Final = 0.01
-"""Seconds from a change to the first diagnostics, which cover all changes until then."""
+"""Seconds from a change to the quick diagnostics, which cover all further changes in this time."""
 LATER_S: Final = 0.4
-"""Seconds without a change after which automata are built."""
+"""Seconds without a change until the slow analysis, which builds the automata, is scheduled."""
 
 
 class EditorSession(LanguageServer):
-    """The state of one editor's session."""
+    """The session of one editor: its open texts, their analyses and timers."""
 
     def __init__(self) -> None:
         # Editors count lines in different ways, so they must send the whole text.
@@ -66,7 +66,7 @@ class EditorSession(LanguageServer):
         return analysis
 
     def workspace_edit(self, edits: Mapping[str, list[types.TextEdit]]) -> types.WorkspaceEdit:
-        """Return a workspace edit of edits by URI.
+        """Convert edits, by URI, to a workspace edit.
 
         If the editor supports it, the edits apply only to the versions that they were made for.
         """
@@ -89,16 +89,16 @@ class EditorSession(LanguageServer):
     # --- changes ------------------------------------------------------------------------------
 
     def on_change(self, uris: Iterable[str]) -> None:
-        """Handle documents whose texts, or the texts that they import, have changed."""
+        """Handle changes of documents or of files that they import: schedule new diagnostics."""
         for uri in uris:
             self.queue.drop(uri)
             self._schedule("now", uri, SOON_S, self._publish, restart=False)
             self._schedule("later", uri, LATER_S, self._schedule_analysis, restart=True)
 
     def on_use_change(self, uris: Iterable[str]) -> None:
-        """Handle a change in files that may import these documents.
+        """Schedule new analyses of documents, after a change in files that may import them.
 
-        Names that those files used may be unused now, or the other way round.
+        A declaration that those files used may be unused now, or used for the first time.
         """
         for uri in uris:
             if self.texts.is_open(uri):
@@ -180,9 +180,10 @@ class EditorSession(LanguageServer):
     # --- automata -----------------------------------------------------------------------------
 
     def _schedule_analysis(self, uri: str) -> None:
-        """Schedule the analysis of a document and of its imports.
+        """Schedule the analysis of a document, and of the open documents that it imports.
 
-        Its imports are analysed again, because the document may use other names of them than before.
+        The imports are analysed again, because the document may use other names from them than
+        before.
         """
         before, self._imported_uris[uri] = self._imported_uris.get(uri, []), self.texts.open_imports(uri)
         self.on_use_change(dict.fromkeys([*before, *self._imported_uris[uri]]))

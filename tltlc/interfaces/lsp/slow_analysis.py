@@ -28,7 +28,8 @@ _USE_RULES: Final = ("TLT0421", "TLT0422")
 class Request:
     """A text to analyse with the settings of its project.
 
-    ``texts`` replace the files at their paths.
+    ``levels`` are the lint levels of the project by code. ``texts`` has the texts of open documents
+    by path; they replace the files on disk.
     """
 
     source: SourceFile
@@ -39,9 +40,10 @@ class Request:
 
 @record
 class SpecFigures:
-    """The automaton and tests of a spec in numbers.
+    """The size of a spec's automaton, and how many tests of the spec pass and fail.
 
-    ``distance`` is the distance of the first state; None if no trace satisfies the spec.
+    ``states`` is the number of states. ``distance`` is the distance of the initial state; None if
+    no trace satisfies the spec.
     """
 
     spec: str
@@ -88,7 +90,7 @@ def _seems_unused(view: View) -> bool:
 
 
 def _elsewhere(request: Request) -> Container[str]:
-    """Return the names that other files use, as they stand in the editor."""
+    """Return the names that other files use; for open files, the text in the editor counts."""
     name = request.source.name
     if name.startswith("<"):
         return frozenset()

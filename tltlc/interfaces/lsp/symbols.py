@@ -45,7 +45,7 @@ def symbols(document: Document, encoding: str) -> list[types.DocumentSymbol]:
 
 
 def matching_symbols(document: Document, query: str, encoding: str, uri: str) -> list[types.WorkspaceSymbol]:
-    """Return the declarations whose names contain the letters of a query, in this order.
+    """Return the declarations whose names contain the letters of the query, in the query's order.
 
     Case does not matter. An empty query matches all declarations.
     """

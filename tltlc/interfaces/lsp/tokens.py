@@ -31,13 +31,14 @@ _NUMBERS: Final = {token_type: number for number, token_type in enumerate(dict.f
 LEGEND: Final = types.SemanticTokensLegend(
     [member.value for member in _NUMBERS], [member.value for member in _MODIFIERS]
 )
-"""The token types by number, and the modifiers by bit."""
+"""The names of the token types, by number, and of the modifiers, by bit."""
 
 
 def tokens(document: Document, encoding: str) -> list[int]:
-    """Return five numbers for each name: relative line and column, length, type and modifiers.
+    """Return five numbers for each name: line, column, length, type and modifiers.
 
-    The line is relative to the previous name; so is the column, if both are on one line.
+    The line counts from the line of the previous name. The column counts from the previous name if
+    both are on one line, and else from the start of the line.
     """
     numbers: list[int] = []
     line = column = 0

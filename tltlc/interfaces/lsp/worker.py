@@ -16,7 +16,7 @@ from tltlc.io.limits import COMMAND
 from tltlc.io.resources import limit
 
 LONGEST_S: Final = 60.0
-"""Seconds after which an analysis is given up."""
+"""Seconds after which an analysis is stopped."""
 
 
 class AnalysisWorker:
@@ -56,7 +56,7 @@ class AnalysisWorker:
         self._process = self._pipe = None
 
     def _connection(self) -> Connection:
-        """Return the pipe to the process, which is started if it is not alive."""
+        """Return the pipe to the process; start the process first if it is not running."""
         if self._pipe is None or self._process is None or not self._process.is_alive():
             self.abandon()
             context = multiprocessing.get_context("spawn")

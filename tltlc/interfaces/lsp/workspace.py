@@ -1,4 +1,4 @@
-"""The open texts of the editor, and the files around them."""
+"""The texts that are open in the editor, and the source files in its folders."""
 
 from __future__ import annotations
 
@@ -17,7 +17,9 @@ from tltlc.resolve.imports import standard_library
 
 
 class Workspace:
-    """The open texts, the files around them, and a document for each that was needed.
+    """The texts that are open in the editor, and the source files in its folders.
+
+    A :class:`Document` is made for a text or file when it is first needed, and then cached.
 
     ``folders`` are the paths of the folders that the editor shows.
     """
@@ -39,7 +41,7 @@ class Workspace:
         return [uri, *self._forget(name)]
 
     def close(self, uri: str) -> list[str]:
-        """Forget a closed text, so that its file counts again.
+        """Forget a closed text, so that the file on disk counts again.
 
         Return the URIs of affected open documents.
         """
@@ -57,7 +59,7 @@ class Workspace:
     # --- documents ----------------------------------------------------------------------------
 
     def document(self, uri: str) -> Document | None:
-        """Return the document with the open text, or else with the file; None if neither can be read."""
+        """Return the document for the open text, or else for the file; None if there is neither."""
         return self.document_named(name_of(uri))
 
     def document_named(self, name: str) -> Document | None:
@@ -85,7 +87,7 @@ class Workspace:
         return opened[1] if opened else None
 
     def uri(self, name: str) -> str:
-        """Return the URI of a file, as the editor writes it if the file is open."""
+        """Return the URI of a file; if the file is open, the URI that the editor uses."""
         opened = self._open.get(path_of(name))
         return opened[0] if opened else uri_of(name)
 
@@ -145,7 +147,7 @@ class Workspace:
                 yield document
 
     async def parse(self, is_needed: Callable[[str], bool]) -> None:
-        """Parse the texts that ``is_needed`` selects, so that :meth:`all` is fast afterwards.
+        """Parse the documents whose texts ``is_needed`` selects, and find their names in advance.
 
         Other requests are answered between two files.
 

@@ -30,13 +30,13 @@ _KILLED_HELP: Final = "try again; the system does this if memory is short, and t
 
 
 class AbandonedError(Exception):
-    """The client no longer waits for the answer."""
+    """Raised if the client no longer waits for the answer."""
 
 
 class Children:
     """Answers requests, at most :data:`MOST_AT_ONCE` at a time, each for at most ``limit_s`` seconds.
 
-    One child is always loaded in advance.
+    One child is always started before its request comes, because loading the compiler takes time.
     """
 
     def __init__(self, limit_s: float = LIMIT_S) -> None:
@@ -50,7 +50,8 @@ class Children:
     def answer(self, request: bytes, is_abandoned: Callable[[], bool] = lambda: False) -> str | None:
         """Return a child's answer to a request, or None if the bytes are not a request.
 
-        The answer is that of :func:`tltlc.interfaces.playground.protocol.answer`.
+        The answer is made by :func:`tltlc.interfaces.playground.protocol.answer`. ``is_abandoned``
+        is whether the client no longer waits.
 
         Raises AbandonedError as soon as the client no longer waits, and OSError if no process can
         be started.
@@ -151,7 +152,7 @@ def _exchange(child: subprocess.Popen[bytes], request: bytes) -> bytes:
 
 
 def _failure_answer(status: int) -> str:
-    """Return the answer for a child that ended with this status and gave no answer itself."""
+    """Return an error as the answer, for a child that ended with this status without an answer."""
     if status == NO_MEMORY:
         return error_answer(TOO_LARGE)
     if status >= 0:

@@ -61,7 +61,7 @@ class Site(Protocol):
 class ConnectionState(Enum):
     """The state of a connection.
 
-    To make room, connections with the least value are closed first.
+    If there is no room for a new connection, one in the state with the least value is closed.
     """
 
     LEAVING = 0
@@ -73,7 +73,7 @@ class ConnectionState(Enum):
 
 
 class OpenConnections:
-    """The open connections."""
+    """The open connections of a server, at most ``limits.most``."""
 
     def __init__(self, limits: Connections) -> None:
         self.limits = limits
@@ -93,7 +93,7 @@ class OpenConnections:
         return True
 
     def make_room(self) -> bool:
-        """Close the least important connection, the oldest of its kind.
+        """Close the least important connection: of those in the lowest :class:`State`, the oldest.
 
         Return whether a connection could be closed. Connections that wait for an answer, or send a
         body after a valid head, stay open. If a client has stopped sending, it may have hung up, so
@@ -175,7 +175,7 @@ class Connection(asyncio.Protocol):
     def eof_received(self) -> bool:
         """Handle a client that has stopped sending.
 
-        Return whether the connection stays open for pending answers.
+        Return whether the connection stays open, because an answer is still to be sent.
         """
         self._client_has_ended = True
         if self.state is ConnectionState.WRITING:

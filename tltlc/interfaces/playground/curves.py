@@ -10,23 +10,23 @@ Curve = tuple[Point, ...]
 """A start, then three points for each cubic piece: its two control points and its end."""
 
 _SHORT: Final = 0.05
-"""A length that is invisible and has no reliable direction."""
+"""Pixels; a line that is not longer is invisible, and its direction unreliable."""
 
 
 def add_line(curve: Curve, end: Point) -> Curve:
-    """Extend a curve by a straight line, unless that would be too short to see."""
+    """Extend a curve by a straight line to ``end``, unless the line is too short to see."""
     return (*curve, curve[-1], end, end) if dist(curve[-1], end) > _SHORT else curve
 
 
 def add_bend(curve: Curve, end: Point) -> Curve:
-    """Extend a curve to a point at another height; it starts and ends horizontally."""
+    """Extend a curve by a piece to ``end`` that starts and ends horizontally."""
     x, y = curve[-1]
     half = (end[0] - x) / 2
     return (*curve, (x + half, y), (end[0] - half, end[1]), end)
 
 
 def add_drop(curve: Curve, end: Point) -> Curve:
-    """Extend a curve to a point below; it starts and ends vertically."""
+    """Extend a curve by a piece down to ``end`` that starts and ends vertically."""
     x, y = curve[-1]
     half = (end[1] - y) / 2
     return (*curve, (x, y + half), (end[0], end[1] - half), end)

@@ -1,4 +1,4 @@
-"""Fixes of errors that the page offers, after each has been tried."""
+"""Find the fixes of errors that the page offers; each fix is tried first."""
 
 from __future__ import annotations
 
@@ -17,9 +17,10 @@ _LONGEST: Final = 20_000
 
 
 def of_errors(source: SourceFile, diagnostics: Iterable[Diagnostic], libraries: tuple[Path, ...]) -> list[OfferedFix]:
-    """Return the fixes for errors of a text that :func:`tltlc.tools.lint.fixes.fixes_of_errors` has tried.
+    """Return the fixes for the errors of a text.
 
-    ``libraries`` are the folders of imports. Texts over 20,000 characters get no fixes.
+    :func:`tltlc.tools.lint.fixes.fixes_of_errors` tries each fix. ``libraries`` are the folders
+    that are searched for imports. Texts over 20,000 characters get no fixes.
     """
     if len(source.text) > _LONGEST:
         return []

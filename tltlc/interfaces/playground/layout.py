@@ -1,9 +1,9 @@
 """Place the states of a small automaton and the texts of its edges without overlaps.
 
-Columns of states alternate with columns of texts. An edge passes each column at a height of its
-own, its level, and its text stands above that level, so the edge crosses no state and no text.
-Traps stand in a row below. Edges drop to them straight from their states, or in a lane beside the
-lower states of the column. All lengths are in pixels of the SVG; y points down.
+Columns of states alternate with columns of texts. An edge has a height of its own in each column
+that it passes, its level, so it crosses no state and no text. Its text is above the level. Traps
+are in a row below. An edge to a trap goes straight down from its state or, if other states are
+below that state, down a lane beside them. All lengths are in pixels of the SVG; y points down.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from tltlc.interfaces.playground.ordering import Ends, Node, chain, columns_of, 
 
 _SWEEPS: Final = 12
 _GAP, _NARROW_GAP = 30.0, 12.0
-"""Gaps between two nodes of a column: if one of them is a state, and if none is."""
+"""Vertical gaps between two nodes of a column: if one of them is a state, and if neither is."""
 _LEAST_BEND, _MOST_BEND = 36.0, 110.0
 """Least and greatest distance between two columns, where edges change their levels."""
 _LANE: Final = 20.0
@@ -33,8 +33,8 @@ Size = tuple[float, float]
 class StateBox:
     """A box to place: a state, with the texts over and under it.
 
-    ``over`` and ``under`` are the heights of those texts, ``span`` is the width of the widest of
-    them, and ``below`` puts the box into the row below.
+    ``over`` and ``under`` are the heights of the texts over and under the state, and ``span`` is
+    the width of the widest of them. ``below`` is whether the box is in the row of traps.
     """
 
     width: float
@@ -47,7 +47,10 @@ class StateBox:
 
 @record
 class Layout:
-    """The centres of states and texts, the curves of edges, and the total size."""
+    """The centres of states, the centres of edges' texts, the curves of edges, and the total size.
+
+    States are given by number, texts and curves by the ends of their edges.
+    """
 
     middles: Mapping[int, Point]
     texts: Mapping[Ends, Point]
@@ -59,15 +62,15 @@ class Layout:
 def layout(boxes: Mapping[int, StateBox], texts: Mapping[Ends, Size], corner: Point = (0.0, 0.0)) -> Layout:
     """Lay out boxes and edges; ``corner`` is the left upper corner of the picture.
 
-    Box 0 is the first state, and ``texts`` has the text size of each edge. Loops and the texts of
-    edges to the row below get no places, because they stand over and under the boxes. No edge may
-    lead from the row below to another box.
+    Box 0 is the initial state, and ``texts`` has the size of each edge's text. Loops, and the texts
+    of edges to the row below, are not placed here, because they are drawn over and under the boxes.
+    No edge may lead from the row below to another box.
     """
     return _LayoutPass(boxes, texts, corner).layout()
 
 
 class _LayoutPass:
-    """Computes columns from left to right, levels from top to bottom, then the curves of edges."""
+    """Computes first the columns, then the levels of their nodes, and then the curves of edges."""
 
     def __init__(self, boxes: Mapping[int, StateBox], texts: Mapping[Ends, Size], corner: Point) -> None:
         self.boxes, self.texts = boxes, texts
@@ -107,7 +110,11 @@ class _LayoutPass:
         return (self.texts[node[0], node[1]][1] + 5, 3.0) if is_text else (0.0, 0.0)
 
     def _levels(self, top: float) -> dict[Node, float]:
-        """Return a level for each node, near its neighbours and without overlaps in its column."""
+        """Return the level (height) of each node.
+
+        It is near the levels of the nodes that edges link with it, and nodes of a column do not
+        overlap.
+        """
         beside = neighbours(link for nodes in self.chains.values() for link in pairwise(nodes))
         levels: dict[Node, float] = {}
         for nodes in self.columns:
@@ -125,7 +132,7 @@ class _LayoutPass:
         return {node: level + shift for node, level in levels.items()}
 
     def _spread(self, nodes: Sequence[Node], ideal_levels: Mapping[Node, float], levels: dict[Node, float]) -> None:
-        """Place the nodes of a column near their ideal levels, in order and with gaps.
+        """Set the levels of the nodes of a column near their ideal levels, in order and with gaps.
 
         The mean of the levels is the mean of the ideal levels.
         """
@@ -145,7 +152,10 @@ class _LayoutPass:
         return self._reach(upper)[1] + gap + self._reach(lower)[0]
 
     def _straighten(self, nodes: Sequence[Node], levels: dict[Node, float]) -> None:
-        """Bring as many nodes of an edge as possible to one level, then repeat with the rest."""
+        """Set as many nodes of an edge as possible to one level, then repeat with the rest.
+
+        So the edge has few bends.
+        """
         while nodes:
             low, high = self._room(nodes[0], levels)
             number = 1
@@ -159,7 +169,7 @@ class _LayoutPass:
             nodes = nodes[number:]
 
     def _room(self, node: Node, levels: Mapping[Node, float]) -> tuple[float, float]:
-        """Return the least and greatest level of a node between its neighbours in the column."""
+        """Return the least and greatest level that a node may have beside its column neighbours."""
         nodes = self.columns[self._number(node)]
         place = nodes.index(node)
         low = levels[nodes[place - 1]] + self._apart(nodes[place - 1], node) if place else -inf
@@ -200,9 +210,9 @@ class _LayoutPass:
         return (left + right) / 2, self.levels[node] - 5 - self.texts[ends][1] / 2
 
     def _ports(self) -> dict[tuple[Ends, int], Point]:
-        """Return where each edge leaves its source and reaches its target.
+        """Return where each edge leaves its source and reaches its target, by edge and state.
 
-        The edges at a side are sorted by the level of their next node.
+        The edges at one side of a state are sorted by the levels of the nodes that they lead to.
         """
         sides: dict[tuple[int, bool], list[tuple[float, Ends]]] = {}
         for ends, nodes in self.chains.items():
@@ -232,7 +242,7 @@ class _LayoutPass:
         return curve
 
     def _drops(self) -> dict[Ends, Curve]:
-        """Return the curves of edges to the row below; they arrive side by side."""
+        """Return the curves of edges to the row below; edges to one box end side by side."""
         paths_down = {a: self._path_down(a) for a, _ in self.drops}
         curves = {}
         for target, (x, y) in self.row.items():
@@ -246,7 +256,7 @@ class _LayoutPass:
         return curves
 
     def _path_down(self, state: int) -> Curve:
-        """Return the curve from a state down to the lowest level."""
+        """Return the curve from a state down to the bottom of the columns."""
         (x, y), box = self._middle(state), self.boxes[state]
         curve: Curve = ((x, y + box.height / 2),)
         if state in self.in_lanes:
@@ -256,7 +266,7 @@ class _LayoutPass:
         return add_line(curve, (curve[-1][0], self.bottom))
 
     def _row_below(self, left: float) -> dict[int, Point]:
-        """Return places in the row below, each under the middle of the states that lead there."""
+        """Return the places of the boxes in the row below, each below the edges that lead to it."""
         ideal_levels = {
             state: mean([self._path_down(a)[-1][0] for a, b in self.drops if b == state], 0.0)
             for state, box in self.boxes.items()

@@ -17,7 +17,7 @@ _SWEEPS: Final = 12
 Ends = tuple[int, int]
 """The numbers of the source and the target of an edge."""
 Node = tuple[int, ...]
-"""A state number in a tuple, or ``(source, target, column)`` where an edge passes a column."""
+"""``(state,)`` for a state, or ``(source, target, column)`` for an edge that passes a column."""
 
 
 def columns_of(states: Sequence[int], edges: Iterable[Ends]) -> dict[int, int]:
@@ -67,7 +67,7 @@ def order_columns(column: Mapping[int, int], chains: Iterable[Sequence[Node]]) -
 
 
 def neighbours(links: Iterable[tuple[Node, Node]]) -> dict[Node, list[Node]]:
-    """Return the nodes that each node is linked with."""
+    """Return, for each node, the nodes that it is linked with."""
     beside: dict[Node, list[Node]] = {}
     for node, neighbour in links:
         beside.setdefault(node, []).append(neighbour)

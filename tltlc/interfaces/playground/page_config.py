@@ -11,7 +11,10 @@ EXAMPLES: Final = Path(__file__).with_name("examples")
 
 
 def start() -> dict[str, Any]:
-    """Return what the request ``{}`` asks for: ``examples``, and ``words`` and ``units`` to colour."""
+    """Return the answer to the request ``{}``.
+
+    It contains the ``examples``, and the keywords (``words``) and ``units`` that the page colours.
+    """
     tables = load()
     # A soft keyword is a name in most places, so it keeps the colour of a name.
     words = sorted(word for word in tables.words if word.isascii() and word not in tables.soft)

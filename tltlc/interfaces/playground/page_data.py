@@ -38,8 +38,9 @@ MOST_MESSAGES: Final = 200
 def view(text: str, spec: str = "", letters: Iterable[Letter] = (), notation: Notation = "english") -> dict[str, Any]:
     """Return what the page shows about a text, one of its specs, and a trace of that spec.
 
-    ``spec`` is the name of a spec; if none has that name, the first one is shown. ``notation`` is
-    for the picture. The keys of the result:
+    ``spec`` is the name of a spec; if none has that name, the first one is shown. ``letters`` are
+    the steps of the trace. ``notation`` is the notation of formulas in the picture. The keys of the
+    result:
 
     - ``diagnostics``: each with code, severity, title, help, labels and ways_out. Their ``start``
       and ``end`` are offsets into the text in UTF-16 units, as in browsers, or None in another
@@ -126,8 +127,8 @@ def diagnostic(
 ) -> dict[str, Any]:
     """Return a message as the page expects it.
 
-    ``source`` is the text in which the page can show places. Of ``offered_fixes``, only the fixes of this
-    very message are included.
+    ``source`` is the text on the page; labels in other files get no offsets. Of ``offered_fixes``,
+    only the fixes of this message are included.
     """
     short = shorten(message)
     return {

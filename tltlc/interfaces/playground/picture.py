@@ -24,13 +24,16 @@ MOST_EDGES: Final = 120
 _LABEL_CHARACTER, _LABEL_LINE = 7.3, 17.0
 _GUARD_CHARACTER, _GUARD_LINE = 6.7, 14.0
 _LABEL, _GUARD, _WIDE_GUARD = 26, 22, 30
-"""Characters in a line; longer words may take twice as many."""
+"""Characters in a line of a label, of a guard, and of a guard with more room.
+
+A longer word may take up to twice as many.
+"""
 _MOST_LINES: Final = 6
 _LOOP: Final = 26.0
-"""Height of a loop beside its state."""
+"""Height of a loop over or under its state."""
 _MARGIN: Final = 20.0
 _START: Final = 26.0
-"""Length of the arrow into the first state."""
+"""Length of the arrow into the initial state."""
 
 
 def picture(fspa: Fspa, notation: Notation = "english") -> tuple[str | None, str]:
@@ -39,9 +42,9 @@ def picture(fspa: Fspa, notation: Notation = "english") -> tuple[str | None, str
     If the automaton has too many states or edges, return None and a note.
 
     States are groups with the class ``state`` and the class of their verdict; ``data-states`` has
-    the numbers of the states that they stand for. Edges are groups with the class ``edge``,
-    ``data-source`` and ``data-target``. The title of both is their full text in words; the picture
-    shows only the start of a long text.
+    the number of the state, or the numbers of all states that are folded into it. Edges are groups
+    with the class ``edge``, ``data-source`` and ``data-target``. The title of both is their full
+    text in words; the picture shows only the start of a long text.
     """
     drawing = folded_drawing(fspa)
     if len(drawing.states) > MOST_STATES or len(drawing.edges) > MOST_EDGES:
@@ -50,7 +53,7 @@ def picture(fspa: Fspa, notation: Notation = "english") -> tuple[str | None, str
 
 
 class _PictureText:
-    """Texts and places of one picture."""
+    """Computes the texts and places of one picture."""
 
     def __init__(self, fspa: Fspa, drawing: Drawing, notation: Notation) -> None:
         self.fspa, self.drawing = fspa, drawing
@@ -80,7 +83,7 @@ class _PictureText:
         )
 
     def _lines(self, ends: Ends) -> list[str]:
-        """Return the text of an edge in lines; texts over and under a state may be wider."""
+        """Return the lines of an edge's text; a text over or under a state may be wider."""
         is_wide = ends[0] == ends[1] or ends[1] == self.trap
         return _shorten(self.guards[ends], _WIDE_GUARD if is_wide else _GUARD)
 
@@ -151,7 +154,7 @@ class _PictureText:
 
 
 def _trap(drawing: Drawing) -> int | None:
-    """Return the violated state that no edge leaves, if there is one other than the first state."""
+    """Return the violated state that no edge leaves, unless it is the initial state; else None."""
     leaving = {edge.source for edge in drawing.edges if edge.source != edge.target}
     traps = (state.id for state in drawing.states if state.verdict == "violated" and state.id not in leaving)
     return next((state for state in traps if state), None)

@@ -1,6 +1,6 @@
 """The requests of the page and their answers, as JSON.
 
-They are the same with the server and in the browser without one.
+They are the same whether the compiler runs on a server or in the browser.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ TOO_LARGE: Final = "this takes more memory than the playground has"
 
 
 class RequestError(ValueError):
-    """The text is not a request."""
+    """Raised if a text is not a request of the page."""
 
 
 @record

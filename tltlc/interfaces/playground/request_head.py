@@ -24,11 +24,11 @@ _END: Final = re.compile(rb"\n\r?\n")
 _BAD_ESCAPE: Final = re.compile(r"%(?![0-9A-Fa-f]{2})")
 _MOST_DIGITS: Final = 18
 _REPEATED: Final = {"accept", "accept-encoding", "accept-language", "cache-control", "connection", "via"}
-"""Headers that may be repeated: they are lists, and at most ``connection`` is used here."""
+"""Headers that may be repeated, because their values are lists; only ``connection`` is used."""
 
 
 class RefusedError(Exception):
-    """A request is answered with an error, after which the connection is closed."""
+    """Raised for a request that is refused with an error status; then the connection is closed."""
 
     def __init__(self, status: HTTPStatus) -> None:
         self.status = status

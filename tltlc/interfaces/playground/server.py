@@ -29,7 +29,10 @@ HOST: Final = "127.0.0.1"
 TOKEN_HEADER: Final = "Tltlc-Token"
 
 _NAMES: Final = {HOST, "localhost"}
-"""Other names are refused: a foreign page could use a domain name that resolves to this address."""
+"""The host names that requests may use.
+
+Others are refused: a foreign page could use a domain name that resolves to this address.
+"""
 
 _API: Final = "/api"
 _METHODS: Final = {"GET", "HEAD", "POST"}
@@ -51,7 +54,7 @@ _HEADERS: Final = {
 
 
 class PageHandler:
-    """Answers ``GET`` of the page's files, and ``POST`` to :data:`_API` with the token."""
+    """Answers ``GET`` for the page's files, and ``POST`` to :data:`_API` if it has the token."""
 
     def __init__(self, children: Children, token: str) -> None:
         self.files = page_files()
@@ -141,7 +144,7 @@ def _is_from_page(head: Head) -> bool:
 
 
 def _within_descriptors(connections: Connections) -> Connections:
-    """Limit the connections to the descriptors that remain after those for children."""
+    """Limit the connections to the file descriptors that the process itself does not need."""
     with suppress(ImportError):
         import resource
 
@@ -209,7 +212,8 @@ class PlaygroundServer:
     def shutdown(self) -> None:
         """Stop :meth:`serve_forever` if it runs in another thread, and wait until it ends.
 
-        In the same thread, it has ended; an interrupt may have ended it at any point.
+        In the thread that ran :meth:`serve_forever`, do nothing, because it has ended there
+        already.
         """
         if self._thread is not current_thread() and not self._stopped.is_set():
             self._loop.call_soon_threadsafe(self._loop.stop)
@@ -274,7 +278,7 @@ class PlaygroundServer:
 
     @contextmanager
     def _signals_wake_loop(self) -> Iterator[None]:
-        """Let each signal end the wait of the loop, within the context.
+        """Within the context, wake the event loop at each signal, so that its handler runs at once.
 
         Python runs the handler of a signal between two steps of the main thread. A signal that
         another thread gets, or that comes just before the wait begins, would not be handled until a
@@ -288,7 +292,7 @@ class PlaygroundServer:
             for end in (reader, writer):
                 end.setblocking(False)
             self._loop.add_reader(reader, _read_all, reader)
-            # If an interrupt comes between the two calls, no descriptor stays set that is closed below.
+            # So an interrupt between the two calls leaves no descriptor set that is closed below.
             before = signal.set_wakeup_fd(-1)
             try:
                 signal.set_wakeup_fd(writer.fileno(), warn_on_full_buffer=False)

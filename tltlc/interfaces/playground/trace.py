@@ -27,9 +27,9 @@ _LONGEST: Final = 200
 def rows(fspa: Fspa, letters: Iterable[Letter]) -> list[dict[str, Any]]:
     """Return the monitor's output for each step.
 
-    If the monitor refuses a step, its row has an ``error``, and is the last row. A letter names the atoms
-    that hold, and unknown names are ignored; or it gives the values of the signals. In a row,
-    ``from`` is the state before the step, ``values`` are the values of the atoms in order, and
+    If the monitor refuses a step, its row has an ``error`` and is the last row. A letter gives the
+    names of the atoms that hold (unknown names are ignored), or the values of the signals. In a
+    row, ``from`` is the state before the step, ``values`` are the values of the atoms in order, and
     ``signals`` is a sample of signal values for the letter, or None if none was found.
     """
     monitor, finder = Monitor(fspa), SampleFinder(fspa)
@@ -65,9 +65,9 @@ def rows(fspa: Fspa, letters: Iterable[Letter]) -> list[dict[str, Any]]:
 
 
 def idle_step(fspa: Fspa) -> dict[str, Any]:
-    """Return the letter of a new row: a step in which nothing happens, if there is one.
+    """Return the step that the page suggests for a new row: one in which little happens.
 
-    The step stays in the first state if possible, and few atoms hold.
+    It keeps the automaton in the initial state if possible, and few atoms hold.
     """
 
     def cost(prime: tuple[tuple[int, bool], ...]) -> int:

@@ -55,7 +55,7 @@ _ROOT = _op("sqrt", _X)
 _HUGE = _op("*", 1e308, _X)
 _NESTED = When(
     (
-        # Where an earlier part decides, the later parts have no value.
+        # If an earlier part decides the condition, the later parts have no value.
         (_condition("and", _condition(">", _X, 0.0), _condition("<", _SHARE, 0.5)), _op("-", _SHARE, 0.25)),
         (_condition("or", _condition("<=", _X, 0.0), _condition(">=", _op("/", _Y, _X), 2.0)), _divided(_Y, 4.0)),
         (
@@ -186,7 +186,10 @@ def _refused_case(name: str) -> ConformanceCase:
 
 
 def _nested_when(inside: Literal["value", "otherwise", "condition"]) -> Expression:
-    """Return a ``when`` in each value, each ``otherwise`` or each condition of another one, 96 operators deep."""
+    """Return nested ``when`` expressions, 96 operators deep.
+
+    ``inside`` is the part of each ``when`` that contains the next one.
+    """
     node: Expression = Const(0.5)
     for level in range(48 if inside == "condition" else 96):
         reached, value = _condition(">", _X, level / 100 - 0.5), level / 1000 - 0.5

@@ -1,6 +1,6 @@
 """Comparisons over ranges of all sizes, with values next to their thresholds.
 
-They test that scaling does not change the truth of a comparison.
+They test that scaling a comparison to a value in [-1, 1] does not change whether it is true.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from tltlc.tools.conformance.traces import table
 
 @record
 class Border:
-    """``x OP threshold`` for an x in [low, high].
+    """A comparison ``x OP threshold`` for an x in [low, high].
 
     If the threshold is None, it is another signal of the same range.
     """
@@ -36,7 +36,7 @@ class Border:
         return "".join(f"signal {name} in [{self.low!r}, {self.high!r}]\n" for name in names)
 
     def comparison(self, number: int) -> str:
-        """Return the comparison in the language."""
+        """Return the comparison as it is written in a spec."""
         return f"x{number} {self.op} {f'y{number}' if self.threshold is None else repr(self.threshold)}"
 
     def values(self) -> Iterator[tuple[float, ...]]:

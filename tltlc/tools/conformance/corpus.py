@@ -30,7 +30,7 @@ CASES: Final[CaseBuilders] = {
 
 VERSION: Final = 1
 TOLERANCE: Final = 1e-12
-"""The largest difference of numbers in a case that is not exact."""
+"""The largest allowed difference from an expected number, in cases that are not exact."""
 
 _ROUNDED_BY_LIBRARY: Final = ("exp", "tanh", "^")
 """Operators whose rounding depends on the library of the language."""
@@ -64,7 +64,7 @@ def is_corpus(folder: Path) -> bool:
 
 
 def is_exact(fspa: Fspa) -> bool:
-    """Whether numbers are the same to the last digit everywhere.
+    """Whether all monitors of an automaton must compute the same numbers, to the last digit.
 
     This holds if IEEE 754 defines each operation.
     """

@@ -44,7 +44,7 @@ class Refusal:
 
 @record
 class ExpectedOutput:
-    """The rows before the end or the refusal, without the header, and the number of clamped values."""
+    """The expected rows without the header, the refusal or None, and the number of warnings."""
 
     rows: tuple[tuple[str, ...], ...]
     refusal: Refusal | None

@@ -39,26 +39,32 @@ def _bad_row(row: bytes) -> OddTrace:
 
 
 def _x_cell(cell: bytes, value: float | None) -> OddTrace:
-    """Return a trace with a second value of ``x``; None means that the cell is refused."""
+    """Return a trace with this cell for ``x`` in its second row.
+
+    ``value`` is the value of the cell; None if the cell is refused.
+    """
     if value is None:
         return _bad_row(cell + b",1")
     return OddTrace(_HEAD + b"0.5,1\n" + cell + b",1\n", (*_ONE, (value, 1.0)))
 
 
 def _seen_cell(cell: bytes, value: float | None) -> OddTrace:
-    """Return a trace with a second value of ``seen``; None means that the cell is refused."""
+    """Return a trace with this cell for ``seen`` in its second row.
+
+    ``value`` is the value of the cell; None if the cell is refused.
+    """
     if value is None:
         return _bad_row(b"0.5," + cell)
     return OddTrace(_HEAD + b"0.5,1\n0.5," + cell + b"\n", (*_ONE, (0.5, value)))
 
 
 def _note(cell: bytes) -> OddTrace:
-    """Return a trace with a cell in a column that nothing reads."""
+    """Return a trace with this cell in a column that is not a signal, so it is ignored."""
     return OddTrace(b"note,x,seen\n" + cell + b",0.5,1\n-,-0.25,0\n", _TWO)
 
 
 def _bad_note(cell: bytes, line: int = 3) -> OddTrace:
-    """Return a trace that is refused at this line, for a cell in a column that nothing reads."""
+    """Return a trace that is refused at this line, for a cell in a column that is not a signal."""
     return OddTrace(b"note,x,seen\n-,0.5,1\n" + cell + b",0.5,1\n-,0.5,1\n", _ONE, line)
 
 

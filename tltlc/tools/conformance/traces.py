@@ -46,9 +46,9 @@ def random_trace(fspa: Fspa, draw: Draw, length: int, pools: Pools = EMPTY, *, r
 
 
 def lively_trace(fspa: Fspa, draw: Draw, length: int, pools: Pools = EMPTY) -> bytes:
-    """Return that one of several random traces that visits most states.
+    """Return, of several random traces, the one that visits the most states.
 
-    Of two with as many states, it is the one with more steps before the verdict is final.
+    Of two that visit equally many, return the one with more steps before the verdict is final.
     """
     return max(
         [random_trace(fspa, draw, length, pools) for _ in range(_TRIES)], key=lambda trace: _liveliness(fspa, trace)
@@ -64,7 +64,10 @@ def _liveliness(fspa: Fspa, trace: bytes) -> tuple[int, int]:
 
 
 def _sample(fspa: Fspa, draw: Draw, pools: Pools, accepted: bool) -> dict[str, float]:
-    """Draw samples until one is accepted, or is not, as asked; the last attempt is returned in any case."""
+    """Draw samples until one is accepted, or rejected if ``accepted`` is false.
+
+    After ``_ATTEMPTS`` samples, return the last one anyway.
+    """
     for _ in range(_ATTEMPTS):
         sample = {signal.name: _value(draw, signal, pools.get(signal.name, ())) for signal in fspa.signals}
         if _is_accepted(fspa, sample) == accepted:

@@ -1,6 +1,7 @@
 """Find the ``exclusive`` groups that a comparison of two specs assumes.
 
-They can include groups that the specs themselves do not use.
+A group is a set of atoms of which at most one holds at a time. The assumed groups can include
+groups that the specs themselves do not use.
 """
 
 from __future__ import annotations

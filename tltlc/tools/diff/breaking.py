@@ -25,15 +25,15 @@ if TYPE_CHECKING:
     from tltlc.tools.diff.library_settings import Rules
 
 _SHARED: Final = ("clock", "signal", "param", "atom")
-"""The kinds of differences that the specs of a file share."""
+"""The kinds of differences that are reported once for all specs of a file."""
 
 
 @record
 class Version:
-    """One version of a file: its automata, and the labels of its specs by name.
+    """One version of a file: its automata, and the places of its specs by name, for messages.
 
-    If the file has no specs, it is a library. Then ``offers`` has the declarations that it offers to
-    importers, and ``rules`` what it sets for all specs that import it.
+    A file without specs is a library. Then ``offers`` has the declarations that importers can use,
+    and ``rules`` the clock and the exclusive atoms that it sets for all specs that import it.
     """
 
     automata: tuple[Fspa, ...] = ()
@@ -67,7 +67,7 @@ class FileChange:
 
 
 def version_changes(change: FileChange, work: int = DEFAULT_WORK) -> tuple[Diagnostic, ...]:
-    """Return the changes of the specs in order, then the changes of what the specs use.
+    """Return the changes of the specs, in order, and then those of their signals, params and atoms.
 
     Error (:class:`~tltlc.diagnostics.diagnostic.TltlError`): TLT0750 if a comparison takes more
     than ``work`` steps.
@@ -116,8 +116,8 @@ def _spec_changes(old: Version, new: Version, moves: Sequence[MovedSpec], work: 
 def compare_versions(old: Fspa, new: Fspa, work: int) -> SpecPair:
     """Return the differences between two versions of a spec.
 
-    Atoms with the same name count as the same atom, and changes of their values are differences of
-    their own. The rename of an atom or signal is a difference, under the old name.
+    Atoms with the same name count as the same atom; if their values differ, this is reported as a
+    difference of its own. A renamed atom or signal is reported as a difference under its old name.
     Errors are as in :func:`version_changes`.
     """
     renamed_atoms = with_old_atom_names(old, new)

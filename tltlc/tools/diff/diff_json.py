@@ -49,9 +49,9 @@ def _pair(pair: SpecPair) -> dict[str, Any]:
 
 
 def _beginnings(pair: SpecPair) -> dict[str, Any] | None:
-    """Return how the finite beginnings of traces that do not break the specs for good relate.
+    """Compare the finite beginnings of traces after which the specs can still be met.
 
-    Returns None unless one spec is over finite traces and the other over infinite traces.
+    Return None unless one spec is over finite traces and the other over infinite traces.
     """
     comparison = pair.comparison.beginnings
     if comparison is None:

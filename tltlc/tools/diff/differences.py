@@ -30,8 +30,8 @@ class Difference:
     """One difference between two automata: its kind, and the values in A and B.
 
     ``name`` is the name of the signal, param or atom, and empty for other kinds. ``a`` and ``b`` are
-    records for signals, params and atoms, the names of the atoms for an ``exclusive`` group, and
-    plain values otherwise. The value of a side that has no such thing is None.
+    the values in A and B: records for signals, params and atoms, the names of the atoms for an
+    ``exclusive`` group, and plain values otherwise. If one of the two has no value, it is None.
     ``value_difference`` is set only for atoms.
     """
 

@@ -1,6 +1,7 @@
 """Find traces over the atoms of two specs that a game can produce.
 
-Atoms over the same signals may imply each other. So there are traces for which no samples exist.
+Atoms over the same signals may imply each other, as ``fuel > 30`` implies ``fuel > 20``. So there
+are traces for which no samples exist.
 """
 
 from __future__ import annotations
@@ -22,10 +23,11 @@ _MOST: Final = 30
 
 
 class FeasibleLetters:
-    """Searches samples for the letters over the atoms of two automata.
+    """Searches samples of signals for letters over the atoms of two automata.
 
     ``impossible`` collects the conjunctions of literals for which the search found no sample.
-    ``never`` has conjunctions that are known to be impossible; they are not collected.
+    ``never`` has conjunctions that are known to be impossible; they are not added to
+    ``impossible``.
     """
 
     def __init__(self, a: Fspa, b: Fspa, never: tuple[Literals, ...]) -> None:

@@ -17,11 +17,11 @@ from tltlc.tools.diff.traces import step_lines
 from tltlc.tools.diff.values import ValueDifference
 
 BREAKING: Final[Severity] = "error"
-"""The host must be changed, or recordings are judged differently now."""
+"""The severity of a change after which a host must change, or recordings are judged differently."""
 CHANGED: Final[Severity] = "warning"
-"""Numbers or behaviour differ, but everything still works."""
+"""The severity of a change of numbers or behaviour after which everything still works."""
 COMPATIBLE: Final[Severity] = "note"
-"""Nothing has to be done."""
+"""The severity of a change that needs no action."""
 
 _MOST_LINES: Final = 8
 """The most lines that a trace takes in a message."""
@@ -29,32 +29,32 @@ _ANEW: Final = "if this is meant, record baselines anew"
 
 
 def spec_removed(name: str, place: Label) -> Diagnostic:
-    """TLT0752: a spec was removed."""
+    """Return TLT0752: a spec was removed."""
     help_ = "keep it, or tell those who load its artefact or monitor"
     return Diagnostic("TLT0752", f"the spec `{name}` is gone", (at_old_place(place),), help_, BREAKING)
 
 
 def spec_renamed(old: str, new: str, before: Label, place: Label) -> Diagnostic:
-    """TLT0752: a spec has another name, but accepts the same traces."""
+    """Return TLT0752: a spec has another name, but accepts the same traces."""
     title = f"the spec `{old}` is called `{new}` now"
     help_ = "keep the old name, or tell those who load its artefact or monitor by it"
     return Diagnostic("TLT0752", title, (place, at_old_place(before)), help_, BREAKING)
 
 
 def spec_moved(name: str, before: Label, place: Label) -> Diagnostic:
-    """TLT0752: a spec moved to another file."""
+    """Return TLT0752: a spec moved to another file."""
     title = f"the spec `{name}` has moved here from `{before.source.name}`"
     help_ = "name this file where that one is named; artefacts and monitors are called as before"
     return Diagnostic("TLT0752", title, (place,), help_, COMPATIBLE)
 
 
 def spec_added(name: str, place: Label) -> Diagnostic:
-    """TLT0752: a spec is new."""
+    """Return TLT0752: a spec is new."""
     return Diagnostic("TLT0752", f"the spec `{name}` is new", (place,), "nothing needs to be done", COMPATIBLE)
 
 
 def traces_changed(pair: SpecPair, place: Label) -> Diagnostic:
-    """TLT0753: a spec accepts different traces than before."""
+    """Return TLT0753: a spec accepts different traces than before."""
     name, comparison = pair.b.name, pair.comparison
     if comparison.only_a is None:
         assert comparison.only_b is not None
@@ -71,7 +71,7 @@ def traces_changed(pair: SpecPair, place: Label) -> Diagnostic:
 
 
 def signal_changed(difference: Difference, specs: Sequence[str], place: Label) -> Diagnostic:
-    """TLT0754 or TLT0755: a host must supply other signals to the monitors of ``specs``."""
+    """Return TLT0754 or TLT0755: a host must supply other signals to the monitors of ``specs``."""
     name, used_by = difference.name, name_list(specs)
     if difference.a is None:
         assert isinstance(difference.b, Signal)
@@ -89,7 +89,7 @@ def signal_changed(difference: Difference, specs: Sequence[str], place: Label) -
 
 
 def signal_type_changed(old: Signal, new: Signal, place: Label) -> Diagnostic:
-    """TLT0755: a signal has another type, unit or range."""
+    """Return TLT0755: a signal has another type, unit or range."""
     name = new.name
     if old.type != new.type:
         title = f"the signal `{name}` is {_with_article(new.type)} now, and was {_with_article(old.type)}"
@@ -103,7 +103,7 @@ def signal_type_changed(old: Signal, new: Signal, place: Label) -> Diagnostic:
 
 
 def param_changed(difference: Difference, new_name: str | None, place: Label) -> Diagnostic:
-    """TLT0756: a param was removed, added or renamed, or has another value or range."""
+    """Return TLT0756: a param was removed, added or renamed, or has another value or range."""
     name, old, new = difference.name, difference.a, difference.b
     if not isinstance(old, Param):
         assert isinstance(new, Param)
@@ -132,14 +132,14 @@ def param_changed(difference: Difference, new_name: str | None, place: Label) ->
 
 
 def atom_changed(difference: Difference, others: Sequence[str], pair: SpecPair, place: Label) -> Diagnostic:
-    """TLT0757: an atom has other values. So do ``others``, which are atoms of the same predicate."""
+    """Return TLT0757: an atom and ``others``, atoms of the same predicate, have other values."""
     assert difference.value_difference is not None
     types: dict[str, ValueType] = {signal_.name: signal_.type for signal_ in (*pair.a.signals, *pair.b.signals)}
     return values_changed(f"`{difference.name}`", others, difference.value_difference, types, place)
 
 
 def atoms_renamed(renamings: Sequence[Difference], place: Label) -> Diagnostic:
-    """TLT0757: atoms of a predicate have other names, but the same meaning."""
+    """Return TLT0757: atoms of a predicate have other names, but the same meaning."""
     names = [renaming.b.name for renaming in renamings if isinstance(renaming.b, Atom)]
     are = "is" if len(names) == 1 else "are"
     title = f"{name_list([renaming.name for renaming in renamings])} {are} called {name_list(names)} now"
@@ -155,7 +155,7 @@ def values_changed(
     place: Label,
     kind: str = "atom",
 ) -> Diagnostic:
-    """TLT0757: an atom or predicate has other values. The help shows a sample at which it does."""
+    """Return TLT0757: an atom or predicate has other values; the help shows one sample."""
     title = f"the {kind} {subject} is {'judged' if difference.differs_in_truth else 'scaled'} otherwise"
     if others:
         title += f", as {'is' if len(others) == 1 else 'are'} {name_list(others)}"
@@ -168,26 +168,26 @@ def values_changed(
 
 
 def clock_changed(difference: Difference, specs: Sequence[str], place: Label) -> Diagnostic:
-    """TLT0758: ``specs`` have another clock."""
+    """Return TLT0758: ``specs`` have another clock."""
     are, were = ("is", "was") if len(specs) == 1 else ("are", "were")
     title = f"{name_list(specs)} {are} sampled {_clock(difference.b)} now, and {were} sampled {_clock(difference.a)}"
     return Diagnostic("TLT0758", title, (place,), _clock_help(difference.b), BREAKING)
 
 
 def library_clock_changed(old: float | None, new: float | None, place: Label) -> Diagnostic:
-    """TLT0758: a library declares another clock."""
+    """Return TLT0758: a library declares another clock."""
     title = f"specs are sampled {_clock(new)} now, and were sampled {_clock(old)}"
     return Diagnostic("TLT0758", title, (place,), _clock_help(new), BREAKING)
 
 
 def exclusive_added(names: Sequence[str], place: Label) -> Diagnostic:
-    """TLT0758: a library declares atoms to be exclusive."""
+    """Return TLT0758: a library declares atoms to be exclusive."""
     help_ = "a sample in which two of them hold is an error to specs that name both: look whether the game has such"
     return Diagnostic("TLT0758", f"{name_list(names)} are exclusive now", (place,), help_, BREAKING)
 
 
 def exclusive_removed(names: Sequence[str], place: Label) -> Diagnostic:
-    """TLT0758: a library no longer declares atoms to be exclusive."""
+    """Return TLT0758: a library no longer declares atoms to be exclusive."""
     title = f"{name_list(names)} are no longer exclusive"
     return Diagnostic(
         "TLT0758", title, (at_old_place(place),), "steps may be skipped, so progress and rewards may differ", CHANGED
@@ -195,7 +195,7 @@ def exclusive_removed(names: Sequence[str], place: Label) -> Diagnostic:
 
 
 def setting_changed(name: str, difference: Difference, place: Label) -> Diagnostic:
-    """TLT0758: a spec has another limit, judge, level, semantics, or ``exclusive`` group."""
+    """Return TLT0758: a spec has another limit, judge, level, semantics, or ``exclusive`` group."""
     old, new = difference.a, difference.b
     severity, help_ = BREAKING, _ANEW
     match difference.kind:
@@ -221,33 +221,33 @@ def setting_changed(name: str, difference: Difference, place: Label) -> Diagnost
 
 
 def declaration_removed(kind: str, name: str, place: Label) -> Diagnostic:
-    """TLT0759: a library no longer declares a name."""
+    """Return TLT0759: a library no longer declares a name."""
     help_ = "keep it, at least as another name for what took its place"
     return Diagnostic("TLT0759", f"the {kind} `{name}` is gone", (at_old_place(place),), help_, BREAKING)
 
 
 def parameters_changed(kind: str, name: str, place: Label, why: str) -> Diagnostic:
-    """TLT0759: existing uses of a library declaration are no longer valid; ``why`` says why."""
+    """Return TLT0759: uses of a library declaration are no longer valid; ``why`` is the reason."""
     help_ = "add parameters behind the others, with a default, and leave the others as they are"
     return Diagnostic("TLT0759", f"the {kind} `{name}` takes other parameters: {why}", (place,), help_, BREAKING)
 
 
 def signals_added(predicate: str, signals: Sequence[str], place: Label) -> Diagnostic:
-    """TLT0754: a predicate of a library reads additional signals."""
+    """Return TLT0754: a predicate of a library reads additional signals."""
     title = f"the predicate `{predicate}` reads {name_list(signals)} now"
     help_ = f"have the game supply {'it' if len(signals) == 1 else 'them'} wherever the predicate is used"
     return Diagnostic("TLT0754", title, (place,), help_, BREAKING)
 
 
 def at_old_place(place: Label) -> Label:
-    """Return the label with the message that the removed thing was there."""
+    """Return the label with the message that something removed was here."""
     return replace(place, message="it was here")
 
 
 def _trace(pair: SpecPair, trace: Trace) -> str:
-    """Return the text of a trace that follows a colon.
+    """Return the text of a trace, to be written after a colon.
 
-    A trace of one line stays on the line of the colon. A longer trace gets lines of its own, at most
+    A trace of one line stays on the line of the colon. A longer trace has lines of its own, at most
     ``_MOST_LINES``.
     """
     lines = step_lines(pair, trace.prefix)

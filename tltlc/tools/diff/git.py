@@ -27,15 +27,15 @@ _HOOK_VARIABLES: Final = {"GIT_DIR", "GIT_WORK_TREE", "GIT_INDEX_FILE", "GIT_PRE
 _PLAIN_FILES: Final = (b"100644", b"100755")
 _LINK: Final = b"120000"
 _NO_TARGET: Final = (b"symlink", b"dangling", b"loop", b"notdir")
-"""What git prints for a link that leads nowhere or out of the repository.
+"""What ``git cat-file`` prints for a link that leads nowhere or out of the repository.
 
-After it, git prints a size and a text of that size.
+It then prints a size in bytes, and a text of that size.
 """
 
 _HASH: Final = re.compile("[0-9a-f]{40,64}")
 _MOST_NAMES: Final = 1000
 _LONGEST_NAME: Final = 200
-"""A misspelt revision is compared with up to ``_MOST_NAMES`` branches and tags.
+"""Characters; a misspelt revision is compared with up to ``_MOST_NAMES`` branches and tags.
 
 Branches and tags with longer names than ``_LONGEST_NAME`` are left out.
 """
@@ -43,9 +43,9 @@ Branches and tags with longer names than ``_LONGEST_NAME`` are left out.
 
 @record
 class _File:
-    """A file of a revision: the hash of its content in git (``name``), and its path.
+    """A file of a revision: the git hash of its content (``name``), and its path.
 
-    The content of a link is the path of its target.
+    The content of a symbolic link is the path of its target.
     """
 
     name: str
@@ -174,9 +174,9 @@ def _parse_listing(stream: IO[bytes], revision: str) -> Iterator[_File]:
 
 
 def _lines(stream: IO[bytes], revision: str) -> Iterator[bytes]:
-    """Yield the texts before each NUL, in time linear in their size.
+    """Yield the parts of a stream that end with NUL, without it, in linear time.
 
-    Error TLT0764 if there are too many.
+    Error TLT0764 if there are too many, or if they are too long.
     """
     size = count = 0
     partial: list[bytes] = []
@@ -287,7 +287,7 @@ def _environment() -> dict[str, str]:
 
 
 def _revision_help(repository: Path, revision: str) -> str:
-    """Return what to do about a revision that does not exist."""
+    """Return the help text for a revision that does not exist."""
     from difflib import get_close_matches
 
     output = _run(repository, "for-each-ref", f"--count={_MOST_NAMES}", "--format=%(refname:short)") or b""

@@ -1,4 +1,4 @@
-"""The declarations that a library offers to its importers, and the values of its predicates."""
+"""The declarations that a library offers to its importers, and what its predicates mean."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ Kind = Literal["signal", "param", "predicate", "let", "entity"]
 class OfferedName:
     """The declaration behind a name that a library offers.
 
-    ``is_own`` is true if the library itself declares the name, and false if it imports it. ``value``
-    is set for a signal or param. ``meanings`` is set for a predicate of the library itself. It maps
-    a number of arguments to the meaning of the predicate when that many are given; the other
-    parameters have their defaults. In a meaning, each parameter with an argument is a signal with
-    the name of the parameter, unless it is an entity.
+    ``is_own`` is true if the library itself declares the name, and false if it imports the name.
+    ``value`` is set for a signal or param. ``meanings`` is set for a predicate of the library
+    itself. It maps each possible number of arguments to the meaning of the predicate with so many
+    arguments; the other parameters have their defaults. In a meaning, a signal with the name of the
+    parameter takes the place of each argument, unless the argument is an entity.
     """
 
     name: str
@@ -72,9 +72,9 @@ def _meanings(binding: Binding, parameters: tuple[Parameter, ...], env: Env) -> 
 
 
 def _meaning(binding: Binding, open_parameters: tuple[Parameter, ...], env: Env) -> Meaning | None:
-    """Return the meaning of a predicate with these parameters as signals.
+    """Return the meaning of a predicate, with a signal in place of each of these parameters.
 
-    Returns None if the predicate does not resolve, for example because of unknown units.
+    Return None if the predicate does not resolve, for example because of unknown units.
     """
     local: dict[str, Value] = {}
     signals: list[Signal] = []

@@ -1,4 +1,4 @@
-"""Compare the settings of a library for all specs that import it: exclusive atoms and clock."""
+"""Compare what a library sets for all specs that import it: exclusive atoms and the clock."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 class Rules:
     """The ``exclusive`` groups that a file itself declares, and its clock, with their places.
 
-    ``exclusive`` maps the sorted names of each group to its label. ``clock_s`` is the period in
-    seconds. It and ``clock``, the label, are None if the file declares no clock.
+    ``exclusive`` maps the sorted names of each group to its place. ``clock_s`` is the period of the
+    clock in seconds, and ``clock`` its place; both are None if the file declares no clock.
     """
 
     exclusive: Mapping[tuple[str, ...], Label] = EMPTY

@@ -77,7 +77,7 @@ def _declaration_changes(before: OfferedName, after: OfferedName) -> Iterator[Di
 
 
 def _why_uses_break(before: OfferedName, after: OfferedName) -> str | None:
-    """Return why a use that was valid is no longer valid; None if all uses are still valid."""
+    """Return why some use of a declaration is no longer valid; None if all uses are still valid."""
     if before.kind == "signal":
         count, now = len(before.parameters), len(after.parameters)
         return None if count == now else f"{now} where there were {count}"

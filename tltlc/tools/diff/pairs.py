@@ -29,7 +29,8 @@ class SpecPair:
     def is_same(self) -> bool:
         """Whether both specs accept the same traces and nothing else differs.
 
-        This includes traces that :attr:`Comparison.impossible` leaves out of the relation.
+        It is false if traces were left out of the comparison because of
+        :attr:`Comparison.impossible`.
         """
         comparison = self.comparison
         return comparison.relation == "equivalent" and not comparison.impossible and not self.differences

@@ -18,11 +18,11 @@ if TYPE_CHECKING:
 Relation = Literal["equivalent", "stricter", "looser", "incomparable"]
 
 _STEPS_OF_A_PAIR: Final = 100
-"""The steps of work that each pair of exclusive atoms takes at least."""
+"""The least number of steps of work that each pair of exclusive atoms takes."""
 
 OF_A: Final = " of A"
 OF_B: Final = " of B"
-"""Suffixes for two different atoms that have the same name."""
+"""Suffixes that tell apart two different atoms with the same name."""
 
 
 @record
@@ -40,14 +40,14 @@ class Comparison:
 
     ``stricter`` means that A accepts every trace that B accepts, but not vice versa. ``only_a`` is
     a trace that only A accepts, and ``only_b`` a trace that only B accepts; over finite traces, they
-    are shortest. Each name in ``split_names`` stands for two different atoms, which traces call
+    are shortest. Each name in ``split_names`` is the name of two different atoms, which traces call
     ``NAME of A`` and ``NAME of B``. ``impossible`` has conjunctions of literals for which no sample
-    was found. Traces that contain one of them are left out, and so are traces in which two atoms of
-    an ``exclusive`` group hold together.
+    was found. The comparison leaves out traces that contain one of them, and traces in which two
+    atoms of an ``exclusive`` group hold together.
 
     ``relation`` is None if one spec is over finite traces and the other over infinite traces. Then
-    ``beginnings`` compares the finite beginnings of traces that do not break A, or B, for good, as
-    if each spec accepted these.
+    ``beginnings`` compares two other sets: the finite beginnings of traces after which A can still
+    be met, and those after which B can.
     """
 
     relation: Relation | None
@@ -109,7 +109,7 @@ def compare(
 
 
 def _unbroken_prefixes(fspa: Fspa) -> Fspa:
-    """Return an automaton that accepts the finite traces that do not break ``fspa`` for good."""
+    """Return an automaton that accepts the finite traces after which ``fspa`` is not violated."""
     states = tuple(replace(state, accepting=state.verdict != "violated") for state in fspa.states)
     return replace(fspa, semantics="finite", acceptance=(), states=states)
 
@@ -124,9 +124,9 @@ def _own_groups(a: Fspa, b: Fspa) -> list[ExclusiveGroup]:
 
 
 def _merge(groups: Iterable[ExclusiveGroup], atoms: set[str]) -> tuple[ExclusiveGroup, ...]:
-    """Return the groups restricted to these atoms, without duplicates and without single atoms.
+    """Return the groups with only these atoms, without duplicates and groups of one atom.
 
-    A group counts as declared in A, or B, if a wider group is declared there.
+    A group counts as declared in A, or B, if a group that contains it is declared there.
     """
     restricted = [replace(group, names=tuple(name for name in group.names if name in atoms)) for group in groups]
     merged: dict[frozenset[str], ExclusiveGroup] = {}
@@ -139,7 +139,7 @@ def _merge(groups: Iterable[ExclusiveGroup], atoms: set[str]) -> tuple[Exclusive
 
 
 def _exclusive_pairs(groups: Iterable[ExclusiveGroup], own_groups: Iterable[ExclusiveGroup]) -> Iterator[Literals]:
-    """Yield the pairs of atoms of the groups that no group of the automata contains."""
+    """Yield the pairs of atoms in groups that no group of the automata contains."""
     own = [set(group.names) for group in own_groups]
     for group in groups:
         if not any(own_group.issuperset(group.names) for own_group in own):
@@ -147,7 +147,7 @@ def _exclusive_pairs(groups: Iterable[ExclusiveGroup], own_groups: Iterable[Excl
 
 
 def different_atoms(a: Fspa | Vocabulary, b: Fspa | Vocabulary) -> tuple[str, ...]:
-    """Return the names that stand for different atoms in ``a`` and ``b``, in the order of ``a``."""
+    """Return the names whose atoms in ``a`` and ``b`` differ in meaning, in the order of ``a``."""
     places = {atom.name: index for index, atom in enumerate(b.atoms)}
     names = []
     for index, atom in enumerate(a.atoms):

@@ -14,21 +14,21 @@ if TYPE_CHECKING:
     from tltlc.automaton.fspa import Fspa
 
 _SOURCE: Final = ".tltl"
-"""Only specs in source files can move. A host that loads an artefact finds it by its file."""
+"""The ending of files whose specs can move. A host finds an artefact by its file, so it cannot."""
 _MOST_RENAMED: Final = 6
 """The most new specs that a removed spec is compared with."""
 
 
 @record
 class _SpecInChange:
-    """A spec in the file of a change; ``number`` is the index of the change."""
+    """A spec that is in only one version of a file; ``number`` is the index of the change."""
 
     number: int
     fspa: Fspa
 
 
 def follow_moves(changes: Sequence[FileChange], work: int = DEFAULT_WORK) -> tuple[FileChange, ...]:
-    """Return the changes with moved and renamed specs as moves.
+    """Return the changes of files, in which moved and renamed specs are listed as moves.
 
     A removed spec counts as moved if another file has a new spec of the same name. Otherwise it
     counts as renamed if a new spec accepts the same traces; specs in the same file are tried first.
@@ -86,7 +86,7 @@ def _with_moves(
     matches: Sequence[tuple[_SpecInChange, _SpecInChange]],
     changes: Sequence[FileChange],
 ) -> FileChange:
-    """Return a change without the specs that moved away or here, and with the latter as moves."""
+    """Return a file's change without the specs that moved; those that moved here become moves."""
     moved_away = [old.fspa for old, _ in matches if old.number == number]
     moved_here = [(old, new) for old, new in matches if new.number == number]
     moves = (

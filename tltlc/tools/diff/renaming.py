@@ -17,10 +17,10 @@ if TYPE_CHECKING:
 
 
 def with_old_atom_names(old: Fspa, new: Fspa) -> Fspa:
-    """Return the automaton ``new`` with the old names for renamed atoms.
+    """Return the automaton ``new``, in which renamed atoms have their old names.
 
-    A new atom counts as renamed if an atom that is gone has the same expression, except for the
-    names of params.
+    A new atom counts as renamed if a removed atom has the same expression, except for the names of
+    params.
     """
     names, new_names = {atom.name for atom in old.atoms}, {atom.name for atom in new.atoms}
     removed: dict[object, Atom] = {}
@@ -37,8 +37,8 @@ def with_old_atom_names(old: Fspa, new: Fspa) -> Fspa:
 def new_signal_names(old: Fspa, new: Fspa) -> dict[str, str]:
     """Return the new names of renamed signals, by their old names.
 
-    A signal that is gone counts as renamed if an atom that read it now reads a new signal of the same
-    type instead. Apart from the names of such signals and of params, the expression of the atom must
+    A removed signal counts as renamed if an atom that read it now reads a new signal of the same
+    type instead. Apart from the names of renamed signals and of params, the atom's expression must
     be the same.
     """
     types, new_types = ({signal.name: signal.type for signal in fspa.signals} for fspa in (old, new))

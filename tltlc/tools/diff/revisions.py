@@ -26,8 +26,8 @@ _PROJECT: Final = "tltl.toml"
 class EarlierTree:
     """A folder ``root`` with earlier versions of the files below the folder ``current_root``.
 
-    Messages call the file ``root/x`` ``{prefix}x``. ``is_revision`` is false if the user named the
-    folder.
+    In messages, the name of the file ``root/x`` is ``{prefix}x``. ``is_revision`` is true if the
+    files come from a git revision, and false if ``root`` is a folder that the user named.
     """
 
     root: Path
@@ -63,9 +63,10 @@ class EarlierTree:
     def with_current_labels(
         self, diagnostics: Iterable[Diagnostic], path: str, before: str | None
     ) -> tuple[Diagnostic, ...]:
-        """Return the diagnostics with labels on old files moved to the current files.
+        """Return the diagnostics with the labels on old files moved to the current files.
 
-        This is for services that know only the current files. ``before`` is the old file of ``path``.
+        Services that know only the current files need this. ``before`` is the old version of
+        ``path``.
         """
         return tuple(
             replace(
@@ -86,7 +87,7 @@ class EarlierTree:
         return Label(SourceFile(now, ""), Span(0, 0), message)
 
     def with_display_names(self, diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
-        """Return the diagnostics with the names of old files that messages use."""
+        """Return the diagnostics with the paths of old files replaced by readable names."""
         root = f"{self.root}{os.sep}"
 
         def text(original: str) -> str:
@@ -153,10 +154,7 @@ def _revision(name: str, folder: Path) -> tuple[Path, str]:
 
 
 def _is_accessible(path: Path) -> bool:
-    """Return True, whether or not the path exists.
-
-    Error TLT0001 if permissions hide whether it exists.
-    """
+    """Raise TLT0001 if permissions hide whether a path exists; otherwise return True."""
     try:
         os.stat(path)  # noqa: PTH116
     except PermissionError as error:

@@ -32,16 +32,14 @@ _BREAKING: Final[Mapping[Relation | None, str]] = {
     "looser": "Every beginning of a trace that breaks B for good breaks A, too, and others do.",
     "incomparable": "Each is broken for good by beginnings of traces that do not break the other.",
 }
-"""What breaks the specs, by the relation of the beginnings that do not break them."""
+"""What violates the specs, by the relation of the beginnings that do not violate them."""
 
 _WIDTH: Final = 100
 _MOST_LEFT_OUT: Final = 5
 _MOST_ATOMS: Final = 10
 _TITLES: Final = {"A": "no longer accepted", "B": "not accepted before"}
 _TITLES_OF_BEGINNINGS: Final = {"A": "broken now", "B": "broken before"}
-"""Titles of printed tests.
-
-The key is the spec that accepts the trace, or that the trace does not break.
+"""Titles of printed tests, by the spec that accepts the trace, or that it does not violate.
 """
 
 

@@ -31,7 +31,7 @@ class TraceDescription:
 
 
 def trace_description(pair: SpecPair, trace: Trace) -> TraceDescription:
-    """Return a trace with the states that the specs of a pair reach; it is over the atoms of both."""
+    """Return a trace over the atoms of both specs, with the states that they reach."""
     letters = (*trace.prefix, *trace.cycle)
     split_names = pair.comparison.split_names
     a = _state(pair.a, [own_letter(letter, split_names, pair.a, OF_A) for letter in letters])
@@ -59,9 +59,9 @@ def difference_test(pair: SpecPair, description: TraceDescription, title: str) -
 
 
 def own_letter(letter: Letter, split_names: Iterable[str], fspa: Fspa, suffix: str) -> Letter:
-    """Return the atoms of one spec that hold, under the names that the spec uses.
+    """Return the atoms of a letter that belong to one spec, under the names that the spec uses.
 
-    ``suffix`` is what the letter adds to the names in ``split_names`` for this spec.
+    In the letter, ``suffix`` follows the names in ``split_names`` that belong to this spec.
     """
     own_names = {name + suffix: name for name in split_names}
     common = {atom.name for atom in fspa.atoms} - set(split_names)

@@ -24,7 +24,7 @@ _ROUNDING: Final = 1e-9
 class Meaning:
     """What determines the value of an atom: its expression, signals and params.
 
-    ``signals`` and ``params`` are those that the expression uses.
+    ``signals`` and ``params`` are only those that the expression uses.
     """
 
     expression: Expression
@@ -51,8 +51,9 @@ class Meaning:
 class ValueDifference:
     """A sample at which two atoms have different values.
 
-    ``sample`` has pairs of a signal and its value. ``values`` are those of the two atoms. If an atom
-    has no value at the sample, its value is None, and its entry of ``reasons`` says why.
+    ``sample`` has pairs of a signal and its value. ``values`` are the values of the two atoms. If
+    an atom has no value at the sample, its entry in ``values`` is None, and its entry in
+    ``reasons`` says why.
     """
 
     sample: tuple[tuple[str, float], ...]
@@ -72,7 +73,7 @@ def meaning(vocabulary: Fspa | Vocabulary, atom: int) -> Meaning:
 
 
 def meaning_of(expression: Expression, signals: tuple[Signal, ...], params: tuple[Param, ...]) -> Meaning:
-    """Return the meaning of an expression, with those signals and params that it uses."""
+    """Return the meaning of an expression, with only the signals and params that it uses."""
     used = {(type(node), node.name) for node in nodes(expression) if isinstance(node, (SignalNode, ParamNode))}
     return Meaning(
         expression,
@@ -125,7 +126,7 @@ def _common_box(one: Meaning, other: Meaning) -> tuple[dict[Variable, tuple[floa
 
 
 def _shorten(difference: ValueDifference, one: Meaning, other: Meaning, box: Box) -> ValueDifference:
-    """Return a difference of the same kind with fewer digits in its sample, if there is one."""
+    """Return the difference at a sample with fewer digits if it is of the same kind there."""
     for digits in (2, 3, 4, 6):
         sample = {name: float(f"{value:.{digits}g}") for name, value in difference.sample}
         is_inside = all(low <= sample[node.name] <= high for node, (low, high) in box.items())

@@ -1,4 +1,5 @@
 """Propose specs from recorded traces.
 
-Templates and sequences are counted with bit masks and confirmed by automata.
+Bit masks show in which traces each candidate clause holds. The best specs are then compiled, and
+their automata judge all traces again.
 """

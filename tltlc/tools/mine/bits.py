@@ -1,9 +1,9 @@
-"""Sets of samples of all traces, as integers with a bit for each sample.
+"""Masks: sets of samples of all traces, each as one integer with a bit for each sample.
 
-Each trace of the evidence has a segment of the same number of whole bytes. Its samples are the
-lowest bits of the segment, the first sample lowest. The highest bit of a segment is spare, so that
-carries and borrows end there. So a question about every trace, such as "where does `a` hold for the
-first time?", takes a few operations on one integer.
+So a question about every trace, such as "where does `a` hold for the first time?", takes a few
+operations on one integer. The integer has a segment for each trace, and all segments have the same
+number of bytes. The lowest bit of a segment is for the first sample of its trace. The highest bit
+is for none, so that carries and borrows do not reach the next segment.
 """
 
 from __future__ import annotations
@@ -19,10 +19,11 @@ Verdicts = int
 
 
 class Bits:
-    """The evidence as masks. With ``backwards``, the samples of each trace are in reverse order.
+    """The traces of the evidence as masks; with ``backwards``, each trace is in reverse order.
 
-    ``all`` has all samples, and ``holds`` the samples at which each atom holds. ``traces`` and
-    ``counterexamples`` are the two parts of the evidence, and ``all_traces`` is both.
+    ``all`` has all samples, and ``holds`` the samples at which each atom holds, by atom. The sets
+    of traces are ``traces`` (to be accepted), ``counterexamples`` (to be rejected), and
+    ``all_traces``.
     """
 
     def __init__(self, evidence: Evidence, *, backwards: bool = False) -> None:
@@ -67,21 +68,21 @@ class Bits:
         return self.all & ~samples
 
     def after_first(self, samples: Samples) -> Samples:
-        """Return the samples after the first one of ``samples`` in each trace.
+        """Return, of each trace, the samples after the first one that is in ``samples``.
 
-        A trace without any of ``samples`` has none.
+        For a trace without any of ``samples``, return none.
         """
         return self.all & ~self._up_to_first(samples)
 
     def before_first(self, samples: Samples) -> Samples:
-        """Return the samples before the first one of ``samples`` in each trace.
+        """Return, of each trace, the samples before the first one that is in ``samples``.
 
-        Of a trace without any of ``samples``, all samples are returned.
+        For a trace without any of ``samples``, return all.
         """
         return self.all & self._up_to_first(samples) & ~samples
 
     def within(self, samples: Samples, steps: int) -> Samples:
-        """Return ``samples`` and those that are at most ``steps`` before one of them."""
+        """Return ``samples``, and the samples that are at most ``steps`` before one of them."""
         result = samples
         reached = 0
         while reached < steps:
@@ -101,7 +102,10 @@ class Bits:
         return self._low * ((1 << min(steps, width)) - 1)
 
     def _up_to_first(self, samples: Samples) -> Samples:
-        """Return the bits of each segment up to its first sample in ``samples``, or up to its end."""
+        """Return the bits of each segment up to and including the first one in ``samples``.
+
+        Return all bits of a segment that has none in ``samples``.
+        """
         with_end = samples | self._top
         return with_end ^ (with_end - self._low)
 

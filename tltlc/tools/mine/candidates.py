@@ -17,11 +17,11 @@ _MOST: Final = WORK["mined candidates"]
 
 
 class Candidates:
-    """A container of conjunctions, each with the traces that it accepts.
+    """A collection of conjunctions of clauses, each with the set of traces that it accepts.
 
-    It keeps those conjunctions that :func:`~tltlc.tools.mine.conjunctions.best_candidates` would
-    choose from all that were added, so its size depends on the number of different sets of accepted
-    traces. If there are too many sets, it keeps those with the best scores and sets ``is_cut``.
+    It keeps only the conjunctions that :func:`~tltlc.tools.mine.conjunctions.best_candidates` would
+    choose: for each set of accepted traces, a few of the shortest. If there are too many such sets,
+    it keeps those with the best scores and sets ``is_cut``.
     """
 
     def __init__(self, bits: Bits) -> None:
@@ -51,7 +51,7 @@ class Candidates:
         return ((conjunction, accepts) for accepts, alike in self._groups.items() for conjunction in alike)
 
     def _cut(self) -> None:
-        """Drop all groups but those with the best scores."""
+        """Keep only the sets of accepted traces whose conjunctions have the best scores."""
 
         def score(group: tuple[Verdicts, list[Conjunction]]) -> float:
             accepts, alike = group

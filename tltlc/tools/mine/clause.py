@@ -12,9 +12,9 @@ from tltlc.tools.mine.bits import Bits, Verdicts
 class MinedClause:
     """A clause: its ``text``, its number of ``atoms``, and the traces that it ``accepts``.
 
-    ``not_vacuous`` has the traces in which the clause is not vacuous, for example those in which
-    the trigger of a response occurs. ``kind`` is the name of its template. ``rank`` is the place of
-    the template in the order that breaks ties.
+    ``not_vacuous`` has the traces that test the clause, for example those in which the trigger of a
+    response occurs. ``kind`` is the name of its template, and ``rank`` the index of the template in
+    :data:`~tltlc.tools.mine.templates.KINDS`, which breaks ties.
     """
 
     kind: str

@@ -27,7 +27,8 @@ _NAME: Final = "mined_candidate_"
 class TraceVerdict:
     """The verdict of an automaton on a trace.
 
-    ``violated_at`` is the first sample, from 1, after which the verdict is ``violated``, or None.
+    ``violated_at`` is the number of the first sample, counted from 1, after which the verdict is
+    ``violated``; None if there is none.
     """
 
     trace: LabelledTrace
@@ -60,8 +61,8 @@ def confirm(
 ) -> tuple[Proposal, ...]:
     """Return proposals for the first ``top`` conjunctions of ``ranked`` that differ in meaning.
 
-    A conjunction is left out if an earlier one is equivalent: both accept the same traces, not only
-    among those of the evidence.
+    A conjunction is left out if an earlier one is equivalent: both accept the same traces, of all
+    possible traces and not only of the evidence.
 
     Raises:
         TltlError: an automaton is too large, or the library has an error.
@@ -92,7 +93,7 @@ def judge(fspa: Fspa, trace: LabelledTrace) -> TraceVerdict:
 
 
 class _Run:
-    """A run of an automaton on letters. It caches the target of each state and letter."""
+    """A run of an automaton on letters. It caches the next state for each state and letter."""
 
     def __init__(self, fspa: Fspa) -> None:
         self._fspa = fspa

@@ -23,8 +23,8 @@ def conjunctions(
 ) -> Iterator[list[Conjunction]]:
     """Yield conjunctions of two or more clauses, in portions, many of which are empty.
 
-    Each portion takes a short time, so that the caller can stop. At least ``least`` traces satisfy
-    each conjunction, and it has at most ``most_atoms`` atoms.
+    Each portion takes a short time, so that the caller can stop after it. At least ``least`` traces
+    satisfy each conjunction, and it has at most ``most_atoms`` atoms.
     """
     pool = _pool(clauses)
     beam: list[tuple[Conjunction, Verdicts]] = [((addition,), addition.accepts) for addition in pool]
@@ -36,7 +36,8 @@ def conjunctions(
                 both = accepts & addition.accepts
                 if addition.atoms > room or both == accepts or count(both & bits.traces) < least:
                     continue
-                # Two bounds would multiply the numbers of states that count them.
+                # Automata count the steps of a bound in states, and two bounds would multiply
+                # these.
                 if addition.kind == BOUNDED and addition.kind in {clause.kind for clause in conjunction}:
                     continue
                 longer = tuple(sorted((*conjunction, addition), key=lambda clause: (clause.rank, clause.text)))
@@ -65,7 +66,10 @@ def _pool(clauses: Sequence[MinedClause]) -> list[MinedClause]:
 def best_candidates(
     candidates: Iterable[tuple[Conjunction, Verdicts]], bits: Bits
 ) -> list[tuple[Conjunction, Verdicts]]:
-    """Return the candidates by score; only a few of the shortest for each set of accepted traces."""
+    """Return the best candidates, sorted by score.
+
+    Of the candidates that accept the same traces, only a few of the shortest are returned.
+    """
 
     def score_key(item: tuple[Conjunction, Verdicts]) -> tuple[float, int, list[int], list[tuple[int, str]]]:
         conjunction, accepts = item

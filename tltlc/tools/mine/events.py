@@ -1,4 +1,4 @@
-"""Choose the atoms to relate to each other if there are too many to relate all of them."""
+"""Choose the atoms from which clauses about two atoms are built, if there are too many pairs."""
 
 from __future__ import annotations
 
@@ -11,14 +11,15 @@ from tltlc.io.limits import WORK
 from tltlc.tools.mine.evidence import Evidence, LabelledTrace
 
 MOST_EVENTS: Final = isqrt(WORK["mined pairs"])
-"""The most atoms that are related to each other, because every ordered pair is tried."""
+"""The most atoms from which clauses about two atoms are built: every ordered pair is tried."""
 
 
 def best_events(evidence: Evidence, events: Sequence[str], most: int = MOST_EVENTS) -> list[str]:
-    """Return the ``most`` events that best separate traces from counterexamples, in their order.
+    """Return the ``most`` atoms of ``events`` that best separate traces from counterexamples.
 
-    What counts is how well a threshold on the sample at which the event first holds separates them,
-    or whether the event holds at every sample.
+    An atom separates them well if it first holds early in the traces and late in the
+    counterexamples, or the other way round, or if it holds at every sample of only one of the two.
+    The order of ``events`` is kept.
     """
     if len(events) <= most:
         return list(events)
@@ -47,7 +48,8 @@ def _first_samples(trace: LabelledTrace) -> dict[str, float]:
 def _separation(values: Sequence[float], good: int) -> float:
     """Return Youden's index, in [0, 1], of the best threshold on the values.
 
-    The threshold is to separate the first ``good`` values from the others. 1 means that it does.
+    The threshold is to separate the first ``good`` values from the others. 1 means that it
+    separates all of them.
     """
     bad = len(values) - good
     if not bad:

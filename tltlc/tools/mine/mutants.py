@@ -16,7 +16,10 @@ from tltlc.tools.mine.evidence import Evidence, LabelledTrace
 
 _SEED: Final = 1
 _ROUNDS: Final = 10
-"""The least number of rounds. If there are fewer traces, each is mutated several times."""
+"""The least number of rounds; each round mutates one trace in all ways.
+
+If there are fewer traces, each is mutated several times.
+"""
 
 Run = tuple[Letter, int]
 """A letter, and the number of consecutive samples that have it."""

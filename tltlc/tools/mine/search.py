@@ -1,4 +1,4 @@
-"""Search for specs: instances of templates, then sequences, then conjunctions.
+"""Search for specs: clauses from templates, then sequences of goals, then conjunctions of clauses.
 
 The caller can stop the search at any time and use the best results so far.
 """
@@ -37,7 +37,7 @@ class MiningOptions:
 class SpecSearch:
     """Searches for specs that the traces satisfy and the counterexamples violate.
 
-    ``tried_count`` is the number of candidates so far.
+    ``tried_count`` is the number of candidates that have been tried so far.
     """
 
     def __init__(self, evidence: Evidence, options: MiningOptions) -> None:
@@ -80,8 +80,8 @@ class SpecSearch:
     def ranking(self) -> list[Conjunction]:
         """Return the conjunctions found so far, the best first.
 
-        Each is the best of all that are not longer than it. A conjunction is left out if no
-        counterexample violates it, or if a shorter one is at least as good.
+        A conjunction is left out if no counterexample violates it, or if another one that is not
+        longer has a better score.
         """
         ranked: list[tuple[float, int, Conjunction]] = []
         for conjunction, accepts in best_candidates(self._candidates.items(), self.bits):
@@ -106,14 +106,14 @@ class SpecSearch:
         return sentences
 
     def _chosen_events(self) -> list[str]:
-        """Return the events to relate to each other, and count the others."""
+        """Return the atoms to build pairs and sequences from, and store how many are left out."""
         events = self._events()
         chosen = best_events(self._evidence, events)
         self._unrelated = len(events) - len(chosen)
         return chosen
 
     def _events(self) -> list[str]:
-        """Return the atoms that fail at some sample of so many traces that `keep` lacks support."""
+        """Return the atoms that hold throughout too few traces for a proposal `keep ATOM`."""
         bits = self.bits
         return [
             name

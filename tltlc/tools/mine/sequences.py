@@ -1,14 +1,14 @@
 """Sequences of goals, `reach a then b then c`, found by a beam search.
 
-The search extends the best sequences of each length by every step at every place. A trace meets a
-sequence if it has an `a`, after the first `a` a `b`, after the first such `b` a `c`. So a sequence
-takes a few integer operations for each step, for all traces together. An extension is never met by
-more traces than the sequence, so a sequence without enough support is not extended.
+The search inserts every step at every position of the best sequences of each length. A trace meets
+a sequence if it has an `a`, a `b` after the first `a`, and a `c` after the first such `b`. So
+testing a sequence on all traces takes a few integer operations for each step. No more traces meet a
+longer sequence than meet the shorter one, so a sequence that too few traces meet is not extended.
 
-A step is an atom, two atoms at once, or a choice between two of these. A choice is only formed of
-steps that lack the support at that place by themselves. A trace meets a sequence with a choice if it
-meets the sequence with either option. No step follows an equal one, because the next sample alone
-could meet it.
+A step is an atom, two atoms at once, or a choice between two such steps. Two steps are combined
+into a choice only if too few traces meet the sequence with either one alone. A trace meets a
+sequence with a choice if it meets the sequence with either option. No step follows an equal one,
+because the next sample alone could meet it.
 """
 
 from __future__ import annotations
@@ -26,13 +26,16 @@ from tltlc.tools.mine.templates import template_clause
 from tltlc.tools.witness.blocks import atom_operand
 
 BEAM: Final = 60
-"""The most sequences of one length that are extended: this many of single atoms, this many others."""
+"""The most sequences of one length that are extended.
+
+There may be this many whose steps are all single atoms, and this many others.
+"""
 ALIKE: Final = 3
 """The most sequences that are kept for one set of accepted traces."""
 MOST_PAIRS: Final = 60
 """The most steps of two atoms. Those that hold in the most traces are used."""
 MOST_PARTS: Final = 16
-"""The most steps that are combined into choices at one place."""
+"""The most steps that are combined into choices at one position."""
 
 
 class SequenceStep:
@@ -49,7 +52,7 @@ class SequenceStep:
 
 Steps = tuple[SequenceStep, ...]
 AcceptedSequence = tuple[Steps, Verdicts]
-"""A sequence with the traces that meet it."""
+"""A sequence, and the set of traces that meet it."""
 
 
 def sequences(
@@ -85,7 +88,7 @@ def sequences(
 
 
 class _Sequences:
-    """Extends sequences by steps."""
+    """Finds the extensions of sequences by one step."""
 
     def __init__(
         self,
@@ -103,7 +106,7 @@ class _Sequences:
         self._choices: dict[tuple[SequenceStep, SequenceStep], SequenceStep] = {}
 
     def extensions(self, sequence: Steps, known: Mapping[Steps, Verdicts]) -> Iterator[AcceptedSequence]:
-        """Yield the sequences with one more step, at any place, that have the support.
+        """Yield the sequences with one more step, at any position, that enough traces meet.
 
         Sequences in ``known`` are left out.
         """
@@ -135,7 +138,7 @@ class _Sequences:
     def _supported_choices(
         self, steps: Sequence[tuple[SequenceStep, Verdicts]], room: int
     ) -> Iterator[tuple[SequenceStep, Verdicts]]:
-        """Yield the choices between two steps that have the support, with the traces that meet them."""
+        """Yield each choice between two steps that enough traces meet, and these traces."""
         bits = self._bits
 
         def sort_key(item: tuple[SequenceStep, Verdicts]) -> tuple[float, int, str]:
@@ -160,9 +163,10 @@ class _Sequences:
 
 
 def _possible_steps(bits: Bits, atoms: Collection[str]) -> Generator[list[MinedClause], None, list[SequenceStep]]:
-    """Return the atoms that hold in some trace, then the pairs that hold together in most traces.
+    """Return the steps of one atom that some trace meets, then the best steps of two atoms.
 
-    Yields empty portions many times, so that the caller can stop.
+    The best steps of two atoms are those that the most traces meet. The function yields empty
+    portions meanwhile, so that the caller can stop.
     """
     single = [SequenceStep(atom_operand(name), 1, bits.holds[name]) for name in atoms]
     single = [step for step in single if bits.traces_with(step.samples) & bits.traces]
@@ -188,7 +192,7 @@ def _accepted(steps: Steps, remaining: Samples, bits: Bits) -> Verdicts:
 
 
 def _beam(extensions: Mapping[Steps, Verdicts], bits: Bits) -> list[Steps]:
-    """Return the best of the sequences, and only a few for each set of accepted traces."""
+    """Return the sequences with the best scores; of those that the same traces meet, only a few."""
 
     def sort_key(item: AcceptedSequence) -> tuple[float, list[str]]:
         sequence, accepts = item

@@ -48,8 +48,8 @@ def source_text(proposals: Sequence[Proposal], evidence: Evidence, bits: Bits, p
 def declarations(proposals: Sequence[Proposal], vocabulary: MiningVocabulary, import_text: str | None) -> str:
     """Return the declarations of the names that the proposals use, and no others.
 
-    Without a library, these are the columns as signals. With a library, they are ``import_text``,
-    the line that imports it, and the entities that the library does not declare.
+    Without a library, the columns are declared as signals. With a library, return ``import_text``,
+    the line that imports it, and declare the entities that the library does not declare.
     """
     texts = [clause.text for proposal in proposals for clause in proposal.clauses]
     texts += [atom.name for proposal in proposals for atom in proposal.fspa.atoms]

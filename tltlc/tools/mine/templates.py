@@ -25,9 +25,9 @@ _LEAST_TRIGGERED: Final = 3
 def clauses(forwards: Bits, backwards: Bits, events: Collection[str], least: int) -> Iterator[list[MinedClause]]:
     """Yield every instance of the templates that is not vacuous in all traces, in small portions.
 
-    Only ``events`` are related to each other: `keep` covers an atom that holds throughout. The work
-    grows with the square of the number of events, so the caller limits it. A bound is the smallest
-    that at least ``least`` traces keep.
+    Clauses about two atoms use only ``events``: for an atom that always holds, `keep` is enough.
+    The work grows with the square of the number of events, so the caller limits them. The bound of
+    a response is the smallest with which at least ``least`` traces satisfy it.
     """
     for portion in _candidates(forwards, backwards, events, least):
         # A clause that is only vacuously true says nothing about the game.
@@ -80,7 +80,7 @@ def _pair(first: str, second: str, forwards: Bits, backwards: Bits, occurs: dict
 
 
 def _bounded(first: str, second: str, bits: Bits, least: int) -> Iterator[MinedClause]:
-    """Yield the response within the smallest bound that at least ``least`` traces keep.
+    """Yield the response with the smallest bound with which at least ``least`` traces satisfy it.
 
     Nothing is yielded if the bound is 0 or above ``LONGEST_BOUND``, or if too few traces trigger the
     response.

@@ -1,4 +1,5 @@
 """Find traces that show what a spec means, as ``test`` blocks or as samples of signals.
 
-These are a shortest accepted trace, a shortest rejected trace, or traces that take every edge.
+They are a shortest accepted trace, a shortest rejected trace, or traces that together take every
+edge of the automaton.
 """

@@ -20,9 +20,9 @@ if TYPE_CHECKING:
     from tltlc.automaton.compare import Letter
 
 Expectations = Mapping[int, Sequence[str]]
-"""Maps steps, numbered from 1, to the texts after ``expect``.
+"""What a test expects after each step: texts for ``expect``, by step number from 1.
 
-Such a text is ``pending``, ``progress >= 0.5`` or ``state "G a"``.
+A text is for example ``pending``, ``progress >= 0.5`` or ``state "G a"``.
 """
 
 _WIDTH = 100
@@ -33,8 +33,8 @@ _LONGEST_LABEL = 300
 class BlockWriter:
     """Writes ``test`` blocks of one spec.
 
-    If a trace begins like the trace before it, the monitor only runs the rest. So many traces with
-    long common beginnings need few steps of the monitor, which ``monitor_steps`` counts. The
+    If a trace begins like the trace before it, the monitor only runs the rest, so traces with long
+    common beginnings need few steps of the monitor. ``monitor_steps`` counts these steps. The
     literals of a letter are computed once for each state.
     """
 
@@ -97,9 +97,9 @@ class BlockWriter:
         return [step.result for step in self._last_trace]
 
     def _literals(self, letters: Sequence[Letter]) -> list[tuple[str, ...]]:
-        """Return, for each letter, the atoms that hold.
+        """Return, for each letter, the texts of its step: the atoms that hold.
 
-        A letter in which no atom holds gets one negated atom, because a step must name an atom.
+        If no atom holds, return one negated atom, because a step must name an atom.
         """
         all_literals: list[tuple[str, ...]] = []
         state = 0
@@ -112,9 +112,10 @@ class BlockWriter:
         return all_literals
 
     def _successor_and_literals(self, state: int, letter: Letter) -> tuple[int, tuple[str, ...]]:
-        """Return the state after a letter, and the literals of the letter.
+        """Return the state after a letter, and the texts of the letter's step.
 
-        A letter in which no atom holds gets the negation of the first atom that the edge forbids.
+        If no atom holds, the text is the negation of the first atom that the guard of the edge
+        names.
         """
         spec, atom_values = self._spec, letter_values(self._spec, letter)
         taken = (
@@ -161,17 +162,17 @@ def _report(step: Step) -> tuple[str, ...]:
 
 
 def letter_values(fspa: Fspa, letter: Letter) -> tuple[float, ...]:
-    """Return the values of the atoms of an automaton for a letter, in order, as in tests.
+    """Return the value of each atom of an automaton for a letter, in order.
 
-    The value is 1 for atoms that hold and -1 for the others.
+    It is 1 if the atom holds, and else -1. Test blocks use these values, too.
     """
     return tuple(1.0 if atom.name in letter else -1.0 for atom in fspa.atoms)
 
 
 def _state_expectation(label: str) -> tuple[str, ...]:
-    """Return the expectation of the state with this label.
+    """Return the expectation that the state has this label, as a tuple of one text.
 
-    It is empty if the label is too long to read, or contains a quote or a line break.
+    The tuple is empty if the label is too long to read, or contains a quote or a line break.
     """
     return () if len(label) > _LONGEST_LABEL or '"' in label or "\n" in label else (f'state "{label}"',)
 

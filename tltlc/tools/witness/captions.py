@@ -1,4 +1,4 @@
-"""The titles of witnesses, and the diagnostics about traces that do not exist."""
+"""The titles of the traces, and the diagnostics about traces that do not exist."""
 
 from __future__ import annotations
 
@@ -17,9 +17,10 @@ _MOST_NAMED = 10
 
 
 def title(fspa: Fspa, witness: Witness, number: int = 1, count: int = 1) -> str:
-    """Return the title of the test of a witness.
+    """Return the title of the test that shows a trace.
 
-    For a trace of a cover, ``number`` is its number from 1, and ``count`` the number of traces.
+    For a trace of a cover, ``number`` is its number, counted from 1, and ``count`` the number of
+    the traces in the cover.
     """
     if witness.kind == "cover":
         return f"{fspa.name}: way {number} of {count} through its automaton"

@@ -1,4 +1,4 @@
-"""Find a small set of traces that together take every edge that samples can take."""
+"""Find a small set of traces that together take every edge for which a sample is found."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from tltlc.tools.witness.transitions import Moves, SampledEdge
 class UntakenEdge:
     """An edge, by index, that no trace takes.
 
-    If there are no obstacles, no trace reaches the source of the edge. Otherwise the obstacles are the
-    literals for which no sample was found.
+    ``obstacles`` are sets of literals of its guard for which no sample was found. If there are
+    none, no trace reaches the source of the edge.
     """
 
     edge: int
@@ -25,17 +25,17 @@ class UntakenEdge:
 
 @record
 class Cover:
-    """Traces, shortest first, and the edges that no trace takes, in order."""
+    """Traces that together take as many edges as possible, shortest first, and the other edges."""
 
     traces: tuple[Witness, ...]
     untaken: tuple[UntakenEdge, ...]
 
 
 def cover(moves: Moves) -> Cover:
-    """Return traces that take every edge that samples can take.
+    """Return traces that together take every edge for which a sample is found.
 
-    Each trace goes on to the nearest edge that is not taken yet, and ends when it can reach no such
-    edge. Over infinite traces, the result has beginnings of traces.
+    Each trace goes on to the nearest edge that no trace has taken yet, and ends when it can reach
+    none. If the spec is over infinite traces, the result has finite beginnings of traces.
     """
     edges = moves.fspa.edges
     nearest = NearestEdges(
@@ -65,7 +65,7 @@ def _trace(moves: Moves, nearest: NearestEdges) -> Iterator[SampledEdge]:
 
 
 def _witnesses(traces: Iterable[tuple[SampledEdge, ...]]) -> Iterator[Witness]:
-    """Yield the traces as witnesses; ``new_steps`` has the steps that first take their edge."""
+    """Yield the traces as witnesses; ``new_steps`` are the steps that take a new edge."""
     taken: set[int] = set()
     for trace in traces:
         new_steps = []

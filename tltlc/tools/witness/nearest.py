@@ -10,14 +10,15 @@ from tltlc.automaton.infinite.graphs import components
 class NearestEdges:
     """Finds paths to the nearest wanted edge.
 
-    At first every edge is wanted; an edge at the end of a path is no longer wanted. ``leaving`` has
-    the edges of each state as pairs of an index and a target, in the order in which they are tried.
-    The paths are those that a breadth-first search finds. ``visited_edges`` counts the edges that
-    the searches have visited.
+    At first every edge is wanted. Once a path ends with an edge, the edge is no longer wanted.
+    ``leaving`` has the edges of each state as pairs of an edge index and a target state, in the
+    order in which they are tried. The paths are the same as in a breadth-first search.
+    ``visited_edges`` counts the edges that all searches together have visited.
 
-    ``_bound`` has, for each state, a lower bound on the number of edges to the nearest state that a
-    wanted edge leaves. Bounds never decrease, so they remain valid for later searches. ``_next`` is
-    the position of the first edge of a state whose target may be nearer to a wanted edge.
+    ``_bound`` has, for each state, a lower bound on the number of edges on a path to the nearest
+    state with a wanted edge. Fewer and fewer edges are wanted, so the bounds remain valid for later
+    searches. ``_next`` has, for each state, the position in ``leaving`` of the first edge whose
+    target may be nearer.
     """
 
     def __init__(self, leaving: Sequence[Sequence[tuple[int, int]]]) -> None:
@@ -33,7 +34,7 @@ class NearestEdges:
         self._find_components()
 
     def _find_components(self) -> None:
-        """Count the live edges of each strongly connected component.
+        """Find the strongly connected components, and count the live edges of each.
 
         An edge is live if it is wanted, or if it leads to another component with live edges.
         """
@@ -75,7 +76,7 @@ class NearestEdges:
         return (*(self._leaving[state][self._next[state]][0] for state in states[:-1]), last)
 
     def _nearer(self, state: int) -> int | None:
-        """Return the target of the first edge that may lead nearer, or None if no edge does."""
+        """Return the target of the first edge that may lead nearer to a wanted edge, or None."""
         targets, bound = self._targets[state], self._bound[state]
         for place in range(self._next[state], len(targets)):
             self.visited_edges += 1

@@ -1,4 +1,4 @@
-"""Find samples for letters: values of signals at which atoms have given truth values.
+"""Find samples for letters: values of signals at which exactly the atoms of a letter hold.
 
 Atoms that share no signal are searched separately (:mod:`tltlc.tools.witness.search`). The work is
 bounded, so the search may find no sample although there is one.
@@ -27,8 +27,8 @@ Sample = dict[str, float]
 class UnsatisfiedLiterals:
     """Literals for which no sample was found that makes them all true.
 
-    Each literal is the index of an atom and its truth value. No literal can be left out: the search
-    finds samples for the others.
+    Each literal is the index of an atom and its truth value. The set is minimal: if any literal is
+    left out, the search finds a sample for the others.
     """
 
     literals: Implicant
@@ -41,14 +41,14 @@ class UnsatisfiedLiterals:
 
 @record
 class MissingSample:
-    """The first step of a trace, from 1, for which no sample was found, and its obstacle."""
+    """The first step of a trace, counted from 1, for which no sample was found, and the reason."""
 
     step: int
     obstacle: UnsatisfiedLiterals
 
 
 class SampleFinder:
-    """Finds samples for the atoms of an automaton, and caches them. Params have their values."""
+    """Finds samples for the atoms of an automaton, and caches them."""
 
     def __init__(self, fspa: Fspa) -> None:
         self._fspa = fspa
@@ -72,7 +72,7 @@ class SampleFinder:
     def obstacles(self, letter: Letter) -> tuple[UnsatisfiedLiterals, ...]:
         """Return why no sample was found for a letter; empty if one was found.
 
-        Each group of atoms that share signals has an obstacle if no point was found for it.
+        There is a reason for each group of atoms that share signals, if no sample was found for it.
         """
         sample = self.sample_for_letter(letter)
         if not isinstance(sample, UnsatisfiedLiterals):

@@ -1,7 +1,7 @@
 """Search for points at which atoms have given truth values.
 
-A point assigns a value to each signal. The search tries simple points, then points between the
-borders of atoms, and then climbs. The border of an atom is where its truth value changes.
+A point has a value for each signal. The search tries simple points, then points between the
+borders of atoms, and then hill climbing. The border of an atom is where its truth value changes.
 """
 
 from __future__ import annotations
@@ -28,23 +28,23 @@ Candidate = tuple[Point, tuple[float, ...]]
 """A point, and the values of the atoms at this point."""
 
 _CLEAR = 0.05
-"""The search stops at the first point with at least this margin, which is the simplest one."""
+"""The search stops at the first point at which every literal is true by at least this much."""
 _STARTS = 3
 _ROUNDS = 100
 _HALVINGS = 60
 _FAR = tuple(
     sign * size for size in (1e9, 1e12, 1e20, 1e50, 1e100, 1e200, 1e300, 1e308, float_info.max) for sign in (1.0, -1.0)
 )
-"""Values of a signal without a range that are tried if simple points and climbs fail."""
+"""Values of a signal without a finite range that are tried if all else fails."""
 _LARGE = 1e6
-"""From this size on, bisection uses geometric means: arithmetic means would take too long."""
+"""For numbers above this, bisection uses geometric means: arithmetic ones would take too long."""
 _UNDEFINED = (ZeroDivisionError, OverflowError, ValueError)
 
 
 class AtomGroup:
     """Atoms that share signals, directly or through other atoms.
 
-    ``atoms`` and all literals have indices into the atoms of the automaton.
+    ``atoms`` has their indices in the automaton; literals use the same indices.
     """
 
     def __init__(self, fspa: Fspa, atoms: Sequence[int], signals: Sequence[Signal]) -> None:
@@ -70,9 +70,9 @@ class AtomGroup:
         return self._cache[literals]
 
     def _find(self, literals: Implicant) -> Point | None:
-        """Return the best simple candidate, else the end of a climb, else the best far candidate.
+        """Return the best of the simple points, else the end of a climb, else the best far point.
 
-        Returns None if there is none.
+        Return None if the literals are true at none of them.
         """
         inside = self._best(self._candidates, literals)
         if inside is not None:
@@ -83,9 +83,9 @@ class AtomGroup:
         return summit or self._best(self._far_candidates, literals)
 
     def _best(self, candidates: Sequence[Candidate], literals: Implicant) -> Point | None:
-        """Return the first candidate with a margin of ``_CLEAR``, else the one with the largest.
+        """Return the first candidate with a margin of ``_CLEAR``, else one with the largest margin.
 
-        Returns None if the literals are true at no candidate.
+        Return None if the literals are true at no candidate.
         """
         inside: list[tuple[float, Point]] = []
         for point, values in candidates:
@@ -136,7 +136,7 @@ class AtomGroup:
         return [{variable.name: value for variable, value in point.items()} for point in points(whole, box, bools)]
 
     def _points(self) -> Iterator[Point]:
-        """Yield simple points, then points between the borders of atoms along each signal."""
+        """Yield simple points, then points between borders, varying one signal at a time."""
         yield from self._simple
         for name in self._names:
             if name not in self._bools and self._simple:
@@ -144,7 +144,7 @@ class AtomGroup:
                 yield from self._between_borders(self._simple[0], name, ladder)
 
     def _far_points(self) -> Iterator[Point]:
-        """Yield points along each signal without a finite range, up to the largest numbers."""
+        """Yield points with very large values of one signal that has no finite range."""
         for name in self._names:
             low, high = self._ranges[name]
             far = [value for value in _FAR if low <= value <= high]
@@ -155,10 +155,10 @@ class AtomGroup:
             yield from self._between_borders(self._simple[0], name, ladder)
 
     def _between_borders(self, start: Point, name: str, ladder: Sequence[float]) -> Iterator[Point]:
-        """Yield points around the borders of atoms along one signal.
+        """Yield points on both sides of each border of an atom, varying the signal ``name``.
 
-        There is a point on each side of a border, and one in the middle between two borders. Borders
-        are found between the values of ``ladder``, which is sorted.
+        Then yield a point in the middle between each two borders. Borders are searched between
+        neighbouring values of ``ladder``, which is sorted.
         """
         borders: list[float] = []
         for index in range(len(self._functions)):
@@ -171,7 +171,7 @@ class AtomGroup:
             yield {**start, name: value}
 
     def _border(self, start: dict[str, float], name: str, index: int, low: float, high: float) -> tuple[float, float]:
-        """Return two values, adjacent or almost, between which the truth of an atom changes."""
+        """Return two almost equal values of a signal between which the truth of an atom changes."""
         below = self._sign({**start, name: low}, index)
         for _ in range(_HALVINGS):
             middle = _middle(low, high)
@@ -191,8 +191,8 @@ class AtomGroup:
     def _climb(self, start: Point, literals: Implicant) -> Point | None:
         """Return a point at which the literals are true, or None.
 
-        The climb takes steps along single signals. After a step that helps, the step along that
-        signal gets longer; after another, it gets shorter.
+        The climb changes one signal at a time. The next change of that signal is larger if this one
+        helped, and else smaller.
         """
         goals = [goal for literal in literals for goal in self._sign_functions(literal)]
         best, deficit = dict(start), self._deficit(start, goals)
@@ -212,7 +212,7 @@ class AtomGroup:
         return None
 
     def _deficit(self, point: Point, goals: Sequence[tuple[Callable[[Sequence[float]], float], bool]]) -> float:
-        """Return the sum of the amounts by which functions miss their required signs at a point."""
+        """Return by how much, in total, the functions miss their required signs at a point."""
         inputs = [point[name] for name in self._names]
         try:
             # Aim beyond the border: at the border the value is 0 and the atom does not hold.
@@ -223,8 +223,8 @@ class AtomGroup:
     def _sign_functions(self, literal: tuple[int, bool]) -> Sequence[tuple[Callable[[Sequence[float]], float], bool]]:
         """Return the functions that decide whether a literal is true.
 
-        Each comes with whether it must be positive. Unlike the atom itself, the functions have no
-        plateaus from ``clamp``, so a climb sees in which direction they grow.
+        Each comes with whether it must be positive. Unlike the value of the atom, they are not
+        clamped, so they have no plateaus on which a climb would not know where to go.
         """
         if literal not in self._goals:
             atom, holds = literal
@@ -245,7 +245,7 @@ def _middle(low: float, high: float) -> float:
 def _sign_parts(expression: Expression, holds: bool) -> Iterator[tuple[Expression, bool]]:
     """Yield the subexpressions that decide the sign of an expression.
 
-    Each comes with whether it must be positive. ``holds`` is whether the expression must be.
+    Each comes with whether it must be positive. ``holds`` is whether the expression itself must be.
     """
     stack = [(expression, holds)]
     while stack:

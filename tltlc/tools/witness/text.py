@@ -1,4 +1,4 @@
-"""Write witnesses as ``test`` blocks and CSV. The monitor first runs each text."""
+"""Write traces as ``test`` blocks and CSV, and check each text with the monitor first."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ def as_test(fspa: Fspa, witness: Witness, title: str, blocks: BlockWriter | None
     """Return a ``test`` block that passes.
 
     It expects what the monitor reports at the end. For a trace of a cover, it also expects what the
-    monitor reports after each step that changes the state and takes an edge for the first time. Pass
-    ``blocks`` to share work between several blocks of one automaton.
+    monitor reports after each step that changes the state and takes an edge for the first time.
+    Give ``blocks`` to share work between several blocks of one automaton.
 
     Raises:
         ValueError: the spec has no atoms.

@@ -21,9 +21,9 @@ Kind = Literal["accepting", "rejecting", "cover"]
 class Witness:
     """A trace, as a sequence of moves.
 
-    The moves from index ``cycle`` on repeat for ever; ``cycle`` is None for a finite trace. For a
-    trace of a cover, ``new_steps`` has the steps, from 1, that take an edge that no earlier step of
-    the cover takes.
+    A move is an edge with a sample that takes it. The moves from index ``cycle`` on repeat for
+    ever; ``cycle`` is None for a finite trace. For a trace of a cover, ``new_steps`` has the
+    numbers, from 1, of the steps that take an edge that no earlier step of the cover takes.
     """
 
     kind: Kind
@@ -43,9 +43,9 @@ class Witness:
 
 
 def accepting_trace(moves: Moves, work: int = DEFAULT_WORK) -> Witness | None:
-    """Return a shortest accepted trace that has samples, or None if none is found.
+    """Return a shortest accepted trace for which samples are found, or None if there is none.
 
-    Over infinite traces, it is any accepted trace.
+    If the spec is over infinite traces, the trace need not be shortest.
 
     Raises:
         OutOfWork: over infinite traces, the search takes more than ``work`` steps.
@@ -57,10 +57,10 @@ def accepting_trace(moves: Moves, work: int = DEFAULT_WORK) -> Witness | None:
 
 
 def rejecting_trace(moves: Moves, work: int = DEFAULT_WORK) -> Witness | None:
-    """Return a shortest trace that has samples and after which success is no longer possible.
+    """Return a shortest trace that violates the spec and for which samples are found.
 
-    If there is no such trace, return a shortest rejected trace, or any rejected trace over infinite
-    traces. Returns None if none is found. Errors are as in :func:`accepting_trace`.
+    If there is none, return a shortest rejected trace, or any rejected trace if the spec is over
+    infinite traces. Return None if none is found. Errors are as in :func:`accepting_trace`.
     """
     fspa = moves.fspa
     violating = _shortest_to(moves, "rejecting", [state.verdict == "violated" for state in fspa.states])
@@ -84,10 +84,9 @@ def _with_loop(moves: Moves, trace: Witness) -> Witness | None:
 
 
 def _lasso(moves: Moves, kind: Literal["accepting", "rejecting"], work: int) -> Witness | None:
-    """Return a lasso of edges that samples take, or None.
+    """Return an infinite trace (a prefix and a cycle) that samples take, or None.
 
-    If a lasso has edges for which no sample is found, these edges are closed, and the search starts
-    again.
+    If no sample is found for an edge of the trace, the edge is closed, and the search starts again.
     """
     from tltlc.automaton.compare import separating
 
@@ -134,9 +133,9 @@ def _constant(fspa: Fspa, accepts: bool) -> Fspa:
 
 
 def _with_closed_edges(fspa: Fspa, closed: set[int], accepts: bool) -> Fspa:
-    """Return the automaton with the closed edges redirected to a new state.
+    """Return the automaton with the edges in ``closed`` redirected to a new state.
 
-    A trace that takes a closed edge is accepted if ``accepts``, and otherwise rejected.
+    A trace that takes one of them is accepted if ``accepts``, and otherwise rejected.
     """
     if not closed:
         return fspa

@@ -1,4 +1,4 @@
-"""Find the edges of an automaton that samples can take, with a sample for each."""
+"""Find, for the edges of an automaton, samples at which the automaton takes them."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _MOST_PRIMES = 500
 
 @record
 class SampledEdge:
-    """A move: an edge, by index, with a sample that takes it and the letter of the sample.
+    """A move: an edge (its index in the automaton), a sample that takes it, and its letter.
 
     ``prime`` is the prime implicant of the guard that the sample satisfies.
     """
@@ -32,12 +32,12 @@ class SampledEdge:
 
 
 class Moves:
-    """The moves of an automaton: its edges with samples that take them, searched on demand."""
+    """The moves of an automaton: edges with samples that take them, searched when needed."""
 
     def __init__(self, fspa: Fspa) -> None:
         self.fspa = fspa
         self.obstacles: dict[int, tuple[UnsatisfiedLiterals, ...]] = {}
-        """The obstacles of each edge for which the search found no sample."""
+        """Why the search found no sample, for each edge without one, by the index of the edge."""
         self._finder = SampleFinder(fspa)
         self._cache: dict[int, SampledEdge | None] = {}
 
@@ -69,10 +69,9 @@ class Moves:
         return None
 
     def shortest_path(self, start: int, is_last: Callable[[int], bool]) -> tuple[SampledEdge, ...] | None:
-        """Return the moves of a shortest path from a state that ends with a certain edge, or None.
+        """Return the moves of a shortest path from a state, or None if there is none.
 
-        ``is_last`` says for the index of an edge whether the path may end with it. The path has at
-        least one move.
+        The path ends with an edge for whose index ``is_last`` is true. It has at least one move.
         """
         predecessors: dict[int, tuple[int, SampledEdge] | None] = {start: None}
         queue = deque([start])

@@ -1,12 +1,12 @@
-"""Expressions over columns of samples: straight-line torch code that computes each subexpression once.
+"""Compile expressions to torch code that computes each subexpression once, for N environments.
 
-The code computes what :func:`tltlc.expression.evaluate.evaluate` does, for all environments. Where
-that function raises an error, the value here is arbitrary and the environment is marked as failed;
-a case that an environment does not take cannot fail there.
+The values are those of :func:`tltlc.expression.evaluate.evaluate`. For an environment in which that
+function raises an error, the value here is arbitrary, and the environment is marked as failed. A
+case of a ``when`` fails only in environments that take it.
 
-On a CPU in float64 the values are equal to the last bit, except for the sign of zeros. Another
-exception are ``exp``, ``tanh``, ``sqrt`` and powers other than 2 and 3, which torch rounds differently
-from the C library: the relative difference is less than 1e-12.
+On a CPU in float64 the values are equal to the last bit, except for the sign of zeros, and except
+for ``exp``, ``tanh``, ``sqrt`` and powers other than 2 and 3. Torch rounds these differently from
+the C library: the relative difference is less than 1e-12.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from tltlc.api import expressions
 
 
 class TensorExpressions:
-    """Expressions as one function of columns [signals, N].
+    """Expressions, compiled to one function of the signals of N environments, [signals, N].
 
     ``source`` is the Python text of the function. ``params`` are in SI units.
     """

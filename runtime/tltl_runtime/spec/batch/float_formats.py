@@ -15,7 +15,10 @@ def fits(numbers: Iterable[float], dtype: torch.dtype) -> bool:
 
 
 def narrow(values: Tensor, dtype: torch.dtype) -> Tensor:
-    """Return the values in a format; a value that would round to 0 becomes the smallest normal number of its sign."""
+    """Convert values to a format.
+
+    A value that would round to 0 becomes the smallest normal number with its sign.
+    """
     if values.dtype == dtype:
         return values
     converted = values.to(dtype)

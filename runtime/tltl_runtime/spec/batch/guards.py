@@ -1,4 +1,4 @@
-"""Robustness of guards, and transitions by truth, for N environments in different states."""
+"""Compute the robustness of guards and the edges that are taken, for N environments at once."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class PrimeSets:
     def bounding_atom(self, choice: Tensor, values: Tensor) -> Tensor:
         """Return the atom that bounds the robustness of the chosen sets, int64 [N]; -1 for none.
 
-        It is the atom of the first least literal in the first best prime of the set.
+        It is the atom of the least literal in the best prime of the set, the first one on ties.
         """
         rows = self._rows.index_select(0, choice)
         literals = self._literals_of(rows, values)
@@ -89,14 +89,15 @@ class PrimeSets:
         return literals.view(self._depth, self._width, values.shape[1])
 
     def _table(self, cells: Callable[[Primes], list[int]]) -> Tensor:
-        """Return the padded cells of each distinct set: int64 [primes * literals, distinct]."""
+        """Return the ``cells`` of each distinct set, int64 [primes * literals, distinct]."""
         rows = [cells(primes) for primes in self._distinct]
         return torch.tensor(rows, dtype=torch.int64).view(len(rows), self._depth * self._width).t().contiguous()
 
     def _literal_rows(self, primes: Primes) -> list[int]:
-        """Return rows of (values, negated values, 1, empty).
+        """Return the row of each literal of a set in the stack (values, negated values, 1, empty).
 
-        Padding repeats the first literal or prime, which changes no minimum or maximum.
+        All sets have the same number of rows: padding repeats the first literal or prime, which
+        changes no minimum or maximum.
         """
         if not primes:
             return [2 * self._atoms + 1] * (self._depth * self._width)

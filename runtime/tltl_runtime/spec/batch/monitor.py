@@ -69,9 +69,9 @@ class BatchStep:
 
     @cached_property
     def limiting(self) -> Tensor:
-        """The atom that bounds the nearest edge that would have improved, int64.
+        """The index of the atom that bounds the nearest edge towards acceptance, int64.
 
-        It is -1 where the scalar monitor has None.
+        It is -1 where ``limiting`` of :class:`tltlc.monitor.Step` is None.
         """
         return self._monitor.outcomes.nearest.bounding_atom(self.edge, self.values)
 
@@ -90,9 +90,9 @@ class BatchMonitor:
     After the end of an episode, the automaton of its environment continues with reward 0 until it is
     reset, as in the scalar monitor.
 
-    ``state`` int64 [N], ``steps`` and ``progress`` [N] describe the last step. ``clamped`` counts
-    values out of range, by the names of signals and atoms. ``signal_names`` is the order of signals
-    in a tensor.
+    ``state`` int64 [N], ``steps`` [N] and ``progress`` [N] are the values after the last step.
+    ``clamped`` counts values out of range, by the names of signals and atoms. ``signal_names`` is
+    the order of signals in a tensor.
 
     Checking samples waits for the device a few times per step. With ``checked=False`` a step never
     waits. Then values out of range are clamped and not counted. A NaN makes its atoms false and may

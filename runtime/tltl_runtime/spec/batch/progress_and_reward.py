@@ -1,6 +1,6 @@
 """Algorithm 1 for N environments (semantics, section 4).
 
-The order of operations is the same as in :mod:`tltlc.monitor.progress_and_reward`, which lists the deviations
+The order of operations is the same as in :mod:`tltlc.monitor.reward`, which lists the deviations
 from the paper. Lookup tables by edge store what depends only on states.
 """
 
@@ -20,7 +20,11 @@ VERDICTS: Final = ("satisfied", "holding", "pending", "violated")
 
 
 class Outcomes:
-    """Progress, ends and rewards of Algorithm 1; all argument and result tensors have shape [N]."""
+    """Computes progress, rewards and whether episodes end, by Algorithm 1.
+
+    All arguments and results are tensors of shape [N], except ``values``, [atoms, N]. An ``edge``
+    is the index of the edge that is taken.
+    """
 
     def __init__(self, fspa: Fspa, options: RewardOptions, device: torch.device, dtype: torch.dtype) -> None:
         self._options, self._limit = options, fspa.limit_steps
@@ -38,13 +42,15 @@ class Outcomes:
         verdicts = [states[e.target].verdict for e in edges]
         self._violated = numbers([float(verdict == "violated") for verdict in verdicts])
         self._base = numbers([scalar.base_progress[e.target] for e in edges])
-        # The progress of a spec judged at its limit: 1 if satisfied, the share of T if undecided, else 0.
+        # The progress of a spec judged at its limit: 1 if satisfied, the share of the limit that
+        # has
+        # passed if undecided, else 0.
         self._settled = numbers([float(verdict == "satisfied") for verdict in verdicts])
         self._open = numbers([float(verdict in ("holding", "pending")) for verdict in verdicts])
         staying = [scalar.improving[e.source] if e.source == e.target else () for e in edges]
         primes = [tuple(prime for edge in chosen for prime in edge.guard.primes) for chosen in staying]
         self.nearest = PrimeSets(primes, len(fspa.atoms), device, -1.0)
-        """Per edge on which the automaton stays, the primes of the edges that would have improved."""
+        """For each edge that keeps the state: the primes of the edges towards acceptance."""
         self._approaches = any(primes) and not self._by_share
         self._size = numbers([float(fspa.spec_size or 1)])
         self._limit_number = numbers([float(self._limit or 1)])
@@ -94,5 +100,8 @@ class Outcomes:
 
 
 def approach(nearest: Tensor, size: Tensor) -> Tensor:
-    """Return what line 14 adds, ``(1 + min(0, nearest)) / S``; modifies ``nearest`` in place."""
+    """Return what line 14 of Algorithm 1 adds, ``(1 + min(0, nearest)) / S``.
+
+    Modify ``nearest`` in place.
+    """
     return nearest.clamp_(max=0.0).add_(1.0).div_(size)

@@ -1,4 +1,4 @@
-"""Write straight-line torch code for expressions over columns of samples."""
+"""Write torch code that computes expressions for N environments at once."""
 
 from __future__ import annotations
 
@@ -15,10 +15,11 @@ _FAILURES: Final = (ZeroDivisionError, OverflowError, ValueError)
 
 @record
 class TensorTerm:
-    """The name of a tensor or the text of a constant, the value of the constant, and the mask of failures.
+    """The code for an expression: the name of a tensor or the text of a constant (``name``).
 
-    ``constant`` is a number or a truth value, or None for a tensor. ``fails`` is the name of the
-    mask of the environments for which the term has no value, or None if it always has one.
+    ``constant`` is the value of the constant, a number or a truth value; None for a tensor.
+    ``fails`` is the name of a mask of the environments for which the expression has no value; None
+    if it always has one.
     """
 
     name: str
@@ -27,7 +28,9 @@ class TensorTerm:
 
 
 class TensorWriter:
-    """Writes lines that assign to new names, each from ``columns``, ``constants`` and earlier names.
+    """Writes lines of code, each of which assigns a tensor to a new name.
+
+    A line uses ``columns``, ``constants`` and earlier names.
 
     ``columns[i]`` is the column of the i-th signal. Equal right-hand sides are written once.
     ``constants`` are numbers, by the names of the zero-dimensional tensors for them.
@@ -41,11 +44,11 @@ class TensorWriter:
         self.constants: dict[str, float] = {}
 
     def constant_column(self, constant: float) -> str:
-        """Return the name of a column filled with a constant."""
+        """Write a line that makes a column filled with a constant, and return the column's name."""
         return self._line(f"columns.new_full((columns.shape[1],), {self._constant_tensor(constant)}.item())")
 
     def number(self, node: expressions.Expression) -> TensorTerm:
-        """Return the term of an expression."""
+        """Write the lines that compute an expression, and return its term."""
         if isinstance(node, expressions.Const):
             return self._constant(node.value)
         if isinstance(node, expressions.ParamValue):

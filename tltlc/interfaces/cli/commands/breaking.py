@@ -1,4 +1,7 @@
-"""``tltlc breaking``: report changes since a revision, or from a folder, that games or baselines notice."""
+"""``tltlc breaking``: report changes of specs and libraries that break a game or a baseline.
+
+The old files come from a Git revision or from a folder.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +22,7 @@ if TYPE_CHECKING:
     from tltlc.tools.diff.revisions import EarlierTree
 
 _SERVICE_FORMATS: Final = ("github", "sarif")
-"""Formats for services that only know the current files."""
+"""Formats for services that know only the current files, so diagnostics must point into those."""
 
 
 @click.command(
@@ -89,7 +92,7 @@ def command(paths: tuple[str, ...], against: str, settings: CompileSettings, for
 
 
 def _files(argument: str, old: EarlierTree) -> list[str]:
-    """Return the argument itself, or the spec files that a folder holds or held.
+    """Return the argument itself; for a folder, the spec files in its new and old versions.
 
     Raise TLT0722 if there are none.
     """
@@ -99,7 +102,7 @@ def _files(argument: str, old: EarlierTree) -> list[str]:
     folders = [folder for folder in (argument, old.old_path(argument)) if folder is not None and os.path.isdir(folder)]  # noqa: PTH112
     if not folders:
         return [argument]
-    # The old folder may lie inside the new one.
+    # The old folder may lie inside the new one; skip its files.
     candidates = {path for folder in folders for path in files_below(Path(folder), SOURCE_ENDINGS)}
     spec_files = [path for path in sorted(candidates) if not old.contains(Path(argument, path))]
     if not spec_files:
@@ -109,7 +112,7 @@ def _files(argument: str, old: EarlierTree) -> list[str]:
 
 
 def _change(path: str, old: EarlierTree, settings: CompileSettings) -> FileChange:
-    """Compile the old and the new version of a file; raise the errors of either."""
+    """Compile the old and the new version of a file; raise TltlError if either has errors."""
     from tltlc.tools.diff.breaking import FileChange, Version
 
     before = old.old_path(path)
@@ -121,7 +124,7 @@ def _change(path: str, old: EarlierTree, settings: CompileSettings) -> FileChang
 
 
 def _version(path: str, settings: CompileSettings) -> Version:
-    """Compile a file in its current state."""
+    """Compile a file, and return what ``tltlc breaking`` compares of it."""
     from tltlc.interfaces.cli.inputs import open_input
     from tltlc.tools.diff.versions import version_of_artefact, version_of_library, version_of_specs
 

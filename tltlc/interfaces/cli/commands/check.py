@@ -13,7 +13,7 @@ from tltlc.interfaces.cli import plugins
 from tltlc.interfaces.cli.settings import CompileSettings, source_options
 
 LEVELS: Final = "tltlc.levels"
-"""The key in a context for the click command that checks levels.
+"""The key in ``Context.meta`` under which the click command that checks levels is stored.
 
 Its options join those of ``check --level``. Its callback receives ``levels`` (as on the command
 line), ``inputs`` (the compiled arguments), ``settings``, the ``report``, and the values of its
@@ -22,16 +22,16 @@ options.
 
 
 class CheckCommand(click.Command):
-    """The command; the options for levels appear once ``--level`` is given."""
+    """The command ``check``; it has the options for levels only if ``--level`` is given."""
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """Parse like click, with the options for levels if one is named."""
+        """Parse like click; if a level is given, also parse the options for levels."""
         if not ctx.resilient_parsing and any(text.partition("=")[0] == "--level" for text in args):
             ctx.meta[LEVELS] = plugins.load_levels_plugin("check", "`tltlc check --level`")
         return super().parse_args(ctx, args)
 
     def get_params(self, ctx: click.Context) -> list[click.Parameter]:
-        """Return the options of the command, with those for levels before ``--help``."""
+        """Return the options of the command; the options for levels come before ``--help``."""
         *own, help_ = super().get_params(ctx)
         levels = ctx.meta.get(LEVELS)
         return [*own, *(levels.params if levels else ()), help_]

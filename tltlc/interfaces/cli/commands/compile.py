@@ -116,10 +116,10 @@ def _valid_inputs(
 
 
 def _check_distinct(files: Files, source: str, sources: dict[str, str], *, is_waiting: bool) -> None:
-    """Record in ``sources`` which source makes which file.
+    """Record in ``sources``, by file name, the source that each file is generated from.
 
-    Raise TLT0700 if two sources make the same file. ``is_waiting`` is whether the command waits for
-    changes of files, so that an edit can fix this.
+    Raise TLT0700 if two sources make the same file. ``is_waiting`` is whether the command runs
+    again after each change of a file; then an edit can fix the error.
     """
     from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 

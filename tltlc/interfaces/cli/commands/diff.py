@@ -72,9 +72,10 @@ def command(a: str, b: str, by_name: bool, settings: CompileSettings, format: st
 
 
 def _open_sides(a: str, b: str, settings: CompileSettings) -> tuple[Input, Input, bool]:
-    """Open both files with the specs to compare.
+    """Open both files, and select the specs to compare.
 
-    The flag is True if each side is one spec, and both are to be compared whatever their names are.
+    Also return whether each side is a single spec; then the two are compared even if their names
+    differ.
     """
     (path_a, name_a), (path_b, name_b) = split(a), split(b)
     if path_a == path_b == STDIN:
@@ -88,7 +89,7 @@ def _open_sides(a: str, b: str, settings: CompileSettings) -> tuple[Input, Input
 
 
 def _open_side(argument: str, settings: CompileSettings) -> Input:
-    """Open one side; ``REV:FILE`` is the file at that revision.
+    """Open one side; ``REV:FILE`` is FILE at the Git revision REV.
 
     Other arguments are opened by :func:`~tltlc.interfaces.cli.inputs.open_input`.
 
@@ -117,7 +118,7 @@ def _open_side(argument: str, settings: CompileSettings) -> Input:
 
 
 def _split_revision(path: str) -> tuple[str, str]:
-    """Split ``REV:FILE`` into revision and file; a path of a current file has an empty revision."""
+    """Split ``REV:FILE`` into revision and file; for a current file, the revision is empty."""
     from tltlc.tools.diff.revisions import SOURCE_ENDINGS
 
     revision, _, file = path.partition(":")
@@ -136,12 +137,15 @@ def _exclusive_declarations(a: Input, b: Input) -> DeclaredGroups:
 
 
 def _matching_spec(name: str | None, side: Input) -> Input:
-    """Reduce a file to the spec that has the name on the other side, if there is one."""
+    """Return the side with only the spec ``name``, which is named on the other side.
+
+    Return it unchanged if it has no such spec.
+    """
     matches = tuple(fspa for fspa in side.automata if fspa.name == name)
     return replace(side, automata=matches or side.automata)
 
 
 def _side_name(argument: str, side: Input) -> str:
-    """Return the name of a side in the report."""
+    """Return the name of a side as the report shows it: ``FILE`` or ``FILE:SPEC``."""
     name = split(argument)[1]
     return side.name if name is None else f"{side.name}:{name}"

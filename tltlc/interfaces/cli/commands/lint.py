@@ -68,7 +68,8 @@ def _lint_file(
 ) -> tuple[Diagnostic, ...]:
     """Lint a file, and fix it first if ``fixing``; return the remaining diagnostics.
 
-    ``elsewhere`` has the names that other files may use.
+    ``elsewhere`` contains the names that other files may use, so the linter does not call them
+    unused.
     """
     from pathlib import Path
 

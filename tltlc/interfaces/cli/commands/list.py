@@ -14,9 +14,9 @@ from tltlc.diagnostics.diagnostic import TltlError
 Row = dict[str, str]
 
 LISTS = "tltlc.lists"
-"""The entry-point group for lists that the compiler does not know itself.
+"""The entry-point group for lists that the compiler cannot make itself, such as the levels.
 
-Each entry is a function that returns rows.
+Each entry is a function that returns the rows of its list.
 """
 
 
@@ -63,7 +63,7 @@ def show(rows: list[Row]) -> None:
 
 
 def _predicates(libraries: tuple[Path, ...], add: Callable[..., None]) -> Iterator[Row]:
-    """Yield the predicates that each library declares, as written there.
+    """Yield a row for each predicate of each library, with its signature as declared.
 
     Report the errors of broken files.
     """
@@ -131,7 +131,7 @@ _LISTS: dict[str, Callable[[], Iterator[Row]]] = {"targets": _targets, "levels":
 def _lines(rows: list[Row]) -> None:
     """Print tab-separated columns.
 
-    A signature already contains the name, so it replaces the name.
+    If there is a signature, the name is left out, because the signature contains it.
     """
     for row in rows:
         print("\t".join(value for key, value in row.items() if not (key == "name" and "signature" in row)))

@@ -174,7 +174,7 @@ def _column_messages(words: MiningVocabulary, predicates: str | None) -> Iterato
 
 
 def _read_traces(arguments: Sequence[str]) -> list[TraceFile]:
-    """Read the traces that the command line names; those of a folder in order of their names."""
+    """Read the files that the arguments name, and all traces in folders, sorted by path."""
     from tltlc.io.files import is_dir, read_bytes
     from tltlc.tools.mine.trace_letters import TraceFile
 
@@ -220,7 +220,7 @@ def _is_name(predicates: str) -> bool:
 
 
 def _compile_options(predicates: str | None, settings: CompileSettings) -> CompileOptions:
-    """Return the options to compile specs about the atoms of a library."""
+    """Return the options to compile the proposals, which use the atoms of a library."""
     from tltlc.io.project import Project, project_for
 
     check_libraries(settings.libraries)
@@ -264,7 +264,7 @@ def _every_second(report: Report) -> Callable[[str], None]:
 
 
 def _unread_messages(words: MiningVocabulary) -> Iterator[str]:
-    """Yield a message if there are more atoms than the limit allows to read."""
+    """Yield a message if some atoms were not read because there are more than the limit."""
     from tltlc.io.limits import WORK
 
     if words.unread_count:
@@ -302,7 +302,7 @@ def _write_proposals(
 ) -> None:
     """Write the proposals as a source file, or print them.
 
-    ``imported`` is the line that imports their library.
+    ``imported`` is the source line that imports the library of their predicates.
     """
     from tltlc.io.writing import write_file
     from tltlc.tools.fmt import format_text

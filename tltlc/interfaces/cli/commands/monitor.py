@@ -1,4 +1,4 @@
-"""``tltlc monitor``: print a row per step as it happens, and the verdict of the whole trace."""
+"""``tltlc monitor``: print a row for each step of a trace, as it is read, and then the verdict."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def command(spec: str, trace: str, as_json: bool, settings: CompileSettings, for
 
 @contextmanager
 def _open_trace(trace: str) -> Iterator[Stream]:
-    """Open a trace to read it line by line; raise TLT0001 now, or later while it is read."""
+    """Open a trace to read it line by line; opening and reading raise TLT0001 if they fail."""
     if trace == STDIN:
         yield _OpenTrace(standard_input(), STDIN_NAME)
         return
@@ -97,7 +97,7 @@ def _trace_name(trace: str) -> str:
 
 
 def _with_notices(rows: Iterator[RunStep], notices: list[Diagnostic], report: Report) -> Iterator[RunStep]:
-    """Pass the rows on, and report the notices of the monitor as soon as they occur."""
+    """Yield the rows unchanged; before each row, report the notices that it caused."""
     for row in rows:
         report.add(notices)
         notices.clear()

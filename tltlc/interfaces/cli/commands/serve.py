@@ -87,7 +87,7 @@ def _serve(port: int, open_browser: bool) -> None:
 def _report_ignored_project() -> None:
     """Report that a project file above the current folder is ignored.
 
-    Texts may read nothing outside the current folder.
+    The texts in the playground may read nothing outside the current folder.
     """
     from tltlc.io.project import project_file
 

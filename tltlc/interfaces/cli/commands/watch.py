@@ -69,7 +69,8 @@ def _check_files(arguments: tuple[str, ...], settings: CompileSettings) -> None:
     report = Report()
     paths = every_source(arguments, report)
     for path in (*paths, *arguments):
-        # A change is reported under the first noted name: this one, not the name of a neighbour.
+        # A changed file is reported under the path that was logged first. So log these paths
+        # before the linter logs the files beside them.
         log_lookup(path)
     neighbour_words = [importer_names(str(path), text) for path, text in neighbours(paths).items()]
     passed = 0

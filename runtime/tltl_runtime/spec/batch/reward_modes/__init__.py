@@ -1,7 +1,7 @@
 """Alternative rewards for N environments: one module per mode, loaded on first use.
 
-A module has the name of its mode, as its scalar counterpart in :mod:`tltlc.monitor.reward_modes`
-has, and defines a class ``Reward`` that is a :class:`RewardMode`. Both give equal rewards.
+A module has the name of its mode and defines a class ``Reward``, which is a :class:`RewardMode`.
+The module of that name in :mod:`tltlc.monitor.reward_modes` gives equal rewards, for one automaton.
 """
 
 from __future__ import annotations
@@ -31,7 +31,10 @@ class BatchTransition(NamedTuple):
 
 
 class RewardMode(Protocol):
-    """A reward of N environments. Its memory is a tensor whose last dimension has size N."""
+    """A reward of N environments.
+
+    Its memory is what it keeps from step to step: a tensor whose last dimension has size N.
+    """
 
     def __init__(self, fspa: Fspa, options: RewardOptions, device: torch.device, dtype: torch.dtype) -> None: ...
 
@@ -45,6 +48,9 @@ class RewardMode(Protocol):
 
 
 def reward_mode(fspa: Fspa, options: RewardOptions, device: torch.device, dtype: torch.dtype) -> RewardMode:
-    """Return the mode that the options name; ``progress`` has none, since its reward is Algorithm 1."""
+    """Return the mode that the options name.
+
+    There is none for ``progress``: :class:`~tltl_runtime.spec.batch.rewards.Outcomes` computes it.
+    """
     mode: RewardMode = importlib.import_module(f"{__name__}.{options.mode}").Reward(fspa, options, device, dtype)
     return mode

@@ -11,7 +11,7 @@ from tltlc.api import Fspa, Implicant, RewardOptions
 
 
 class Reward:
-    """The robustness of leaving the state, except into a trap; 0 if no edge leaves it."""
+    """The greatest robustness of an edge out of the state, except into a trap; 0 without one."""
 
     def __init__(self, fspa: Fspa, _: RewardOptions, device: torch.device, dtype: torch.dtype) -> None:
         self._device, self._dtype = device, dtype
@@ -22,7 +22,7 @@ class Reward:
         self._leaving = PrimeSets([tuple(primes) for primes in leaving], len(fspa.atoms), device, 0.0)
 
     def start(self, count: int) -> Tensor:
-        """Return zeros: this mode remembers nothing."""
+        """Return zeros, because this mode needs no memory."""
         return torch.zeros(count, dtype=self._dtype, device=self._device)
 
     def reward(self, step: BatchTransition, memory: Tensor) -> tuple[Tensor, Tensor]:

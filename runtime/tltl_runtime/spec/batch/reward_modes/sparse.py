@@ -13,8 +13,8 @@ from tltlc.api import Fspa, RewardOptions
 class Reward:
     """The robustness of the whole trace, once, at the end of the episode.
 
-    The memory is the width of the widest run to each state, [states, N]: the maximum over runs of
-    the least edge robustness; -2 stands for no run.
+    The width of a run is the least robustness of its edges. The memory has the width of the widest
+    run to each state, shape [states, N]; -2 if no run leads there.
     """
 
     def __init__(self, fspa: Fspa, _: RewardOptions, device: torch.device, dtype: torch.dtype) -> None:
