@@ -1,7 +1,7 @@
-"""Compile a source text to automata in three stages: parse, resolve, build.
+"""Compile a source text to automata in three stages: parse, resolve names, build automata.
 
-A :class:`Session` runs the stages for one text. A stage runs to its end and reports all its
-diagnostics. To build automata, each stage must end without errors.
+A :class:`Session` runs the stages for one text. A stage does not stop at its first error, but
+reports all its diagnostics. Automata are built only if the stages before have no errors.
 """
 
 from __future__ import annotations
@@ -35,10 +35,11 @@ if TYPE_CHECKING:
 class CompileOptions:
     """Options of the compiler.
 
-    ``library_dirs`` are searched for imports, after the folder of the file itself. ``params``
-    overrides the values of params, as written (``{"level_size": "30 m"}``). ``state_budget`` is the
-    greatest number of states that a construction may explore; over infinite traces, it bounds the
-    steps of the construction in proportion. ``specs`` names the specs to build; empty means all.
+    ``library_dirs`` are searched for imports, after the folder of the file itself. ``params`` maps
+    names of params to other values, as texts of the language (``{"level_size": "30 m"}``).
+    ``state_budget`` is the most states that the construction of an automaton may explore; over
+    infinite traces, the most steps of the construction are proportional to it. ``specs`` has the
+    names of the specs to build; if it is empty, all are built.
     """
 
     library_dirs: tuple[Path, ...] = ()
@@ -49,9 +50,10 @@ class CompileOptions:
 
 @record
 class Compiled:
-    """A compiled file: its ``automata`` in the order of its specs, and its ``diagnostics``.
+    """A compiled source text: its ``program`` (specs and tests), its ``automata``, and its ``diagnostics``.
 
-    ``diagnostics`` contains no errors, and none that a comment in the file allows.
+    ``automata`` are in the order of the specs. ``diagnostics`` has no errors, and none that a
+    comment in the text silences.
     """
 
     program: ResolvedFile
@@ -60,13 +62,13 @@ class Compiled:
 
 
 class Session:
-    """One source text with the results of each stage of the compiler.
+    """A source text and the results of each stage of the compiler.
 
     A stage runs when its result is first needed, and only once. ``module``, ``syntax_errors``,
-    ``resolution`` and ``source_diagnostics`` never raise an error because of the text: they report
-    what is wrong and leave it out. The other properties require a text without errors up to their
-    stage. Without ``proofs``, the session skips the proofs that predicates stay in their ranges,
-    which take longer than everything else.
+    ``resolution`` and ``source_diagnostics`` work for any text: they leave out the parts with
+    errors. The other properties raise a :class:`TltlError` if a stage that they need has errors.
+    If ``proofs`` is false, the session does not prove that the values of predicates are in [-1, 1],
+    which takes longer than everything else.
 
     >>> session = Session(SourceFile("hide.tltl", "signal seen: bool  spec hide = G !seen"))
     >>> [spec.name for spec in session.specs], [len(fspa.states) for fspa in session.automata]
@@ -80,7 +82,7 @@ class Session:
 
     @property
     def module(self) -> Module:
-        """The declarations that can be read."""
+        """The declarations of the text, without those that have syntax errors."""
         return self._parsed[0]
 
     @property
@@ -90,20 +92,20 @@ class Session:
 
     @cached_property
     def resolution(self) -> Resolution:
-        """The names, specs and tests of the declarations that can be read; the imported files are read."""
+        """The names, specs and tests of the declarations in :attr:`module` and in the files that they import."""
         options = self.options
         return resolve(self.module, ResolveOptions(options.library_dirs, options.params, self._proofs))
 
     @property
     def source_diagnostics(self) -> tuple[Diagnostic, ...]:
-        """The diagnostics of parsing and resolution, including those that comments silence."""
+        """The diagnostics of parsing and resolving, including those that comments silence."""
         return self.syntax_errors + self.resolution.diagnostics
 
     @cached_property
     def program(self) -> ResolvedFile:
         """The specs and tests.
 
-        Errors: :class:`TltlError` with the diagnostics of parsing, or of parsing and resolution.
+        Errors: :class:`TltlError` with the diagnostics of parsing, or of parsing and resolving.
         """
         stop_at_errors(self.syntax_errors)
         stop_at_errors(self._unsilenced(self.source_diagnostics))
@@ -111,16 +113,17 @@ class Session:
 
     @cached_property
     def specs(self) -> tuple[Spec, ...]:
-        """The specs that the options name, or all of them, in order.
+        """The specs in :attr:`CompileOptions.specs`, or all specs, in the order of the text.
 
-        Errors: as for :attr:`program`; TLT0720 if the options name a spec that does not exist.
+        Errors: as for :attr:`program`; TLT0720 if the options have the name of a spec that does not
+        exist.
         """
         return pick_specs(self.program.specs, self.options.specs, self.source.name)
 
     @cached_property
     def reported(self) -> tuple[Diagnostic, ...]:
         """The diagnostics of all stages, including those that comments silence. Errors: as for :attr:`specs`."""
-        # This raises the errors of a stage before the next stage runs.
+        # Raise the errors of parsing and resolving before automata are built.
         built = self._built
         return self.source_diagnostics + tuple(diagnostic for _, warnings in built for diagnostic in warnings)
 
@@ -134,7 +137,7 @@ class Session:
         """The automata of :attr:`specs`, in their order.
 
         Errors: :class:`TltlError` with all diagnostics up to the end of the stage that failed;
-        TLT0720 if the options name a spec that does not exist.
+        TLT0720 if the options have the name of a spec that does not exist.
         """
         stop_at_errors(self.diagnostics)
         return tuple(fspa for fspa, _ in self._built if fspa is not None)
@@ -159,10 +162,10 @@ class Session:
 
 
 def compile_source(source: SourceFile, options: CompileOptions | None = None) -> Compiled:
-    """Compile all specs of a source text, or the specs that the options name.
+    """Compile all specs of a source text, or those in :attr:`CompileOptions.specs`.
 
     Errors: :class:`TltlError` with all diagnostics up to the end of the stage that failed; TLT0720
-    if the options name a spec that does not exist.
+    if the options have the name of a spec that does not exist.
     """
     return Session(source, options).compiled()
 
@@ -182,9 +185,9 @@ def build_spec(spec: Spec, options: CompileOptions) -> tuple[Fspa | None, tuple[
 
 
 def pick_specs(specs: tuple[Spec, ...], names: tuple[str, ...], file: str) -> tuple[Spec, ...]:
-    """Return the specs with these names in the order of the file; without names, all specs.
+    """Return the specs with these names in the order of ``specs``; all specs if ``names`` is empty.
 
-    Errors: TLT0720 if a name belongs to no spec.
+    ``file`` is the name of the file in messages. Errors: TLT0720 if no spec has one of the names.
     """
     known = [spec.name for spec in specs]
     for name in names:
@@ -194,7 +197,10 @@ def pick_specs(specs: tuple[Spec, ...], names: tuple[str, ...], file: str) -> tu
 
 
 def unknown_spec(name: str, known: list[str], file: str) -> Diagnostic:
-    """Return the error for a name that is no spec of the file."""
+    """Return the error TLT0720 for a name that no spec of the file has.
+
+    ``known`` are the names of its specs.
+    """
     from difflib import get_close_matches
 
     close = get_close_matches(name, known, n=1)
@@ -206,8 +212,8 @@ def unknown_spec(name: str, known: list[str], file: str) -> Diagnostic:
 def compile_text(text: str, name: str = "<text>", options: CompileOptions | None = None) -> tuple[Fspa, ...]:
     """Return the automata of the specs of a text, in order.
 
-    Messages call the text ``name``. If ``name`` is a path, imports are also searched in its folder.
-    Errors: :class:`TltlError`.
+    ``name`` is the name of the text in messages. If it is a path, imported files are searched in
+    its folder, too. Errors: :class:`TltlError`.
     >>> import tltlc
     >>> fspa, = tltlc.compile_text("signal seen: bool  spec hide = G !seen")
     >>> fspa.name, len(fspa.states), fspa.judge
@@ -264,10 +270,10 @@ def read_artefact(source: SourceFile) -> Fspa:
 
 @resource_limits()
 def decode_artefact(document: object, name: str) -> Fspa:
-    """Return the automaton in the parsed JSON of an artefact, which messages call ``name``.
+    """Return the automaton in the parsed JSON of an artefact.
 
-    ``document`` is what :func:`tltlc.io.json_text.loads` returns.
-    Errors: TLT0006, and TLT0601 to TLT0604.
+    ``document`` is what :func:`tltlc.io.json_text.loads` returns, and ``name`` the name of the
+    artefact in messages. Errors: TLT0006, and TLT0601 to TLT0604.
     """
     from tltlc.artefact.decode import decode
 
@@ -275,7 +281,9 @@ def decode_artefact(document: object, name: str) -> Fspa:
 
 
 def with_params(fspa: Fspa, values: Mapping[str, str]) -> Fspa:
-    """Return the automaton with other values of its params, as written (``{"level_size": "30 m"}``).
+    """Return the automaton with other values of its params.
+
+    ``values`` maps names of params to texts of the language, such as ``{"level_size": "30 m"}``.
 
     Errors: TLT0307 if a value is out of range; TLT0308 if a param does not exist or a text is not a
     value for it.

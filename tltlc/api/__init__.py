@@ -1,8 +1,8 @@
-"""The names that programs built on the compiler may import, such as the runtime.
+"""The names of the compiler that other programs, such as the runtime, may import.
 
-Import names from here, and from nowhere else inside ``tltlc``: modules move, these names stay. This
-package has the classes and functions that most programs need. Eight modules have the others; each
-answers one question:
+Import them from here and from nowhere else in ``tltlc``, because other modules may move. This
+package has the classes and functions that most programs need. Eight modules have more; each is the
+answer to a question:
 
 - ``cli``: how does a command take options, show diagnostics and choose its exit status?
 - ``compiler``: how do I get an automaton, and a monitor or picture of it?
@@ -13,10 +13,11 @@ answers one question:
 - ``specs``: what types do signals have, and where is the standard library?
 - ``syntax``: what does a ``.tltl`` file declare?
 
-Importing this package loads nothing else. Each name is loaded on first use.
+Importing this package imports no other module. The module of a name is imported when the name is
+first used.
 """
 
-# Type checkers treat this as true. Importing it from `typing` would add some milliseconds to each start.
+# Type checkers treat this name as true. To import it from `typing` would add some milliseconds to each start.
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from tltlc.api import cli as cli

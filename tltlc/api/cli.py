@@ -1,8 +1,8 @@
 """How does a command take options, show diagnostics and choose its exit status?
 
-``OutputPath``, ``WholeRange`` and ``FiniteRange`` are click types for options, and ``open_input``
-reads and compiles an argument such as ``SPEC.tltl:NAME``. ``Report`` collects diagnostics, shows
-them in the format that the user chose, and has the exit status. ``exits`` has the statuses.
+``OutputPath``, ``WholeRange`` and ``FiniteRange`` are click types for options. ``open_input`` reads
+and compiles an argument such as ``SPEC.tltl:NAME``. ``Report`` collects diagnostics, shows them in
+the format that the user chose, and returns the exit status. ``exits`` has all exit statuses.
 """
 
 from tltlc.interfaces.cli import exits

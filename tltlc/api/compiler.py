@@ -1,7 +1,8 @@
 """How do I get an automaton, and a monitor or picture of it?
 
-``compile_source`` compiles a source text; ``read_artefact`` and ``decode_artefact`` read what was
-compiled before. ``emit`` makes the files of a target, such as ``python`` or ``svg``.
+``compile_source`` compiles a source text. ``read_artefact`` and ``decode_artefact`` read an
+automaton that was compiled before. ``emit`` returns the files of a target, such as ``python`` or
+``svg``.
 """
 
 from tltlc.backends import Options as BackendOptions

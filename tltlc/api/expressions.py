@@ -1,8 +1,8 @@
 """What does an atom compute, and what is its value?
 
 The expression of an atom is a tree of ``Const``, ``SignalValue``, ``ParamValue``, ``Op`` and
-``When``. ``evaluate`` computes its value, ``nodes`` yields its nodes, and ``to_json`` writes it as
-in artefacts.
+``When``. ``evaluate`` computes its value, ``nodes`` yields its nodes, and ``to_json`` converts it
+to the JSON of artefacts.
 """
 
 from tltlc.expression.evaluate import MULTIPLIED_EXPONENTS, evaluate

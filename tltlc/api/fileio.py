@@ -1,8 +1,9 @@
 """How do I read and write files so that every failure is a diagnostic?
 
-Readers raise ``TltlError`` for files that are missing, too large or malformed; ``limits`` has the
-greatest sizes. Writers replace a file as a whole or not at all. ``try_lock`` and
-``temporary_folder`` leave nothing behind when the process is killed.
+The functions that read raise ``TltlError`` for files that are missing, too large or malformed;
+``limits`` has the greatest sizes. The functions that write replace a file as a whole or not at all.
+The lock of ``try_lock`` ends with the process, even if it is killed, and a folder of
+``temporary_folder`` that a killed process left is removed later.
 """
 
 from tltlc.io import limits

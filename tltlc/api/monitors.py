@@ -1,8 +1,8 @@
 """What are the values of the atoms, the progress and the reward of a step?
 
-``Samples`` checks samples of signals and computes the atoms, ``robustness`` is that of a guard, and
-``tables`` has the lookup tables from which Algorithm 1 computes progress. The reward modes are
-``MODES``. ``tltlc.api.Monitor`` does all of this for one automaton, step by step.
+``Samples`` checks samples of signals and computes the values of the atoms. ``robustness`` computes
+the robustness of a guard, and ``tables`` what is needed to compute progress. ``MODES`` has the
+names of the reward modes. ``tltlc.api.Monitor`` does all of this for one automaton, step by step.
 """
 
 from tltlc.monitor.arguments import automaton_argument, reward_options_argument

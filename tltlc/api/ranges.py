@@ -1,7 +1,7 @@
 """Which values can an expression take, if its signals and params stay in their ranges?
 
-``cases`` splits an expression at its ``when``, and ``bound`` returns an ``Interval`` that contains
-every value of a case on a region.
+``cases`` splits an expression into the cases of its ``when``. ``bound`` returns an ``Interval``
+that contains every value of a case, for signals and params in a given region.
 """
 
 from tltlc.resolve.range_proof.cases import TooManyCasesError, cases

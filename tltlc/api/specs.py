@@ -1,7 +1,8 @@
 """What types do signals have, and where is the standard library?
 
-``TYPES`` has the dimension of each type; ``full_name`` writes a signal or predicate with its
-arguments, as in artefacts.
+``TYPES`` has the dimension of each type. ``full_name`` returns the name of a signal or predicate
+with its arguments, as it is written in artefacts. ``standard_library`` returns the folder of the
+library.
 """
 
 from tltlc.core.names import full_name

@@ -24,7 +24,11 @@ RECOMPILE: Final = "compile the spec again"
 
 
 class Origin:
-    """The name of a document in messages, and its text, which is made when the first error points into it."""
+    """Where a document comes from, for messages that point into it.
+
+    ``name`` is the name of the document in messages. ``text`` returns its text; it is called at
+    the first error that points into the document.
+    """
 
     def __init__(self, name: str, text: Callable[[], str]) -> None:
         self.name = name
@@ -64,7 +68,11 @@ def check_format(document: object, origin: Origin) -> dict[str, Any]:
 
 
 def check_arithmetic(fspa: Fspa, origin: Origin) -> None:
-    """Raise TltlError, TLT0006, for the first atom whose expression is larger than any spec could produce."""
+    """Check that no atom has a larger expression than a spec can have.
+
+    Raises:
+        TltlError: TLT0006 the expression of an atom is too large.
+    """
     for index, atom in enumerate(fspa.atoms):
         path = ("atoms", index, "expression")
         if depth(atom.expression) > ARITHMETIC.compared:
@@ -76,7 +84,12 @@ def check_arithmetic(fspa: Fspa, origin: Origin) -> None:
 
 
 def check_consistency(fspa: Fspa, origin: Origin) -> None:
-    """Raise TltlError, TLT0604, with the first :data:`MOST_PROBLEMS` inconsistencies of the automaton, if any."""
+    """Check that the parts of an automaton agree with each other.
+
+    Raises:
+        TltlError: TLT0604 they do not; the error has the first :data:`MOST_PROBLEMS`
+            inconsistencies.
+    """
     first = islice(problems(fspa), MOST_PROBLEMS)
     errors = [origin.error("TLT0604", problem.message, problem.path) for problem in first]
     if errors:

@@ -15,23 +15,27 @@ from tltlc.resolve import spec
 Declared = Union[spec.Signal, spec.Param, spec.Atom]
 
 CYCLES_WORK: Final = 1_000_000
-"""After this many steps, the check of goals and verdicts over infinite traces stops; they depend on cycles."""
+"""The most steps of work for the check of goals and verdicts over infinite traces.
+
+If the check takes more, which large automata with many cycles do, it is left out.
+"""
 
 
 @record
 class Problem:
-    """A contradiction: the path of the value to blame, and a message."""
+    """A contradiction: the path of the value that is wrong in the document, and a message."""
 
     path: Path
     message: str
 
 
 def problems(fspa: Fspa) -> Iterator[Problem]:
-    """Yield every contradiction of the first check that fails; later checks rely on the values of earlier ones.
+    """Yield the contradictions in an automaton that was read from an artefact.
 
-    Some checks are exact, but only for small automata: that exactly one guard of a state is true of
-    every sample (:mod:`tltlc.artefact.guards`), and over infinite traces the verdicts and the states
-    on accepted cycles (:data:`CYCLES_WORK`).
+    Only those of the first check that fails, because later checks need the values that it checks.
+    Two checks stop after a fixed amount of work, so large automata are checked only in part: the
+    check that exactly one guard of a state is true at every sample (:mod:`tltlc.artefact.guards`),
+    and over infinite traces the check of goals and verdicts (:data:`CYCLES_WORK`).
     """
     for check in (_names, _values, _indices, _parallel_edges, _numbering, _distances, _guards):
         failed = False
@@ -73,7 +77,7 @@ def _values(fspa: Fspa) -> Iterator[Problem]:
 
 
 def _indices(fspa: Fspa) -> Iterator[Problem]:
-    """Check that every index is in range, states are in order, and edges are sorted."""
+    """Check that every index is in range, that the ids of states count from 0, and that edges are sorted."""
     states, atoms = len(fspa.states), len(fspa.atoms)
     for index, state in enumerate(fspa.states):
         if state.id != index:
@@ -99,9 +103,10 @@ def _indices(fspa: Fspa) -> Iterator[Problem]:
 
 
 def _parallel_edges(fspa: Fspa) -> Iterator[Problem]:
-    """Check that edges with the same source and target are in different sets of pairs.
+    """Check that edges with the same source and target differ in the sets of Rabin pairs that contain them.
 
-    Over finite traces there are no pairs, so there is at most one edge for each source and target.
+    Over finite traces there are no Rabin pairs, so there is at most one edge for each source and
+    target.
     """
     marks = fspa.marks()
     seen: set[tuple[object, ...]] = set()
@@ -117,8 +122,8 @@ def _parallel_edges(fspa: Fspa) -> Iterator[Problem]:
 def _numbering(fspa: Fspa) -> Iterator[Problem]:
     """Check that states are numbered breadth-first.
 
-    In this order, the lowest state that leads to a given state comes before that state, and from
-    state to state these lowest states never decrease.
+    Call the lowest state with an edge to a state its parent. In breadth-first order, the parent of
+    a state has a lower number than the state, and later states never have a lower parent.
     """
     parents = [len(fspa.states)] * len(fspa.states)
     for edge in fspa.edges:
@@ -183,9 +188,9 @@ def _by_cycles(fspa: Fspa) -> tuple[Collection[int], list[Verdict]]:
 
 
 def _steps_to(fspa: Fspa, goals: Iterable[int]) -> dict[int, int]:
-    """Return the least number of transitions from each state to one of ``goals``; states that reach none are absent.
+    """Map each state to the least number of transitions to one of ``goals``.
 
-    Searches backward, breadth-first.
+    States that reach none of them are left out.
     """
     into: list[list[int]] = [[] for _ in fspa.states]
     for edge in fspa.edges:

@@ -21,10 +21,11 @@ from tltlc.resolve.spec import Atom, Param, Signal
 
 
 def decode(document: object, name: str) -> Fspa:
-    """Return the automaton of an artefact whose JSON is already parsed; messages call the artefact ``name``.
+    """Return the automaton of an artefact whose JSON is already parsed.
 
-    Whole numbers may be written as ``3.0``, and unknown fields are ignored.  Errors point into the
-    document as :func:`json.dumps` writes it, on one line.
+    ``name`` is the name of the artefact in messages.  Whole numbers may be floats such as ``3.0``,
+    and unknown fields are ignored.  Errors point into the text that :func:`json.dumps` writes for
+    the document.
 
     Raises:
         TltlError: TLT0006 the document nests too deep, or its arithmetic is too large; TLT0601 it
@@ -38,7 +39,9 @@ def decode(document: object, name: str) -> Fspa:
 
 
 def read(text: str, name: str) -> Fspa:
-    """Return the automaton in the text of an artefact; messages call the artefact ``name``.
+    """Return the automaton of an artefact, given its text.
+
+    ``name`` is the name of the artefact in messages.
 
     Raises:
         TltlError: as :func:`decode`; also TLT0006 the text has too many values, and TLT0601 it is
@@ -73,7 +76,7 @@ def _not_finite(name: str, constant: str) -> TltlError:
 
 
 def _remark(message: str) -> str:
-    """Return the parser's message as the text of a label."""
+    """Return the message of Python's JSON parser in the form of a label's text."""
     return (message[:1].lower() + message[1:]).removesuffix(" at").removesuffix(" starting")
 
 
@@ -125,12 +128,15 @@ _Reader = Callable[[dict[str, str]], Formula | Text]
 
 
 def _formula_reader(atoms: Iterable[dict[str, Any]]) -> _Reader:
-    """Return a function that parses the ASCII text of a formula as tltlc prints it; any other text stays text."""
+    """Return a function that converts the texts of a formula, one for each notation, to a formula.
+
+    If tltlc would not print the formula as this text, the function returns a :class:`Text` instead.
+    """
     parser = FormulaParser(atom["name"] for atom in atoms)
 
     def read(text: dict[str, str]) -> Formula | Text:
         formula = parser.formula(text["ascii"])
-        # Operators of other tools may have other precedences.
+        # A text of another tool may mean something else here, since its operators may have other precedences.
         if formula is not None and ascii_text(formula) == text["ascii"]:
             return formula
         return Text(text["ascii"], text["unicode"], text["english"])

@@ -10,11 +10,11 @@ from tltlc.expression.json import to_json
 from tltlc.resolve.spec import Param, Signal
 
 VERSION: Final = 1
-"""The version of the format; no other version can be read."""
+"""The version of the format. Artefacts of other versions cannot be read."""
 
 
 def encode(fspa: Fspa) -> dict[str, Any]:
-    """Return the document, with its keys in the order of the file.
+    """Return the JSON document of an automaton, with its keys in the order of the file.
 
     Signals, params and atoms without documentation have no ``doc``.
     """

@@ -6,8 +6,8 @@ from __future__ import annotations
 class JsonSchemaValueException(ValueError):
     """Raised when a value does not match the schema.
 
-    ``place`` is the value's place (``data.states[0].id``), ``rule`` the keyword of the schema that
-    it breaks.  The message begins with the place.
+    ``place`` is the path of the value, such as ``data.states[0].id``; the message begins with it.
+    ``rule`` is the keyword of the schema that the value violates, such as ``type``.
     """
 
     def __init__(self, message: str, place: str, rule: str) -> None:

@@ -1,8 +1,7 @@
 """Generate ``validator.py`` from ``fspa.schema.json``: run ``python -m tltlc.artefact.generate``.
 
-The generated module validates artefacts without a schema library, whose import alone would cost
-more than most compilations.  Generating needs fastjsonschema, which ``pip install tltlc[dev]``
-installs.
+The generated module validates artefacts without a schema library: to import one takes longer than
+most compilations.  Generating needs fastjsonschema, which ``pip install tltlc[dev]`` installs.
 """
 
 from __future__ import annotations
@@ -40,8 +39,8 @@ def validator_source() -> str:
 def _inline(node: Any, definitions: dict[str, Any]) -> Any:
     """Return the schema with every reference replaced by its definition, except the recursive ones.
 
-    This makes the validator faster: a reference becomes a call, and each call formats the path of
-    the value.
+    This makes the validator faster.  A reference would become a function call, and each call builds
+    the text of the value's path.
     """
     if isinstance(node, list):
         return [_inline(item, definitions) for item in node]
@@ -54,10 +53,10 @@ def _inline(node: Any, definitions: dict[str, Any]) -> Any:
 
 
 def _shorten_line(line: str) -> str:
-    """Return a line of the generated code without the parts that are not needed.
+    """Return a line of the generated code in the form that the project needs.
 
-    These are the value and the schema in a ``raise``, the class ``Decimal``, and the exception for
-    several errors.
+    Removes the value and the schema from a ``raise``, the class ``Decimal``, and the exception for
+    several errors.  Adds types to the heads of functions, and sorts the keys in messages.
     """
     line = re.sub(r", value=.*?, name=(.*?), definition=.*, rule='(\w+)'\)$", r", \1, '\2')", line)
     line = line.replace("(JsonSchemaValueException, JsonSchemaValuesException)", "JsonSchemaValueException")

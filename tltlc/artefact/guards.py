@@ -1,8 +1,11 @@
-"""Check the guards of an artefact: they must be canonical, and exactly one edge of each state must match each sample.
+"""Check the guards of an artefact.
 
-A cube, a product of literals, is a pair of bit sets: the atoms that must be true, and the atoms
-that must be false.  ``D`` is the set of samples that the exclusive groups allow (semantics, section
-3); its complement is the sum of the cubes ``a & b`` over the pairs of each group.
+A guard must be the list of all its prime implicants, and at each sample exactly one guard of each
+state must be true.
+
+A cube is a conjunction of literals.  It is stored as two bit sets: the atoms that must be true, and
+the atoms that must be false.  ``D`` is the set of samples on which no two atoms of an exclusive
+group hold together (semantics, section 3).
 """
 
 from __future__ import annotations
@@ -16,10 +19,13 @@ from tltlc.automaton.fspa import Fspa, Implicant
 Cube = tuple[int, int]
 
 WORK_LIMIT = 200_000
-"""The check stops after this many cube operations, which take about a fifth of a second."""
+"""The most operations on cubes, which take about a fifth of a second.
+
+A check that needs more stops there.
+"""
 
 _BITS_OF_A_STEP = 512
-"""The most atoms that one cube operation reads; if there are more atoms, an operation counts as several."""
+"""The most atoms of an operation on cubes; with more atoms, an operation counts as several."""
 
 
 class _TooManyCubesError(Exception):
@@ -27,7 +33,10 @@ class _TooManyCubesError(Exception):
 
 
 class _CubeBudget:
-    """Counts cube operations, so that the result does not depend on the machine's speed."""
+    """Counts operations on cubes.
+
+    A limit in seconds would make the result depend on the machine.
+    """
 
     def __init__(self) -> None:
         self.left = WORK_LIMIT
@@ -39,11 +48,11 @@ class _CubeBudget:
 
 
 def guard_problems(fspa: Fspa) -> Iterator[tuple[Path, str]]:
-    """Yield the first problem of the guards, as a path and a message.
+    """Yield the first problem of the guards, as a path in the document and a message.
 
-    A problem is a guard that is not the complete list of its prime implicants, or a state in which
-    some sample does not take exactly one edge.  Indices must be in range.  Large automata are
-    checked up to a fixed amount of work (:data:`WORK_LIMIT`).
+    Yields nothing if there is none.  A problem is a guard that is not the complete list of its
+    prime implicants, or a state in which not exactly one guard is true at some sample.  Indices
+    must be in range.  The check stops after :data:`WORK_LIMIT` operations.
     """
     work = _CubeBudget()
     leaving: list[list[int]] = [[] for _ in fspa.states]
@@ -51,7 +60,7 @@ def guard_problems(fspa: Fspa) -> Iterator[tuple[Path, str]]:
         leaving[edge.source].append(index)
     cubes: list[list[Cube]] = []
     try:
-        # A pair has a bit for each atom, and each guard is compared with all pairs.
+        # Building the pairs is work too: each has a bit for each atom, and each guard is compared with all pairs.
         work.spend(sum(len(group) ** 2 // 2 for group in fspa.exclusive) * (1 + len(fspa.atoms) // _BITS_OF_A_STEP))
         pairs = [(1 << a | 1 << b, 0) for group in fspa.exclusive for a, b in combinations(group, 2)]
         for index, edge in enumerate(fspa.edges):
@@ -86,10 +95,11 @@ def _cube(prime: Implicant) -> Cube:
 def _guard_problem(
     primes: Sequence[Implicant], cubes: Sequence[Cube], pairs: Sequence[Cube], work: _CubeBudget
 ) -> str | None:
-    """Return why the cubes are not the prime implicants of a guard within D; None if they are.
+    """Return in words why ``cubes`` are not all prime implicants of a guard, or None if they are.
 
-    A set of cubes is the set of all prime implicants of its sum if and only if no cube lies in
-    another and each consensus of two cubes lies in one of them (Quine 1955).
+    ``pairs`` has a cube for each two atoms that are exclusive.  A set of cubes has all prime
+    implicants of its disjunction if and only if no cube implies another one, and the consensus of
+    every two cubes implies a cube of the set (Quine 1955).
     """
     for prime, cube in zip(primes, cubes, strict=True):
         if len({atom for atom, _ in prime}) < len(prime):
@@ -113,12 +123,15 @@ def _guard_problem(
 
 
 def _lies_in(inner: Cube, outer: Cube) -> bool:
-    """Whether every sample of ``inner`` is in ``outer``."""
+    """Whether ``inner`` implies ``outer``: every sample that satisfies ``inner`` satisfies ``outer``."""
     return outer[0] & ~inner[0] == 0 and outer[1] & ~inner[1] == 0
 
 
 def _consensus(one: Cube, other: Cube) -> Cube | None:
-    """Return the resolvent of two cubes that oppose in exactly one atom; else None."""
+    """Return the consensus of two cubes: ``b & c`` for ``a & b`` and ``!a & c``.
+
+    Returns None unless exactly one atom is true in one cube and false in the other.
+    """
     opposed = one[0] & other[1] | one[1] & other[0]
     if opposed == 0 or opposed & (opposed - 1):
         return None
@@ -126,7 +139,7 @@ def _consensus(one: Cube, other: Cube) -> Cube | None:
 
 
 def _intersect(one: Cube, other: Cube, pairs: Sequence[Cube], work: _CubeBudget) -> bool:
-    """Whether some sample within D is in both cubes."""
+    """Whether some sample in D satisfies both cubes."""
     work.spend()
     if one[0] & other[1] or one[1] & other[0]:
         return False
@@ -136,7 +149,7 @@ def _intersect(one: Cube, other: Cube, pairs: Sequence[Cube], work: _CubeBudget)
 
 
 def _covers_all(cubes: Sequence[Cube], work: _CubeBudget) -> bool:
-    """Whether every sample is in some cube; splits on the atom that occurs in most cubes."""
+    """Whether every sample satisfies at least one of the cubes."""
     work.spend(1 + len(cubes))
     if (0, 0) in cubes:
         return True

@@ -9,7 +9,7 @@ from typing import Any, Final
 
 WIDTH: Final = 120
 _PIECES: Final = 10_000
-"""The number of pieces of text that are joined at a time."""
+"""How many small pieces of text are joined to one piece that :func:`layout` yields."""
 
 Encode = Callable[[Any], str]
 
@@ -24,9 +24,10 @@ _unsafe = re.compile(
 def layout(document: Any) -> Iterator[str]:
     """Yield the JSON text of a document in pieces.
 
-    Values that fit on a line are not broken, and keys keep their order.  Invisible and
-    direction-changing characters are escaped.  So are ``</`` and ``<!``: in a page, they would end
-    a script element or start a comment in it.  Numbers have their shortest form.
+    A value that fits on a line is written on one line.  Keys keep their order.  Characters that are
+    invisible or change the direction of text are escaped.  So is ``<`` in ``</`` and ``<!``, so
+    that the text can be put into a script element of an HTML page.  Numbers have their shortest
+    form.
 
     Raises:
         ValueError: a number is not finite.
@@ -36,14 +37,15 @@ def layout(document: Any) -> Iterator[str]:
     encoder = json.JSONEncoder(ensure_ascii=False, allow_nan=False)
     pieces = chain(_pieces(document, 0, 0, encoder.encode), ("\n",))
     while block := "".join(islice(pieces, _PIECES)):
-        # These characters occur only inside strings, and no string is split: so the whole block can be escaped.
+        # The characters to escape occur only inside strings, and no string is split between two blocks.
         yield _unsafe.sub(_escape, block)
 
 
 def _pieces(value: Any, indent: int, used: int, encode: Encode) -> Iterator[str]:
     """Yield the text of ``value``, on several lines if necessary.
 
-    The key of the value takes ``used`` characters of the first line.
+    ``indent`` is the indentation of the line in characters, and ``used`` the number of characters
+    that the key of the value takes up.
     """
     flat = _flat(value, indent, used, encode)
     if flat is not None:
@@ -72,7 +74,7 @@ def _flat(value: Any, indent: int, used: int, encode: Encode) -> str | None:
 
 
 def _is_small(value: Any) -> bool:
-    """Whether a value may fit on a line; takes at most as many steps as a line has characters."""
+    """Whether a value may fit on a line, by a quick estimate that does not make its text."""
     left, waiting = WIDTH, [value]
     while waiting and left > 0:
         part = waiting.pop()

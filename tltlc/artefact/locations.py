@@ -9,19 +9,22 @@ from typing import Union
 from tltlc.core.source import Span
 
 Path = tuple[Union[str, int], ...]
-"""Keys and indices from the root, e.g. ``("states", 0, "id")``."""
+"""The keys and indices that lead from the whole document to a value, such as ``("states", 0, "id")``."""
 
 _blank = re.compile(r"[ \t\n\r]*")
 _step = re.compile(r"\.(\w+)|\[(\d+)\]")
 
 
 def path_of(place: str) -> Path:
-    """Return the path that a place such as ``data.states[0].id`` names."""
+    """Return a path that is written as text: ``("states", 0, "id")`` for ``data.states[0].id``."""
     return tuple(key or int(index) for key, index in _step.findall(place))
 
 
 def span_of(text: str, path: Path) -> Span:
-    """Return the span of the value at ``path`` in a valid JSON text, or of the longest part of the path that exists."""
+    """Return the span of the value at ``path`` in a valid JSON text.
+
+    If there is no such value, return the span of the innermost value on the path that exists.
+    """
     # Only positions matter here, and Python refuses to convert numbers of thousands of digits to int.
     decoder = JSONDecoder(parse_int=float)
     start = _skip(text, 0)
@@ -50,7 +53,7 @@ def _value_start(decoder: JSONDecoder, text: str, start: int, step: str | int) -
             key, position = decoder.raw_decode(text, position)
             position = _skip(text, _skip(text, position) + 1)
         if key == step:
-            value_start = position  # the last of equal keys counts, as in Python's parser
+            value_start = position  # If a key occurs twice, the last one counts, as in Python's parser.
             if not is_object:
                 return value_start
         position = _skip(text, decoder.raw_decode(text, position)[1])

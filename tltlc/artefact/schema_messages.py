@@ -1,4 +1,4 @@
-"""Word schema errors for readers who do not know JSON schemas."""
+"""Say in words why a document does not fit the schema, for readers who do not know JSON schemas."""
 
 from __future__ import annotations
 
@@ -49,6 +49,6 @@ def schema_error_title(error: JsonSchemaValueException) -> str:
 
 
 def _list_items(literal: str, last: str) -> str:
-    """Return the items of a printed Python list as a list in a sentence."""
+    """Return the items of a Python list, given as its text, in backquotes and with ``last`` before the last one."""
     items = [f"`{item}`" for item in ast.literal_eval(literal)]
     return last.join([", ".join(items[:-1]), items[-1]]) if len(items) > 1 else items[0]

@@ -13,10 +13,10 @@ _SHORTEST_EDGE: Final = '    {"source": 0, "target": 0, "guard": {"text": "", "p
 
 
 def check_size(subject: str, size: int, commas: int = 0) -> None:
-    """Refuse a file that could not be read again.
+    """Raise an error if a file would be too large to be read again.
 
-    ``subject`` is the name of the file in messages, ``size`` its size in bytes, and ``commas`` the
-    number of commas in it, at least one less than its number of values.
+    ``subject`` is the name of the file in messages, and ``size`` its size in bytes. ``commas`` is
+    the number of commas in it, from which the number of its values is estimated.
 
     Raises:
         TltlError: TLT0004 the file is larger than :data:`tltlc.io.limits.ARTEFACT` allows; TLT0006
@@ -29,9 +29,9 @@ def check_size(subject: str, size: int, commas: int = 0) -> None:
 
 
 def least_size(fspa: Fspa) -> tuple[int, int]:
-    """Return a lower bound of the bytes and of the commas of an artefact: those of its edges.
+    """Return lower bounds of the size of an artefact in bytes, and of its number of commas.
 
-    Edges take most of a large artefact.
+    Only its edges are counted, which are most of a large artefact.
     """
     literals = sum(len(prime) for edge in fspa.edges for prime in edge.guard.primes)
     size = len(_SHORTEST_EDGE) * len(fspa.edges) + len("[0, true], ") * literals

@@ -1,7 +1,7 @@
 """Compare the languages of two automata: equivalence, inclusion, and a trace that only one of them accepts.
 
-Atoms are matched by name; letters range over the atoms of both automata.  Traces on which atoms
-that either automaton declares ``exclusive`` hold together are ignored.
+Atoms are matched by name; a letter has the atoms of both automata.  If one of the automata declares
+atoms ``exclusive``, traces on which two of these atoms hold together are ignored.
 """
 
 from __future__ import annotations
@@ -39,8 +39,8 @@ class Trace:
 def separating(one: Fspa, other: Fspa, work: int = DEFAULT_WORK, impossible: Iterable[Literals] = ()) -> Trace | None:
     """Return a trace that ``one`` accepts and ``other`` does not; None if there is none.
 
-    Over finite traces, no such trace is shorter.  ``impossible`` lists conjunctions of literals; no
-    letter of the trace satisfies any of them.
+    Over finite traces, the trace is a shortest one.  ``impossible`` lists conjunctions of literals
+    that no letter of the trace may satisfy.
 
     Raises:
         ValueError: one automaton is over finite traces, and the other over infinite traces.
@@ -56,26 +56,26 @@ def separating(one: Fspa, other: Fspa, work: int = DEFAULT_WORK, impossible: Ite
 def is_included(one: Fspa, other: Fspa, work: int = DEFAULT_WORK) -> bool:
     """Whether ``other`` accepts every trace that ``one`` accepts.
 
-    ``work`` and errors are the same as in :func:`separating`.
+    ``work`` and the errors are as in :func:`separating`.
     """
     return separating(one, other, work) is None
 
 
 def are_equivalent(one: Fspa, other: Fspa, work: int = DEFAULT_WORK) -> bool:
-    """Whether both accept the same traces.
+    """Whether two automata accept the same traces.
 
-    ``work``, which each of the two directions may take, and errors are the same as in
-    :func:`separating`.
+    ``work`` and the errors are as in :func:`separating`.  Each of the two inclusions may take
+    ``work`` steps.
     """
     return is_included(one, other, work) and is_included(other, one, work)
 
 
 def state_inclusion(fspa: Fspa, work: int = DEFAULT_WORK) -> Callable[[int, int], bool]:
-    """Return a function that compares the languages of two states of an automaton over finite traces.
+    """Return a function that compares two states of an automaton over finite traces.
 
-    The function returns whether its second state accepts every continuation that its first state
-    accepts.  It raises the errors of :func:`separating`.  All calls together take at most ``work``
-    steps.
+    Its arguments are the ids of the two states.  It returns whether every continuation of a trace
+    that is accepted from the first state is accepted from the second.  It raises OutOfWork when all
+    calls together take more than ``work`` steps.
     """
     product = _Product(fspa, fspa, Work(work))
 
@@ -87,7 +87,7 @@ def state_inclusion(fspa: Fspa, work: int = DEFAULT_WORK) -> Callable[[int, int]
 
 
 class _Product:
-    """The product of two automata that read the same trace in step."""
+    """The product of two automata that read the same trace: its states are pairs of their states."""
 
     def __init__(self, one: Fspa, other: Fspa, work: Work, impossible: Iterable[Literals] = ()) -> None:
         self._pair, self._work = (one, other), work
@@ -97,7 +97,7 @@ class _Product:
         self._letters: Diagrams[Any] = Diagrams(work)
         groups = [[fspa.atoms[atom].name for atom in group] for fspa in self._pair for group in fspa.exclusive]
         places = [[self._index_of[name] for name in group] for group in groups]
-        # The values are strings: the table could not tell True and False from the indices 1 and 0 of edges.
+        # The values are strings: in the table, True and False would be equal to the edge indices 1 and 0.
         self._allowed = at_most_one(self._letters, places, _ALLOWED, _RULED_OUT)
         for literals in impossible:
             cube = self._cube([(self._index_of[name], holds) for name, holds in literals], _RULED_OUT, _ALLOWED)
@@ -112,9 +112,9 @@ class _Product:
         ]
 
     def trace(self, start: StatePair = (0, 0)) -> Trace | None:
-        """Return a shortest finite trace that the first automaton accepts and the second one rejects; None if none.
+        """Return a shortest finite trace that the first automaton accepts and the second one rejects, or None.
 
-        Each automaton starts at its own state of ``start``.
+        ``start`` has the state at which the first automaton starts, and that of the second.
         """
         one, other = self._pair
 
@@ -125,7 +125,7 @@ class _Product:
         return None if path is None else Trace(path)
 
     def lasso(self) -> Trace | None:
-        """Return an infinite trace that the first automaton accepts and the second does not."""
+        """Return an infinite trace that the first automaton accepts and the second one rejects, or None."""
         accepting, rejecting = conditions(*(len(fspa.acceptance) for fspa in self._pair))
 
         def leaves(both: StatePair) -> list[Leaf]:
@@ -135,11 +135,11 @@ class _Product:
         return None if part is None else self._lasso_through(part, accepting, rejecting)
 
     def _lasso_through(self, part: Edges, accepting: Sequence[MarkClause], rejecting: Sequence[MarkClause]) -> Trace:
-        """Return a lasso whose cycle stays in ``part``, a part of the product.
+        """Return a lasso (a prefix and a cycle) whose cycle stays in ``part``, a part of the product.
 
-        A clause of ``accepting`` accepts the part, and no clause of ``rejecting`` does.  So that the
-        same holds for the cycle, it takes every ``inf`` mark of the accepting clause, and every
-        ``fin`` mark in the part of the rejecting clauses.
+        A clause of ``accepting`` accepts the part, and no clause of ``rejecting`` does.  The same
+        must be true of the cycle.  So the cycle takes every ``inf`` mark of the clause that
+        accepts, and every ``fin`` mark of a rejecting clause that occurs in the part.
         """
         marks_in_part = marks_of(part)
         clause = next(clause for clause in accepting if clause.accepts(marks_in_part))
@@ -178,7 +178,7 @@ class _Product:
         return next(letter for target, marks, letter in self._step(edge[0]) if (target, marks) == edge[1:])
 
     def _step(self, both: StatePair) -> list[tuple[StatePair, Marks, Letter]]:
-        """Return the successors of a pair of states, each with the marks of the step and a letter that leads there."""
+        """Return the successors of a pair of states, each with the marks of its edges and a letter that leads to it."""
         successors = self._known.get(both)
         if successors is None:
             left, right = (self._edges_by_letter(which, state) for which, state in enumerate(both))
@@ -197,7 +197,10 @@ class _Product:
         return (one.edges[left].target, other.edges[right].target), marks
 
     def _edges_by_letter(self, which: int, state: int) -> int:
-        """Return the index of the edge that a state takes, as a function of the letter."""
+        """Return the index of the edge taken from a state, as a function of the letter.
+
+        ``which`` is 0 for a state of the first automaton, 1 for the second.
+        """
         edge_taken = self._steps.get((which, state))
         if edge_taken is None:
             fspa = self._pair[which]
@@ -210,19 +213,19 @@ class _Product:
         return edge_taken
 
     def _edge_function(self, index: int, primes: Iterable[Implicant], place: Sequence[int]) -> int:
-        """Return the function that is the edge's index on letters that satisfy one of its primes, else ``_NO_EDGE``.
+        """Return a function of the letter: ``index`` where a prime implicant is true, ``_NO_EDGE`` elsewhere.
 
-        ``place`` maps the atoms of the primes to atoms of the product.
+        ``place`` maps each atom of the automaton to its number in the product.
         """
         return self._maximum(
             [self._cube([(place[atom], holds) for atom, holds in prime], index, _NO_EDGE) for prime in primes]
         )
 
     def _maximum(self, steps: list[int]) -> int:
-        """Return the greatest value on each letter.
+        """Return the function whose value on each letter is the greatest value of the given functions.
 
-        Combines neighbours first, as in a balanced tree, so that a large function is not traversed
-        once for each small function.
+        Combines the functions pairwise, then the results, and so on, so that most steps work on
+        small diagrams.
         """
         level = steps or [self._letters.leaf(_NO_EDGE)]
         while len(level) > 1:
@@ -240,9 +243,9 @@ class _Product:
         return cube
 
     def _values_with_letters(self, step: int) -> dict[Any, list[str]]:
-        """Return the values of a function of the letter, each with the atoms of a letter that has this value.
+        """Map each value of a function of the letter to the atoms that hold in one letter with this value.
 
-        Atoms are absent from the letter unless they are needed for the value.
+        Atoms that do not matter for the value do not hold in this letter.
         """
         letters = self._letters
         letter_of: dict[Any, list[str]] = {}
@@ -262,9 +265,9 @@ class _Product:
 
 
 def _group_related(names: Iterable[str], impossible: Iterable[Literals]) -> tuple[str, ...]:
-    """Return the names; each is followed by the atoms that occur with it in an ``impossible`` conjunction.
+    """Return the names without duplicates, with atoms of the same ``impossible`` conjunction side by side.
 
-    If such atoms were far apart, diagrams would become very large.
+    If these atoms were far apart, diagrams would become very large.
     """
     partners: dict[str, dict[str, None]] = {}
     for literals in impossible:
@@ -298,7 +301,7 @@ def _shortest_path(
     is_goal: Callable[[Node], bool],
     at_least: int = 0,
 ) -> tuple[Letter, ...] | None:
-    """Return the letters of a shortest path to a goal with ``at_least`` (0 or 1) steps; None if there is none."""
+    """Return the letters of a shortest path to a goal that has at least ``at_least`` (0 or 1) steps, or None."""
     before: dict[tuple[Node, int], tuple[tuple[Node, int], Letter] | None] = {(start, 0): None for start in starts}
     queue = list(before)
     for place in queue:

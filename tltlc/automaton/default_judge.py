@@ -1,4 +1,4 @@
-"""Decide when to judge a spec that has no ``judge`` clause (semantics, section 4; docs/adr/0009)."""
+"""Decide when a spec without a ``judge`` clause is judged (semantics, section 4; docs/adr/0009)."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from tltlc.resolve.spec import Conjunct, Judge
 
 
 def judge_of(parts: Iterable[Conjunct]) -> Judge:
-    """Return when to judge a spec over finite traces with these parts and no ``judge`` clause."""
+    """Return when a spec over finite traces with these clauses, and no ``judge`` clause, is judged."""
     return default_judge(and_(*(part.unbounded or part.formula for part in parts)))
 
 
 def default_judge(formula: Formula) -> Judge:
-    """Return ``limit`` if the formula is true of "nothing yet", that is, before the first sample; else ``goal``.
+    """Return ``limit`` if the formula is true before the first sample, ``goal`` otherwise.
 
-    In negation normal form, literals and ``G R W N`` are true of nothing yet, and ``F U M X`` are
-    false.
+    In negation normal form, literals and formulas with the outermost operator ``G``, ``R``, ``W``
+    or ``N`` are true before the first sample; those with ``F``, ``U``, ``M`` or ``X`` are false.
     """
     normal = negation_normal_form(formula)
     value: dict[Formula, bool] = {}
@@ -37,7 +37,7 @@ def default_judge(formula: Formula) -> Judge:
 def _boolean_operands(node: Formula) -> list[Formula]:
     """Return the operands of an ``and`` or ``or``; none for any other operator and for ``F[0,n] p``.
 
-    ``F[0,n] p`` is the formula ``p | X(p | …)``.
+    ``F[0,n] p`` is stored as ``p | X(p | …)``, but counts as one temporal operator here.
     """
     if node.op == "or":
         return [] if bounded_operator(node) else operands_with_bounds(node)

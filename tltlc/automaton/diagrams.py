@@ -1,18 +1,20 @@
-"""Hash-consed decision diagrams: functions of Boolean variables, the data structure of all constructions.
+"""Hash-consed decision diagrams: functions of Boolean variables, from which all automata are built.
 
 A function maps each assignment of the variables to a value.  Its diagram is a directed acyclic
-graph: an inner node tests a variable, a leaf holds a value.  A node is an int and canonical, so
-``==`` decides whether two functions are equal.
+graph: an inner node tests a variable, a leaf holds a value.  A node is an int.  Equal functions are
+the same node, so ``==`` compares functions.
 
-The finite and the infinite construction use the same type for different functions:
+The constructions over finite and over infinite traces store different functions in this type:
 
 - *obligations* (:class:`~tltlc.automaton.transitions.ObligationDiagrams`): Boolean functions over temporal
   subformulas;
 - *transitions* (:class:`~tltlc.automaton.transitions.TransitionDiagrams`) and guards: from a letter, the
   atoms that hold at a sample, to what remains and whether the trace may end;
-- steps over infinite traces: from a letter to any hashable value, such as a target and its marks.
+- *steps* of automata over infinite traces: from a letter to any hashable value, such as the next state
+  and the marks of the edge.
 
-No operation enumerates letters; all are memoised.
+No operation enumerates letters, of which there are 2^n for n atoms.  All operations cache their
+results.
 """
 
 from __future__ import annotations
@@ -26,17 +28,17 @@ from tltlc.automaton.work import Work
 Leaf = TypeVar("Leaf", bound=Hashable)
 
 LEAF: Final = 1 << 40
-"""The ``variable`` of a leaf, greater than every variable."""
+"""The entry in ``variable`` for a leaf: a number greater than every variable."""
 
 _NO_NODE: Final = -1
 
 
 class OutOfSteps(Exception):
-    """Raised when an operation takes more steps than its limit: the formula blows up."""
+    """Raised when an operation takes more steps than its limit, because the diagrams of a formula become too large."""
 
 
 class StepLimit:
-    """The most steps that each operation may take in total; tables may share it.
+    """The most steps that each operation may take in total.  Several tables may share a limit.
 
     An operation takes a step for each pair of nodes that it combines, and caches the result, so the
     limit bounds memory too.
@@ -49,7 +51,10 @@ class StepLimit:
         self._memos: list[dict[tuple[int, int], int]] = []
 
     def memo(self) -> dict[tuple[int, int], int]:
-        """Return the empty cache of a new operation; the operation has taken as many steps as the cache has entries."""
+        """Return an empty cache for a new operation.
+
+        The number of its entries is the number of steps taken.
+        """
         self._memos.append({})
         return self._memos[-1]
 
@@ -67,12 +72,12 @@ class StepLimit:
 class Diagrams(Generic[Leaf]):
     """A table of nodes and the operations on them.
 
-    Inner node ``n`` tests ``variable[n]``: it is the function ``high[n]`` where the variable holds,
-    and ``low[n]`` elsewhere.  Variables are ints and are tested in ascending order.  ``value[n]``
-    is the value of leaf ``n``, whose ``variable`` is :data:`LEAF`.
+    Inner node ``n`` tests ``variable[n]``: it is the function ``high[n]`` where the variable is
+    true, and ``low[n]`` where it is false.  Variables are ints and are tested in ascending order.
+    Leaf ``n`` has the value ``value[n]``, and its ``variable`` is :data:`LEAF`.
 
-    New inner nodes, and the steps of :meth:`apply`, count as ``work`` if it is given.  These
-    operations raise :class:`~tltlc.automaton.work.OutOfWork` if no work is left.
+    If a budget ``work`` is given, each new inner node and each step of :meth:`apply` takes one step
+    of it, and raises :class:`~tltlc.automaton.work.OutOfWork` if none is left.
     """
 
     __slots__ = ("_leaves", "_nodes", "_work", "high", "low", "node", "value", "variable")
@@ -89,7 +94,7 @@ class Diagrams(Generic[Leaf]):
 
     @property
     def work(self) -> Work:
-        """The work that operations count; raises ValueError if this table has none."""
+        """The work budget of the table; raises ValueError if the table has none."""
         if self._work is None:
             raise ValueError("this table of diagrams counts no work")
         return self._work
@@ -97,7 +102,7 @@ class Diagrams(Generic[Leaf]):
     # --- making nodes -------------------------------------------------------------------------
 
     def leaf(self, value: Leaf) -> int:
-        """Return the function that has one value everywhere."""
+        """Return the function with the same value on every assignment."""
         number = self._leaves.get(value)
         if number is None:
             number = self._leaves[value] = self._add(LEAF, _NO_NODE, _NO_NODE, value)
@@ -124,7 +129,7 @@ class Diagrams(Generic[Leaf]):
         nodes, inner = self._nodes, self._add_inner
 
         def node(variable: int, low: int, high: int) -> int:
-            """Return the function ``high`` where the variable holds, ``low`` elsewhere."""
+            """Return the function that is ``high`` where the variable is true, ``low`` where it is false."""
             if low == high:
                 return low
             key = (variable, low, high)
@@ -142,11 +147,12 @@ class Diagrams(Generic[Leaf]):
         neutral: int,
         undefined: int = _NO_NODE,
     ) -> Callable[[int, int], int]:
-        """Return an operation on two functions that applies ``combine`` to their values.
+        """Return an operation that combines two functions by applying ``combine`` to their values.
 
-        ``combine`` must be commutative and idempotent.  ``absorbing`` and ``neutral`` are the leaves
-        of its absorbing and its neutral value.  ``undefined`` is a leaf that wins over every function
-        except ``absorbing``.  The operation raises :class:`OutOfSteps` after ``limit.steps`` steps.
+        ``combine`` must be commutative and idempotent.  ``absorbing`` and ``neutral`` are the
+        leaves of its absorbing and its neutral value.  ``undefined`` is a leaf: combined with any
+        function except ``absorbing``, the result is ``undefined``.  The operation raises
+        :class:`OutOfSteps` after ``limit.steps`` steps in total.
         """
         variable, low, high, value = self.variable, self.low, self.high, self.value
         nodes, inner, leaf = self._nodes, self._add_inner, self.leaf
@@ -191,10 +197,10 @@ class Diagrams(Generic[Leaf]):
         return operate
 
     def apply(self, combine: Callable[[Any, Any], Leaf], x: int, y: int, memo: dict[tuple[int, int], int]) -> int:
-        """Return the function that applies ``combine``, any function of two values, to the values of x and y.
+        """Return the function whose value is ``combine`` of the values of x and y.
 
-        Calls with the same ``combine`` may share ``memo``.  Raises
-        :class:`~tltlc.automaton.work.OutOfWork`.
+        ``combine`` may be any function of two values.  ``memo`` caches results; pass the same dict
+        only to calls with the same ``combine``.  Raises :class:`~tltlc.automaton.work.OutOfWork`.
         """
         result = memo.get((x, y))
         if result is not None:
@@ -216,8 +222,8 @@ class Diagrams(Generic[Leaf]):
     def map_leaves(self, change: Callable[[Any], Leaf], x: int, memo: dict[int, int]) -> int:
         """Return the function with ``change`` applied to every value.
 
-        Calls with the same ``change`` may share ``memo``, from nodes to results.  A leaf that is in
-        ``memo`` before the first call gets that result.
+        ``memo`` maps nodes to their results; pass the same dict only to calls with the same
+        ``change``.  To give a leaf another result, put it into ``memo`` before the first call.
         """
         variable, low, high, value, node, leaf = self.variable, self.low, self.high, self.value, self.node, self.leaf
 
@@ -234,7 +240,7 @@ class Diagrams(Generic[Leaf]):
     # --- reading ------------------------------------------------------------------------------
 
     def leaves(self, *functions: int) -> list[int]:
-        """Return the distinct leaves of functions, left to right."""
+        """Return the distinct leaves of the functions, those where the first variable is false before the others."""
         variable, low, high = self.variable, self.low, self.high
         leaves: list[int] = []
         stack = list(dict.fromkeys(reversed(functions)))
@@ -251,11 +257,11 @@ class Diagrams(Generic[Leaf]):
         return leaves
 
     def values(self, x: int) -> list[Any]:
-        """Return the distinct values of a function, left to right."""
+        """Return the distinct values of a function, in the order of :meth:`leaves`."""
         return [self.value[leaf] for leaf in self.leaves(x)]
 
     def assignment_with(self, x: int, value: Leaf) -> frozenset[int]:
-        """Return the variables that hold in some assignment to which a function gives a value.
+        """Return an assignment on which function ``x`` has this value, as the set of its true variables.
 
         Raises ValueError if there is none.
         """
@@ -274,7 +280,10 @@ class Diagrams(Generic[Leaf]):
         raise ValueError(f"no assignment has the value {value!r}")
 
     def at(self, x: int, holds: Callable[[int], bool]) -> Any:
-        """Return the value under an assignment; ``holds`` returns for a variable whether it holds."""
+        """Return the value of a function on an assignment.
+
+        ``holds`` returns whether a variable is true.
+        """
         while self.variable[x] != LEAF:
             x = self.high[x] if holds(self.variable[x]) else self.low[x]
         return self.value[x]
@@ -287,9 +296,10 @@ def at_most_one(
     no: Hashable,
     conjoin: Callable[[int, int], int] | None = None,
 ) -> int:
-    """Return the function that is ``yes`` where at most one variable of each group holds, ``no`` elsewhere.
+    """Return the function that is ``yes`` where at most one variable of each group is true, ``no`` elsewhere.
 
-    ``conjoin``, if given, is the table's own conjunction of functions to these two values.
+    ``conjoin`` may be given to use an existing conjunction of functions with the values ``yes`` and
+    ``no``, whose results are cached.
     """
 
     def conjunction(x: int, y: int) -> int:

@@ -14,9 +14,9 @@ from tltlc.resolve.spec import Atom, Judge, Param, Signal
 
 Verdict = Literal["satisfied", "holding", "pending", "violated"]
 Implicant = tuple[tuple[int, bool], ...]
-"""A conjunction of literals: pairs of an index into ``Fspa.atoms`` and a polarity."""
+"""A conjunction of literals, each as an index into ``Fspa.atoms`` and whether that atom is true."""
 Mark = tuple[int, Literal["fin", "inf"]]
-"""A pair, as an index into ``Fspa.acceptance``, and one of its two sets."""
+"""One of the two sets of edges of a Rabin pair: the pair's index in ``Fspa.acceptance``, and the set's name."""
 
 
 Notation = Literal["unicode", "ascii", "english"]
@@ -26,7 +26,10 @@ NOTATIONS: Final[tuple[Notation, ...]] = ("ascii", "unicode", "english")
 
 @record
 class Text:
-    """A formula, label or guard that another tool wrote, in three notations.  It is no formula of the language."""
+    """A formula, label or guard from an automaton of another tool, as text in three notations.
+
+    The text need not follow the grammar of tltl.
+    """
 
     ascii: str
     unicode: str
@@ -59,9 +62,10 @@ class Guard:
     """The condition under which an edge is taken.
 
     ``formula`` states the condition as a short formula.  In an automaton of another tool,
-    ``formula`` may be text that is no formula.  ``primes`` are all prime implicants of the guard
-    (``((),)`` is true).  With ``exclusive`` declarations D, ``primes`` are the prime implicants of
-    ``guard or not D`` that are not contained in ``not D`` (semantics, section 3).
+    ``formula`` may be a :class:`Text`.  ``primes`` are all prime implicants of the guard; a guard
+    that is always true has ``((),)``.  If atoms are declared ``exclusive``, let D be the condition
+    that no two of these atoms hold together.  Then ``primes`` are the prime implicants of ``guard
+    or not D`` that some letter with D satisfies (semantics, section 3).
     """
 
     formula: Formula | Text
@@ -77,7 +81,7 @@ class Guard:
 class Edge:
     """An edge.  On each letter, exactly one of the edges that leave a state has a true guard.
 
-    No two edges have the same source, target and sets of pairs.
+    No two edges have the same source, the same target and the same marks (:meth:`Fspa.marks`).
     """
 
     source: int
@@ -87,7 +91,7 @@ class Edge:
 
 @record
 class Pair:
-    """A Rabin pair of sets of edges, by index.
+    """A Rabin pair: two sets of edges, as indices into ``Fspa.edges``.
 
     A run meets the pair if it takes no edge of ``fin`` infinitely often and some edge of ``inf``
     infinitely often.
@@ -104,9 +108,9 @@ class Fspa:
     ``states[i].id == i``; states are numbered breadth-first, and state 0 is initial.  ``edges`` are
     sorted by (source, target).  ``spec_size`` is the greatest finite distance, at least 0.
 
-    Over infinite traces a run is accepted if it meets one of the pairs of ``acceptance``.  There,
-    accepting states lie on an accepted cycle, and edges with the same source and target differ in
-    the sets of pairs that contain them (semantics, section 5).
+    Over infinite traces, a run is accepted if it meets one of the pairs of ``acceptance``, and a
+    state is accepting if it lies on an accepted cycle.  Edges with the same source and target then
+    differ in their :meth:`marks` (semantics, section 5).
     """
 
     name: str
@@ -132,7 +136,10 @@ class Fspa:
         return tuple(edge for edge in self.edges if edge.source == state)
 
     def marks(self) -> tuple[tuple[Mark, ...], ...]:
-        """Return for each edge the sets of pairs that contain it, in order; none over finite traces."""
+        """Return, for each edge, the sets of the Rabin pairs that contain the edge, in the order of ``acceptance``.
+
+        Over finite traces no edge has marks.
+        """
         marks: list[list[Mark]] = [[] for _ in self.edges]
         for number, pair in enumerate(self.acceptance):
             for edge in dict.fromkeys(pair.fin):
@@ -160,10 +167,11 @@ class Fspa:
 def _unpickle(
     nodes: FlatNodes, table: list[int | Text], primes: list[tuple[Implicant, ...]], fields: dict[str, Any]
 ) -> Fspa:
-    """Return the automaton.
+    """Return the automaton that :meth:`Fspa.__reduce__` took apart.
 
     ``table`` has the formula of the spec, then the labels of the states and the formulas of the
-    guards, each as a text or as an index into ``nodes``.  ``primes`` are those of the guards.
+    guards, each as a text or as an index into ``nodes``.  ``primes`` has the prime implicants of
+    each guard.
     """
     subformulas = unflatten(nodes)
     formulas = iter([entry if isinstance(entry, Text) else subformulas[entry] for entry in table])

@@ -1,8 +1,8 @@
 """Guards: Boolean functions of the atoms, as their prime implicants and as a short formula.
 
 A guard is a transition whose leaves are ``ACCEPT`` and ``REJECT``
-(:mod:`tltlc.automaton.transitions`).  A literal is the int ``2 * atom + polarity``; a cube is an
-ascending tuple of literals.
+(:mod:`tltlc.automaton.transitions`).  A literal is an int: ``2 * i + 1`` if atom ``i`` is true,
+``2 * i`` if it is false.  A cube is a conjunction of literals, as an ascending tuple.
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ from tltlc.logic.formula import Formula
 Cube = tuple[int, ...]
 
 PRIME_LIMIT = 10_000
-"""The most prime implicants, or products, of one guard."""
+"""The most prime implicants of one guard, and the most products of its short formula."""
 TOTAL_PRIME_LIMIT = 1_500_000
 """The most prime implicants of all guards of an automaton together; a million takes up a gigabyte of memory."""
 
 _MOST_REMEMBERED = 200_000
-"""The most covers and primes of subfunctions that are cached: the next guard shares many subfunctions."""
+"""The most results of subfunctions (covers and prime implicants) that are cached for the next guards."""
 _MOST_PRODUCTS_REMEMBERED = 1_000_000
-"""The most products in the cached covers and primes."""
+"""The most products in all cached results together."""
 
 _PRIMES_OF_CONSTANTS: dict[int, tuple[Cube, ...]] = {REJECT: (), ACCEPT: ((),)}
 
@@ -34,9 +34,9 @@ _PRIMES_OF_CONSTANTS: dict[int, tuple[Cube, ...]] = {REJECT: (), ACCEPT: ((),)}
 class TooManyPrimes(Exception):
     """Raised when the guards of an automaton are too large.
 
-    ``subject`` and ``unit`` name the count that is over its ``limit``: the prime implicants of a
-    guard or the products of its short form (:data:`PRIME_LIMIT`), the prime implicants of all
-    guards (:data:`TOTAL_PRIME_LIMIT`), or the rows "edges" and "partial products" of
+    ``subject`` has more than ``limit`` things of the kind ``unit``: a guard has too many prime
+    implicants or products (:data:`PRIME_LIMIT`), all guards together have too many prime implicants
+    (:data:`TOTAL_PRIME_LIMIT`), or a count exceeds the row "edges" or "partial products" of
     :data:`~tltlc.io.limits.WORK`.
     """
 
@@ -45,13 +45,17 @@ class TooManyPrimes(Exception):
         self.subject, self.limit, self.unit = subject, limit, unit
 
     def title(self, name: str) -> str:
-        """Return the title of the diagnostic about the automaton of this name."""
+        """Return the title of the diagnostic; ``name`` is the name of the automaton."""
         verb = "have" if self.subject == "all guards" else "has"
         return f"{self.subject} of `{name}` {verb} more than {self.limit} {self.unit}"
 
 
 class Guards:
-    """The guards of one table of diagrams, over the letters that ``allowed`` accepts."""
+    """Computes prime implicants and formulas of guards in one table of diagrams.
+
+    ``names`` are the names of the atoms.  ``allowed`` is a guard that is true on the letters that
+    ``exclusive`` declarations allow.
+    """
 
     __slots__ = (
         "_allowed",
@@ -83,7 +87,7 @@ class Guards:
         self._negations: dict[int, int] = {ACCEPT: REJECT, REJECT: ACCEPT}
 
     def by_leaf(self, transition: int) -> dict[int, int]:
-        """Map each leaf of a transition, except ``IMPOSSIBLE``, to its guard."""
+        """Map each leaf of a transition, except ``IMPOSSIBLE``, to the guard of the letters that lead to it."""
         guards = self._split(transition)
         return {leaf: guard for leaf, guard in guards.items() if leaf != IMPOSSIBLE}
 
@@ -104,10 +108,10 @@ class Guards:
         return guards
 
     def primes(self, guard: int) -> tuple[Implicant, ...]:
-        """Return all prime implicants, sorted by length, then by atom (semantics, section 3).
+        """Return all prime implicants of a guard, sorted by length, then by atom (semantics, section 3).
 
-        With ``exclusive`` declarations D these are the prime implicants of ``guard or not D`` that
-        are not contained in ``not D``.  Raises :class:`TooManyPrimes`.
+        If ``exclusive`` declarations allow only the letters D, these are the prime implicants of
+        ``guard or not D`` that some letter in D satisfies.  Raises :class:`TooManyPrimes`.
         """
         if self._allowed == ACCEPT:
             cubes = self._all_primes(guard)
@@ -124,9 +128,9 @@ class Guards:
     def formula(self, guard: int) -> Formula:
         """Return a short formula of the guard.
 
-        It is an irredundant sum of products, or a product of sums if that is shorter.  On letters
-        that ``exclusive`` rules out it may have any value, whichever makes it shorter.  Raises
-        :class:`TooManyPrimes`.
+        The formula is a disjunction of conjunctions without redundant parts, or a conjunction of
+        disjunctions if that is shorter.  On letters that ``exclusive`` rules out it may have any
+        value.  Raises :class:`TooManyPrimes`.
         """
         if (
             len(self._covers) + len(self._primes) > _MOST_REMEMBERED
@@ -146,7 +150,10 @@ class Guards:
         return build.or_(*[build.and_(*[literals[literal] for literal in cube]) for cube in sorted(products)])
 
     def _negated_sums(self, guard: int) -> tuple[Cube, ...]:
-        """Return a product of sums, each sum as the cube that it forbids; no sums if there are too many."""
+        """Return the guard as a conjunction of disjunctions, each as the cube of its negated literals.
+
+        Returns an empty tuple if there are too many.
+        """
         try:
             return self._cover(self._negation(self._upper(guard)), self._negation(guard))
         except TooManyPrimes:
@@ -155,7 +162,7 @@ class Guards:
     # --- Boolean functions --------------------------------------------------------------------
 
     def _cover(self, lower: int, upper: int) -> tuple[Cube, ...]:
-        """Return an irredundant sum of products between two functions."""
+        """Return an irredundant disjunction of cubes that ``lower`` implies and that implies ``upper``."""
         if lower == upper:
             primes = self._all_primes(lower)
             literals = {literal for cube in primes for literal in cube}
@@ -164,7 +171,7 @@ class Guards:
         return self._irredundant(lower, upper)[0]
 
     def _upper(self, guard: int) -> int:
-        """Return ``guard or not D``."""
+        """Return ``guard or not D``, where D are the allowed letters."""
         if self._allowed == ACCEPT:
             return guard
         return self._diagrams.disjoin(guard, self._negation(self._allowed))
@@ -202,8 +209,8 @@ class Guards:
     def _all_primes(self, function: int) -> tuple[Cube, ...]:
         """Return every prime implicant of a function.
 
-        These are the prime implicants of the conjunction of both cofactors, and the other prime
-        implicants of each cofactor with a literal of the tested atom added.
+        Splits by the first atom: the result has the prime implicants of "low and high", and the
+        other ones of ``low`` and of ``high``, each with the literal of the atom added.
         """
         known = self._primes.get(function)
         if known is None:
@@ -221,7 +228,7 @@ class Guards:
         return known
 
     def _irredundant(self, lower: int, upper: int) -> tuple[tuple[Cube, ...], int]:
-        """Return an irredundant sum of products between two functions, and its function (Minato 1993)."""
+        """Return the cubes of :meth:`_cover`, and the function of their disjunction (Minato 1993)."""
         if lower == REJECT:
             return (), REJECT
         if upper == ACCEPT:
@@ -233,7 +240,7 @@ class Guards:
             atom = min(diagrams.variable[lower], diagrams.variable[upper])
             lower0, lower1 = _cofactors(diagrams, lower, atom)
             upper0, upper1 = _cofactors(diagrams, upper, atom)
-            # First cover what needs a product with a literal of the atom, then the rest without one.
+            # First cover the letters that need a cube with a literal of the atom, then the rest without one.
             without, covered0 = self._irredundant(conjoin(lower0, negation(upper1)), upper0)
             with_, covered1 = self._irredundant(conjoin(lower1, negation(upper0)), upper1)
             rest = disjoin(conjoin(lower0, negation(covered0)), conjoin(lower1, negation(covered1)))
@@ -249,7 +256,10 @@ class Guards:
         return cover
 
     def _count(self, products: int) -> None:
-        """Count the products of a guard, or of a function computed for one; raises :class:`TooManyPrimes`."""
+        """Add a number of products to the total.
+
+        Raises :class:`TooManyPrimes` if it or the total is too large.
+        """
         self._products += products
         if products > PRIME_LIMIT:
             raise TooManyPrimes
@@ -258,7 +268,7 @@ class Guards:
 
 
 def _negate_leaf(leaf: tuple[int, int]) -> tuple[int, int]:
-    """Return the other value of a guard: ``(TRUE, 1)`` for ``(FALSE, 0)``."""
+    """Return the negated value of a guard: ``(TRUE, 1)`` for ``(FALSE, 0)``, and the other way round."""
     return 1 - leaf[0], 1 - leaf[1]
 
 

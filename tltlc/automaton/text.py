@@ -20,10 +20,11 @@ def formula_text(fspa: Fspa, notation: Notation = "english") -> str:
 
 
 def label_text(fspa: Fspa, state: int, notation: Notation = "english") -> str:
-    """Return the label of a state, given by its number, in a notation: what remains to be satisfied.
+    """Return the label of a state in a notation: what remains to be satisfied.
 
-    If acceptance depends on whether the trace ends here, the English sentence says so: ``X`` leads
-    to a rejecting state with label ``true``, and ``N`` to an accepting state with label ``false``.
+    ``state`` is the state's id.  If acceptance depends only on whether the trace ends in the state,
+    the English sentence says so.  This concerns rejecting states with label ``true``, which ``X``
+    leads to, and accepting states with label ``false``, which ``N`` leads to.
     """
     label, accepting, endless = fspa.states[state].label, fspa.states[state].accepting, fspa.semantics == "infinite"
     if notation == "english" and not endless:
@@ -35,14 +36,20 @@ def label_text(fspa: Fspa, state: int, notation: Notation = "english") -> str:
 
 
 def guard_text(guard: Guard, notation: Notation = "ascii") -> str:
-    """Return the short formula of a guard in a notation; ``english`` spells the operators as words."""
+    """Return the short formula of a guard in a notation.
+
+    ``english`` writes the operators as words.
+    """
     if isinstance(guard.formula, Formula) and notation == "english":
         return words_text(guard.formula)
     return _text(guard.formula, notation, endless=False)
 
 
 def guard_texts(fspa: Fspa) -> tuple[str, ...]:
-    """Return the guard of each edge in the ASCII notation.  Edges with the same guard share one text."""
+    """Return the guard of each edge in the ASCII notation.
+
+    Edges with the same guard share one text.
+    """
     guards = {edge.guard.formula: edge.guard for edge in fspa.edges}
     texts = {formula: guard_text(guard) for formula, guard in guards.items()}
     return tuple(texts[edge.guard.formula] for edge in fspa.edges)

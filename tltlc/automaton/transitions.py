@@ -1,11 +1,11 @@
-"""Obligations and transitions: the decision diagrams of a construction.
+"""Obligations and transitions: the decision diagrams that an automaton is built from.
 
-*Obligations* are Boolean functions over temporal subformulas and atoms.  Formulas that are equal as
-such functions are one obligation, so a construction treats them as one state.
+An *obligation* is what remains to be done, as a Boolean function over temporal subformulas and
+atoms.  Two formulas with the same function are one obligation, and so one state of the automaton.
 
-*Transitions* are functions from a letter (the atoms that hold at a sample) to a pair: the obligation
-that remains, and whether the trace is accepted if this sample is its last (1) or not (0).  A guard
-is a transition whose leaves are :data:`ACCEPT` and :data:`REJECT`.
+A *transition* is a function from a letter (the atoms that hold at a sample) to two values: the
+obligation that remains, and 1 if a trace that ends with this sample is accepted, 0 otherwise.  A
+guard is a transition whose leaves are :data:`ACCEPT` and :data:`REJECT`.
 """
 
 from __future__ import annotations
@@ -21,20 +21,20 @@ TRUE: Final = 1
 """The obligation ``true``: every trace satisfies it."""
 
 REJECT: Final = 0
-"""The transition of ``false`` on every letter: (FALSE, 0)."""
+"""The leaf (FALSE, 0): the transition of the formula ``false``, and a guard that is never true."""
 ACCEPT: Final = 1
-"""The transition of ``true`` on every letter: (TRUE, 1)."""
+"""The leaf (TRUE, 1): the transition of the formula ``true``, and a guard that is always true."""
 IMPOSSIBLE: Final = 2
-"""The leaf of letters that ``exclusive`` declarations rule out."""
+"""The leaf for letters that ``exclusive`` declarations rule out."""
 
 _NO_OBLIGATION: Final = -1
 
 
 class ObligationDiagrams(Diagrams[bool]):
-    """A table of obligations; the variables are numbers of atoms and temporal subformulas.
+    """A table of obligations.  Each variable is the number of an atom or of a temporal subformula.
 
-    ``both`` and ``either`` return the conjunction and the disjunction of two obligations.  They
-    raise :class:`~tltlc.automaton.diagrams.OutOfSteps` after ``limit.steps`` steps each.
+    ``both`` returns the conjunction of two obligations, ``either`` the disjunction.  Each of the
+    two raises :class:`~tltlc.automaton.diagrams.OutOfSteps` after ``limit.steps`` steps in total.
     """
 
     __slots__ = ("both", "either", "limit")
@@ -53,10 +53,10 @@ class ObligationDiagrams(Diagrams[bool]):
 
 
 class TransitionDiagrams(Diagrams[tuple[int, int]]):
-    """A table of transitions, with the table of their obligations; the variables are indices of atoms.
+    """A table of transitions, and the table of the obligations that they lead to.
 
-    ``conjoin`` and ``disjoin`` return the conjunction and the disjunction of two transitions.  They
-    share the step limit of the obligations.
+    Each variable is an atom's index.  ``conjoin`` returns the conjunction of two transitions,
+    ``disjoin`` the disjunction.  Both have the same step limit as the operations on obligations.
     """
 
     __slots__ = ("conjoin", "disjoin", "limit", "obligations")
@@ -85,7 +85,7 @@ class TransitionDiagrams(Diagrams[tuple[int, int]]):
         )
 
     def allowed_letters(self, exclusive: Iterable[Sequence[int]]) -> int:
-        """Return the letters with at most one atom of each group, as a guard."""
+        """Return a guard that is true on the letters with at most one atom of each group of ``exclusive``."""
         return at_most_one(self, exclusive, (TRUE, 1), (FALSE, 0), self.conjoin)
 
     def constrain(self, transition: int, allowed: int) -> int:

@@ -14,11 +14,11 @@ if TYPE_CHECKING:
 
 _NO_ATOM: Final = "write a signal, a predicate or a comparison in place of `true` or `false`"
 _MOST_LABELS: Final = 4
-"""The most parts of a contradiction that get a label."""
+"""The most clauses of a contradiction that the warning marks in the source text."""
 
 
 def verdict_warnings(spec: Spec, fspa: Fspa) -> tuple[Diagnostic, ...]:
-    """Return a warning if the initial state already decides the spec, as a tuple of one element or none."""
+    """Return a tuple with a warning if every trace or no trace satisfies the spec, an empty tuple otherwise."""
     verdict = fspa.states[0].verdict
     if verdict == "violated":
         return (_unsatisfiable_warning(spec),)
@@ -36,7 +36,10 @@ def _recurs(formula: Formula) -> bool:
 
 
 def _unsatisfiable_warning(spec: Spec) -> Diagnostic:
-    """Return the warning that no trace satisfies a spec; its labels mark the parts that contradict."""
+    """Return the warning that no trace satisfies a spec.
+
+    Its labels mark the clauses that contradict each other.
+    """
     from tltlc.automaton.finite.contradiction import contradiction, unsatisfiable
 
     is_infinite = spec.semantics == "infinite"

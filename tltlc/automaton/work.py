@@ -1,4 +1,8 @@
-"""The work budget of a construction: counted, not timed, so that the same formula gives the same automaton."""
+"""The work budget of a construction.
+
+Work is counted in steps and not in seconds, so that the same formula always gives the same
+automaton.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +11,7 @@ from contextlib import contextmanager
 from typing import Final
 
 STEPS_PER_STATE: Final = 400
-"""Steps of work for each state of a state budget."""
+"""How many steps of work a construction may take for each state that its state budget allows."""
 
 DEFAULT_WORK: Final = 20_000_000
 """Steps that building, reading or comparing automata may take; a step takes one to three microseconds."""
@@ -18,7 +22,7 @@ class OutOfWork(Exception):
 
 
 class Work:
-    """A budget of steps; ``left`` is what remains of it."""
+    """A budget of steps; ``left`` is the number of steps that remain."""
 
     __slots__ = ("left",)
 
@@ -26,14 +30,17 @@ class Work:
         self.left = steps
 
     def spend(self, steps: int = 1) -> None:
-        """Count steps; raises :class:`OutOfWork` if not enough are left."""
+        """Subtract steps from the budget; raises :class:`OutOfWork` if not enough are left."""
         self.left -= steps
         if self.left < 0:
             raise OutOfWork
 
     @contextmanager
     def at_most(self, steps: int) -> Iterator[None]:
-        """Allow at most ``steps`` steps inside the ``with`` block; they are subtracted from this budget too."""
+        """Allow at most ``steps`` steps inside the ``with`` block.
+
+        The steps taken are subtracted from the budget.
+        """
         aside = max(0, self.left - steps)
         self.left -= aside
         try:

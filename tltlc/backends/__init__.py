@@ -1,8 +1,9 @@
-"""The output targets of the compiler: one module of this package each, loaded on first use.
+"""The targets of the compiler, that is, the formats and languages that it can write.
 
-A target is a module with ``TARGET`` (a :class:`Target`) and ``emit(fspa, options) -> Files``, both
-pure: targets write nothing to disk. To add a target, add its module; code that several targets
-share is in the subpackages.
+Each target is a module of this package, imported on first use. It has ``TARGET`` (a
+:class:`Target`) and a function ``emit(fspa, options) -> Files``, which returns files and writes
+nothing to disk. To add a target, add its module. Code that several targets share is in the
+subpackages.
 """
 
 from __future__ import annotations
@@ -24,9 +25,11 @@ DEFAULT_TARGETS = ("json", "dot", "python")
 
 @record
 class Target:
-    """A target: its name, which is the module's name, a title for listings, and the endings of its files' names.
+    """The description of a target.
 
-    ``known_as`` are other words by which people search for it, in lower case.
+    ``name`` is the name of its module, ``title`` its description in lists. ``endings`` are the
+    endings of its files' names. ``known_as`` are other names that people may use for it, in lower
+    case.
     """
 
     name: str
@@ -44,8 +47,8 @@ class Options:
     """Options of the targets.
 
     ``notation`` is the notation of formulas in pictures. ``layout_limit_s`` is the time limit, in
-    seconds, of each attempt to lay out a picture. ``report`` receives a diagnostic when a target
-    has to leave something out.
+    seconds, of each attempt to lay out a picture. ``report`` is called with a diagnostic when a
+    target has to leave something out.
     """
 
     notation: Notation = "unicode"

@@ -110,7 +110,11 @@ _RESERVED = (
     *_MACROS,
     *("monitor", "sample", "result", "states", "none"),
 )
-"""The last group are variables of the step function; :mod:`tltlc.program.build` reserves its other variables."""
+"""Names that no variable may have.
+
+The last five are variables of the step function; :mod:`tltlc.program.build` adds its other
+variables.
+"""
 
 
 def emit(fspa: Fspa, options: Options) -> Files:
@@ -120,24 +124,31 @@ def emit(fspa: Fspa, options: Options) -> Files:
 
 
 class _C(Printer):
-    """Prints C; functions have the prefix of the spec's header."""
+    """Prints a program in C.
+
+    The names of its functions begin with ``prefix``, the name of the spec.
+    """
 
     def __init__(self, prefix: str, atoms: Sequence[Atom]) -> None:
         self._prefix, self._atoms = prefix, atoms
 
     def comment(self, text: str) -> list[str]:
-        """Return a comment in ASCII without trigraphs, since compilers differ in how they read other characters."""
+        """Return a comment that has only ASCII characters and no trigraphs, which all compilers read alike."""
         return super().comment(re.sub(r"[^\x00-\x7f]", _escape, printable_line(text)).replace("??", "? ?"))
 
     def assignment(self, statement: Assign) -> str:
-        """Return an assignment; the limiting atom is assigned by its name."""
+        """Return an assignment; ``limiting`` gets the name of an atom instead of its index."""
         match statement:
             case Assign(states.LIMITING, Int(index)):
                 return f"{states.LIMITING} = {_string(self._atoms[index].name) if index >= 0 else 'NULL'};"
         return super().assignment(statement)
 
     def call(self, function: str, arguments: Sequence[str]) -> str:
-        """Return a call; functions that may have no value also receive the monitor, to record the problem there."""
+        """Return a call of a function.
+
+        A function that has no value for some arguments also gets the monitor, and sets its
+        ``problem`` for these arguments.
+        """
         if function in ("abs", "tanh"):
             return super().call({"abs": "fabs"}.get(function, function), arguments)
         monitor_argument = ["monitor"] if function in FAILING else []
@@ -145,7 +156,7 @@ class _C(Printer):
 
 
 class _Source:
-    """The source of one monitor: the pieces that fill the template."""
+    """Makes the source text of one monitor, by filling the template."""
 
     def __init__(self, fspa: Fspa, file: str) -> None:
         self._fspa, self._file, self._prefix = fspa, file, fspa.name
@@ -153,7 +164,7 @@ class _Source:
         self._printer = _C(fspa.name, fspa.atoms)
 
     def text(self) -> str:
-        """Return the whole file."""
+        """Return the text of the file."""
         fspa, program_ = self._fspa, self._program
         signals = list(zip(fspa.signals, program_.signals, strict=True))
         params = list(zip(fspa.params, program_.params, strict=True))
@@ -200,7 +211,7 @@ class _Source:
         return fill_template("monitor.h.txt", places, present)
 
     def _text_size(self) -> int:
-        """Return a buffer size, in bytes, that is enough for every message.
+        """Return the size in bytes of a buffer that is large enough for every message.
 
         The longest message is about an exclusive group, and names the atoms of the group twice.
         """
@@ -215,7 +226,10 @@ class _Source:
         return "bool" if signal.type == "bool" else "double"
 
     def _fields(self, fields: Sequence[tuple[str, str, Signal | Param]]) -> str:
-        """Return the fields of a struct, each with its comment; C requires at least one field."""
+        """Return the fields of a struct, each with its comment.
+
+        A struct without fields gets an unused one.
+        """
         lines: list[str] = []
         for name, type_, declared in fields:
             remarks = self._printer.comment(snippets.field_comment(name, declared))
@@ -238,9 +252,10 @@ class _Source:
         return [f"if (!({' && '.join(tests)})) {{", *lines, "}"]
 
     def _refusal(self, problem: str, index: int) -> list[str]:
-        """Return the body of a branch that refuses the sample.
+        """Return the lines that refuse the sample: they record the problem and return false.
 
-        The ``return`` is part of it, so that compilers see which values the caller may use.
+        The ``return`` is not inside the function that is called, so that compilers see that the
+        step ends here.
         """
         call = f"{self._prefix}_refuse_(monitor, {problem}, {index});"
         return [f"{_INDENT}{line}" for line in (call, "return false;")]
@@ -257,7 +272,7 @@ class _Source:
         return lines
 
     def _give(self) -> list[str]:
-        """Return code that sets a signal by its number: one case per signal."""
+        """Return the code that sets a signal, given its index, with a case for each signal."""
         if not self._fspa.signals:
             return ["(void)sample, (void)signal, (void)value;"]
         lines = ["switch (signal) {"]
@@ -276,7 +291,7 @@ class _Source:
         return snippets.paragraphs(self._read(), self._compute(), self._check(), self._move(), self._judge())
 
     def _read(self) -> list[str]:
-        """Return code that reads signals, clamped to their ranges, and params into local variables."""
+        """Return the code that reads signals, clamped to their ranges, and params into local variables."""
         program_ = self._program
         signals = enumerate(zip(self._fspa.signals, program_.signals, strict=True))
         numbers = [(index, signal, name) for index, (signal, name) in signals if signal.type != "bool"]
@@ -288,14 +303,17 @@ class _Source:
         return [*lines, *(f"const double {name} = monitor->params.{name};" for name in program_.params if name in used)]
 
     def _bools(self, state: int | None) -> list[str]:
-        """Return code that converts the bools that only this state reads to numbers.
+        """Return the code that converts the bool signals that only this state reads to 0 or 1.
 
-        For None, it converts the bools that every step reads.
+        If ``state`` is None, it converts the bool signals that every step reads.
         """
         return [f"const double {name} = sample->{name} ? 1.0 : 0.0;" for name in self._program.bools_read_in(state)]
 
     def _checked_reads(self, numbers: Sequence[tuple[int, Signal, str]]) -> list[str]:
-        """Return code that checks the signals one by one if their common test fails."""
+        """Return the code that checks and clamps signals.
+
+        One test for all signals comes first. Only if it fails are the signals checked one by one.
+        """
         tests = self._range_tests([(signal, name) for _, signal, name in numbers])
         lines = _wrapped(f"if (!({' && '.join(tests)})) {{")
         for index, signal, name in numbers:
@@ -308,10 +326,11 @@ class _Source:
         return [*lines, "}"]
 
     def _range_tests(self, numbers: Sequence[tuple[Signal, str]]) -> list[str]:
-        """Return tests that pass together only if every signal is finite and in its range.
+        """Return tests that are all true only if every signal is finite and in its range.
 
-        The sum of the signals without both bounds is finite only if all of them are. If finite
-        values overflow the sum, the signals are merely checked one by one.
+        Signals that lack a bound are tested by their sum, which is finite only if all of them are.
+        If the sum of finite values overflows, the test fails, and the signals are checked one by
+        one.
         """
         bounded: list[str] = []
         least: dict[float, list[str]] = {}
@@ -336,7 +355,7 @@ class _Source:
         return reduce(lambda left, right: f"{self._prefix}_{function}_({left}, {right})", names)
 
     def _compute(self) -> list[str]:
-        """Return code for the atoms that every step computes."""
+        """Return the code that computes the atoms needed at every step."""
         program_ = self._program
         places = program_.computed_in(None)
         lines = [line for index in places for line in self._value(index)]
@@ -349,7 +368,7 @@ class _Source:
         return lines
 
     def _value(self, index: int) -> list[str]:
-        """Return code for the value of an atom."""
+        """Return the code that computes the value of an atom, given its index."""
         statements = self._program.values[index]
         lines = self._printer.comment(self._program.remarks[index])
         lines += self._printer.lines(with_declaration(self._program.atoms[index], statements))
@@ -358,7 +377,7 @@ class _Source:
         return lines
 
     def _check(self) -> list[str]:
-        """Return code that checks exclusive atoms."""
+        """Return the code that refuses a sample at which exclusive atoms hold together."""
         lines: list[str] = []
         for index, group in self._program.exclusive:
             tests = {atom: f"{self._program.atoms[atom]} > 0.0" for atom in group}
@@ -368,13 +387,13 @@ class _Source:
         return lines
 
     def _move(self) -> list[str]:
-        """Return code for the transition: one case per state."""
+        """Return the code of the transition, with a case for each state."""
         lines = [f"int {states.TARGET} = monitor->state;", f"const char *{states.LIMITING} = NULL;"]
         lines.append(f"double {states.ROBUSTNESS} = 0.0;")
         lines += [f"double {states.PROGRESS} = 0.0;"] if self._fspa.judge == "goal" else []
         lines.append("switch (monitor->state) {")
         for state, statements in zip(self._fspa.states, self._program.states, strict=True):
-            # The case needs braces because it may contain declarations.
+            # A case that contains declarations needs braces.
             lines += [f"{_INDENT}{line}" for line in self._printer.comment(str(state.label))]
             lines.append(f"{_INDENT}case {state.id}: {{")
             values = [line for index in self._program.computed_in(state.id) for line in self._value(index)]
@@ -384,7 +403,7 @@ class _Source:
         return [*lines, "}"]
 
     def _judge(self) -> list[str]:
-        """Return code for progress, reward and the end of the episode."""
+        """Return the code that computes progress and reward, and whether the episode ends."""
         used = variables_read(self._program.reward_statements)
         ends, verdict = f"states[{states.TARGET}].ends", f"states[{states.TARGET}].verdict"
         lines = [f"double {reward_step.BEST} = monitor->progress;", f"bool {reward_step.DONE} = monitor->done;"]
@@ -412,7 +431,10 @@ def _bytes(text: str) -> bytes:
 
 
 def _string(text: str) -> str:
-    """Return a string literal in ASCII. Question marks are escaped, since two of them begin a trigraph."""
+    """Return a string literal that has only ASCII characters.
+
+    Question marks are escaped, since two of them would begin a trigraph.
+    """
     return snippets.string_literal(text, _octal, snippets.is_plain_ascii).replace("?", "\\?")
 
 
@@ -421,10 +443,13 @@ def _octal(character: str) -> str:
 
 
 def _wrapped(line: str) -> list[str]:
-    """Return a test on as many lines as it needs."""
+    """Return the line of a long test, broken into several lines."""
     return wrap(line, 100, subsequent_indent=" " * len("if (!("), break_long_words=False, break_on_hyphens=False)
 
 
 def _list(items: Sequence[str], otherwise: str) -> str:
-    """Return the items of an initializer, which needs at least one item."""
+    """Return the text of the items of an array initializer.
+
+    Returns ``otherwise`` if there are none, since C needs at least one item.
+    """
     return _C.items(items or [otherwise], depth=1)

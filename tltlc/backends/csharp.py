@@ -58,7 +58,7 @@ _TEMPLATE = """
     Refuse Result Signals Sqrt States Step System Tltl ToString Verdict Without entered none number own result
     sample
 """.split()
-"""Names of the template that fields of records and variables of a step would hide."""
+"""Names in the template that no field and no variable of a step may have, because it would hide them."""
 
 
 def emit(fspa: Fspa, options: Options) -> Files:
@@ -68,10 +68,10 @@ def emit(fspa: Fspa, options: Options) -> Files:
 
 
 class _CSharp(Printer):
-    """Prints C#, with each brace on its own line."""
+    """Prints a program in C#, with each brace on its own line."""
 
     def branches(self, statement: If, depth: int) -> list[str]:
-        """Return the lines of a branch: its cases and its ``else``."""
+        """Return the lines of an ``if`` with all its cases and its ``else``."""
         indent = self.INDENT * depth
         lines: list[str] = []
         for index, (test, body) in enumerate(statement.cases):
@@ -82,7 +82,7 @@ class _CSharp(Printer):
         return lines
 
     def assignment(self, statement: Assign) -> str:
-        """Return an assignment; additions and subtractions use ``+=`` and ``-=``."""
+        """Return an assignment, with ``+=`` or ``-=`` for an addition to the variable or a subtraction from it."""
         match statement:
             case Assign(name, BinaryNumber("+" | "-" as op, Variable(left), right)) if left == name:
                 return f"{name} {op}= {self.text(right)};"
@@ -94,7 +94,7 @@ class _CSharp(Printer):
 
 
 class _Source:
-    """The source of one monitor: the pieces that fill the template."""
+    """Makes the source text of one monitor, by filling the template."""
 
     def __init__(self, fspa: Fspa, file: str) -> None:
         self._fspa, self._file = fspa, file
@@ -102,7 +102,7 @@ class _Source:
         self._printer = _CSharp()
 
     def text(self) -> str:
-        """Return the whole file."""
+        """Return the text of the file."""
         fspa, program_ = self._fspa, self._program
         signals = list(zip(fspa.signals, program_.signals, strict=True))
         params = list(zip(fspa.params, program_.params, strict=True))
@@ -151,7 +151,7 @@ class _Source:
         return lines
 
     def _give(self) -> list[str]:
-        """Return code that sets a signal by its number: one case per signal."""
+        """Return the code that sets a signal, given its index, with a case for each signal."""
         if not self._fspa.signals:
             return []
         lines = ["switch (signal)", "{"]
@@ -171,7 +171,7 @@ class _Source:
         return snippets.paragraphs(self._read(), self._compute(), self._check(), self._move(), self._judge())
 
     def _read(self) -> list[str]:
-        """Return code that reads signals, clamped to their ranges, and params into local variables."""
+        """Return the code that reads signals, clamped to their ranges, and params into local variables."""
         used = self._program.variables_used
         lines: list[str] = []
         for index, (signal, name) in enumerate(zip(self._fspa.signals, self._program.signals, strict=True)):
@@ -181,7 +181,7 @@ class _Source:
                 snippets.number_literal(signal.low, "double.NegativeInfinity"),
                 snippets.number_literal(signal.high, "double.PositiveInfinity"),
             )
-            # A missing bound becomes a strict comparison with infinity, so that infinite values fail the test.
+            # If a bound is missing, compare with infinity by `<` or `>`, so that infinite values fail the test.
             above, below = ">" if signal.low is None else ">=", "<" if signal.high is None else "<="
             lines.append(f"double {name} = sample.{name};")
             lines += _check_lines(
@@ -191,14 +191,14 @@ class _Source:
         return [*lines, *(f"double {name} = _params.{name};" for name in self._program.params if name in used)]
 
     def _bools(self, state: int | None) -> list[str]:
-        """Return code that converts the bools that only this state reads to numbers.
+        """Return the code that converts the bool signals that only this state reads to 0 or 1.
 
-        For None, it converts the bools that every step reads.
+        If ``state`` is None, it converts the bool signals that every step reads.
         """
         return [f"double {name} = sample.{name} ? 1.0 : 0.0;" for name in self._program.bools_read_in(state)]
 
     def _compute(self) -> list[str]:
-        """Return code for the atoms that every step computes."""
+        """Return the code that computes the atoms needed at every step."""
         lines: list[str] = []
         range_checks: list[str] = []
         for index in self._program.computed_in(None):
@@ -212,12 +212,12 @@ class _Source:
         return [*lines, *range_checks]
 
     def _value(self, index: int) -> tuple[Statement, ...]:
-        """Return the statements that declare and compute an atom's value."""
+        """Return the statements that declare an atom's variable and compute its value."""
         program_ = self._program
         return (CommentLine(program_.remarks[index]), *with_declaration(program_.atoms[index], program_.values[index]))
 
     def _check(self) -> list[str]:
-        """Return code that checks exclusive atoms."""
+        """Return the code that refuses a sample at which exclusive atoms hold together."""
         lines: list[str] = []
         for index, group in self._program.exclusive:
             names = [self._program.atoms[atom] for atom in group]
@@ -227,13 +227,13 @@ class _Source:
         return lines
 
     def _move(self) -> list[str]:
-        """Return code for the transition: one case per state."""
+        """Return the code of the transition, with a case for each state."""
         lines = [f"int {states.TARGET} = _state;", f"int {states.LIMITING} = -1;"]
         lines.append(f"double {states.ROBUSTNESS} = 0.0;")
         lines += [f"double {states.PROGRESS} = 0.0;"] if self._fspa.judge == "goal" else []
         lines += ["switch (_state)", "{"]
         for state, statements in zip(self._fspa.states, self._program.states, strict=True):
-            # The case needs braces because it may contain declarations.
+            # A case that contains declarations needs braces.
             lines += [f"{_INDENT}{line}" for line in self._printer.comment(str(state.label))]
             lines += [f"{_INDENT}case {state.id}:", f"{_INDENT}{{"]
             lines += [f"{_INDENT * 2}{line}" for line in self._bools(state.id)]
@@ -246,7 +246,7 @@ class _Source:
         return [statement for index in self._program.computed_in(state) for statement in self._value(index)]
 
     def _judge(self) -> list[str]:
-        """Return code for progress, reward and the end of the episode."""
+        """Return the code that computes progress and reward, and whether the episode ends."""
         used = variables_read(self._program.reward_statements)
         verdict = "entered.Verdict"
         lines = [f"Place entered = States[{states.TARGET}];"]
@@ -269,7 +269,7 @@ class _Source:
 
 
 def _check_lines(test: str, otherwise: str) -> list[str]:
-    """Return code that runs ``otherwise`` if the test fails, and ends the step if ``otherwise`` reports a problem."""
+    """Return the code that runs ``otherwise`` if a test fails, and then ends the step if there is a problem."""
     return [
         f"if (!({test}))",
         "{",
@@ -284,7 +284,7 @@ def _type(signal: Signal) -> str:
 
 
 def _fields(fields: Sequence[tuple[str, str, Signal | Param]]) -> str:
-    """Return the fields of a record, each with its documentation."""
+    """Return the fields of a class, each with its documentation."""
     lines: list[str] = []
     for name, type_, declared in fields:
         remarks = [_in_xml(line) for line in comment_lines(snippets.field_comment(name, declared))]
@@ -311,7 +311,7 @@ def _param_check(param: Param, name: str) -> list[str]:
 
 
 def _string(text: str) -> str:
-    """Return a string literal in ASCII."""
+    """Return a string literal that has only ASCII characters."""
     return snippets.string_literal(text, _escape, snippets.is_plain_ascii)
 
 
@@ -321,5 +321,5 @@ def _escape(character: str) -> str:
 
 
 def _list(items: Sequence[str]) -> str:
-    """Return the items of an initializer."""
+    """Return the text of the items of an array initializer."""
     return _CSharp.items(items, depth=2)

@@ -1,4 +1,4 @@
-"""The automaton as a Graphviz graph, drawn like Fig. 3 of the paper."""
+"""The automaton as a Graphviz graph, in the style of Fig. 3 of Gutiérrez-Sánchez et al. 2024."""
 
 from __future__ import annotations
 
@@ -24,7 +24,10 @@ LINES: dict[Verdict, str] = {
     "pending": "#475569",
     "violated": "#dc2626",
 }
-"""Colour of a state's outline and corner mark, by verdict; ``FILLS`` are pale shades of these colours."""
+"""The colour of a state's outline and of its distance mark, for each verdict.
+
+``FILLS`` has pale shades of them.
+"""
 
 FILLS: dict[Verdict, str] = {
     "satisfied": "#dcfce7",
@@ -36,13 +39,13 @@ FILLS: dict[Verdict, str] = {
 Detail = Literal["full", "labels", "sketch"]
 """What the drawing shows.
 
-``full`` is everything, ``labels`` everything except guards, and ``sketch`` only the numbers of
+``full`` shows everything, ``labels`` everything except guards, and ``sketch`` only the numbers of
 states, for a force-directed layout.
 """
 
 LABEL_WIDTH, GUARD_WIDTH, WIDE_GUARD_WIDTH = 30, 22, 32
 MOST_GUARDS = 24
-"""The most guards shown on one arrow; the others are only counted."""
+"""The most guards on one arrow; if there are more, the arrow says how many more."""
 TITLE_WIDTH = 100
 
 FONT = "Helvetica,Arial,sans-serif"
@@ -60,7 +63,7 @@ GRAPH = {
     "fontcolor": "#0f172a",
 }
 DENSE_FROM = 30
-"""Above this number of edges, states are drawn closer: layers of many guards would become twice as tall as needed."""
+"""Above this number of edges, states are drawn closer together, since the picture would become too tall."""
 DENSE = {"nodesep": "0.2"}
 SKETCH = {"overlap": "prism", "K": "1.2", "splines": "line", "outputorder": "edgesfirst"}
 NODE = {
@@ -84,9 +87,9 @@ def graph(fspa: Fspa, options: Options, drawing: Drawing | None = None, detail: 
     """Return the DOT text of a drawing, by default of the whole automaton.
 
     Each state shows its label and, as a mark in its upper right corner, its distance. Accepting
-    states are green with a double outline, traps are red, and folded states are dashed. There is
-    one arrow from one state to another. Over infinite traces it may list several guards, each
-    followed by the pairs that name its edge: ``a [inf 0]``.
+    states are green with a double outline, traps are red, and folded states are dashed. All edges
+    from one state to another share an arrow. Over infinite traces an arrow may have several guards,
+    each followed by the sets of Rabin pairs that contain its edge: ``a [inf 0]``.
     """
     from graphviz import Digraph
 
@@ -110,7 +113,7 @@ def graph(fspa: Fspa, options: Options, drawing: Drawing | None = None, detail: 
 
 
 def _title(fspa: Fspa, drawing: Drawing) -> str:
-    """Return the title: the name of the spec, its documentation, and a legend of the marks that occur."""
+    """Return the title: the name of the spec, its documentation, and a legend of the marks in the drawing."""
     legend = [line for note in (_legend(fspa, drawing), *notes(fspa, drawing)) for line in wrap_text(note, TITLE_WIDTH)]
     lines = [f"<B>{escape_html(fspa.name)}</B>"]
     if fspa.doc.strip():
@@ -126,7 +129,10 @@ def _legend(fspa: Fspa, drawing: Drawing) -> str:
 
 
 def _draw_state(drawn: Digraph, run: tuple[State, ...], text: str, full: bool) -> None:
-    """Draw a state with its ``text``; draw a run of folded states as one state with a dashed outline."""
+    """Draw a state with its ``text``.
+
+    If ``run`` has several states, they are folded: draw them as one state with a dashed outline.
+    """
     state, last = run[0], run[-1]
     line, fill = LINES[state.verdict], FILLS[state.verdict]
     distance = text_range(*("∞" if end.distance is None else str(end.distance) for end in (state, last)))
@@ -137,7 +143,7 @@ def _draw_state(drawn: Digraph, run: tuple[State, ...], text: str, full: bool) -
         body = table([f"<I>{len(run)} more like these</I>", body]) if full else f"<B>{state.id}…{last.id}</B>"
         style["style"] = f"{NODE['style']},dashed"
     mark = f'<FONT COLOR="white" POINT-SIZE="10"><B> {distance} </B></FONT>'
-    # Columns share the width of the label equally: one column of twelve keeps the mark small.
+    # All columns of the table have the same width. The mark takes only one of twelve, so that it stays small.
     html = (
         f'<<TABLE BORDER="0" CELLBORDER="0" CELLSPACING="0" CELLPADDING="1"><TR><TD COLSPAN="11"></TD>'
         f'<TD BGCOLOR="{line}" STYLE="ROUNDED">{mark}</TD></TR>'
@@ -161,10 +167,11 @@ def _draw_arrow(drawn: Digraph, source: State, target: State, guards: Sequence[s
 def _edge_style(source: State, target: State) -> dict[str, str]:
     """Return the style of an edge.
 
-    Edges that come nearer to a goal are dark and straight; edges into a trap are pale red and may bend.
+    Edges to a state with a smaller distance are bold and straight. Edges into a trap are pale red
+    and may bend.
     """
     if source.id == target.id:
-        # No other edge leaves a final state, so its loop goes on the right, where no edge arrives.
+        # No other edge leaves such a state, so its loop is drawn on the right, where no edge arrives.
         return {"headport": "e", "tailport": "e"} if source.verdict in ("satisfied", "violated") else {}
     if source.distance is not None and target.distance is None:
         return {"color": "#f87171", "weight": "0"}

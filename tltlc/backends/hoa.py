@@ -1,8 +1,8 @@
 """The automaton in the Hanoi omega-automata format (HOA), version 1 (http://adl.github.io/hoaf/), for other tools.
 
-Over infinite traces, the file has a Rabin automaton with marks on edges. The format does not know
-finite traces. For these, the file has a Büchi automaton with marks on the accepting states, and a
-header says that a trace is accepted if its run ends in one of them.
+Over infinite traces, the file has a Rabin automaton with acceptance on edges. The format has no
+automata over finite traces. For these, the file has a Büchi automaton with marks on the accepting
+states, and a header that says that a finite trace is accepted if its run ends in such a state.
 """
 
 from __future__ import annotations
@@ -25,14 +25,17 @@ from tltlc.logic.formula import FALSE, TRUE
 
 TARGET = Target("hoa", "an omega-automaton in the Hanoi format (HOA), for model checkers", (".hoa",))
 
-# A tool that does not know a header with a capital first letter must warn: it would read another language.
+# By the format, a tool that does not know a header with a capital first letter must refuse the file or warn. Without
+# this header, the tool would read an automaton with another meaning.
 FINITE_HEADER = 'Tltlc-semantics: "finite"'
 FINITE_COMMENT = "A finite trace is accepted where its run ends in a state of set 0."
 ALLOWED_COMMENT = "Exclusive atoms never hold at once: a letter that is not @allowed has no edge."
 
 
 def emit(fspa: Fspa, options: Options) -> Files:
-    """Return ``NAME.hoa``; texts are in ASCII notation, and atoms are numbered as in the artefact.
+    """Return ``NAME.hoa``.
+
+    Formulas are in ASCII notation, and atoms are numbered as in the artefact.
 
     Raises:
         TltlError: TLT0004 the file would be larger than `tltlc import` reads.
@@ -46,7 +49,10 @@ def emit(fspa: Fspa, options: Options) -> Files:
 
 
 def _header(fspa: Fspa, clashes: Sequence[tuple[int, int]]) -> Iterator[str]:
-    """Yield the lines before the body; ``clashes`` are the pairs of atoms that never hold at once."""
+    """Yield the lines before the body.
+
+    ``clashes`` are the pairs of atoms, by index, that never hold at once.
+    """
     yield "HOA: v1"
     yield f'tool: "tltlc" {_string(__version__)}'
     yield f"name: {_string(fspa.name)}"
@@ -74,10 +80,10 @@ def _header(fspa: Fspa, clashes: Sequence[tuple[int, int]]) -> Iterator[str]:
 
 
 def _rabin(pairs: int) -> tuple[str, str]:
-    """Return the acceptance in the format's canonical form.
+    """Return the two header lines for Rabin acceptance with this number of pairs.
 
-    Pair i has the sets 2i, which a run may visit only finitely often, and 2i + 1, which it must
-    visit infinitely often.
+    Rabin pair i has the sets 2i and 2i + 1. A run may visit set 2i only finitely often, and must
+    visit set 2i + 1 infinitely often.
     """
     terms = [f"Fin({2 * pair})&Inf({2 * pair + 1})" for pair in range(pairs)]
     condition = "|".join(map("({})".format, terms)) if pairs > 1 else "".join(terms) or "f"
@@ -96,10 +102,10 @@ def _body(fspa: Fspa) -> Iterator[str]:
 
 
 class _EdgeLabels:
-    """Guards as expressions over the numbers of atoms, true on exactly the letters that take the edge.
+    """Converts guards to labels of the format: expressions over the numbers of atoms.
 
-    They are built from the primes, as everything else that uses guards is: a guard's text is only
-    for readers.
+    A label is built from the prime implicants of the guard, which define the guard; its text is
+    only for readers. With exclusive atoms, a label is false on letters that cannot occur.
     """
 
     def __init__(self, fspa: Fspa) -> None:
@@ -109,7 +115,7 @@ class _EdgeLabels:
         self._known: dict[tuple[Implicant, ...], str] = {}
 
     def label(self, guard: Guard) -> str:
-        """Return the guard as a label, without its square brackets."""
+        """Return the label of a guard, without square brackets."""
         if guard.primes not in self._known:
             self._known[guard.primes] = self._label(guard.primes)
         return self._known[guard.primes]
@@ -121,11 +127,11 @@ class _EdgeLabels:
             text = " | ".join(map(_product, primes))
         if self._allowed == ACCEPT:
             return text
-        # The primes may be true or false on letters that exclusive atoms rule out, so the label excludes these letters.
+        # On letters that exclusive atoms rule out, the prime implicants may be true or false: exclude these letters.
         return "@allowed" if text == "t" else f"@allowed & ({text})" if "|" in text else f"@allowed & {text}"
 
     def _short(self, primes: Sequence[Implicant]) -> str:
-        """Return a label as short as the guard's text, with the same structure."""
+        """Return the prime implicants as a short formula, as in the guard's text."""
         diagrams, function = self._diagrams, REJECT
         for prime in primes:
             cube = ACCEPT
@@ -141,7 +147,7 @@ def _product(prime: Implicant) -> str:
 
 
 def _string(text: str) -> str:
-    r"""Return a C-style string: quotes and backslashes are escaped, invisible characters are ``\uXXXX``."""
+    r"""Return a string in quotes, with quotes and backslashes escaped, and invisible characters as ``\uXXXX``."""
     return f'"{"".join(map(_character, text))}"'
 
 
@@ -155,6 +161,9 @@ def _character(character: str) -> str:
 
 
 def _comment(text: str) -> str:
-    """Return a comment. HOA comments nest, so the text must contain no comment start or end."""
+    """Return a comment with the text.
+
+    Blanks split every ``/*`` and ``*/`` in it, since HOA comments nest.
+    """
     lines = [escape_invisible(line.strip()) for line in text.strip().splitlines()]
     return f"/* {re.sub('(?<=[*])(?=/)|(?<=/)(?=[*])', ' ', chr(10).join(lines))} */"

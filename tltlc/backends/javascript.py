@@ -1,8 +1,8 @@
 """A stand-alone monitor in JavaScript: one ES module for browsers and Node, and its TypeScript types.
 
 It gives the same results as :class:`tltlc.monitor.Monitor` with its default reward: to the last bit
-if predicates use no ``exp``, ``tanh`` or power, else within 1e-12, since engines implement these
-functions themselves.
+if predicates use no ``exp``, ``tanh`` or power, and within 1e-12 if they do, since engines compute
+these functions in their own ways.
 """
 
 from __future__ import annotations
@@ -34,10 +34,13 @@ TARGET = Target(
 _LONGEST = 110
 
 _FEW = 3
-"""Up to this many exclusive atoms are compared in pairs; more are counted."""
+"""The most exclusive atoms that are tested in pairs.
+
+Of larger groups, the atoms that hold are counted.
+"""
 
 _ENTERED = "entered"
-"""The variable for the row of the state that is entered."""
+"""The variable with the entry of the next state in the table of states."""
 
 _RESERVED = """
     abstract arguments as async await boolean break byte case catch char class const continue debugger default delete
@@ -47,7 +50,7 @@ _RESERVED = """
     Infinity Math Monitor MonitorError NaN Number Object Result RowReader Set String TextDecoder globalThis process
     ATOMS EXCLUSIVE PARAMS SIGNALS STATES entered listed max min paramValues result shown signals
 """.split()
-"""Words of the language, and names of the step function other than its own variables."""
+"""Names that no variable may have: words of the language, and other names that the step function uses."""
 
 
 def emit(fspa: Fspa, options: Options) -> Files:
@@ -58,7 +61,11 @@ def emit(fspa: Fspa, options: Options) -> Files:
 
 
 class _JavaScript(Printer):
-    """Prints JavaScript; functions that may fail are methods of the monitor."""
+    """Prints a program in JavaScript.
+
+    Functions in ``built_in`` are called as functions of ``Math``, all others as methods of the
+    monitor.
+    """
 
     INDENT = "  "
 
@@ -66,20 +73,20 @@ class _JavaScript(Printer):
         self._atoms, self._built_in = atoms, built_in
 
     def declaration(self, statement: Declare) -> str:
-        """Return a declaration: ``const`` if the variable keeps its value, else ``let``."""
+        """Return a declaration: ``const`` if the variable keeps its value, ``let`` otherwise."""
         if statement.value is None:
             return f"let {statement.name};"
         return f"{'let' if statement.changes else 'const'} {statement.name} = {self.text(statement.value)};"
 
     def assignment(self, statement: Assign) -> str:
-        """Return an assignment; the limiting atom is assigned by its name."""
+        """Return an assignment; ``limiting`` gets the name of an atom instead of its index."""
         match statement:
             case Assign(states.LIMITING, Int(index)):
                 return f"{states.LIMITING} = {_string(self._atoms[index]) if index >= 0 else 'null'};"
         return super().assignment(statement)
 
     def name(self, name: str) -> str:
-        """Return a variable; integers and reals are the same type here."""
+        """Return the name of a variable; the number ``steps`` also serves as the real ``steps_real``."""
         return reward_step.STEPS if name == reward_step.STEPS_REAL else name
 
     def real(self, value: float) -> str:
@@ -93,7 +100,7 @@ class _JavaScript(Printer):
         return super().call(f"this.#{function}" if function in FAILING else function, arguments)
 
     def _text_and_binding(self, node: Expression) -> tuple[str, int]:
-        """Return the text of an expression and its binding strength; ``===`` compares without conversions."""
+        """Return the text of an expression and its binding strength, with ``===`` for ``==``."""
         text, binding = super()._text_and_binding(node)
         if isinstance(node, Compare) and node.op in ("==", "!="):
             text = text.replace(f" {node.op} ", f" {node.op}= ")
@@ -101,7 +108,7 @@ class _JavaScript(Printer):
 
 
 class _Source:
-    """The sources of one monitor: the pieces that fill the templates."""
+    """Makes the source texts of one monitor, by filling the templates."""
 
     def __init__(self, fspa: Fspa, module: str, declarations: str) -> None:
         self._fspa, self._module, self._declarations = fspa, module, declarations
@@ -109,11 +116,11 @@ class _Source:
         self._names = (*self._program.signals, *self._program.params, *self._program.atoms)
         names = [atom.name for atom in fspa.atoms]
         self._printer = _JavaScript(names)
-        # The sign of a zero does not matter for values of atoms, and Math.min is faster than a function of the monitor.
+        # Math.min may return 0 for -0, which does not matter for atoms, and is faster than a method of the monitor.
         self._moves = _JavaScript(names, ("min", "max"))
 
     def module(self) -> str:
-        """Return the whole module."""
+        """Return the text of the module."""
         fspa = self._fspa
         program_ = self._program
         with recursion_room():
@@ -145,7 +152,7 @@ class _Source:
         return fill_template("monitor.mjs.txt", places, present)
 
     def declarations(self) -> str:
-        """Return the whole file of types."""
+        """Return the text of the file with the types."""
         fspa = self._fspa
         signals = [
             (
@@ -174,7 +181,7 @@ class _Source:
         return snippets.paragraphs(self._read(), self._compute(), self._check(), self._move(), self._judge())
 
     def _read(self) -> list[str]:
-        """Return code that reads signals, clamped to their ranges, and params into local variables."""
+        """Return the code that reads signals, clamped to their ranges, and params into local variables."""
         used = self._program.variables_used
         lines: list[str] = []
         for index, (signal, name) in enumerate(zip(self._fspa.signals, self._program.signals, strict=True)):
@@ -194,7 +201,7 @@ class _Source:
         return lines
 
     def _compute(self) -> list[str]:
-        """Return code for the atoms that every step computes."""
+        """Return the code that computes the atoms needed at every step."""
         lines = self._values(None)
         for index, (name, in_range) in enumerate(zip(self._program.atoms, self._program.always_in_range, strict=True)):
             if not in_range:
@@ -202,11 +209,11 @@ class _Source:
         return lines
 
     def _values(self, state: int | None) -> list[str]:
-        """Return code for the atoms that only this state computes; for None, for those that every step computes."""
+        """Return the code for the atoms that only this state needs, or if ``state`` is None, those every step needs."""
         return [line for index in self._program.computed_in(state) for line in self._value(index)]
 
     def _value(self, index: int) -> list[str]:
-        """Return code for the value of one atom."""
+        """Return the code that computes the value of an atom, given its index."""
         program_, statements = self._program, self._program.values[index]
         lines = self._printer.comment(program_.remarks[index])
         if functions_called(statements) & FAILING:
@@ -219,7 +226,7 @@ class _Source:
         ]
 
     def _check(self) -> list[str]:
-        """Return code that checks exclusive atoms."""
+        """Return the code that refuses a sample at which exclusive atoms hold together."""
         lines: list[str] = []
         for index, group in self._program.exclusive:
             names = [self._program.atoms[atom] for atom in group]
@@ -234,13 +241,13 @@ class _Source:
         return lines
 
     def _move(self) -> list[str]:
-        """Return code for the transition: one case per state."""
+        """Return the code of the transition, with a case for each state."""
         lines = [f"let {states.TARGET} = this.state;", f"let {states.ROBUSTNESS} = 0;"]
         lines += [f"let {states.PROGRESS} = 0;"] if self._fspa.judge == "goal" else []
         lines.append(f"let {states.LIMITING} = null;")
         lines.append("switch (this.state) {")
         for state, statements in zip(self._fspa.states, self._program.states, strict=True):
-            # The case needs braces because it may contain declarations.
+            # A case that contains declarations needs braces.
             lines += [f"  {line}" for line in self._printer.comment(str(state.label))]
             lines.append(f"  case {state.id}: {{")
             lines += [f"    {line}" for line in self._values(state.id)]
@@ -249,7 +256,7 @@ class _Source:
         return [*lines, "}"]
 
     def _judge(self) -> list[str]:
-        """Return code for progress, reward and the end of the episode."""
+        """Return the code that computes progress and reward, and whether the episode ends."""
         used = variables_read(self._program.reward_statements)
         lines = [f"const {_ENTERED} = STATES[{states.TARGET}];", f"let {reward_step.BEST} = this.progress;"]
         lines += [f"let {reward_step.DONE} = this.done;", f"let {reward_step.REWARD};"]
@@ -266,7 +273,7 @@ class _Source:
 
 
 def _fields(fields: Sequence[tuple[str, str, str]]) -> str:
-    """Return the fields of an interface, each with its documentation before it."""
+    """Return the properties of an interface, each after its documentation."""
     lines: list[str] = []
     for name, type_, doc in fields:
         doc_lines = [line.replace("*/", "* /") for line in comment_lines(doc)]
@@ -298,7 +305,7 @@ def _escape(character: str) -> str:
 
 
 def _in_range(name: str, low: float | None, high: float | None) -> str:
-    """Return a test whether a variable is a finite number from ``low`` to ``high``."""
+    """Return a test that is true if a variable is a finite number from ``low`` to ``high``."""
     if low is None and high is None:
         return f"Number.isFinite({name})"
     least = f"-Infinity < {name}" if low is None else f"{_number(low)} <= {name}"
@@ -307,7 +314,7 @@ def _in_range(name: str, low: float | None, high: float | None) -> str:
 
 
 def _branch(tests: Sequence[str], body: str, word: str = "") -> list[str]:
-    """Return ``if (A word B) body``, on several lines if it is long."""
+    """Return the lines of ``if (A && B) body``, with ``word`` as the operator between the tests."""
     head = f"if ({f' {word} '.join(tests)})"
     if len(head) + len(body) < _LONGEST:
         return [f"{head} {body}"]
@@ -328,7 +335,7 @@ def _is_plain(name: str) -> bool:
 
 
 def _key(name: str) -> str:
-    """Return a property's name as an object or a type lists it."""
+    """Return a property's name as it is written in an object or a type: in quotes unless it is an identifier."""
     return name if _is_plain(name) else _string(name)
 
 
@@ -337,7 +344,7 @@ def _member(owner: str, name: str) -> str:
 
 
 def _list(items: Sequence[str]) -> str:
-    """Return an array: on one line if short, else with one line per item."""
+    """Return the text of an array, on one line if it is short, otherwise with a line for each item."""
     line = f"[{', '.join(items)}]"
     if len(line) <= 80 and not any("{" in item for item in items):
         return line

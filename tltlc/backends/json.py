@@ -1,4 +1,4 @@
-"""The JSON artefact, which monitors, training and all other tools load."""
+"""The artefact: the automaton as JSON, which monitors, training and all other tools load."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def emit(fspa: Fspa, options: Options) -> Files:
     Raises:
         TltlError: TLT0004 the file would be larger than :func:`tltlc.artefact.decode.read` accepts;
             TLT0006 it would have more values.
-        ValueError: the automaton cannot be written in the format (a bug of the construction).
+        ValueError: the document does not fit the schema, which would be a bug of the compiler.
     """
     subject = f"the artefact of `{fspa.name}`"
     # This rejects most automata that are too large before any text is built.

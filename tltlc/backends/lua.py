@@ -1,9 +1,9 @@
 """A stand-alone monitor in Lua 5.1 to 5.4, LuaJIT and Luau: one module, standard library only.
 
 It gives the same results to the last bit as :class:`tltlc.monitor.Monitor` with its default reward,
-except for ``tanh``, which newer versions lack, and powers in LuaJIT, which has its own; these agree
-within 1e-12. Lua allows at most 200 local variables and 200 nested blocks. For a spec that needs
-more, variables become fields and inner blocks become functions.
+except for ``tanh``, which newer versions of Lua lack, and for powers in LuaJIT, which computes them
+in its own way: these agree within 1e-12. Lua allows at most 200 local variables and 200 nested
+blocks. For a spec that needs more, variables become fields of tables, and inner blocks functions.
 """
 
 from __future__ import annotations
@@ -34,13 +34,22 @@ TARGET = Target(
 )
 
 _MOST_LOCALS: Final = 150
-"""The most local variables and arguments that fit beside those of the step itself."""
+"""The most local variables and arguments for a spec.
+
+The step function has others, and Lua allows 200 in all.
+"""
 
 _FEW_STATES: Final = 8
-"""Up to this many states are tested one after the other; with more, each state has a function."""
+"""The most states that a step tests one after the other.
+
+If there are more, each state has a function.
+"""
 
 _DEEPEST: Final = 60
-"""The depth at which blocks are split; expressions in them also need some of Lua's 200 levels."""
+"""The depth of nested blocks at which inner blocks become functions.
+
+Lua allows 200 levels, but expressions in the blocks need some of them.
+"""
 
 _KEYWORDS = """
     and break do else elseif end false for function goto if in local nil not or repeat return then true until while
@@ -52,7 +61,7 @@ _OWN = """
     MOVES STATES abs at_step divide entered exp failure huge kept max min param part power problem read result self
     signal signals sqrt tanh together type value
 """.split()
-"""Names that a step reads besides the variables of its program."""
+"""Other names that the step function uses, which no variable of the program may have."""
 
 
 def emit(fspa: Fspa, options: Options) -> Files:
@@ -62,15 +71,19 @@ def emit(fspa: Fspa, options: Options) -> Files:
 
 
 class _Lua(Printer):
-    """Prints Lua; ``fields`` maps variables that are fields of tables to their text. The others are local.
+    """Prints a program in Lua.
 
-    ``parts`` are the lines of functions for blocks that would nest too deep; all their variables
-    are fields.
+    ``fields`` maps the variables that are fields of tables to the text of the field; all other
+    variables are local. ``parts`` collects the lines of functions that replace blocks nested too
+    deep; these functions use only fields.
     """
 
     INDENT = "  "
     COMMENT = "--"
-    """A blank follows it, so that brackets cannot begin a long comment."""
+    """The start of a comment.
+
+    The blank after it is needed, because ``--[[`` would begin a long comment.
+    """
     WORDS: ClassVar = {"and": "and", "or": "or", "not": "not ", "true": "true", "false": "false"}
     END = ""
 
@@ -80,11 +93,11 @@ class _Lua(Printer):
         self.parts: list[str] = []
 
     def name(self, name: str) -> str:
-        """Return a variable; integers and reals are the same type here."""
+        """Return the name of a variable; the number ``steps`` also serves as the real ``steps_real``."""
         return reward_step.STEPS if name == reward_step.STEPS_REAL else self._fields.get(name, name)
 
     def lines(self, statements: Iterable[Statement], depth: int = 0) -> list[str]:
-        """Return the lines of statements; a field without a value needs no declaration."""
+        """Return the lines of statements, without declarations of fields that have no value."""
         needed = [
             statement
             for statement in statements
@@ -93,20 +106,23 @@ class _Lua(Printer):
         return super().lines(needed, depth)
 
     def declaration(self, statement: Declare) -> str:
-        """Return a declaration; for a field, an assignment."""
+        """Return the declaration of a local variable, or for a field, an assignment to it."""
         local = "" if statement.name in self._fields else "local "
         value = "" if statement.value is None else f" = {self.text(statement.value)}"
         return f"{local}{self.name(statement.name)}{value}"
 
     def assignment(self, statement: Assign) -> str:
-        """Return an assignment; the limiting atom is assigned by its name."""
+        """Return an assignment; ``limiting`` gets the name of an atom instead of its index."""
         match statement:
             case Assign(states.LIMITING, Int(index)):
                 return f"{states.LIMITING} = {_string(self._atoms[index]) if index >= 0 else 'nil'}"
         return super().assignment(statement)
 
     def branches(self, statement: If, depth: int) -> list[str]:
-        """Return the lines of a branch, or a call of the function that contains it."""
+        """Return the lines of an ``if``.
+
+        If it is nested too deep, returns a call of a new function with these lines.
+        """
         if depth < _DEEPEST:
             return super().branches(statement, depth)
         self._part_count += 1
@@ -116,7 +132,7 @@ class _Lua(Printer):
         return [f"{self.INDENT * depth}{call}"]
 
     def head(self, test: str, *, first: bool) -> str:
-        """Return the first line of a case."""
+        """Return the line that begins a case: ``if`` or ``else if``, with its test."""
         return f"{'if' if first else 'elseif'} {test} then"
 
     def otherwise(self) -> str:
@@ -124,7 +140,7 @@ class _Lua(Printer):
         return "else"
 
     def closing(self) -> list[str]:
-        """Return the lines that end a branch."""
+        """Return the lines that end an ``if``."""
         return ["end"]
 
     def _text_and_binding(self, node: Expression) -> tuple[str, int]:
@@ -135,7 +151,7 @@ class _Lua(Printer):
 
 
 class _Source:
-    """The source of one monitor: the pieces that fill the template."""
+    """Makes the source text of one monitor, by filling the template."""
 
     def __init__(self, fspa: Fspa, file: str) -> None:
         self._fspa, self._file = fspa, file
@@ -146,7 +162,7 @@ class _Source:
         with recursion_room():
             parts = [declaration.name for value in program_.values for declaration in _declarations(value)]
             deepest = max(map(_depth, program_.values), default=0)
-        # Each variable counts twice because it is an argument, too.
+        # Each variable counts twice, because it is also an argument of the functions of states.
         self._variables_are_fields = 2 * len(variables) + len(parts) > _MOST_LOCALS or deepest >= _DEEPEST
         fields = {
             **{
@@ -161,7 +177,7 @@ class _Source:
         self._printer = _Lua(fields if self._variables_are_fields else {}, self._names)
 
     def text(self) -> str:
-        """Return the whole file."""
+        """Return the text of the file."""
         fspa, program_ = self._fspa, self._program
         functions = functions_called(statement for part in (*program_.values, *program_.states) for statement in part)
         with recursion_room():
@@ -222,19 +238,19 @@ class _Source:
     # --- the functions of states ------------------------------------------------------------------
 
     def _result_names(self) -> str:
-        """Return the variables that the functions of states return.
+        """Return the names of the values that the functions of states return, separated by commas.
 
-        Progress is one of them unless the spec is judged at its limit, where it does not depend on
-        edges.
+        Progress is one of them only if the spec is judged at its goal; otherwise it does not depend
+        on the edge taken.
         """
         progress = (states.PROGRESS,) if self._at_goal else ()
         return ", ".join((states.TARGET, states.ROBUSTNESS, *progress, states.LIMITING))
 
     def _parameters(self) -> str:
-        """Return the parameters of the functions of states.
+        """Return the parameters of the functions of states, separated by commas.
 
-        They are the atoms that every step computes, and the signals and params that the functions
-        read.
+        They are the signals, the params and the atoms computed at every step, as far as the
+        functions read them.
         """
         if self._variables_are_fields:
             return "signal, param, value"
@@ -254,7 +270,7 @@ class _Source:
         return lines
 
     def _branch(self, state: int) -> list[str]:
-        """Return the code of a state: the values of the atoms that only it reads, and the transition."""
+        """Return the code of a state: it computes the atoms that only this state needs, and the transition."""
         lines: list[str] = []
         for index in self._program.computed_in(state):
             # An empty line separates the comments.
@@ -269,14 +285,14 @@ class _Source:
         return snippets.paragraphs(*parts)
 
     def _tables(self) -> list[str]:
-        """Return the declaration of ``problem``, and of the tables whose fields are variables."""
+        """Return the declarations of the variable ``problem``, and of the tables that have variables as fields."""
         lines = ["local problem"] if self._fspa.signals or not all(self._program.always_in_range) else []
         if self._variables_are_fields:
             lines.append("local signal, param, value = self._signal, self.params, self._value")
         return lines
 
     def _read(self) -> list[str]:
-        """Return code that reads signals, clamped to their ranges, and params into local variables."""
+        """Return the code that reads signals, clamped to their ranges, and params into local variables."""
         lines: list[str] = []
         if any(signal.type != "bool" for signal in self._fspa.signals):
             lines.append("-- Adding 0 makes floats of whole numbers, which would wrap around in Lua 5.3 and later.")
@@ -297,7 +313,7 @@ class _Source:
         return lines
 
     def _compute(self) -> list[str]:
-        """Return code for the atoms that every step computes."""
+        """Return the code that computes the atoms needed at every step."""
         lines: list[str] = []
         range_checks: list[str] = []
         failing = False
@@ -320,13 +336,13 @@ class _Source:
         return [*(["failure = nil"] if failing else []), *lines, *range_checks]
 
     def _value(self, index: int) -> list[str]:
-        """Return code for the value of one atom."""
+        """Return the code that computes the value of an atom, given its index."""
         program_ = self._program
         lines = self._printer.comment(program_.remarks[index])
         return [*lines, *self._printer.lines(with_declaration(program_.atoms[index], program_.values[index]))]
 
     def _check(self) -> list[str]:
-        """Return code that checks exclusive atoms."""
+        """Return the code that refuses a sample at which exclusive atoms hold together."""
         lines: list[str] = []
         for index, group in self._program.exclusive:
             atoms = [self._printer.name(self._program.atoms[atom]) for atom in group]
@@ -336,7 +352,7 @@ class _Source:
         return lines
 
     def _move(self) -> list[str]:
-        """Return code for the transition, by state."""
+        """Return the code of the transition: a case for each state, or a call of the state's function."""
         if not self._few_states:
             return [f"local {self._result_names()} = MOVES[self.state]({self._parameters()})"]
         lines = ["local state = self.state", f"local {self._result_names()}"]
@@ -347,7 +363,7 @@ class _Source:
         return [*lines, "end"]
 
     def _judge(self) -> list[str]:
-        """Return code for progress, reward and the end of the episode."""
+        """Return the code that computes progress and reward, and whether the episode ends."""
         used = variables_read(self._program.reward_statements)
         definitions = {
             reward_step.ENDS: "entered.ends",
@@ -378,7 +394,7 @@ def _declarations(statements: Iterable[Statement]) -> Iterator[Declare]:
 
 
 def _depth(statements: Iterable[Statement]) -> int:
-    """Return how deep branches nest."""
+    """Return how deep ``if`` statements are nested."""
     bodies = [body for statement in statements if isinstance(statement, If) for body in _bodies(statement)]
     return 1 + max(map(_depth, bodies)) if bodies else 0
 
@@ -397,7 +413,7 @@ def _field(name: str, type_: str, doc: str) -> str:
 
 
 def _accepting_cases(signal: Signal, variable: str) -> list[str]:
-    """Return the first cases of a signal's branch: values that need no further check."""
+    """Return the first cases of the ``if`` that checks a signal: the values that can be used as they are."""
     if signal.type == "bool":
         return [
             f"if {variable} == true then",
@@ -416,7 +432,7 @@ def _row(field: Signal | Param, entries: str) -> str:
 
 
 def _string(text: str) -> str:
-    """Return a string literal; characters that do not print are escaped byte by byte."""
+    """Return a string literal, in which each UTF-8 byte of a character that does not print is escaped."""
     return snippets.string_literal(text, _escape)
 
 
@@ -431,11 +447,11 @@ def _key(name: str) -> str:
 
 
 def _index(name: str) -> str:
-    """Return an access to a key of a table."""
+    """Return the text that follows a table's name to access a key: ``.health`` or ``["near(s1)"]``."""
     key = _key(name)
     return key if key[0] == "[" else f".{key}"
 
 
 def _list(items: Sequence[str]) -> str:
-    """Return a list with one line per item."""
+    """Return the text of a list, with a line for each item."""
     return "{\n" + "".join(f"{_Lua.INDENT}{item},\n" for item in items) + "}" if items else "{}"

@@ -1,7 +1,7 @@
-"""The automaton as a Mermaid state diagram, which many wikis and code hosts draw in place.
+"""The automaton as a Mermaid state diagram, a text that many wikis and code hosts show as a picture.
 
-Counting states are folded. All edges from one state to another share an arrow: of several loops of a
-state, Mermaid would draw only the last one.
+A long run of states that differ only in a count is drawn as one state. All edges from one state to
+another share an arrow, because Mermaid would draw only the last of several loops of a state.
 """
 
 from __future__ import annotations
@@ -19,7 +19,10 @@ from tltlc.backends.drawing.texts import escape_invisible, guards_by_arrow, wrap
 TARGET = Target("mermaid", "a state diagram for Mermaid", (".mmd",))
 
 WIDTH, MOST_LINES = 22, 16
-"""Width and height of a text; Mermaid breaks longer lines itself, anywhere between words."""
+"""The most characters in a line, and the most lines of a text.
+
+Mermaid would break longer lines at any blank.
+"""
 
 CLASSES = """\
     classDef satisfied fill:#dcfce7,stroke:#15803d,stroke-width:4px,color:#0f172a
@@ -33,9 +36,11 @@ _PLAIN = frozenset(" (),.∞¬∧∨⇒⇔⊤⊥◇□○𝒰")
 
 
 def emit(fspa: Fspa, options: Options) -> Files:
-    """Return ``NAME.mmd``: labels with distances, guards, a class per verdict and a legend; folded states are dashed.
+    """Return ``NAME.mmd``.
 
-    Over infinite traces, the pairs that name an edge follow its guard.
+    A state shows its label and distance, and the colours of its verdict. An arrow shows guards;
+    over infinite traces, each guard is followed by the sets of Rabin pairs that contain its edge.
+    Folded states are dashed. A legend explains the marks.
     """
     drawing = folded_drawing(fspa)
     lines = ["stateDiagram-v2", "    direction LR", f"    accTitle: The automaton of {_escape(fspa.name)}"]
@@ -53,7 +58,7 @@ def emit(fspa: Fspa, options: Options) -> Files:
 
 
 def _state(fspa: Fspa, run: tuple[State, ...], options: Options) -> str:
-    """Return the line of a state; the inner states of a run share a line."""
+    """Return the line of a state, or the one line of several states that are folded into one."""
     ends = run[0], run[-1]
     distance = text_range(*("∞" if state.distance is None else str(state.distance) for state in ends))
     heading = [f"{len(run)} more like these:"] if len(run) > 1 else []
@@ -66,9 +71,9 @@ def _lines(texts: Sequence[str]) -> str:
 
 
 def _escape(text: str) -> str:
-    """Return the text with Mermaid escapes (``#38;``), so that nothing in it is syntax.
+    """Return the text with Mermaid escapes (``#38;`` for ``&``), so that Mermaid reads none of it as syntax.
 
-    Only letters, digits and a few marks stay as they are.
+    Letters, digits and a few other characters are not escaped.
     """
     escaped = "".join(
         character if character.isalnum() or character in _PLAIN else f"#{ord(character)};"

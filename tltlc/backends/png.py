@@ -10,5 +10,5 @@ TARGET = Target("png", "a picture of pixels", (".png",))
 
 
 def emit(fspa: Fspa, options: Options) -> Files:
-    """Return ``NAME.png``; see :func:`tltlc.backends.drawing.layout.draw` for graphs that are too large to draw."""
+    """Return ``NAME.png``, or what :func:`tltlc.backends.drawing.layout.draw` returns for a graph that is too large."""
     return draw(fspa, options, "png")

@@ -48,10 +48,10 @@ _RESERVED: Final = (
     *("inf", "isfinite", "pow", "sqrt", "exp", "tanh", "json", "os", "re", "sys"),
     *("Step", "Monitor", "MonitorError", "BinaryIO", "Callable", "Iterator", "Mapping", "NamedTuple"),
 )
-"""Names of the step function's own variables, and names that it reads from the module."""
+"""Names that the step function uses, which no variable of the program may have."""
 
 _FUNCTIONS: Final[dict[str, str]] = {"power": "pow", "sqrt": "sqrt", "exp": "exp", "tanh": "tanh"}
-"""Functions of a program that the module ``math`` has, with their names there."""
+"""The functions of a program that are in the module ``math``, with their names there."""
 
 _NO_LIMITING: Final = Assign(states.LIMITING, Int(-1))
 
@@ -65,7 +65,7 @@ def emit(fspa: Fspa, options: Options) -> Files:
 
 
 class _Python(Printer):
-    """Prints Python; ``atoms`` are the names that stand for limiting atoms."""
+    """Prints a program in Python; ``atoms`` are the names of the atoms in the spec."""
 
     COMMENT: ClassVar[str] = "#"
     TYPES: ClassVar[dict[Type, str]] = {"real": "float", "int": "int", "bool": "bool"}
@@ -76,34 +76,34 @@ class _Python(Printer):
         self._atoms = atoms
 
     def lines(self, statements: Iterable[Statement], depth: int = 0) -> list[str]:
-        """Return the lines of statements; a variable without a value needs no declaration."""
+        """Return the lines of statements, without declarations of variables that have no value."""
         needed = (
             statement for statement in statements if not (isinstance(statement, Declare) and statement.value is None)
         )
         return super().lines(needed, depth)
 
     def declaration(self, statement: Declare) -> str:
-        """Return the first assignment to a variable."""
+        """Return a declaration with a value, which is an assignment in Python."""
         assert statement.value is not None, "variables without a value are left out"
         return f"{statement.name} = {self.text(statement.value)}"
 
     def name(self, name: str) -> str:
-        """Return the name of a variable; an int also counts as a real number."""
+        """Return the name of a variable; the int ``steps`` also serves as the real ``steps_real``."""
         return reward_step.STEPS if name == reward_step.STEPS_REAL else name
 
     def assignment(self, statement: Assign) -> str:
-        """Return an assignment; the limiting atom is a name or None."""
+        """Return an assignment; ``limiting`` gets the name of an atom or None instead of an index."""
         return f"{statement.name} = {self.result(statement)}"
 
     def result(self, statement: Assign) -> str:
-        """Return the value that a statement assigns."""
+        """Return the text of the value that a statement assigns."""
         match statement:
             case Assign(states.LIMITING, Int(index)):
                 return string_literal(self._atoms[index]) if index >= 0 else "None"
         return self.text(statement.value)
 
     def head(self, test: str, *, first: bool) -> str:
-        """Return the first line of a case."""
+        """Return the line that begins a case: ``if`` or ``else if``, with its test."""
         return f"if {test}:" if first else f"elif {test}:"
 
     def otherwise(self) -> str:
@@ -111,14 +111,14 @@ class _Python(Printer):
         return "else:"
 
     def closing(self) -> list[str]:
-        """Return no lines: indentation ends a branch."""
+        """Return no lines, because Python ends a branch by its indentation."""
         return []
 
     def _text_and_binding(self, node: Expression) -> tuple[str, int]:
         """Return the text of an expression and its binding strength.
 
-        Nested calls of ``min`` or ``max`` become one call with many arguments, which is faster. The
-        result is the same: the first of equal arguments.
+        ``min(min(a, b), c)`` becomes ``min(a, b, c)``, which is faster, and likewise ``max``. Of
+        equal arguments, both return the first one.
         """
         match node:
             case NumericCall("min" | "max" as function):
@@ -133,14 +133,14 @@ class _Python(Printer):
 
 
 def _arguments(node: NumericCall) -> list[Expression]:
-    """Return the arguments of ``f(f(a, b), c)`` as ``a, b, c``."""
+    """Return the arguments of nested calls of one function: ``a, b, c`` for ``f(f(a, b), c)``."""
     first, second = node.args
     before = _arguments(first) if isinstance(first, NumericCall) and first.function == node.function else [first]
     return [*before, second]
 
 
 class _Source:
-    """The source of one monitor: the pieces that fill the template."""
+    """Makes the source text of one monitor, by filling the template."""
 
     def __init__(self, fspa: Fspa, file: str) -> None:
         self._fspa, self._file = fspa, file
@@ -148,13 +148,13 @@ class _Source:
         self._names = (*self._program.signals, *self._program.params, *self._program.atoms)
         progress = [states.PROGRESS] if fspa.judge == "goal" else []
         self._results = (states.TARGET, states.ROBUSTNESS, *progress, states.LIMITING)
-        # An atom that no state needs has no value.
+        # Atoms that no state needs are not computed.
         needed = zip(self._program.atoms, self._program.only_in, strict=True)
         self._computed = [name for name, only in needed if only != -1]
         self._printer = _Python([atom.name for atom in fspa.atoms])
 
     def text(self) -> str:
-        """Return the whole file."""
+        """Return the text of the file."""
         fspa, at_goal = self._fspa, self._fspa.judge == "goal"
         with recursion_room():
             step = _Python.block(self._step(), depth=2)
@@ -192,7 +192,7 @@ class _Source:
 
     @property
     def _result(self) -> str:
-        """The return type of the functions of the states."""
+        """Return the return type of the functions of states."""
         return f"tuple[int, float, {'float, ' if states.PROGRESS in self._results else ''}str | None]"
 
     def _function(self, state: int) -> str:
@@ -202,7 +202,7 @@ class _Source:
         body = split_deep_values(self._program.states[state], self._names)
         match body:
             case (If(cases, otherwise),):
-                # Each case returns, since a chain of `elif` would nest as deep as a state has edges.
+                # Each case is an `if` of its own that returns: a long chain of `elif` would nest too deep for Python.
                 for test, taken in cases:
                     lines.append(f"{INDENT}{self._printer.head(self._printer.text(test), first=True)}")
                     lines += self._edge_lines(taken, depth=2)
@@ -210,9 +210,9 @@ class _Source:
         return "\n".join([*lines, *self._edge_lines(body, depth=1)])
 
     def _edge_lines(self, body: Sequence[Statement], depth: int) -> list[str]:
-        """Return the lines that run when an edge is taken.
+        """Return the lines that run when an edge is taken, the last of which returns the results.
 
-        A result that is assigned once is returned without a variable.
+        Results with one assignment are returned directly, without a variable.
         """
         once = {
             statement.name: statement
@@ -231,7 +231,7 @@ class _Source:
         return [*self._read(), *self._compute(), *self._check(), *self._move(), *self._judge()]
 
     def _read(self) -> list[str]:
-        """Return code that reads signals as floats in their ranges, and params, into variables."""
+        """Return the code that reads signals, as floats clamped to their ranges, and params into variables."""
         params = f"({', '.join(self._program.params)},) = self._params"
         if not self._program.signals:
             return [params] if self._program.params else []
@@ -250,7 +250,7 @@ class _Source:
         return [*lines, params] if self._program.params else lines
 
     def _compute(self) -> list[str]:
-        """Return code for the atoms' values, in the order of the program's remarks."""
+        """Return the code that computes all atoms, first those needed at every step, then those of each state."""
         program_ = self._program
         lines: list[str] = []
         fails = False
@@ -272,7 +272,7 @@ class _Source:
         return lines
 
     def _check(self) -> list[str]:
-        """Return code that checks exclusive atoms."""
+        """Return the code that refuses a sample at which exclusive atoms hold together."""
         lines: list[str] = []
         for index, group in self._program.exclusive:
             atoms = [self._program.atoms[atom] for atom in group]
@@ -280,11 +280,11 @@ class _Source:
         return lines
 
     def _move(self) -> list[str]:
-        """Return code for the transition: the function of the state computes it."""
+        """Return the code of the transition, a call of the state's function."""
         return call_lines(f"{', '.join(self._results)} = _TRANSITIONS[self.state]", self._computed)
 
     def _judge(self) -> list[str]:
-        """Return code for reward, best progress and the end of the episode."""
+        """Return the code that computes reward and best progress, and whether the episode ends."""
         used = variables_read(self._program.reward_statements)
         definitions = {
             reward_step.VIOLATED: 'verdict == "violated"',
@@ -311,7 +311,7 @@ class _Source:
 
 
 def _within(signal: Signal, variable: str) -> str:
-    """Return a test that a float is in the range of a signal; infinities and NaN fail it."""
+    """Return a test that is true if a float is finite and in the range of a signal."""
     if signal.type == "bool":
         return f"({variable} == 0.0 or {variable} == 1.0)"
     low = f"-inf < {variable}" if signal.low is None else f"{float_literal(signal.low)} <= {variable}"
@@ -319,7 +319,7 @@ def _within(signal: Signal, variable: str) -> str:
 
 
 def _two_hold(atoms: Sequence[str]) -> str:
-    """Return a test whether at least two of the atoms hold; the test is fast if none holds."""
+    """Return a test that is true if at least two of the atoms hold; it is fast if none holds."""
     if len(atoms) > 8:
         return f"sum(value > 0.0 for value in {_inline(atoms)}) > 1"
     tests = [f"{atom} > 0.0" for atom in atoms]
@@ -345,7 +345,7 @@ def _inline(items: Sequence[str]) -> str:
 
 
 def _tuple(items: Sequence[str]) -> str:
-    """Return a tuple, one item per line."""
+    """Return the text of a tuple, with a line for each item."""
     return "\n".join(["(", *(f"{INDENT}{item}," for item in items), ")"]) if items else "()"
 
 

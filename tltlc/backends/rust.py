@@ -27,7 +27,7 @@ TARGET = Target("rust", "a stand-alone monitor in Rust", ("_monitor.rs",), ("bev
 
 _INDENT = Printer.INDENT
 _MATH = {"sqrt", "power", "exp", "tanh"}
-"""Functions that ``core`` lacks."""
+"""The functions of a program that Rust's ``core`` lacks."""
 
 _RESERVED = """
     abstract as async await become box break const continue crate do dyn else enum extern false final fn for gen if
@@ -38,7 +38,7 @@ _RESERVED = """
     ATOM_NAMES Default Err GROUPS LARGEST_GROUP Monitor NOTICE_ROOM None Notice Ok Option Params Place Problem Refused
     Result SIGNAL_NAMES STATES Shown Signals Some Step Verdict WrongParam
 """.split()
-"""Words of the language, and names of the template other than the program's own."""
+"""Names that no variable may have: words of the language, and names in the template."""
 
 _CORE = "It needs `core` alone."
 _MORE = """
@@ -54,7 +54,10 @@ def emit(fspa: Fspa, options: Options) -> Files:
 
 
 class _Rust(Printer):
-    """Prints Rust; ``atom`` is the number of the atom whose predicate is being printed."""
+    """Prints a program in Rust.
+
+    ``atom`` is the index of the atom whose value is being printed; calls that may fail pass it on.
+    """
 
     TYPES: ClassVar[dict[Type, str]] = {"real": "f64", "int": "i64", "bool": "bool"}
 
@@ -62,32 +65,35 @@ class _Rust(Printer):
         self.atom = 0
 
     def declaration(self, statement: Declare) -> str:
-        """Return a declaration; without a value it names its type."""
+        """Return a declaration, with its type if it has no value."""
         head = f"let mut {statement.name}" if statement.changes else f"let {statement.name}"
         if statement.value is None:
             return f"{head}: {self.TYPES[statement.type]};"
         return f"{head} = {self.text(statement.value)};"
 
     def assignment(self, statement: Assign) -> str:
-        """Return an assignment; additions and subtractions use ``+=`` and ``-=``."""
+        """Return an assignment, with ``+=`` or ``-=`` for an addition to the variable or a subtraction from it."""
         match statement:
             case Assign(name, BinaryNumber("+" | "-" as op, Variable(left), right)) if left == name:
                 return f"{name} {op}= {self.text(right)};"
         return super().assignment(statement)
 
     def head(self, test: str, *, first: bool) -> str:
-        """Return the first line of a case."""
+        """Return the line that begins a case: ``if`` or ``else if``, with its test."""
         return f"if {test} {{" if first else f"}} else if {test} {{"
 
     def call(self, function: str, arguments: Sequence[str]) -> str:
-        """Return a call; a function that has no value for its arguments ends the step."""
+        """Return a call of a function.
+
+        If it has no value for its arguments, the ``?`` after it ends the step.
+        """
         if function in FAILING:
             return super().call(f"self.{function}", [str(self.atom), *arguments]) + "?"
         return super().call(f"math::{function}" if function in _MATH else function, arguments)
 
 
 class _Source:
-    """The source of one monitor: the pieces that fill the template."""
+    """Makes the source text of one monitor, by filling the template."""
 
     def __init__(self, fspa: Fspa, file: str) -> None:
         self._fspa, self._file = fspa, file
@@ -95,7 +101,7 @@ class _Source:
         self._printer = _Rust()
 
     def text(self) -> str:
-        """Return the whole file."""
+        """Return the text of the file."""
         fspa, program_ = self._fspa, self._program
         signals = list(zip(fspa.signals, program_.signals, strict=True))
         params = list(zip(fspa.params, program_.params, strict=True))
@@ -146,7 +152,7 @@ class _Source:
         return ["\n//!\n".join(parts)]
 
     def _needs(self, functions: frozenset[str]) -> list[str]:
-        """Return a comment on what the file needs besides the language."""
+        """Return a comment that says what the file needs besides ``core``."""
         if not functions:
             return [f"//! {_CORE}"]
         names = [f"`{'pow' if function == 'power' else function}`" for function in sorted(functions)]
@@ -166,7 +172,7 @@ class _Source:
         return lines
 
     def _give(self) -> list[str]:
-        """Return code that sets a signal by its number: one case per signal."""
+        """Return the code that sets a signal, given its index, with a case for each signal."""
         if not self._fspa.signals:
             return []
         lines = ["match signal {"]
@@ -183,7 +189,7 @@ class _Source:
         return snippets.paragraphs(self._read(), self._compute(), self._check(), self._move(), self._judge())
 
     def _read(self) -> list[str]:
-        """Return code that reads signals, clamped to their ranges, and params into local variables."""
+        """Return the code that reads signals, clamped to their ranges, and params into local variables."""
         used = self._program.variables_used
         lines: list[str] = []
         for index, (signal, name) in enumerate(zip(self._fspa.signals, self._program.signals, strict=True)):
@@ -199,15 +205,15 @@ class _Source:
         return [*lines, *(f"let {name} = self.params.{name};" for name in self._program.params if name in used)]
 
     def _bools(self, state: int | None) -> list[str]:
-        """Return code that converts the bools that only this state reads to numbers.
+        """Return the code that converts the bool signals that only this state reads to 0 or 1.
 
-        For None, it converts the bools that every step reads.
+        If ``state`` is None, it converts the bool signals that every step reads.
         """
         names = self._program.bools_read_in(state)
         return [f"let {name} = if sample.{name} {{ 1.0 }} else {{ 0.0 }};" for name in names]
 
     def _compute(self) -> list[str]:
-        """Return code for the atoms that every step computes."""
+        """Return the code that computes the atoms needed at every step."""
         program_ = self._program
         used = variables_read(statement for state in program_.states for statement in state)
         used |= {program_.atoms[atom] for _, group in program_.exclusive for atom in group}
@@ -220,19 +226,19 @@ class _Source:
         return lines
 
     def _value(self, index: int, depth: int = 0) -> list[str]:
-        """Return code for the value of one atom."""
+        """Return the code that computes the value of an atom, given its index."""
         program_ = self._program
         self._printer.atom = index
         statements = with_declaration(program_.atoms[index], program_.values[index], changes=False)
         return self._printer.lines((CommentLine(program_.remarks[index]), *statements), depth)
 
     def _values_only_in(self, state: int) -> list[str]:
-        """Return code for the atoms that only this state reads, and for the bools that these read."""
+        """Return the code for the atoms that only this state needs, and for the bool signals that they read."""
         lines = [f"{_INDENT * 2}{line}" for line in self._bools(state)]
         return [*lines, *(line for index in self._program.computed_in(state) for line in self._value(index, depth=2))]
 
     def _check(self) -> list[str]:
-        """Return code that checks exclusive atoms."""
+        """Return the code that refuses a sample at which exclusive atoms hold together."""
         lines: list[str] = []
         for index, group in self._program.exclusive:
             tests = [f"{self._program.atoms[atom]} > 0.0" for atom in group]
@@ -241,7 +247,7 @@ class _Source:
         return lines
 
     def _move(self) -> list[str]:
-        """Return code for the transition: one case per state."""
+        """Return the code of the transition, with a case for each state."""
         lines = [f"let mut {states.TARGET} = self.state;", f"let mut {states.LIMITING}: isize = -1;"]
         lines.append(f"let mut {states.ROBUSTNESS} = 0.0;")
         lines += [f"let mut {states.PROGRESS} = 0.0;"] if self._fspa.judge == "goal" else []
@@ -253,12 +259,12 @@ class _Source:
         return [*lines, f"{_INDENT}_ => {{}}", "}"]
 
     def _judge(self) -> list[str]:
-        """Return code for progress, reward and the end of the episode."""
+        """Return the code that computes progress and reward, and whether the episode ends."""
         used = variables_read(self._program.reward_statements)
         verdict = "entered.verdict"
         lines = [f"let entered = &STATES[{states.TARGET}];"]
         lines += [f"let mut {reward_step.BEST} = self.progress;", f"let mut {reward_step.DONE} = self.done;"]
-        # The reward is mutable where penalties are subtracted from it.
+        # The variable is mutable if penalties may be subtracted from the reward.
         lines.append(f"let {'' if self._fspa.limit_steps is None else 'mut '}{reward_step.REWARD};")
         declarations = {
             reward_step.STEPS_REAL: f"let {reward_step.STEPS_REAL} = {reward_step.STEPS} as f64;",
@@ -278,7 +284,7 @@ def _type(signal: Signal) -> str:
 
 
 def _fields(fields: Sequence[tuple[str, str, Signal | Param]]) -> str:
-    """Return the fields of a struct, each with its documentation."""
+    """Return the fields of a struct, each after its documentation."""
     lines: list[str] = []
     for name, type_, declared in fields:
         lines += [f"/// {line}" for line in _markdown(snippets.field_comment(name, declared))]
@@ -287,7 +293,7 @@ def _fields(fields: Sequence[tuple[str, str, Signal | Param]]) -> str:
 
 
 def _markdown(text: str) -> list[str]:
-    """Return lines of documentation, escaped so that they contain no code (doctests), HTML or links."""
+    """Return lines of documentation, escaped so that rustdoc reads nothing in them as code, HTML or links."""
     escaped = re.sub(r"`{3,}|~{3,}|<|\](?=[(\[:])", lambda match: re.sub("(.)", r"\\\1", match[0]), text)
     return comment_lines(escaped)
 
@@ -307,11 +313,11 @@ def _param_check(param: Param, name: str) -> list[str]:
 
 
 def _string(text: str) -> str:
-    """Return a string literal in ASCII."""
+    """Return a string literal that has only ASCII characters."""
     return snippets.string_literal(text, _escape, snippets.is_plain_ascii)
 
 
 def _escape(character: str) -> str:
-    """Return an escape; half a surrogate pair, which Rust's strings cannot contain, becomes U+FFFD."""
+    """Return the escape of a character, or of U+FFFD for half a surrogate pair, which Rust does not allow."""
     code = ord(character)
     return "\\u{fffd}" if 0xD800 <= code < 0xE000 else f"\\u{{{code:x}}}"

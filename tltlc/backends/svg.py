@@ -10,5 +10,5 @@ TARGET = Target("svg", "a picture that scales", (".svg",))
 
 
 def emit(fspa: Fspa, options: Options) -> Files:
-    """Return ``NAME.svg``; see :func:`tltlc.backends.drawing.layout.draw` for graphs that are too large to draw."""
+    """Return ``NAME.svg``, or what :func:`tltlc.backends.drawing.layout.draw` returns for a graph that is too large."""
     return draw(fspa, options, "svg")

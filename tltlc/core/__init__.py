@@ -1,1 +1,1 @@
-"""Records, source texts and spans."""
+"""What all other packages use: records, names with arguments, and source texts with spans."""

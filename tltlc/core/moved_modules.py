@@ -1,4 +1,4 @@
-"""Documented modules that have moved: imports of their old names still work."""
+"""Let programs import public modules by their old names after the modules have moved."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ if TYPE_CHECKING:
 
 
 class OldNames:
-    """Finds modules by their old names; append it to :data:`sys.meta_path`.
+    """An import finder for old names of modules; append it to :data:`sys.meta_path`.
 
-    ``new_names`` maps each old name to the new name. Importing an old name gives a new module object
-    with the attributes of the module that has the new name. That module loads only then.
+    ``new_names`` maps old names to new names. The import of an old name imports the module with the
+    new name, and returns another module object with the same attributes.
     """
 
     def __init__(self, new_names: Mapping[str, str]) -> None:
@@ -24,7 +24,7 @@ class OldNames:
     def find_spec(
         self, fullname: str, path: Sequence[str] | None, target: ModuleType | None = None
     ) -> ModuleSpec | None:
-        """Return how to load the module; None if no module had this name."""
+        """Return the import spec of the module; None if ``fullname`` is not an old name."""
         if fullname not in self._new_names:
             return None
         from importlib.machinery import ModuleSpec

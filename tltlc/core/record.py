@@ -1,8 +1,9 @@
 """Frozen records with slots, like ``dataclass(frozen=True, slots=True)`` but twenty times faster to define.
 
-The compiler defines about ninety small classes. ``dataclasses`` compiles the source of several
-methods for each class, which takes 0.4 ms a class: a quarter of the time of a whole
-``tltlc compile``. Here, the methods are shared closures (``docs/adr/0003``).
+The compiler defines about ninety small classes. For each of them, ``dataclasses`` would generate
+and compile the source of several methods, which takes 0.4 ms: for all classes, a quarter of the
+time of ``tltlc compile``. Here, the methods are closures, which need no compilation
+(``docs/adr/0003``).
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
 else:
 
     def dataclass_transform(**_: object) -> Callable[[T], T]:
-        """Do nothing at run time."""
+        """Do nothing: only type checkers need this decorator."""
         return lambda function: function
 
 
@@ -31,10 +32,11 @@ else:
 def record(cls: type[R]) -> type[R]:
     """Turn the annotated fields of a class, in order, into slots and arguments of the constructor.
 
-    A value assigned in the class is the field's default. Records compare and hash by class and
-    fields, are immutable, can be pickled, and match positionally. A method ``__post_init__`` checks
-    the fields of a new record. A class with ``hashed_once = True`` caches its hash, since hashing a
-    deep tree is slow.
+    A value assigned in the class is the field's default. Records of the same class with equal
+    fields are equal and have the same hash. Records are immutable, can be pickled, and can be
+    matched by position in ``case``. If the class has a method ``__post_init__``, it is called on
+    each new record. If it has ``hashed_once = True``, each record caches its hash, since the hash
+    of a deep tree is slow to compute.
 
     Raises TypeError if a field without a default follows a field with a default.
     """
@@ -106,7 +108,7 @@ def _values_getter(names: tuple[str, ...]) -> Callable[[Any], tuple[Any, ...]]:
 
 
 def _cached_hash(cls: Any, values_of: Callable[[Any], tuple[Any, ...]]) -> Callable[[Any], int]:
-    """Return a method ``__hash__`` that computes the hash once."""
+    """Return a method ``__hash__`` that computes the hash of each record only once."""
     set_hash = cls.__dict__["_hash"].__set__
 
     def cached_hash(self: Any) -> int:
@@ -123,7 +125,7 @@ def _cached_hash(cls: Any, values_of: Callable[[Any], tuple[Any, ...]]) -> Calla
 def _field_values(
     owner: str, names: tuple[str, ...], defaults: tuple[Any, ...], positional: tuple[Any, ...], keywords: dict[str, Any]
 ) -> tuple[Any, ...]:
-    """Return the values of the fields in order, from positions, names and defaults."""
+    """Return the values of the fields, in order, from positional arguments, keyword arguments and defaults."""
     if len(positional) > len(names):
         raise TypeError(f"{owner} takes {len(names)} values, {len(positional)} were given")
     values = dict(zip(names[len(names) - len(defaults) :], defaults, strict=True))

@@ -26,8 +26,8 @@ class Span:
 class SourceFile:
     """A text and its name in messages: a path, or ``<stdin>``.
 
-    A lone carriage return is stored as a newline, so that all later stages see the same lines as an
-    editor shows. Offsets do not change.
+    A carriage return without a newline after it is replaced by a newline, so that the lines are
+    those that an editor shows. Offsets do not change.
     """
 
     __slots__ = ("_line_starts", "name", "text")
@@ -56,7 +56,10 @@ class SourceFile:
         return f"SourceFile(name={self.name!r})"
 
     def position(self, offset: int) -> tuple[int, int]:
-        """Return the line and column of a character offset; both start at 1, columns count characters."""
+        """Return the line and the column of a character offset, both from 1.
+
+        Columns count characters.
+        """
         line = bisect_right(self._line_starts, offset)
         return line, offset - self._line_starts[line - 1] + 1
 

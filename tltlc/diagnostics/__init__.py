@@ -1,1 +1,1 @@
-"""Diagnostics: errors, warnings and notes about source texts, and their output formats."""
+"""Diagnostics: errors, warnings and notes for users, and the formats in which they are shown."""

@@ -1,5 +1,6 @@
-"""The closed list of diagnostic codes. Each code has a page, a file in the folder ``pages``.
+"""The codes of diagnostics.
 
+A code exists if it has a page, that is, a file in the folder ``pages``.
 The first line of a page is ``# TLTnnnn: title``.
 """
 
@@ -14,7 +15,7 @@ _PAGES: Final = os.path.join(os.path.dirname(__file__), "pages")  # noqa: PTH118
 _NAME: Final = re.compile(r"(TLT[0-9]{4})\.md")
 
 _ALIKE: Final = 0.8
-"""The least similarity of two codes that differ in one digit, or by two exchanged digits."""
+"""The similarity, by :mod:`difflib`, of two codes that differ in one digit or have two digits exchanged."""
 
 
 @lru_cache(maxsize=1)
@@ -31,8 +32,8 @@ def codes_with_prefix(prefix: str) -> tuple[str, ...]:
 def nearest_codes(code: str, most: int = 3) -> tuple[str, ...]:
     """Return at most ``most`` codes that resemble an unknown code, in order.
 
-    These are the codes that differ from it by a typo. If there are none, they are the codes with
-    the nearest numbers.
+    They are the codes that could have been mistyped as this one, or if there are none, the codes
+    with the nearest numbers.
     """
     from difflib import get_close_matches
 
@@ -54,5 +55,5 @@ def page(code: str) -> str:
 
 
 def title(code: str) -> str:
-    """Return what a code means, in one line; raise KeyError if the code does not exist."""
+    """Return the title of a code's page; raise KeyError if the code does not exist."""
     return page(code).splitlines()[0].removeprefix(f"# {code}: ")

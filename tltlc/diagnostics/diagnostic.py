@@ -1,4 +1,4 @@
-"""The type of all messages of tltlc about a source text, and the exception that carries them."""
+"""The type of all messages of tltlc, and the exception that contains them."""
 
 from __future__ import annotations
 
@@ -43,8 +43,8 @@ class Fix:
 class Diagnostic:
     """A message: what happened (``title``), where (``labels``, the main one first), and a suggestion (``help``).
 
-    ``code`` is in the closed list of :mod:`tltlc.diagnostics.codes`. ``fixes`` are the fixes that a
-    program can apply, the likeliest first; they edit the source of the first label.
+    ``code`` is one of the codes of :mod:`tltlc.diagnostics.codes`. ``fixes`` are edits that a
+    program can apply to the source of the first label, the likeliest fix first.
     """
 
     code: str
@@ -56,7 +56,7 @@ class Diagnostic:
 
 
 def replacement_fix(source: SourceFile, span: Span, text: str, applicability: Applicability = "maybe") -> Fix:
-    """Return the fix that replaces a span by a text, with spaces where two words would otherwise touch."""
+    """Return the fix that replaces a span by a text, with a space where it would otherwise join two words."""
     before, after = source.text[max(0, span.start - 1) : span.start], source.text[span.end : span.end + 1]
     start = " " if _is_word(before) and _is_word(text[:1]) else ""
     end = " " if _is_word(after) and _is_word(text[-1:]) else ""
@@ -73,9 +73,9 @@ def _is_word(character: str) -> bool:
 
 
 class TltlError(Exception):
-    """Raised if a stage cannot go on; contains all diagnostics up to that point.
+    """Raised for errors that a user can fix, such as a wrong source text.
 
-    ``diagnostics`` contains at least one error.
+    ``diagnostics`` contains at least one error, and all warnings up to that point.
     """
 
     def __init__(self, diagnostics: Iterable[Diagnostic]) -> None:
@@ -83,7 +83,7 @@ class TltlError(Exception):
         super().__init__("; ".join(f"{d.code}: {d.title}" for d in self.diagnostics))
 
     def __reduce__(self) -> tuple[type[TltlError], tuple[tuple[Diagnostic, ...]]]:
-        # The default would pickle the text only; processes send these errors to each other.
+        # Processes send these errors to each other. By default, only the text would be pickled.
         return type(self), (self.diagnostics,)
 
 

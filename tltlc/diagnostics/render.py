@@ -1,4 +1,4 @@
-"""Render diagnostics, for people and for programs; each format is a module of ``tltlc.diagnostics.formats``."""
+"""Convert diagnostics to text in one of several formats, each a module of ``tltlc.diagnostics.formats``."""
 
 from __future__ import annotations
 
@@ -10,14 +10,17 @@ from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.diagnostics.shortening import shorten
 
 FORMATS: Final = ("text", "json", "sarif", "github")
-"""All formats; each is the name of a module with a function ``render``."""
+"""The names of all formats; each is a module with a function ``render``."""
 
 
 class RenderFunction(Protocol):
     """The type of the function ``render`` of a format."""
 
     def __call__(self, diagnostics: Sequence[Diagnostic], *, color: bool) -> str:
-        """Return all diagnostics as one text, empty or with a newline at its end; ``color`` adds ANSI codes."""
+        """Return the diagnostics as one text, which is empty or ends with a newline.
+
+        ``color`` adds ANSI codes.
+        """
 
 
 def render(diagnostics: Sequence[Diagnostic], format: str = "text", color: bool = False) -> str:  # noqa: A002

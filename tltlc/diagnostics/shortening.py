@@ -1,4 +1,4 @@
-"""Shorten the quotes in messages: a name in a foreign file may be megabytes long."""
+"""Shorten quoted texts in messages, because a name in a file may be megabytes long."""
 
 from __future__ import annotations
 
@@ -27,14 +27,17 @@ def shorten(diagnostic: Diagnostic) -> Diagnostic:
 
 
 def short_text(text: str) -> str:
-    """Return a message with long quotes cut in the middle."""
+    """Return a message with its middle cut out if it is too long, and the middle of each quote that is too long."""
     if len(text) <= LONGEST_QUOTE:
         return text
     return _cut(_QUOTED.sub(lambda quote: f"`{_cut(quote[1], LONGEST_QUOTE)}`", text), LONGEST_TEXT)
 
 
 def _cut(text: str, most: int) -> str:
-    """Return the text; if it is longer than ``most`` characters, its first two thirds of ``most`` and its end."""
+    """Return the text.
+
+    If it has more than ``most`` characters, an ellipsis replaces its middle.
+    """
     if len(text) <= most:
         return text
     end = most // 3

@@ -1,1 +1,1 @@
-"""Arithmetic over signals and params: its tree, evaluation, JSON and Python."""
+"""Arithmetic over signals and params: syntax trees, their evaluation, and their conversion to JSON and Python."""

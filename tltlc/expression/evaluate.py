@@ -1,10 +1,10 @@
 """Evaluate an expression at one sample, in IEEE double precision.
 
-The order of operations is part of the meaning, since all monitors must agree to the last bit.
-Operands are computed from left to right. ``x ^ 2`` is ``x * x``, ``x ^ 3`` is ``x * x * x``, and any
-other power is the C library's ``pow``. ``clamp(x, low, high)`` is ``min(max(x, low), high)``. If
-operands are equal, ``min`` and ``max`` return the first one. The value of a case is computed only if
-its condition is true.
+The order of operations is fixed, since all monitors must give the same results to the last bit.
+Operands are computed from left to right. ``x ^ 2`` is ``x * x``, ``x ^ 3`` is ``x * x * x``, and
+any other power is the C library's ``pow``. ``clamp(x, low, high)`` is ``min(max(x, low), high)``.
+If operands are equal, ``min`` and ``max`` return the first one. The value of a case of a ``when``
+is computed only if its condition is true.
 """
 
 from __future__ import annotations
@@ -18,13 +18,14 @@ from typing import Final
 from tltlc.expression.tree import Condition, Const, Expression, ParamValue, SignalValue, When
 
 MULTIPLIED_EXPONENTS: Final = {2.0: 2, 3.0: 3}
-"""The constant exponents that mean a product, with the number of its factors."""
+"""The constant exponents whose powers are computed as products, and the numbers of factors."""
 
 
 def evaluate(expression: Expression, signals: Mapping[str, float], params: Mapping[str, float]) -> float:
-    """Return the value of an expression; ``signals`` and ``params`` are finite numbers in SI units.
+    """Return the value of an expression.
 
-    The value is infinite or NaN if a product or sum is too large.
+    ``signals`` and ``params`` map names to finite numbers in SI units. The result is infinite or
+    NaN if a product or sum is too large.
 
     Raises:
         ZeroDivisionError: a divisor is 0.

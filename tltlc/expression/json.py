@@ -1,4 +1,4 @@
-"""Convert expressions to and from the JSON of an artefact, node by node."""
+"""Convert expressions to the JSON of an artefact, and back."""
 
 from __future__ import annotations
 

@@ -17,21 +17,21 @@ from tltlc.expression.tree import Condition, Const, Expression, Op, ParamValue, 
 INDENT: Final = "    "
 
 _MAX_DEPTH: Final = 40
-"""Python's parser limits the nesting of brackets, so deeper parts become functions of their own."""
+"""The greatest depth of an expression in one function, since Python's parser limits the nesting of brackets."""
 
-# How tightly a piece of Python source binds, loosest first.
+# Binding strengths of Python expressions: a higher number binds more tightly.
 _CASES, _OR, _AND, _NOT, _COMPARISON, _SUM, _PRODUCT, _SIGN, _UNIT = range(9)
 
 
 def compile_expressions(
     expressions: Sequence[Expression], signals: Sequence[str], params: Mapping[str, float]
 ) -> tuple[Callable[[Sequence[float]], float], ...]:
-    """Return one function per expression; it takes a sample, the values of ``signals`` (floats) in order.
+    """Return, for each expression, a function that computes it from a sample.
 
-    The values of ``params`` are fixed here. Values and errors are as for
-    :func:`tltlc.expression.evaluate.evaluate`. Each function reads only the signals of its
-    expression, so that the source grows with the size of the expressions, not with the number of
-    expressions times the number of signals.
+    A sample has the values of ``signals``, in order, as floats. ``params`` are the values of the
+    params, which cannot change later. Values and errors are those of
+    :func:`tltlc.expression.evaluate.evaluate`. A function reads only the signals of its expression,
+    so that many signals do not make the source long.
     """
     positions = {name: index for index, name in enumerate(signals)}
     constants = {name: f"p{index}" for index, name in enumerate(params)}
@@ -63,9 +63,9 @@ def _function(
 class PythonWriter:
     """Writes expressions as Python.
 
-    ``signals`` and ``params`` map names to Python variables in scope. ``helpers`` collects the source
-    of helper functions ``PREFIXpart0``, …, for deep expressions. Local variables are named
-    ``PREFIXbase``, ``PREFIXbase2``, ….
+    ``signals`` and ``params`` map names of signals and params to Python variables. ``helpers``
+    collects the source of functions ``PREFIXpart0``, … for parts that are nested too deep. The
+    bases of powers are stored in variables ``PREFIXbase``, ``PREFIXbase2``, ….
     """
 
     def __init__(self, signals: Mapping[str, str], params: Mapping[str, str], prefix: str) -> None:
@@ -74,7 +74,10 @@ class PythonWriter:
         self.helpers: list[str] = []
 
     def assignment(self, name: str, expression: Expression, indent: str) -> list[str]:
-        """Return lines that assign the expression's value to a variable; a ``when`` becomes an ``if``."""
+        """Return the lines that assign the value of an expression to a variable.
+
+        A ``when`` becomes an ``if`` statement.
+        """
         return self._assignment(name, expression, indent, 0)
 
     def _assignment(self, name: str, expression: Expression, indent: str, depth: int) -> list[str]:
@@ -88,7 +91,7 @@ class PythonWriter:
         return lines + self._assignment(name, expression.otherwise, indent + INDENT, depth + 1)
 
     def _text(self, node: Expression, min_binding: int, depth: int) -> str:
-        """Return the text of an expression, in brackets if it binds more loosely than ``min_binding``."""
+        """Return the text of an expression, in brackets if its binding strength is lower than ``min_binding``."""
         if isinstance(node, Const):
             return _with_brackets(
                 repr(float(node.value)), _SIGN if math.copysign(1, node.value) < 0 else _UNIT, min_binding
@@ -157,7 +160,7 @@ class PythonWriter:
         return _with_brackets(text, _COMPARISON, min_binding)
 
     def _helper_call(self, node: Expression | Condition) -> str:
-        """Return a call of a new function that computes the node."""
+        """Return a call of a new function that computes the node, and add the function to ``helpers``."""
         name = f"{self._prefix}part{self._count}"
         self._count += 1
         body = self._condition(node, _CASES, 0) if isinstance(node, Condition) else self._text(node, _CASES, 0)

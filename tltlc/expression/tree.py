@@ -1,7 +1,8 @@
-"""Arithmetic over signals and params, from which an atom's robustness is computed.
+"""Expressions over signals and params, from which the value of an atom is computed.
 
-The nodes match the artefact's JSON one to one (``expression`` of an atom). They are frozen,
-independent of the surface syntax, and have no units: every number is in SI units.
+Each kind of node is a kind of object in the JSON of an artefact (``expression`` of an atom). Nodes
+are immutable and do not depend on the syntax of the language. They have no units: every number is
+in SI units.
 """
 
 from __future__ import annotations
@@ -15,9 +16,9 @@ ArithmeticOp = Literal["+", "-", "*", "/", "^", "neg", "min", "max", "abs", "cla
 ConditionOp = Literal["<", "<=", ">", ">=", "and", "or", "not"]
 
 LEAST: Final = 1e-30
-"""The least robustness of a comparison whose margin is greater than this number.
+"""The least value of a comparison that is true by a greater margin than this number.
 
-It is tiny, but not 0 as a 32-bit float.
+It is tiny, but does not become 0 when it is converted to a 32-bit float.
 """
 
 
@@ -62,7 +63,10 @@ class Condition:
 
 @record
 class When:
-    """The value of the first case whose condition is true, else ``otherwise``."""
+    """The value of the first case whose condition is true, or ``otherwise`` if no condition is.
+
+    A case is a condition and a value.
+    """
 
     hashed_once = True
     cases: tuple[tuple[Condition, Expression], ...]
@@ -73,7 +77,10 @@ Expression = Union[Const, SignalValue, ParamValue, Op, When]
 
 
 def nodes(expression: Expression | Condition) -> Iterator[Expression | Condition]:
-    """Yield all nodes in order of appearance, each before its parts; does not recurse."""
+    """Yield the expression and all its subexpressions and conditions, each before its parts, from left to right.
+
+    Does not recurse, so that deep expressions cause no RecursionError.
+    """
     stack: list[Expression | Condition] = [expression]
     while stack:
         node = stack.pop()
@@ -87,7 +94,7 @@ def nodes(expression: Expression | Condition) -> Iterator[Expression | Condition
 
 
 def depth(expression: Expression | Condition) -> int:
-    """Return how deep operators nest: 0 for a number or a signal. Shared parts are visited once per level."""
+    """Return how deep operators are nested: 0 for a number or a signal."""
     height, level = -1, {id(expression): expression}
     while level:
         height += 1
@@ -101,7 +108,7 @@ def most_parts(expression: Expression | Condition) -> int:
 
 
 def parts(node: Expression | Condition) -> tuple[Expression | Condition, ...]:
-    """Return the direct parts of a node."""
+    """Return the operands of a node, or the conditions and values of a ``when``."""
     if isinstance(node, When):
         return (*(part for case in node.cases for part in case), node.otherwise)
     return node.args if isinstance(node, (Op, Condition)) else ()

@@ -1,4 +1,4 @@
-"""Unpack archives safely: the paths in an archive are foreign input, and no file may land outside its folder."""
+"""Unpack archives safely: no path in an archive can make a file outside the folder for it."""
 
 from __future__ import annotations
 
@@ -18,15 +18,19 @@ _DEVICES: Final = {
     *("con", "prn", "aux", "nul", "conin$", "conout$"),
     *(f"{port}{digit}" for port in ("com", "lpt") for digit in "0123456789¹²³"),
 }
-"""Device names on Windows, in lower case; with an extension such as `.txt`, they mean the same device."""
+"""The names of devices on Windows, in lower case.
+
+With an extension such as `.txt`, they are still the device.
+"""
 
 
 @record
 class Archive:
     """The texts for messages about an archive.
 
-    Messages call the archive ``name``. ``damaged_help`` is the help for an archive that was damaged or
-    made by hand; ``elsewhere_help`` is the help for a sound archive whose files this system cannot store.
+    ``name`` is the name of the archive. ``damaged_help`` is the advice for an archive that was
+    damaged or made by hand, ``elsewhere_help`` the advice for a valid archive whose files this
+    system cannot store.
     """
 
     name: str
@@ -61,7 +65,12 @@ def unpack(folder: Path, files: Iterable[tuple[str, bytes]], archive: Archive) -
 
 
 def entry_path(folder: Path, name: str, archive: Archive) -> Path:
-    """Return the path of an archive's entry below a folder; raise TltlError, TLT0009, if no file may have it."""
+    """Return the path in ``folder`` at which the entry ``name`` of an archive is unpacked.
+
+    Raises:
+        TltlError: TLT0009 the path leads out of the folder, is too long, or is not valid on this
+            system.
+    """
     check_extent(name, archive)
     parts = name.split("/")
     if _IS_WINDOWS and any(map(_is_invalid_on_windows, parts)):
@@ -78,9 +87,12 @@ def entry_path(folder: Path, name: str, archive: Archive) -> Path:
 
 
 def check_extent(name: str, archive: Archive) -> None:
-    """Raise TltlError, TLT0009, if a path has more bytes or parts than :data:`tltlc.io.limits.UNPACKED_PATH` allows.
+    """Check the length of a path in an archive.
 
-    Raise it also if a part is longer than most file systems allow.
+    Raises:
+        TltlError: TLT0009 the path has more bytes or parts than
+            :data:`tltlc.io.limits.UNPACKED_PATH` allows, or a part has more bytes than
+            :data:`tltlc.io.limits.UNPACKED_NAME` allows.
     """
     depth = UNPACKED_PATH.depth or 0
     if len(name.encode(errors="surrogatepass")) > UNPACKED_PATH.size:
@@ -104,7 +116,7 @@ def _is_invalid_on_windows(part: str) -> bool:
 
 
 def _clash_error(name: str, written: Sequence[str], archive: Archive) -> TltlError:
-    """Return TLT0009 for a path that cannot exist beside the ``written`` paths."""
+    """Return the error TLT0009 for a path that cannot exist together with one of the ``written`` paths."""
     earlier = next((earlier for earlier in written if _clash(_fold_case(name), _fold_case(earlier))), name)
     if _clash(name, earlier):
         return _archive_error(f"{archive.name} holds two entries for `{name}`", archive.damaged_help)
@@ -118,7 +130,7 @@ def _clash(first: str, second: str) -> bool:
 
 
 def _fold_case(name: str) -> str:
-    """Return the same text for all names that some file system treats as equal."""
+    """Return a text that is the same for all names that some file system treats as equal."""
     return normalize("NFC", normalize("NFD", name).casefold())
 
 

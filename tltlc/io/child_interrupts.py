@@ -1,6 +1,7 @@
-"""Treat an interrupt of a child process as an interrupt of this process: Ctrl-C in a terminal reaches both.
+"""Treat an interrupt of a child process as an interrupt of this process.
 
-The child may end first. Without this, its exit status would look like an error of the child.
+Ctrl-C in a terminal reaches both processes, and the child may end first. Without this module, its
+exit status would look like a failure.
 """
 
 from __future__ import annotations
@@ -15,17 +16,17 @@ _BY_STATUS: Final = {
     143: signal.SIGTERM,
     0xC000013A: signal.SIGINT,
 }
-"""Signals by exit status: of :mod:`subprocess`, of shells, and of Windows.
+"""Maps exit statuses to signals: those of :mod:`subprocess`, those of shells, and that of Windows.
 
-129, a shell's status for SIGHUP, is missing: git itself exits with 129.
+129, a shell's status for SIGHUP, is left out, because git uses 129 for errors.
 """
 
 
 def raise_if_interrupted(returncode: int) -> None:
     """Raise KeyboardInterrupt if SIGINT, SIGTERM or SIGHUP has ended a child process.
 
-    If this process has a handler for the signal, the handler runs first, so that the exit status of
-    this process is the one for that signal.
+    If this process has a handler for the signal, the handler runs first. It can then end this
+    process with the exit status for the signal.
     """
     number = _BY_STATUS.get(returncode)
     if number is None:

@@ -1,4 +1,4 @@
-"""Find and read source files. Every reason why a file is not a readable text becomes a diagnostic."""
+"""Find and read source files. If a file is not a readable text, a diagnostic says why."""
 
 from __future__ import annotations
 
@@ -20,13 +20,16 @@ MAX_ARTEFACT_BYTES: Final = ARTEFACT.size
 _BYTE_ORDER_MARK: Final = b"\xef\xbb\xbf"
 
 Stamp = Union[tuple[int, ...], None]
-"""Identifies one state of a file. For a folder or a device, it is only the kind; None means that nothing is there."""
+"""What to compare to see whether a file has changed: its time of change, size and inode number.
+
+For a folder or a device it is only the kind. It is None if nothing is there.
+"""
 
 
 class AccessLog(dict[str, Stamp]):
-    """Maps each path that was looked up or read to its state before that.
+    """Maps each path that was looked up or read to its stamp before that.
 
-    ``read`` identifies the regular files that were read, by device and inode number.
+    ``read`` has the device and inode numbers of the regular files that were read.
     """
 
     def __init__(self) -> None:
@@ -41,14 +44,17 @@ _unsaved_texts: Final[ContextVar[Mapping[str, str]]] = ContextVar("unsaved", def
 """The unsaved texts of an editor, by absolute path."""
 
 _folders: Final[ContextVar[frozenset[str] | None]] = ContextVar("folders", default=None)
-"""The readable folders, each as written and with links resolved; None if every file is readable."""
+"""The folders that may be read, each as written and with links resolved.
+
+It is None if every file may be read.
+"""
 
 
 @contextmanager
 def confine_reads(folders: Iterable[str | os.PathLike[str]]) -> Iterator[None]:
-    """Inside the ``with`` block, only files in these folders and their subfolders can be read.
+    """Allow reading only in these folders and their subfolders inside the ``with`` block.
 
-    :func:`may_read` describes how links count.
+    A link is allowed only if the file that it leads to is in one of the folders, too.
     """
     resolvers = (os.path.abspath, os.path.realpath)
     token = _folders.set(frozenset(os.path.normcase(resolve(folder)) for folder in folders for resolve in resolvers))
@@ -76,7 +82,7 @@ def _is_inside(path: str, folders: Iterable[str]) -> bool:
 
 
 def outside_diagnostic(name: str, labels: tuple[Label, ...] = ()) -> Diagnostic:
-    """Return TLT0777: a file or folder is outside the readable folders."""
+    """Return the error TLT0777 for a file or folder outside the folders of :func:`confine_reads`."""
     title = f"`{name}` is outside the folder of the playground, so it is not read"
     return Diagnostic(
         "TLT0777", title, labels, "move it into that folder, or start `tltlc serve` in a folder above both"
@@ -85,7 +91,7 @@ def outside_diagnostic(name: str, labels: tuple[Label, ...] = ()) -> Diagnostic:
 
 @contextmanager
 def unsaved_texts(texts: Mapping[str, str]) -> Iterator[None]:
-    """Inside the ``with`` block, these texts replace the files at their absolute paths.
+    """Read these texts instead of the files at their absolute paths inside the ``with`` block.
 
     The files need not exist.
     """
@@ -103,10 +109,10 @@ def _unsaved_text(path: str | os.PathLike[str]) -> str | None:
 
 @contextmanager
 def access_log() -> Iterator[AccessLog]:
-    """Inside the ``with`` block, record every path that this module looks up or reads, with its state before that.
+    """Record every path that this module looks up or reads inside the ``with`` block, with its stamp before that.
 
-    A result depends on these paths: as long as :func:`stamp` returns the same state for each, the
-    result does not change.
+    What was computed inside the block stays valid as long as :func:`stamp` returns the same for
+    each of these paths.
     """
     log = AccessLog()
     _active_logs.append(log)
@@ -137,13 +143,13 @@ def log_stream_read(stream: BinaryIO) -> None:
 
 
 def was_read(path: str | os.PathLike[str]) -> bool:
-    """Whether the file at a path, by this or another name, was read since the innermost :func:`access_log` began.
+    """Whether the file at a path was read, by this or another name, since the innermost :func:`access_log` began.
 
-    A command that watches files begins a new :func:`access_log` in each round. What earlier rounds read
-    does not count: after an editor has replaced a source file, the system may give its inode number
-    to an output.
+    Files that only earlier logs have do not count. A command that watches files begins a new log in
+    each round, because an editor may replace a source file, and the system may then give the inode
+    number of the old file to an output.
     """
-    # Devices and pipes have no identity: writing to them replaces nothing.
+    # Devices and pipes do not count, because writing to them replaces nothing.
     return bool(_active_logs) and _identity(path) in _active_logs[-1].read
 
 
@@ -172,7 +178,7 @@ def _identity(file: str | os.PathLike[str] | int) -> tuple[int, int] | None:
 
 
 def stamp(path: str) -> Stamp:
-    """Return the current state of a path."""
+    """Return the current stamp of a path."""
     try:
         status = os.stat(path)  # noqa: PTH116
     except (OSError, ValueError):
@@ -200,9 +206,10 @@ def is_file(path: str | os.PathLike[str]) -> bool:
 
 
 def may_be_file(path: str | os.PathLike[str]) -> bool:
-    """Whether a command that walks a folder may read this entry: not a pipe, device, socket or folder.
+    """Whether a path is not a pipe, device, socket or folder, so that a command may try to read it.
 
-    Links are followed. A broken link passes, so that the code that reads it reports it.
+    Links are followed. The result is True for a broken link, so that reading it reports the
+    problem.
     """
     try:
         return stat.S_ISREG(os.stat(path).st_mode)  # noqa: PTH116
@@ -253,21 +260,22 @@ def _leads_to_folder(entry: os.DirEntry[str]) -> bool:
 def read_source(
     path: str | os.PathLike[str], name: str | None = None, *, max_bytes: int = MAX_SOURCE_BYTES
 ) -> SourceFile:
-    """Return the text of a file; messages call it ``name``, by default its path.
+    """Return the text of a file.
 
-    Errors (:class:`TltlError`) are as for :func:`read_bytes` and :func:`decode`.
+    ``name`` is the name of the file in messages, by default its path. Errors (:class:`TltlError`)
+    are those of :func:`read_bytes` and :func:`decode`.
     """
     display_name = name if name is not None else os.fspath(path)
     return decode(read_bytes(path, display_name, max_bytes), display_name, max_bytes=max_bytes)
 
 
 def read_bytes(path: str | os.PathLike[str], name: str, max_bytes: int) -> bytes:
-    """Return at most ``max_bytes`` + 1 bytes of a file, which messages call ``name``.
+    """Return at most ``max_bytes`` + 1 bytes of a file.
 
-    The extra byte shows that the file is too large.
+    If there is an extra byte, the file is too large. ``name`` is the name of the file in messages.
 
-    Errors (:class:`TltlError`): TLT0001 if the system cannot read it, TLT0777 if :func:`confine_reads`
-    forbids it.
+    Errors (:class:`TltlError`): TLT0001 if the system cannot read it, TLT0777 if
+    :func:`confine_reads` forbids it.
     """
     if not may_read(path):
         raise TltlError([outside_diagnostic(name)])
@@ -285,7 +293,8 @@ def read_bytes(path: str | os.PathLike[str], name: str, max_bytes: int) -> bytes
 def decode(data: bytes, name: str, *, max_bytes: int = MAX_SOURCE_BYTES) -> SourceFile:
     """Return the text in the bytes of a file: UTF-8, with or without a byte order mark.
 
-    Errors (:class:`TltlError`): TLT0002 not UTF-8, TLT0003 binary, TLT0004 larger than ``max_bytes``.
+    Errors (:class:`TltlError`): TLT0002 not UTF-8, TLT0003 binary, TLT0004 larger than
+    ``max_bytes``.
     """
     if len(data) > max_bytes:
         title = f"`{name}` is larger than {max_bytes >> 20} MiB"
@@ -303,7 +312,7 @@ def decode(data: bytes, name: str, *, max_bytes: int = MAX_SOURCE_BYTES) -> Sour
 
 
 def reading_error(name: str, error: OSError | ValueError) -> TltlError:
-    """Return TLT0001 for a file that the system cannot read."""
+    """Return the error TLT0001 for a file that the system cannot read."""
     suggestion: str | None = "check its name and its permissions"
     if isinstance(error, FileNotFoundError):
         suggestion = _missing_file_help(name) or "check its spelling, and the folder that you are in"
@@ -313,7 +322,7 @@ def reading_error(name: str, error: OSError | ValueError) -> TltlError:
 
 
 def reason(error: OSError | ValueError) -> str:
-    """Return why the system refused, in plain words."""
+    """Return in words why the system refused to open a file."""
     if isinstance(error, FileNotFoundError):
         return "there is no such file"
     if isinstance(error, IsADirectoryError):
@@ -330,7 +339,7 @@ def reason(error: OSError | ValueError) -> str:
 
 
 def _missing_file_help(name: str) -> str | None:
-    """Return a help for a missing file, e.g. a file in its folder with a similar name, or None."""
+    """Return advice for a missing file, for example a file with a similar name in its folder, or None."""
     from difflib import get_close_matches
 
     folder, file = os.path.split(name)
@@ -344,7 +353,10 @@ def _missing_file_help(name: str) -> str | None:
 
 
 def _not_utf8(data: bytes, name: str, start: int) -> TltlError:
-    """Return the error for the first invalid byte, with a label in the text where each one is replaced."""
+    """Return the error for text that is not UTF-8, with a label at the first invalid byte.
+
+    The label is in the text in which U+FFFD replaces the invalid bytes.
+    """
     source = SourceFile(name, data.decode(errors="replace"))
     offset = len(data[:start].decode())
     label = Label(source, Span(offset, offset + 1), f"the byte 0x{data[start]:02X} is no UTF-8")

@@ -20,10 +20,11 @@ class JsonLimitError(ValueError):
 
 
 def loads(text: str | bytes, limit: Limit, parse_constant: Callable[[str], Any] | None = None) -> Any:
-    """Return the value in a text; ``parse_constant`` is called for ``NaN`` and ``Infinity``, as in :func:`json.loads`.
+    """Return the value of a JSON text; ``parse_constant`` is as in :func:`json.loads`.
 
-    An integer of more than 64 bits becomes a float, as in most readers of JSON. Python integers have
-    no limit, so converting a large one to a float, or reading thousands of digits, would fail.
+    An integer of more than 64 bits becomes a float, as in most readers of JSON. As a Python
+    integer, a larger number could cause an error later, and one of thousands of digits could not be
+    read.
 
     Raises:
         JsonLimitError: the text nests deeper, or has more values, than ``limit`` allows.
@@ -45,7 +46,10 @@ def loads(text: str | bytes, limit: Limit, parse_constant: Callable[[str], Any] 
 
 
 def load(path: Path, limit: Limit) -> Any:
-    """Return the value in a file; raises OSError, and the exceptions of :func:`loads`."""
+    """Return the value of a JSON file.
+
+    Raises OSError, JsonLimitError for a file that is too large, and the errors of :func:`loads`.
+    """
     with path.open("rb") as file:
         data = file.read(limit.size + 1)
     if len(data) > limit.size:
@@ -83,7 +87,7 @@ def _nests_deeper(value: Any, depth: int) -> bool:
 
 
 def _whole_number(digits: str) -> int | float:
-    """Return the number; a float if it has more than 64 bits, infinity beyond the range of floats."""
+    """Return an int, or a float if the number needs more than 64 bits (infinite if it is too large for a float)."""
     if len(digits) <= _MOST_DIGITS and (number := int(digits)) in _WHOLE_NUMBERS:
         return number
     return float(digits)

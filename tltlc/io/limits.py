@@ -1,8 +1,9 @@
-"""The limits of all input that is read or checked, in one table, so that no reader of foreign input lacks a limit.
+"""The limits of everything that is read or checked, in one place, so that none is forgotten.
 
-A reader takes its limit from here. It reports larger input with TLT0004 (bytes) or TLT0006 (nesting,
-number of values), or with an error of its own format. A checker counts its steps against an entry of
-:data:`WORK`. It counts steps instead of seconds, so that every machine gives the same answer.
+Input above a limit is reported with TLT0004 (bytes) or TLT0006 (nesting, number of values), or with
+an error of the input's format. Computations that could take very long count their steps, and stop
+at the limit in :data:`WORK`. They count steps and not seconds, so that all machines give the same
+result.
 """
 
 from __future__ import annotations
@@ -19,9 +20,9 @@ from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
 class Limit:
     """The limits of one kind of input.
 
-    ``size`` is in bytes, as stored on disk. ``depth`` counts levels of nesting. ``values`` counts
-    values, keys and separators. ``unpacked`` is in bytes, after decompression. A limit is None if the
-    format has no such quantity.
+    ``size`` is in bytes, as stored on disk. ``depth`` is the number of levels of nesting.
+    ``values`` is the number of values, keys and separators, or of what the entry says. ``unpacked``
+    is in bytes, after decompression. None means that there is no limit of this kind.
     """
 
     size: int
@@ -32,10 +33,11 @@ class Limit:
 
 @record
 class Connections:
-    """The most connections that a server keeps open, and the time for each phase of a connection, in seconds.
+    """The limits of the connections to a server.
 
-    ``idle_s`` limits the time between requests, ``request_s`` the time from the first to the last
-    byte of a request, ``write_s`` the time in which the client must receive an answer, and
+    ``most`` is the most connections that are open at the same time. The other limits are in
+    seconds: ``idle_s`` is the time between two requests, ``request_s`` the time from the first to
+    the last byte of a request, ``write_s`` the time in which the client must receive an answer, and
     ``linger_s`` the time in which the client must close the connection.
     """
 
@@ -56,10 +58,11 @@ class ProcessLimit:
 
 @record
 class ArithmeticLimit:
-    """The limits of an expression: ``depth`` counts nested operators, including functions, conditions and ``when``.
+    """The limits of an expression.
 
-    ``compared`` is the depth of an atom that compares two such expressions. ``parts`` counts the
-    cases of one ``when``, or the arguments of one function.
+    ``depth`` is the greatest depth of nested operators, functions, conditions and ``when``.
+    ``compared`` is the greatest depth of an atom that compares two such expressions. ``parts`` is
+    the most cases of a ``when``, and the most arguments of a function.
     """
 
     depth: int
@@ -68,22 +71,26 @@ class ArithmeticLimit:
 
 
 ARITHMETIC: Final = ArithmeticLimit(depth=100, compared=110, parts=500)
-"""The arithmetic of an atom. All code that walks expressions recursively, Python's compiler included, copes with it."""
+"""The expression of an atom.
+
+Recursive functions over expressions, and Python's compiler, can handle this depth.
+"""
 
 SOURCE: Final = Limit(size=1 << 20)
 """A source text. The grammar limits the number of tokens and the nesting, too."""
 
 IMPORTED: Final = Limit(size=1 << 24, values=100_000)
-"""The names that all imports of a program bring in. A file that is imported twice counts twice.
+"""All imports of a source text together. ``values`` counts the names that they define.
 
-``size`` bounds the characters of the names that imports with `as` create.
+``size`` counts the characters of the names that imports with `as` define. A file that is imported
+twice counts twice.
 """
 
 TOML: Final = Limit(size=1 << 20, depth=32, values=50_000)
 """A level, an asset, an overlay, a suite, settings, ``tltl.toml``."""
 
 LEVEL: Final = Limit(size=1 << 20, values=4_000)
-"""A level with its parts; ``values`` counts things, steps of stairs, and points of paths and routes."""
+"""A level; ``values`` counts the things in it, steps of stairs, and points of paths and routes."""
 
 SUITE: Final = Limit(size=1 << 20, values=2_000)
 """A suite; ``values`` counts cases. Each case names files to read."""
@@ -104,7 +111,7 @@ MESSAGE: Final = Limit(size=1 << 22, depth=100, values=1_000_000)
 """A request to the playground or to the language server."""
 
 ANSWER: Final = Limit(size=1 << 25)
-"""An answer of the playground. A browser accepts far more, but too much for a person to read."""
+"""An answer of the playground. A browser would accept far more, but nobody could read it."""
 
 WORKSPACE: Final = Limit(size=1 << 26, values=200_000)
 """The source texts in the folders that are open in an editor; ``values`` counts all files and folders."""
@@ -122,9 +129,9 @@ MESSAGE_HEAD: Final = Limit(size=1 << 13)
 """A header line of the language server's protocol."""
 
 TRACE_LINE: Final = Limit(size=1 << 20, depth=32, values=50_000)
-"""A row of a trace. The number of rows has no limit, since traces are read as a stream.
+"""A row of a trace. The number of rows has no limit, since traces are read row by row.
 
-``depth`` and ``values`` limit a row of JSON; ``values`` counts commas. Generated monitors have the
+``depth`` and ``values`` are for rows in JSON; ``values`` counts commas. Generated monitors have the
 same limits.
 """
 
@@ -138,7 +145,7 @@ RECORDED_TEXTS: Final[Mapping[str, Limit]] = {
     "meta": Limit(size=1 << 24, depth=100, values=200_000),
     "artefact": ARTEFACT,
 }
-"""The JSON in a recorded episode, after decompression, which may yield a thousand times the size of the file."""
+"""The JSON texts in a recorded episode, after decompression, by their names."""
 
 POLICY: Final = Limit(size=1 << 26)
 """A trained policy."""
@@ -150,7 +157,7 @@ MEASUREMENTS: Final = Limit(size=1 << 30)
 """The measurements of a training run, one line per iteration; :data:`TRACE_LINE` limits each line."""
 
 REVISION: Final = Limit(size=1 << 28, values=20_000)
-"""The files of a git revision that are read."""
+"""The files of a git revision that are read; ``values`` counts files."""
 
 REVISION_PATHS: Final = Limit(size=1 << 29, values=5_000_000)
 """All paths of a git revision, including folders: ``values`` counts paths, ``size`` the bytes of the whole list."""
@@ -162,7 +169,7 @@ UNPACKED_PATH: Final = Limit(size=4096, depth=100)
 """A path in a git revision or another archive that is unpacked; ``depth`` counts its parts."""
 
 UNPACKED_NAME: Final = Limit(size=255)
-"""A part of a path that is unpacked: no common file system allows longer names."""
+"""A part of such a path; common file systems allow no longer names."""
 
 PLAYGROUND: Final = Connections(most=64, idle_s=15.0, request_s=20.0, write_s=30.0, linger_s=2.0)
 """The connections to the playground's server."""
@@ -171,9 +178,9 @@ PLAYGROUND_CHILD: Final = ProcessLimit(memory=2 << 30, work_s=60)
 """A process that answers one request to the playground."""
 
 COMMAND: Final = ProcessLimit(memory=4 << 30, work_s=120)
-"""The resources of a command that reads files and ends by itself; `tltlc --max-cpu --max-memory` sets others.
+"""A command that reads files and ends by itself; `tltlc --max-cpu --max-memory` sets other limits.
 
-This is the last bound: the limits of :data:`WORK` stop the work long before.
+Usually a limit of :data:`WORK` is reached long before.
 """
 
 WORK: Final[Mapping[str, int]] = {
@@ -199,16 +206,22 @@ WORK: Final[Mapping[str, int]] = {
     "mined sequences": 800_000,
     "mined candidates": 50_000,
 }
-"""The most steps of a checker, by what it counts."""
+"""The most steps of computations, by what they count."""
 
 
 def too_deep_error(source: SourceFile, limit: Limit, span: Span | None = None) -> TltlError:
-    """Return TLT0006: a text nests too deep for its reader; ``span`` is the place, if known."""
+    """Return the error TLT0006 for a text that nests too deep.
+
+    ``span`` is where, if that is known.
+    """
     return _structure_error(source, f"nests deeper than {limit.depth} levels", "flatten it", span)
 
 
 def too_many_values_error(source: SourceFile, limit: Limit, span: Span | None = None) -> TltlError:
-    """Return TLT0006: a text has too many values for its reader; ``span`` is the place, if known."""
+    """Return the error TLT0006 for a text with too many values.
+
+    ``span`` is where, if that is known.
+    """
     problem = f"holds more than {limit.values:,} values"
     return _structure_error(source, problem, "split it, or leave out what nothing reads", span)
 

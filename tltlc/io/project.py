@@ -1,14 +1,14 @@
-"""Read the optional project file ``tltl.toml``, found in the folder of a source file or above it.
+"""Read the optional project file ``tltl.toml``, in the folder of a source file or in a folder above it.
 
 libraries = ["predicates"]            # folders, relative to the project file
 targets = ["json", "dot", "python"]   # what `tltlc compile` writes without -t
 
-[style]
-notation = "unicode"                  # of formulas in pictures: unicode, ascii or english
-formatting = "words"                  # of what `tltlc fmt` writes: words, letters, symbols or unicode
+[style] notation = "unicode"                  # of formulas in pictures: unicode, ascii or english
+formatting = "words"                  # of what `tltlc fmt` writes: words, letters, symbols or
+unicode
 
-[lint]
-allow = ["TLT0419"]                   # codes that are not reported; note, warning and error change a severity
+[lint] allow = ["TLT0419"]                   # codes that are not reported; note, warning and error
+change a severity
 """
 
 from __future__ import annotations
@@ -39,9 +39,11 @@ _STYLE_KEYS: Final = ("notation", "formatting")
 
 @record
 class Project:
-    """The settings of a project file; ``targets`` is empty if the file does not set them.
+    """The settings of a project file.
 
-    ``lint`` maps codes to one of :data:`LINT_LEVELS`.
+    ``targets`` is empty if the file does not set them. ``lint`` maps codes of diagnostics to
+    :data:`LINT_LEVELS`. ``notation`` is that of formulas in pictures, and ``formatting`` the style
+    of ``tltlc fmt``.
     """
 
     libraries: tuple[Path, ...] = ()
@@ -51,7 +53,7 @@ class Project:
     formatting: str = "words"
 
     def with_lint_levels(self, diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
-        """Return the diagnostics with the severities that ``lint`` sets, without those that it allows."""
+        """Return the diagnostics with the severities that ``lint`` sets, without those with the level ``allow``."""
         kept = [diagnostic for diagnostic in diagnostics if self.lint.get(diagnostic.code) != "allow"]
         return tuple(
             replace(diagnostic, severity=self.lint.get(diagnostic.code, diagnostic.severity)) for diagnostic in kept
@@ -59,7 +61,7 @@ class Project:
 
     @contextmanager
     def apply_lint_levels(self) -> Iterator[None]:
-        """Apply :meth:`with_lint_levels` to the diagnostics of a :class:`TltlError` that the ``with`` block raises."""
+        """If the ``with`` block raises a :class:`TltlError`, apply :meth:`with_lint_levels` to its diagnostics."""
         try:
             yield
         except TltlError as error:
@@ -67,11 +69,11 @@ class Project:
 
 
 def project_for(path: str) -> Project:
-    """Return the project that a source file belongs to: the nearest project file in its folder or above.
+    """Return the settings for a source file, from the nearest project file in its folder or above it.
 
-    For standard input, the search starts in the current folder. The paths of libraries inside the
-    current folder are relative to it, unless the path of the source file is absolute; so messages
-    name both in the same way. Errors are as for :func:`read_project`.
+    For standard input (``-``), the search starts in the current folder. If ``path`` is relative, so
+    are the paths of libraries in the current folder, and messages show both in the same form.
+    Errors are those of :func:`read_project`.
     """
     try:
         folder = Path(path).absolute().parent if path != "-" else Path.cwd()
@@ -88,16 +90,16 @@ def project_for(path: str) -> Project:
 def project_file(folder: Path) -> Path | None:
     """Return the nearest project file in an absolute folder or above it, or None."""
     files = (parent / FILE_NAME for parent in (folder, *folder.parents))
-    # A broken link counts, so that the code that reads it reports it.
+    # A broken link counts, so that reading it reports the problem.
     return next((file for file in files if is_file(file) or (os.path.lexists(file) and may_read(file))), None)
 
 
 def read_project(path: Path) -> Project:
-    """Return the contents of a project file.
+    """Return the settings in a project file.
 
-    Errors: TLT0701 if it is not TOML; otherwise all of these: TLT0702 for each unknown key, TLT0703
-    for each value of the wrong kind, TLT0777 for each library that :func:`tltlc.io.files.confine_reads`
-    forbids.
+    Errors: TLT0001 if it is not a file, TLT0701 if it is not TOML. Otherwise all errors are raised
+    together: TLT0702 for each unknown key, TLT0703 for each wrong value, and TLT0777 for each
+    library that :func:`tltlc.io.files.confine_reads` forbids to read.
     """
     from tltlc.io.toml_text import parse
 
@@ -132,7 +134,7 @@ def read_project(path: Path) -> Project:
 
 
 def _unknown_keys(table: dict[str, Any], keys: tuple[str, ...], source: SourceFile) -> list[Diagnostic]:
-    """Return an error for each key that the table does not allow."""
+    """Return an error for each key of a table that is not in ``keys``."""
     from difflib import get_close_matches
 
     errors = []
@@ -149,7 +151,10 @@ def _unknown_keys(table: dict[str, Any], keys: tuple[str, ...], source: SourceFi
 
 
 def _lint_levels(table: object, source: SourceFile, errors: list[Diagnostic]) -> dict[str, str]:
-    """Return the level of each code that the table ``lint`` names; add its errors to ``errors``."""
+    """Map each code in the table ``lint`` to its level.
+
+    Appends the errors in the table to ``errors``.
+    """
     if not isinstance(table, dict):
         errors.append(_wrong_value(source, "lint", "a table, e.g. `[lint]`", table))
         return {}
@@ -200,14 +205,17 @@ _KINDS: Final = {
 
 
 def _key_labels(source: SourceFile, key: str) -> tuple[Label, ...]:
-    """Return a label at the first line that begins with the key; empty if there is no such line."""
+    """Return a label on the first line that begins with the key, as a tuple.
+
+    The tuple is empty if there is no such line.
+    """
     span = _first_words(source.text).get(key)
     return (Label(source, span),) if span else ()
 
 
 @lru_cache(maxsize=1)
 def _first_words(text: str) -> Mapping[str, Span]:
-    """Return the first span of each word or quoted text that begins a line, perhaps after a bracket."""
+    """Map each word or quoted text that begins a line, perhaps after a bracket, to its first span."""
     import re
 
     spans: dict[str, Span] = {}
@@ -221,7 +229,7 @@ def _relative_library(library: Path) -> Path:
 
 
 def _display_path(path: Path) -> str:
-    """Return the path, relative to the current folder if it is inside."""
+    """Return a path as text, relative to the current folder if it is inside this folder."""
     try:
         return str(path.relative_to(Path.cwd()))
     except ValueError:

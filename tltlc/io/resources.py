@@ -1,8 +1,8 @@
-"""Bound the processor time and the memory of a command, for input that no limit of :mod:`tltlc.io.limits` stops.
+"""Limit the processor time and the memory of a command, for input that no limit of :mod:`tltlc.io.limits` stops.
 
-Limits that count bytes or steps give the same answer on every machine. These bounds depend on the
-machine, so they are far above what any harmless file needs. They apply only to a process that runs
-one command. A program that imports tltlc keeps its own signal handlers and limits.
+Limits of bytes and steps give the same result on every machine. The limits of this module depend on
+the machine, so they are far above what any ordinary file needs. They apply only to the commands of
+tltlc: a program that imports tltlc keeps its own signal handlers and limits.
 """
 
 from __future__ import annotations
@@ -19,15 +19,20 @@ from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.io.limits import ProcessLimit
 
 _AGAIN_S = 1.0
-"""Seconds between two signals. Python drops an exception that a handler raises in, for example, a destructor; then the
-next signal ends the command.
+"""Seconds of processor time between two signals after the time is used up.
+
+One signal may not be enough: Python ignores an exception that a signal handler raises in a
+destructor.
 """
 
 _command_limits: list[ProcessLimit] = []
-"""The resources of the command that this process runs; empty if the process runs none."""
+"""The limits of the command that this process runs, as a list of one entry.
+
+The list is empty if it runs none.
+"""
 
 _active: list[bool] = []
-"""Not empty while the bounds apply."""
+"""Not empty inside a ``with`` block of :func:`resource_limits`."""
 
 
 class OutOfTimeError(BaseException):
@@ -35,19 +40,22 @@ class OutOfTimeError(BaseException):
 
 
 def permit(process: ProcessLimit) -> None:
-    """Set the resources that :func:`resource_limits` allows in this process; 0 means no bound."""
+    """Set the limits that :func:`resource_limits` applies in this process.
+
+    A limit of 0 means that there is none.
+    """
     _command_limits[:] = [process]
 
 
 @contextmanager
 def resource_limits() -> Iterator[None]:
-    """End the ``with`` block with OutOfTimeError or MemoryError when it uses more than :func:`permit` allows.
+    """Raise OutOfTimeError or MemoryError in the ``with`` block when it uses more than :func:`permit` allows.
 
-    Nested bounds have no effect: the outermost applies. Without a call of :func:`permit`, there are
-    no bounds.
+    Inside another such block, and outside the main thread, this does nothing. Without a call of
+    :func:`permit`, there are no limits.
     """
     if not _command_limits or _active or current_thread() is not main_thread():
-        # Only the main thread receives signals.
+        # Only the main thread receives signals, and an outer block has set the limits already.
         yield
         return
     _active.append(True)
@@ -59,9 +67,10 @@ def resource_limits() -> Iterator[None]:
 
 
 def limit(name: str, most: int) -> None:
-    """Set a resource limit of this process for good; ``name`` is, for example, ``RLIMIT_AS`` of :mod:`resource`.
+    """Set a resource limit of this process, which it cannot raise again.
 
-    It does nothing where the system does not support the limit.
+    ``name`` is a name in the module :mod:`resource`, such as ``RLIMIT_AS``. Does nothing if the
+    system does not support the limit.
     """
     # Windows has no `resource` module, and other systems refuse some limits.
     with suppress(ImportError, AttributeError, OSError, ValueError):
@@ -75,10 +84,10 @@ def limit(name: str, most: int) -> None:
 
 @contextmanager
 def _quiet_destructors() -> Iterator[None]:
-    """Suppress Python's message that a destructor ran out of memory or time: the command soon reports it itself.
+    """Suppress Python's messages about destructors that ran out of memory or time.
 
-    Such a destructor ends, for example, a generator that is dropped. If there is no memory left to
-    call the hook, Python still prints one line.
+    The command itself reports this soon after. Python still prints a line if there is no memory
+    left to call the hook.
     """
     previous = sys.unraisablehook
 
@@ -113,7 +122,7 @@ def _raise_out_of_time(number: int, frame: FrameType | None) -> NoReturn:
 
 @contextmanager
 def _memory_limit(size: int) -> Iterator[None]:
-    """Bound the memory that the process writes to; files that it maps, such as libraries, do not count."""
+    """Limit the memory of the process in bytes, without mapped files such as libraries."""
     try:
         import resource
     except ImportError:
@@ -135,7 +144,7 @@ def _memory_limit(size: int) -> Iterator[None]:
 
 
 def exhaustion_error(error: BaseException) -> TltlError | None:
-    """Return TLT0007 for OutOfTimeError, MemoryError and RecursionError, and None for other exceptions."""
+    """Return the error TLT0007 for OutOfTimeError, MemoryError and RecursionError, None for other exceptions."""
     permitted = _command_limits[0] if _command_limits else ProcessLimit(memory=0, work_s=0)
     if isinstance(error, OutOfTimeError):
         title = f"the command was not done after {permitted.work_s} seconds of processor time"

@@ -1,4 +1,4 @@
-"""Name and read a file that contains specs: ``SPEC.tltl``, ``SPEC.tltl:NAME``, an artefact, or ``-``."""
+"""Read the files that a command's arguments name: ``SPEC.tltl``, ``SPEC.tltl:NAME``, an artefact, or ``-``."""
 
 from __future__ import annotations
 
@@ -24,18 +24,22 @@ if TYPE_CHECKING:
     from typing import BinaryIO
 
 STDIN: Final = "-"
-"""The path of standard input."""
+"""The path that means standard input."""
 
 ARTEFACT_ENDING: Final = ".json"
 
 STDIN_NAME: Final = "<stdin>"
-"""The name of standard input in messages; users may write it for :data:`STDIN` in ``PATH:NAME``."""
+"""The name of standard input in messages. In ``PATH:NAME``, it may also be the path."""
 
 _PLAIN_NAME: Final = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\Z")
 
 
 def split(argument: str) -> tuple[str, str | None]:
-    """Return the path and the name of ``PATH:NAME``; a path that exists, or a drive letter, is never split."""
+    """Return the path and the name of an argument ``PATH:NAME``, or the argument and None if it has no name.
+
+    An argument that is the path of a file is not split, and neither is a drive letter from its
+    path.
+    """
     path, colon, name = argument.rpartition(":")
     if not colon or not path or not is_plain_name(name) or os.path.exists(argument):  # noqa: PTH110
         return argument, None
@@ -52,10 +56,8 @@ def is_plain_name(text: str) -> bool:
 def read(path: str) -> tuple[SourceFile, bool]:
     """Return the text of a file or of standard input, and whether it is an artefact.
 
-    An artefact begins with a brace, and no source does. A file ``….json`` counts as an artefact even
-    if it is empty.
-
-    Errors are as for :func:`tltlc.io.files.read_source`.
+    A text is an artefact if it begins with a brace, which no source text does, or if its path ends
+    with ``.json``. Errors are those of :func:`tltlc.io.files.read_source`.
     """
     name = STDIN_NAME if path == STDIN else path
     try:
@@ -71,13 +73,19 @@ def read(path: str) -> tuple[SourceFile, bool]:
 
 
 def read_text(path: str, max_bytes: int) -> SourceFile:
-    """Return the text of a file or of standard input; errors are as for :func:`tltlc.io.files.read_source`."""
+    """Return the text of a file or of standard input.
+
+    Errors are those of :func:`tltlc.io.files.read_source`.
+    """
     data, name = read_data(path, max_bytes)
     return decode(data, name, max_bytes=max_bytes)
 
 
 def read_data(path: str, max_bytes: int) -> tuple[bytes, str]:
-    """Return the bytes of a file or of standard input, and its name in messages; errors as for :func:`read_bytes`."""
+    """Return the bytes of a file or of standard input, and its name in messages.
+
+    Errors are those of :func:`tltlc.io.files.read_bytes`.
+    """
     if path == STDIN:
         try:
             stream = standard_input()
@@ -89,7 +97,7 @@ def read_data(path: str, max_bytes: int) -> tuple[bytes, str]:
 
 
 def standard_input() -> BinaryIO:
-    """Return standard input as a stream of bytes; error TLT0001 if it is closed."""
+    """Return standard input as a stream of bytes; raise TltlError, TLT0001, if it is closed."""
     # A process can start without standard input.
     if sys.stdin is None:
         raise input_error(STDIN_NAME, OSError(EBADF, "it is closed"))
@@ -97,7 +105,7 @@ def standard_input() -> BinaryIO:
 
 
 def input_error(name: str, error: OSError | ValueError) -> TltlError:
-    """Return TLT0001 for a file, or for standard input, that cannot be read."""
+    """Return the error TLT0001 for a file or standard input that cannot be read."""
     if name == STDIN_NAME and isinstance(error, OSError) and error.errno == EBADF:
         help_ = "send it something, as in `tltlc check - < level.tltl`, or name a file"
         return TltlError([Diagnostic("TLT0001", "cannot read standard input: it is closed", help=help_)])

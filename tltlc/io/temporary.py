@@ -1,14 +1,13 @@
 """Temporary files beside their final paths, and the removal of files that killed processes left.
 
-A process that writes into a folder creates a lock file ``.tltlc-PID-TOKEN.lock`` there, and keeps it
-locked as long as it has temporary files ``.tltlc-PID-TOKEN-NUMBER.ENDING`` there. The system releases
-the lock when the process ends, even if it is killed. So a process that gets the lock knows that the
-owner is gone, and may remove its files. A temporary folder (:func:`temporary_folder`) has such a name
-and such a lock, too.
+A process that writes into a folder creates a lock file ``.tltlc-PID-TOKEN.lock`` there, and keeps
+it locked as long as it has temporary files ``.tltlc-PID-TOKEN-NUMBER.ENDING`` there. The system
+releases the lock when the process ends, even if it is killed. So if another process can lock the
+file, the first process has ended, and its files may be removed. A temporary folder
+(:func:`temporary_folder`) has a name of this form and a lock file, too.
 
-Signals that :mod:`tltlc.interfaces.cli.interrupts` handles do not interrupt the functions of this
-module. Otherwise an interrupt could leave a lock file that no code tracks, or stop the removal
-half-way.
+The signal handlers of :mod:`tltlc.interfaces.cli.interrupts` wait until a function of this module
+has ended. Otherwise an interrupt could leave a lock file behind, or stop a removal half-way.
 """
 
 from __future__ import annotations
@@ -26,23 +25,32 @@ from tltlc.io.locking import try_lock
 
 _NAME: Final = re.compile(r"(\.tltlc-[0-9]{1,20}-[0-9a-f]{16})(?:(\.lock)|-[0-9]+(?:\.[^.]+)?)")
 _MOST_LOCKS: Final = 200
-"""The most lock files of other processes that one write checks; later writes check the rest."""
+"""How many lock files of other processes are checked at a time; the others are checked later."""
 _ATTEMPTS: Final = 100
-"""The most attempts to create a lock file. An attempt fails only if another process removes the file meanwhile."""
+"""The most attempts to create a lock file.
+
+An attempt fails only if another process removes the new file.
+"""
 
 
 class Temporaries:
-    """Temporary files in several folders; :meth:`close` removes those that were not renamed."""
+    """The temporary files of a task, in one or several folders.
+
+    :meth:`close` removes those that were not renamed.
+    """
 
     def __init__(self) -> None:
         self._locks: dict[Path, tuple[str, IO[bytes] | None]] = {}
-        """By folder: the prefix of the names of temporary files there, and the lock file."""
+        """For each folder, the prefix of the names of temporary files there, and the open lock file."""
         self._paths: list[Path] = []
         self._backups: list[tuple[Path, Path | None]] = []
-        """Paths to restore, each with the backup of its file; the backup is None if there was no file."""
+        """The paths to restore, each with the path of its backup, or None if there was no file."""
 
     def path(self, target: Path, ending: str = ".tmp") -> Path:
         """Return a path for a new temporary file in the folder of ``target``.
+
+        The first call for a folder creates the lock file, and removes files that killed processes
+        left.
 
         Raises:
             OSError: the folder is not writable.
@@ -75,12 +83,15 @@ class Temporaries:
         self._backups.append((target, backup))
 
     def restore(self) -> list[Path]:
-        """Put the files back, the last one first; return the paths where the system refuses."""
+        """Put back the files that were backed up, and return the paths at which the system refuses this."""
         backups, self._backups = self._backups, []
         return [target for target, backup in reversed(backups) if not _restore_file(target, backup)]
 
     def close(self) -> None:
-        """Remove what is left; lock files last, since files without a lock file would never be removed."""
+        """Remove the temporary files that are left, then the lock files.
+
+        In this order, because temporary files without a lock file would never be removed.
+        """
         for path in self._paths:
             _remove(path)
         for folder, (prefix, lock) in self._locks.items():
@@ -92,9 +103,9 @@ class Temporaries:
 
 @contextmanager
 def temporaries() -> Iterator[Temporaries]:
-    """Yield an owner of temporary files; at the end, remove those that were not renamed.
+    """Yield a new :class:`Temporaries`, and close it at the end.
 
-    If the body fails, first put back the files that were backed up.
+    If the ``with`` block raises an exception, first put back the files that were backed up.
     """
     owner = Temporaries()
     try:
@@ -108,7 +119,9 @@ def temporaries() -> Iterator[Temporaries]:
 
 @contextmanager
 def new_folders(folders: Iterable[Path]) -> Iterator[None]:
-    """Create missing folders and their missing parents; if the body fails, remove the new ones that are empty.
+    """Create missing folders and their missing parents.
+
+    If the ``with`` block raises an exception, remove the new folders that are empty.
 
     Raises:
         OSError, ValueError: the system refuses to create one.
@@ -132,7 +145,7 @@ def _make_folder(folder: Path, created: list[Path]) -> None:
         missing.append(folder)
         folder = folder.parent
     if not folder.is_dir():
-        # This raises the right exception.
+        # Raise the exception that says what is wrong.
         folder.mkdir()
     for new_folder in reversed(missing):
         try:
@@ -146,10 +159,12 @@ def _make_folder(folder: Path, created: list[Path]) -> None:
 
 @contextmanager
 def temporary_folder() -> Iterator[Path]:
-    """Yield a new folder that only this user can read; at the end, remove it with its contents.
+    """Yield a new folder that only this user can read, and remove it with its contents at the end.
 
-    If the process is killed, the next process that makes such a folder removes it. Error: TLT0005 if
-    the folder cannot be created.
+    If the process is killed, the next call of this function by any process removes the folder.
+
+    Raises:
+        TltlError: TLT0005 the folder cannot be created.
     """
     # Imported here because `tempfile` takes long to load.
     import tempfile
@@ -170,9 +185,10 @@ def _no_folder_error(error: OSError) -> TltlError:
 
 
 def remove_abandoned(folder: Path) -> None:
-    """Remove the temporary files and folders in a folder whose owners are gone; ignore what cannot be removed.
+    """Remove the temporary files and folders in ``folder`` whose processes have ended.
 
-    It removes only regular files with names of this module, and folders of this user. It follows no link.
+    Removes only names of the form of this module, and of these only regular files and folders of
+    this user. Follows no links. Ignores what cannot be removed.
     """
     with suppress(OSError):
         matches = list(filter(None, (_NAME.fullmatch(entry.name) for entry in os.scandir(folder))))
@@ -248,7 +264,10 @@ def _is_file(path: Path) -> bool:
 
 
 def _lock_file(folder: Path) -> tuple[str, IO[bytes] | None]:
-    """Return the prefix for names of temporary files in a folder, and the lock file; None if locks do not work."""
+    """Create a lock file in a folder, and return the prefix of names of temporary files there, and the file.
+
+    Instead of the file, returns None if locks do not work.
+    """
     for _ in range(_ATTEMPTS):
         prefix = f".tltlc-{os.getpid()}-{os.urandom(8).hex()}"
         path = folder / f"{prefix}.lock"
@@ -258,7 +277,7 @@ def _lock_file(folder: Path) -> tuple[str, IO[bytes] | None]:
         except OSError:
             _remove_lock(path, file)
             return prefix, None
-        # Before it is locked, another process may take it for an abandoned file and remove it.
+        # Another process may have removed the file before it was locked, because it seemed to be abandoned.
         if locked and _is_still_at(path, file):
             return prefix, file
         file.close()
@@ -266,7 +285,7 @@ def _lock_file(folder: Path) -> tuple[str, IO[bytes] | None]:
 
 
 def _is_still_at(path: Path, file: IO[bytes]) -> bool:
-    """Whether a path still leads to this open file."""
+    """Whether an open file is still the one at a path."""
     try:
         return os.path.samestat(path.lstat(), os.fstat(file.fileno()))
     except FileNotFoundError:

@@ -1,4 +1,4 @@
-"""Read TOML within the limits of :mod:`tltlc.io.limits`; errors of the standard reader become diagnostics."""
+"""Read TOML within the limits of :mod:`tltlc.io.limits`, with diagnostics for errors of the TOML library."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ _MANY_DIGITS: Final = re.compile(
     r"(?<![\w.+-])(?:[+-]?[1-9](?:_?[0-9]){18,}|0x[0-9A-Fa-f](?:_?[0-9A-Fa-f]){15,}"
     r"|0o[0-7](?:_?[0-7]){20,}|0b[01](?:_?[01]){62,})(?![\w.])"
 )
-"""Integers that may have more than 64 bits."""
+"""Matches integers that may need more than 64 bits."""
 _MOST_CHARACTERS: Final = 200
-"""The most characters of an integer of 64 bits in any base, with signs between its digits."""
+"""More characters than any integer of 64 bits needs, in any base and with underscores between its digits."""
 
 
 def parse(source: SourceFile, code: str, help_: str) -> dict[str, Any]:
-    """Return the values in a text.
+    """Return the table in a TOML text.
 
     Raises:
         TltlError: ``code`` with ``help_`` if the text is not TOML; TLT0006 if it nests deeper or has
@@ -56,7 +56,7 @@ def parse(source: SourceFile, code: str, help_: str) -> dict[str, Any]:
 
 
 def _has_64_bit_integers(value: object) -> bool:
-    """Whether all integers have at most 64 bits, as TOML requires. Much larger ones cannot become floats."""
+    """Whether all integers in a value have at most 64 bits, as TOML requires."""
     if isinstance(value, dict):
         return all(map(_has_64_bit_integers, value.values()))
     if isinstance(value, list):
@@ -78,10 +78,10 @@ def _is_whole_number(digits: str) -> bool:
 
 
 def _check_limits(source: SourceFile) -> None:
-    """Raise an error for a text that the standard reader should not see.
+    """Raise TltlError, TLT0006, for a text that nests too deep or has too many values.
 
-    The time and memory of the standard reader grow with the square of the nesting. Each part of a
-    dotted key and each open bracket counts as a level.
+    This comes before the text is parsed, because the TOML library takes time and memory that grow
+    with the square of the nesting. Each part of a dotted key and each open bracket is a level.
     """
     assert TOML.depth is not None
     assert TOML.values is not None
@@ -96,7 +96,7 @@ def _check_limits(source: SourceFile) -> None:
         elif kind == "value":
             values += 1
         elif kind in ("unclosed", "unclosed_long"):
-            # The standard reader stops here, too.
+            # The TOML library stops here, too.
             return
         # A quoted part may contain dots, so count the parts exactly if there may be too many.
         is_long = kind == "key" and token[0].count(".") >= TOML.depth - depth
@@ -107,7 +107,7 @@ def _check_limits(source: SourceFile) -> None:
 
 
 def _syntax_error(source: SourceFile, message: str, code: str, help_: str) -> Diagnostic:
-    """Return the error of the TOML reader, with its position as a label."""
+    """Return a diagnostic with the message of the TOML library, and with a label at the position in it."""
     location = re.search(r" \(at (?:line (\d+), column (\d+)|end of document)\)$", message)
     reason = message[: location.start()] if location else message
     label = Label(source, Span(len(source.text), len(source.text)), reason[:1].lower() + reason[1:])

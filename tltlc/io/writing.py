@@ -1,4 +1,4 @@
-"""Write files so that a failure neither leaves a partial file nor damages an existing file."""
+"""Write files so that a failure neither leaves a file half written nor damages an existing file."""
 
 from __future__ import annotations
 
@@ -29,23 +29,23 @@ def write_files(
 ) -> tuple[Path, ...]:
     """Write all files into a folder, or none of them; create missing folders.
 
-    A file that already has the same content stays untouched, so that build tools do not rebuild
-    what depends on it. Return the paths of the other files, in order.
+    Without ``durable``, a file that already has the same content is not written, so that build
+    tools do not rebuild what depends on it. Returns the paths of the files that were written, in
+    order.
 
     Each file is first written under a temporary name beside its final path. The temporary files are
     renamed only when all of them are complete. If the system refuses a rename, the files that were
     already renamed get their old content back, and new folders are removed. Text is written as
     UTF-8 with line feeds.
 
-    Errors, with ``advice`` on where else to write: TLT0005 if the system refuses; TLT0700 if a file
-    that the command has read would change, unless ``over_inputs``.
+    Errors: TLT0005 if the system refuses; TLT0700 if a file would change that the command has read,
+    unless ``over_inputs`` is true. ``advice`` is the help of both: where else to write.
 
-    With ``durable``, each file is complete even after a loss of power, and is not lost once this
-    function has returned, as long as its folder is not lost.
+    With ``durable``, each file is complete even after a loss of power, and on the disk once this
+    function has returned.
 
-    A process that is killed may leave temporary files. The next process that writes into the same
-    folder removes them. A process that is killed between two renames leaves some files new and some
-    old, but none half written.
+    If the process is killed, temporary files may remain, until the next process that writes into
+    the same folder removes them. Some files may then be new and some old, but none is half written.
     """
     try:
         with new_folders({(folder / name).parent: None for name in files}):
@@ -60,14 +60,14 @@ def write_file(
 ) -> None:
     """Write one file into a folder that exists, as :func:`write_files` does.
 
-    A device, a pipe, and the file that standard output or standard error goes to are written to
-    directly.
+    A device, a pipe, or the file to which standard output or standard error is redirected is not
+    replaced: the content is written into it.
     """
     _write({path: content}, advice, durable=durable, over_inputs=over_inputs)
 
 
 def check_not_read(path: Path, advice: str = _OPTION) -> None:
-    """Raise TLT0700 if the command has read the file at this path: an output must not replace an input."""
+    """Raise TltlError, TLT0700, if the command has read the file at this path, so that no output replaces an input."""
     if was_read(path):
         raise TltlError([Diagnostic("TLT0700", f"`{path}` would be written over: it is an input", help=advice)])
 
@@ -83,7 +83,7 @@ def rewrite(path: Path, content: str) -> None:
         title = f"`{path}` would be larger than {SOURCE.size >> 20} MiB"
         raise TltlError([Diagnostic("TLT0004", title, help="it stays as it is; split it: a file may `import` others")])
     mode = _mode(path)
-    # A rename also replaces a file that is not writable, so check here.
+    # Writing renames a temporary file, which would replace even a read-only file: check this first.
     if mode is not None and not (mode & _WRITABLE and os.access(path, os.W_OK)):
         help_ = "check its owner and its attributes" if mode & _WRITABLE else "make it writable"
         raise TltlError([Diagnostic("TLT0005", f"cannot write `{path}`: it is read-only", help=help_)])
@@ -100,10 +100,13 @@ def remove_file(path: Path, advice: str) -> None:
 
 @contextmanager
 def replace_file(path: Path, advice: str = _OPTION) -> Iterator[Path]:
-    """Yield a temporary path beside ``path``, with the same extension, for a program that writes the file itself.
+    """Yield a temporary path beside ``path``, for code that writes a file itself.
 
-    At the end, the temporary file is renamed to ``path``. If an exception is raised, Ctrl-C
-    included, it is removed. Error: TLT0005.
+    It has the same extension. At the end, the temporary file is renamed to ``path``. If the
+    ``with`` block raises an exception, also by Ctrl-C, it is removed instead.
+
+    Raises:
+        TltlError: TLT0005 the system refuses to write, with ``advice`` as its help.
     """
     with temporaries() as temporary_files:
         try:
@@ -127,19 +130,19 @@ def _write(files: Mapping[Path, str | bytes], advice: str, *, durable: bool, ove
                 data = content.encode() if isinstance(content, str) else content
                 mode = _mode(path)
                 descriptor = descriptor_of(path)
-                # The existing file, although equal, may not have reached the disk.
+                # With `durable`, write an equal file too, because the existing one may not be on the disk yet.
                 if not durable and descriptor is None and mode is not None and _has_content(path, mode, data):
                     continue
                 if not over_inputs:
                     check_not_read(path, advice)
                 changed.append(path)
                 if descriptor is not None:
-                    # Keep what other processes write there before and after this command.
+                    # Write into the open file, to keep what other processes write there before and after this command.
                     with os.fdopen(descriptor, "wb", closefd=False) as file:
                         file.write(data)
                     continue
                 if mode is not None and not stat.S_ISREG(mode):
-                    # A device or a pipe stays; it may have no name but a link in `/dev/fd`. Opening a folder fails.
+                    # Do not replace a device or a pipe by a file. If the path is a folder, this fails, as it should.
                     with path.open("wb") as file:
                         file.write(data)
                     continue
@@ -197,7 +200,7 @@ def _mode(path: Path) -> int | None:
 
 
 def _writing_error(path: Path, error: OSError | ValueError, advice: str) -> TltlError:
-    # The file itself need not exist, so the folder is missing.
+    # To write a file, it need not exist. So if something does not exist, it is the folder.
     why = "there is no such folder" if isinstance(error, FileNotFoundError) else reason(error)
     title = f"cannot write `{path}`: {why}"
     if isinstance(error, OSError) and error.errno == errno.EMFILE:

@@ -1,4 +1,4 @@
-"""Check the types of a monitor's arguments: an automaton, and options of the reward."""
+"""Check the types of a monitor's arguments: the automaton and the options of the reward."""
 
 from __future__ import annotations
 

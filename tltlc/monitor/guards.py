@@ -1,6 +1,7 @@
 """Truth and robustness of guards at the values of the atoms (semantics, sections 1 and 3).
 
-A guard is given by its prime implicants; ``values`` holds the robustness of each atom, in [-1, 1].
+``values`` has the value (robustness) of each atom, in [-1, 1]. The value of a literal is the value
+of its atom, or the negative of it if the literal is negated.
 """
 
 from __future__ import annotations
@@ -11,21 +12,24 @@ from tltlc.automaton.fspa import Guard, Implicant
 
 
 def holds(guard: Guard, values: Sequence[float]) -> bool:
-    """Whether some prime implicant is true. An atom is true iff its value is strictly above 0."""
+    """Whether at least one prime implicant of a guard is true.
+
+    An atom is true if its value is above 0.
+    """
     return any(all((values[atom] > 0.0) == polarity for atom, polarity in prime) for prime in guard.primes)
 
 
 def robustness(guard: Guard, values: Sequence[float]) -> float:
-    """Return the greatest robustness of a prime implicant, in [-1, 1].
+    """Return the robustness of a guard, in [-1, 1]: the greatest robustness of a prime implicant.
 
-    ▲ The paper evaluates the guard as written. Over all primes, the value is independent of how the
-    guard is written.
+    ▲ The paper computes it from the guard's formula. The prime implicants give the same value
+    for all formulas of the same guard.
     """
     return max([prime_robustness(prime, values) for prime in guard.primes])
 
 
 def prime_robustness(prime: Implicant, values: Sequence[float]) -> float:
-    """Return the least value of a literal (the atom's value or its negative); 1 if there are no literals."""
+    """Return the robustness of a prime implicant: the least value of its literals, 1 if it has none."""
     least = 1.0
     for atom, polarity in prime:
         value = values[atom] if polarity else -values[atom]
@@ -35,12 +39,16 @@ def prime_robustness(prime: Implicant, values: Sequence[float]) -> float:
 
 
 def bounding_atom(guards: Sequence[Guard], values: Sequence[float]) -> int:
-    """Return the atom of :func:`bounding_literal`."""
+    """Return the index of the atom of :func:`bounding_literal`."""
     return bounding_literal(guards, values)[0]
 
 
 def bounding_literal(guards: Sequence[Guard], values: Sequence[float]) -> tuple[int, bool]:
-    """Return the literal that bounds the most robust guard: the first least literal of the first best prime."""
+    """Return the literal that determines the robustness of the most robust of the guards.
+
+    It is the literal with the least value in the most robust prime implicant. Of equal ones, the
+    first is returned.
+    """
     primes = (prime for guard in guards for prime in guard.primes)
     best = max(primes, key=lambda prime: prime_robustness(prime, values))
     return min(best, key=lambda literal: values[literal[0]] if literal[1] else -values[literal[0]])

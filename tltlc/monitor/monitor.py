@@ -17,14 +17,15 @@ from tltlc.monitor.tables import tables
 class Step(NamedTuple):
     """The result of one sample.
 
-    - ``state``, ``label`` (what remains to be satisfied), ``verdict`` and ``accepting`` describe
-      the prefix so far.
+    - ``state``: the number of the automaton's state after the sample. ``label`` (what remains to be
+      satisfied), ``verdict`` and ``accepting`` are those of this state.
     - ``done``: whether the episode has ended, with this step or before.
     - ``progress``: the best progress so far, in [0, 1].
     - ``reward``: the reward of this step; 0 after the end of the episode.
     - ``robustness``: the robustness of the edge taken, in [-1, 1].
-    - ``limiting``: the name of the atom that bounds the nearest edge that would have reduced the
-      distance; None if the state changed, or if no edge reduces the distance.
+    - ``limiting``: the name of the atom that most kept the automaton from an edge to a state with
+      a smaller distance: the atom that determines the robustness of the most robust such edge. None
+      if the state changed, or if there is no such edge.
     """
 
     state: int
@@ -41,9 +42,10 @@ class Step(NamedTuple):
 class Monitor:
     """Runs an automaton over one trace after another.
 
-    ``params`` override values of params, in SI units. ``notices`` collects warnings about clamped
-    values, one per signal or atom. After :meth:`step`, ``values`` holds the values of the atoms, in
-    order, and ``success`` is true if the episode has ended in success.
+    ``params`` maps names of params to values that replace the default ones, in SI units.
+    ``notices`` collects warnings about clamped values, one for each signal or atom. After
+    :meth:`step`, ``values`` has the values of the atoms, in order, and ``success`` is true if the
+    episode has ended in success.
 
     Raises:
         MonitorError: TLT0307 a value of ``params`` is outside its range, TLT0308 there is no such
@@ -64,7 +66,10 @@ class Monitor:
         self.reset()
 
     def reset(self) -> None:
-        """Return to the state before the first sample."""
+        """Start a new trace: go back to the initial state, with no progress.
+
+        ``notices`` are kept.
+        """
         self.state = 0
         self.steps = 0
         self.progress = 0.0
@@ -123,13 +128,13 @@ class Monitor:
             done=self.done,
             progress=self.progress,
             reward=reward,
-            # Adding 0 turns -0 into 0, so that all monitors print the same number.
+            # Adding 0 replaces -0 by 0, so that all monitors print the same number.
             robustness=robustness(edge_taken.guard, values) + 0.0,
             limiting=self._names[bounding_atom([edge.guard for edge in improving], values)] if improving else None,
         )
 
     def _label(self, state: State) -> str:
-        """Return the label of a state in ASCII notation; texts are cached."""
+        """Return the label of a state in ASCII notation."""
         label = self._labels.get(state.id)
         if label is None:
             label = self._labels[state.id] = str(state.label)

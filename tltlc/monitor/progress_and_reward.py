@@ -1,4 +1,8 @@
-"""Algorithm 1 of Gutiérrez-Sánchez et al., IEEE Trans. Games 2024: progress, reward and the end of an episode."""
+"""Progress, reward and the end of an episode: Algorithm 1 of Gutiérrez-Sánchez et al. 2024.
+
+The paper is in IEEE Trans. Games 2024. "The listing" is the printed algorithm, and "line" a line of
+it. A ▲ marks where the code deviates from the listing.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +16,10 @@ from tltlc.monitor.tables import MonitorTables
 
 Mode = Literal["progress", "sparse", "edge", "potential"]
 MODES: Final[tuple[Mode, ...]] = get_args(Mode)
-"""All reward modes: ``progress`` is Algorithm 1, each other one a module of :mod:`tltlc.monitor.reward_modes`."""
+"""All reward modes: ``progress`` is Algorithm 1.
+
+The others are modules of :mod:`tltlc.monitor.reward_modes`.
+"""
 Termination = Literal["entry", "paper"]
 TerminalPenalty = Literal["undiscounted", "discounted"]
 
@@ -21,12 +28,12 @@ TerminalPenalty = Literal["undiscounted", "discounted"]
 class RewardOptions:
     """How steps are rewarded and when episodes end (semantics, section 4).
 
-    - ``mode`` names the reward, one of :data:`MODES`; modes other than ``progress`` are in
-      :mod:`tltlc.monitor.reward_modes`.
-    - ``termination``: ``entry`` ends an episode on entry into an accepting or trap state. ``paper``
-      ends it one step later, as the listing does, and judges every spec at the goal.
-    - ``terminal_penalty``: a violation costs the penalties of the remaining steps, either their
-      sum (``undiscounted``) or their sum discounted by ``gamma`` (``discounted``).
+    - ``mode`` is the name of the reward, one of :data:`MODES`.
+    - ``termination`` says when an episode ends: with ``entry`` as soon as it enters an accepting
+      state or a trap. With ``paper`` it ends one step later, as in the printed algorithm, and every
+      spec is judged at its goal.
+    - ``terminal_penalty``: a violation costs at once the penalties of all remaining steps, either
+      their sum (``undiscounted``) or their sum discounted by ``gamma`` (``discounted``).
     - ``gamma`` in (0, 1] is the discount of mode ``potential`` and of the ``discounted`` terminal
       penalty.
 
@@ -53,7 +60,7 @@ class RewardStep:
     """The outcome of one step.
 
     ``progress`` is the best progress so far, in [0, 1]. ``done`` says whether the episode ends with
-    this step, and ``success`` whether it then ends in success; elsewhere ``success`` is False.
+    this step. ``success`` is true if it ends in success, and false if it fails or goes on.
     """
 
     reward: float
@@ -72,29 +79,30 @@ def reward_step(
     options: RewardOptions | None = None,
     last: bool = False,
 ) -> RewardStep:
-    """Run one iteration of the loop of Algorithm 1 (lines 11 to 29), from ``state`` to ``target``.
+    """Return the outcome of one step from ``state`` to ``target``: one pass through lines 11 to 29 of Algorithm 1.
 
-    ``values`` are the atoms' values at the sample that moved the automaton (line 8). ``best`` is
-    the best progress before this sample (``episode progress``). ``step`` counts the samples of the
-    episode, including this one. ``last`` ends the episode here whatever the spec says, for example
-    because the game is over early. With ``T`` the spec's limit in steps, the order of operations
-    is::
+    ``values`` are the atoms' values at the sample of this step (line 8). ``best`` is the best
+    progress before this sample (``episode progress``). ``step`` is the number of this sample in the
+    episode, from 1. ``last`` ends the episode here whatever the spec says, for example because the
+    game is over early. With ``T`` the spec's limit in steps, the order of operations is::
 
         reward = max(0, progress - best)          lines 25 to 28
         reward = reward - 1 / T                   line 29, if there is a limit
         reward = reward - terminal penalty        line 20, on a violation, if there is a limit;
-                                                  also if ``last`` makes an unfinished episode a failure
+                                                  also if ``last`` makes an unfinished episode a
+                                                  failure
 
     Deviations from the listing:
 
-    ▲ line 10: the caller moved the automaton by truth, along the edge whose guard is true, and not
-    along the edge with the highest robustness.
+    ▲ line 10: the caller took the edge whose guard is true, and not the edge with the highest
+    robustness.
     ▲ lines 12 to 23: the episode ends on entry into an accepting or trap state, not one step later;
     ``termination="paper"`` runs the lines as printed.
-    ▲ line 11: if S is 0, nothing is divided. A trap has no progress, so entering a trap gains none.
-    ▲ line 14: the robustness that is added is capped at 0.
-    ▲ a spec judged at its limit (``judge``) ends at T, or earlier if its verdict becomes final; its
-    progress is the share of T survived.
+    ▲ line 11: if ``spec_size`` is 0, nothing is divided by it. A trap has no progress, so entering
+    a trap gains none.
+    ▲ line 14: the robustness that is added is at most 0.
+    ▲ a spec that is judged at its limit ends the episode at T, or earlier if its verdict becomes
+    final. Its progress is the share of T that the episode has survived.
     """
     options = options or RewardOptions()
     limit = tables.fspa.limit_steps
@@ -124,15 +132,16 @@ def step_progress(
 
 
 def approach(tables: MonitorTables, state: int, values: Sequence[float]) -> float:
-    """Return what line 14 adds: the nearness of the best improving edge, as a share of the spec's size."""
+    """Return what line 14 adds to the progress: how near the next edge towards a goal is, in [0, 1 / spec_size]."""
     nearest = max(robustness(edge.guard, values) for edge in tables.improving[state])
     return (1.0 + min(0.0, nearest)) / tables.fspa.spec_size
 
 
 def _share_survived(tables: MonitorTables, target: int, step: int) -> float:
-    """Return the share of the limit that the episode has survived.
+    """Return the share of the limit that the episode has survived, in [0, 1].
 
-    A satisfied spec gives 1, a violated one 0. Without a limit, an undecided spec gives 0.
+    It is 1 if the spec is satisfied, and 0 if it is violated, or if it has no limit and is still
+    undecided.
     """
     verdict, limit = tables.fspa.states[target].verdict, tables.fspa.limit_steps
     if verdict == "satisfied":
@@ -145,13 +154,13 @@ def _share_survived(tables: MonitorTables, target: int, step: int) -> float:
 def ends_episode(tables: MonitorTables, state: int, target: int, options: RewardOptions) -> bool:
     """Whether the step from ``state`` to ``target`` ends an episode, apart from the limit."""
     if options.termination == "paper":
-        # Lines 12 to 21: the episode ends if the state did not change and no edge improves.
+        # Lines 12 to 21: the episode ends if the state did not change and no edge leads nearer to a goal.
         return state == target and not tables.improving[target]
     return ends_on_entry(tables.fspa, target)
 
 
 def ends_on_entry(fspa: Fspa, state: int) -> bool:
-    """Whether entering a state ends an episode, with ``termination="entry"``."""
+    """Whether an episode ends when it enters a state, with ``termination="entry"``."""
     entered = fspa.states[state]
     return entered.verdict in ("satisfied", "violated") or (fspa.judge == "goal" and entered.accepting)
 
@@ -164,19 +173,20 @@ def _end(tables: MonitorTables, state: int, target: int, step: int, options: Rew
 
 
 def _succeeds_early(tables: MonitorTables, target: int, options: RewardOptions) -> bool:
-    """Whether an episode that is cut off here is a success.
+    """Whether an episode that is cut off in the state ``target`` is a success.
 
-    A spec judged at its limit can succeed here only if it has no limit.
+    With a spec that is judged at its limit, it can be one only if the spec has no limit.
     """
     at_goal = tables.fspa.judge == "goal" or options.termination == "paper"
     return tables.fspa.states[target].accepting and (at_goal or tables.fspa.limit_steps is None)
 
 
 def terminal_penalty(limit: int, step: int, options: RewardOptions) -> float:
-    """Return the sum of the step penalties that an end after ``step`` of ``limit`` steps saves.
+    """Return the penalty for an episode that fails after ``step`` of ``limit`` steps.
 
-    The sum is ``(T - t) / T``. With the ``discounted`` penalty, the penalties are discounted to this
-    step.
+    It is the sum of the penalties ``1 / limit`` of all steps that are left,
+    ``(limit - step) / limit``; with the ``discounted`` penalty, each is multiplied by ``gamma`` for
+    each step until then.
     """
     left, gamma = limit - step, options.gamma
     if options.terminal_penalty == "undiscounted" or gamma == 1.0:

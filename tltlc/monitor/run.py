@@ -21,7 +21,11 @@ class RunStep:
 
 @record
 class TraceOutcome:
-    """The judgement of a whole trace: whether its end is accepted, and the verdict of the last state."""
+    """The judgement of a whole trace.
+
+    ``accepted`` says whether the trace is accepted. ``verdict`` is the verdict of the last state,
+    ``steps`` the number of samples, and ``progress`` the best progress, in [0, 1].
+    """
 
     accepted: bool
     verdict: Verdict
@@ -31,7 +35,7 @@ class TraceOutcome:
 
 
 def run(monitor: Monitor, trace: Iterable[Mapping[str, SupportsFloat]]) -> Iterator[RunStep]:
-    """Reset the monitor, then yield a step for each sample as the samples come in.
+    """Reset the monitor, then read the samples one by one and yield a step for each.
 
     Raises:
         TltlError: the errors of :meth:`Monitor.step` and of the trace.
@@ -48,7 +52,10 @@ def header(fspa: Fspa) -> tuple[str, ...]:
 
 
 def cells(row: RunStep) -> tuple[str, ...]:
-    """Return a row as texts; numbers have 17 significant digits."""
+    """Return the texts of a row, one for each column of :func:`header`.
+
+    Numbers have 17 significant digits.
+    """
     numbers = (row.step.progress, row.step.reward, *row.values)
     return (str(row.number), str(row.step.state), row.step.verdict, *(f"{number + 0.0:.17g}" for number in numbers))
 

@@ -12,17 +12,20 @@ from tltlc.expression.python import compile_expressions
 from tltlc.resolve.spec import Param, Signal
 
 ROUNDING: Final = 1e-9
-"""The value of an atom may exceed [-1, 1] by this much without a notice."""
+"""How far the value of an atom may be outside [-1, 1] without a notice, because of rounding."""
 
 
 class MonitorError(TltlError):
-    """Raised for a sample that the monitor cannot take, or a param that does not fit; the state stays unchanged."""
+    """Raised for a sample or param that the monitor cannot use.
+
+    The state of the monitor stays unchanged.
+    """
 
 
 class Samples:
     """Computes the values of the atoms of an automaton from samples of its signals.
 
-    ``notices`` receives a warning about a clamped value, once per signal or atom.
+    A warning about a clamped value is appended to ``notices``, at most one for each signal or atom.
     """
 
     def __init__(self, fspa: Fspa, params: Mapping[str, float] | None, notices: list[Diagnostic]) -> None:
@@ -37,7 +40,7 @@ class Samples:
     def atom_values(self, signals: Mapping[str, SupportsFloat], when: int | str) -> tuple[float, ...]:
         """Return the values of the atoms at a sample, each in [-1, 1].
 
-        ``when`` is for messages: the number of the sample, from 1, or a phrase for it.
+        ``when`` says in messages which sample it is: its number, from 1, or a phrase.
 
         Raises:
             MonitorError: TLT0611 signals are missing, TLT0612 a signal has no finite value, TLT0613
@@ -51,7 +54,10 @@ class Samples:
         return tuple(self._clamped_atom_value(index, value, when) for index, value in enumerate(values))
 
     def _signal_value(self, signal: Signal, given: SupportsFloat, when: int | str) -> float:
-        """Return the value of a signal as a number, clamped to its range."""
+        """Return the value of a signal as a number, clamped to its range.
+
+        Adds a notice if it was outside.
+        """
         value = finite_signal_value(signal, given, when)
         low, high = signal.low, signal.high
         if signal.type == "bool":
@@ -94,7 +100,7 @@ class Samples:
 
 
 def param_values(params: Sequence[Param], given: Mapping[str, float]) -> dict[str, float]:
-    """Return the value of every param: the value in ``given``, else the default.
+    """Return the value of every param: the value in ``given``, or its default.
 
     Raises:
         MonitorError: TLT0308 there is no param with a given name, or the value is not a finite
@@ -123,7 +129,7 @@ def _param_error(code: str, title: str, advice: str = "give a number in its rang
 
 
 def check_exclusive(fspa: Fspa, values: Sequence[float], step: int) -> None:
-    """Raise MonitorError (TLT0614) if two atoms that a declaration calls exclusive hold at once."""
+    """Raise MonitorError (TLT0614) if two atoms of an ``exclusive`` declaration hold at once."""
     for group in fspa.exclusive:
         holding = [fspa.atoms[atom].name for atom in group if values[atom] > 0.0]
         if len(holding) > 1:
@@ -132,7 +138,7 @@ def check_exclusive(fspa: Fspa, values: Sequence[float], step: int) -> None:
 
 
 def number_text(value: float) -> str:
-    """Return a number for a message: the shortest text that reads back as the same number."""
+    """Return a number for a message: the shortest text that Python reads as the same number."""
     text = repr(float(value))
     return text[:-2] if text.endswith(".0") else text
 
@@ -151,7 +157,7 @@ def name_list(names: Sequence[str]) -> str:
 def finite_signal_value(signal: Signal, given: SupportsFloat, when: int | str) -> float:
     """Return the value of a signal as a finite number.
 
-    ``when`` is for messages: the number of the step, or a phrase for it.
+    ``when`` says in messages which sample it is: its number, from 1, or a phrase.
 
     Raises:
         MonitorError: TLT0612 the value is not a finite number.
@@ -181,7 +187,7 @@ SUGGESTIONS: Final = {
     "TLT0615": "supply it on the scale that is declared, or declare the range that it has",
     "TLT0616": "write `clamp(…, -1, 1)` in its predicate",
 }
-"""The help of each diagnostic about a sample."""
+"""For each code of a diagnostic about a sample, the advice that it gives."""
 
 
 def _error(code: str, when: int | str, text: str) -> MonitorError:

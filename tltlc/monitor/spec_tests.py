@@ -1,4 +1,4 @@
-"""Run the ``test`` blocks of a program: traces of atoms, with expectations."""
+"""Run the ``test`` blocks of a source text: traces of atoms, with expectations."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ from tltlc.resolve.spec import Expect, ResolvedFile, Test
 _COMPARISONS: Final = {"<": lt, "<=": le, ">": gt, ">=": ge}
 
 _TOLERANCE: Final = 1e-12
-"""Allows for the rounding of sums: 0.1 + 0.2 counts as 0.3, so it meets ``progress >= 0.3``, not ``progress < 0.3``."""
+"""Numbers that differ by at most this count as equal, so that 0.1 + 0.2 is not below 0.3."""
 
 
 @record
 class TestResult:
-    """A test and its failure.
+    """The result of a test.
 
-    The failure is a diagnostic for the first expectation that fails, or for a sample in which
-    exclusive atoms hold; None if the test passed.
+    ``failure`` is a diagnostic about the first expectation that fails, or about a sample at which
+    exclusive atoms hold together. It is None if the test passed.
     """
 
     test: Test
@@ -33,21 +33,25 @@ class TestResult:
 
     @property
     def passed(self) -> bool:
-        """Whether every expectation held."""
+        """Whether the test passed."""
         return self.failure is None
 
 
 def run_tests(program: ResolvedFile, automata: Iterable[Fspa]) -> tuple[TestResult, ...]:
-    """Return the results of a program's tests, in order. Tests of specs without an automaton are skipped."""
+    """Return the results of the tests of a source text, in order.
+
+    Tests of specs without an automaton are left out.
+    """
     by_name = {fspa.name: fspa for fspa in automata}
     return tuple(run_test(test, by_name[test.spec]) for test in program.tests if test.spec in by_name)
 
 
 def run_test(test: Test, fspa: Fspa) -> TestResult:
-    """Return the result of one test. An atom that a step names has the robustness 1, every other atom -1.
+    """Return the result of one test.
 
-    Each expectation judges the prefix so far. Diagnostics: TLT0640 an expectation fails, TLT0614
-    exclusive atoms hold in one step.
+    At each step of the test, the atoms that it names have the value 1, and all others -1. An
+    expectation is about the trace up to the step before it. The failure has the code TLT0640 if an
+    expectation fails, or TLT0614 if exclusive atoms hold at the same step.
     """
     monitor = Monitor(fspa)
     last: Step | None = None
@@ -62,7 +66,7 @@ def run_test(test: Test, fspa: Fspa) -> TestResult:
             for _ in range(item.times):
                 before, last = last, monitor.step_atoms(values)
                 if last == before:
-                    break  # repeating the same sample would change nothing
+                    break  # Further steps with the same sample would give the same result.
         except MonitorError as error:
             label = Label(test.source, test.span, "in this test")
             advice = "let each step name one of them at most"
@@ -71,7 +75,7 @@ def run_test(test: Test, fspa: Fspa) -> TestResult:
 
 
 def _failed_expectation(expect: Expect, step: Step | None, fspa: Fspa) -> Diagnostic | None:
-    """Return why the expectation fails; None if it holds."""
+    """Return the diagnostic of an expectation that fails; None if it does not."""
     if step is None:
         return _failure(expect, "a trace has at least one sample", "put a `step` before the first `expect`")
     if expect.kind == "verdict":

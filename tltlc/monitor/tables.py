@@ -8,10 +8,10 @@ from tltlc.core.record import record
 
 @record
 class MonitorTables:
-    """Per state, by its number: the edges that leave it, the improving ones among them, and its base progress.
+    """What the monitor needs to know about each state, by its number.
 
-    An edge improves if its target has a smaller distance than its source. ``base_progress`` is in
-    [0, 1].
+    ``edges`` has the edges that leave the state, and ``improving`` those of them whose target has a
+    smaller distance. ``base_progress`` is the share of the distance that is done, in [0, 1].
     """
 
     fspa: Fspa
@@ -40,9 +40,9 @@ def _improves(fspa: Fspa, edge: Edge) -> bool:
 
 
 def _base_progress(distance: int | None, spec_size: int) -> float:
-    """Return ``(S - d) / S``, line 11 of Algorithm 1.
+    """Return the progress of line 11 of Algorithm 1: ``(spec_size - distance) / spec_size``, or 0 for a trap.
 
-    Returns 0 for a trap. ▲ If S is 0, by which the paper divides, returns 1 for a goal state.
+    ▲ If ``spec_size`` is 0, which the paper divides by, returns 1 for a goal state.
     """
     if distance is None:
         return 0.0

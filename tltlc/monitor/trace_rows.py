@@ -1,4 +1,4 @@
-"""Read the rows of a trace by the rules of ``docs/traces.md``, whatever columns are needed."""
+"""Read the rows of a trace in the format of ``docs/traces.md``, with all their columns."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Stream(Protocol):
 
 @record
 class TraceTable:
-    """A trace in CSV: the names of its columns, and an iterator over its rows, each as long as ``header``."""
+    """A trace in CSV: the names of its columns, and an iterator over its rows, which have a cell for each column."""
 
     header: tuple[str, ...]
     rows: Iterator[list[str]]
@@ -44,10 +44,11 @@ class TraceObjects:
 
 
 def read_rows(lines: TraceLines) -> TraceTable | TraceObjects | None:
-    """Return the trace as CSV or JSON lines; None if it is blank.
+    """Return the trace, in CSV or in JSON lines; None if it is blank.
 
     Raises:
-        TltlError: TLT0622 a line cannot be read. For lines after the first, ``rows`` raises it.
+        TltlError: TLT0622 the first line cannot be read. Iteration over ``rows`` raises the same
+            error for later lines.
     """
     first = lines.first_of_row()
     if first is None:
@@ -59,7 +60,10 @@ def read_rows(lines: TraceLines) -> TraceTable | TraceObjects | None:
 
 
 def cell_number(cell: str) -> float | None:
-    """Return the number in a cell, or 1 or 0 for true or false; None if the cell has another text."""
+    """Return the number in a cell, 1 for true and 0 for false.
+
+    Returns None if the cell has another text.
+    """
     text = cell.strip(_BLANKS)
     if _NUMBER.fullmatch(text):
         return float(text)
@@ -68,10 +72,10 @@ def cell_number(cell: str) -> float | None:
 
 
 class TraceLines:
-    """The lines of a stream, decoded and checked, with the start of the current row for messages.
+    """Reads the lines of a stream, and remembers where the current row begins, for messages.
 
-    ``name`` is the trace's name in messages. At most one row is kept in memory; a row has at most
-    ``TRACE_LINE.size`` bytes.
+    ``name`` is the trace's name in messages. A row is one line, or several if a quoted cell has
+    line breaks, and has at most ``TRACE_LINE.size`` bytes. At most one row is kept in memory.
     """
 
     def __init__(self, stream: Stream, name: str) -> None:
@@ -84,7 +88,9 @@ class TraceLines:
         self._used = 0
 
     def first_of_row(self) -> str | None:
-        """Return the next line that is not blank, without its line feed, as the start of a row; None at the end.
+        """Start a new row with the next line that is not blank, and return the line without its line feed.
+
+        Returns None at the end of the stream.
 
         Raises:
             TltlError: TLT0622, as in :meth:`next_of_row`.
@@ -97,7 +103,9 @@ class TraceLines:
         return line
 
     def next_of_row(self) -> str | None:
-        """Return the next line of the current row, without its line feed; None at the end.
+        """Return the next line as a further line of the current row, without its line feed.
+
+        Returns None at the end.
 
         Raises:
             TltlError: TLT0622 the line makes the row too long, is not UTF-8, or contains a NUL.
@@ -134,7 +142,8 @@ class TraceLines:
     def error(self, remark: str, columns: tuple[int, int] | None = None, help: str | None = None) -> TltlError:  # noqa: A002
         """Return the error TLT0622 with a label on the first line of the current row.
 
-        ``columns``, counted from 0, restrict the label to a part of the line.
+        ``columns`` are the start and the end of the part of the line to mark, in characters from 0;
+        by default the whole line.
         """
         title = f"line {self._first} of the trace cannot be read"
         return TltlError([Diagnostic("TLT0622", title, (self.label(remark, columns),), help)])
@@ -142,11 +151,12 @@ class TraceLines:
     def label(self, remark: str, columns: tuple[int, int] | None = None) -> Label:
         """Return a label on the first line of the current row.
 
-        ``columns``, counted from 0, restrict the label to a part of the line.
+        ``columns`` are as in :meth:`error`.
         """
         start, end = columns or (0, len(self.text))
         offset = self._first - 1
-        # Earlier lines are no longer in memory; empty ones keep the line number right. A CR would count as a line end.
+        # Earlier lines are no longer in memory. Empty lines in their place make the number of this line right. A CR
+        # inside the line would count as a line end.
         source = SourceFile(self.name, "\n" * offset + self.text.replace("\r", " "))
         return Label(source, Span(offset + start, offset + max(start, end)), remark)
 
@@ -195,10 +205,10 @@ def _check_returns(text: str, lines: TraceLines) -> None:
 
 
 def _quoted_cell(line: str, start: int, lines: TraceLines) -> tuple[str, str, int]:
-    """Return a quoted cell whose text begins at ``start``, and where it ends.
+    """Return the text of a quoted cell that begins at ``start``, and where it ends.
 
-    The second and third result are the line in which the cell ends, and the position in it of the
-    comma, or of the end of the line, after the cell.
+    The second result is the line in which the cell ends. The third is the position in this line of
+    the comma after the cell, or of the end of the line.
     """
     pieces = []
     while (end := _closing_quote(line, start)) < 0:

@@ -1,4 +1,4 @@
-"""Read traces sample by sample: CSV with a header of signal names, or JSON lines."""
+"""Read traces sample by sample, from CSV files with a header of signal names or from files with JSON lines."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ _BOOL_HELP: Final = "write `true`, `false`, 1 or 0"
 
 
 def read_trace(stream: Stream, name: str, signals: Sequence[Signal]) -> Iterator[Sample]:
-    """Yield the samples of a trace as its lines come in: the values of the given signals.
+    """Read a trace line by line, and yield for each sample the values of the given signals.
 
-    ``stream`` is binary; ``name`` is the trace's name in messages. ``docs/traces.md`` has the
-    rules. Other columns are ignored. A value may be missing from the object of a JSON line, and
+    ``stream`` is binary; ``name`` is the trace's name in messages. The format is described in
+    ``docs/traces.md``. Other columns are ignored. A sample from JSON lines may lack values, and
     numbers may be infinite or NaN: the monitor reports these.
 
     Raises:
         TltlError: TLT0620 the trace has no sample, TLT0621 it has no column for a signal, TLT0622 a
-            line cannot be read. The iterator raises it when it reaches the place.
+            line cannot be read. Raised during the iteration, after the samples before the error.
     """
     lines = TraceLines(stream, name)
     trace = read_rows(lines)
@@ -46,7 +46,7 @@ def read_trace(stream: Stream, name: str, signals: Sequence[Signal]) -> Iterator
 
 
 def _columns(header: Sequence[str], lines: TraceLines, signals: Sequence[Signal]) -> list[tuple[Signal, int]]:
-    """Return the signals and the positions of their columns."""
+    """Return each signal with the position of its column, from 0."""
     positions: dict[str, int] = {}
     twice = {name for position, name in enumerate(header) if positions.setdefault(name, position) != position}
     missing = [signal.name for signal in signals if signal.name not in positions]
@@ -62,7 +62,10 @@ def _columns(header: Sequence[str], lines: TraceLines, signals: Sequence[Signal]
 
 
 def _format_advice(line: str) -> str | None:
-    """Return advice if the line begins a JSON list, or separates columns by other characters than commas; else None."""
+    """Return advice for a header that begins a JSON list, or separates columns by semicolons or tabs.
+
+    Returns None for other headers.
+    """
     if line.lstrip().startswith("["):
         return JSON_LINES_HELP
     return "separate the columns by commas" if ";" in line or "\t" in line else None
@@ -92,7 +95,7 @@ def _is_allowed(signal: Signal, value: float) -> bool:
 
 
 def _problem(signal: Signal, value: float | None) -> str:
-    """Return what is wrong with the value of a signal."""
+    """Return in words what is wrong with the value of a signal."""
     return f"this value of `{signal.name}` is {'no number' if value is None else 'not true or false'}"
 
 
@@ -101,7 +104,10 @@ def _advice(signal: Signal) -> str:
 
 
 def _cell_span(line: str, column: int) -> tuple[int, int] | None:
-    """Return where a cell begins and ends in its line; None if the line has quotes, so that commas do not tell."""
+    """Return where a cell begins and ends in its line.
+
+    Returns None if the line has quotes, which may contain commas.
+    """
     cells = line.split(",")
     if '"' in line or column >= len(cells):
         return None

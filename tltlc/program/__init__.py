@@ -1,1 +1,1 @@
-"""Language-independent monitor programs: declarations, assignments and branches, which backends print."""
+"""Monitors as programs in no language: declarations, assignments and branches, which the backends print."""

@@ -1,15 +1,16 @@
-"""Turn the expressions of predicates into statements of a program.
+"""Translate the expressions of predicates to statements of a program.
 
-A ``when`` inside an expression becomes a branch before it that assigns a variable. A variable also
-holds a subexpression that nests too deep for the parsers of some languages, and the base of a power
-that is written as a product.
+A ``when`` inside an expression becomes an ``if`` before the expression, which assigns the value to
+a temporary variable. Two other subexpressions get temporary variables: those nested too deep for
+the parsers of some languages, and the base of a power that is written as a product.
 
-Evaluation is as lazy as in Python: operands of ``and`` and ``or`` that need statements of their own
-go into separate branches.
+As in Python, later operands of ``and`` and ``or`` are computed only if they are needed. If such an
+operand needs statements of its own, these are inside an ``if``.
 
-Branches nest at most about :data:`_MOST_BRANCHES` deep, since Python takes 100 levels of indentation,
-and Lua 200 levels of blocks. A deeper branch runs before the others, if the conditions on the way to
-it hold, and assigns its value to a variable.
+``if`` statements are nested at most about :data:`_MOST_BRANCHES` deep, since Python allows 100
+levels of indentation, and Lua 200 levels of blocks. The value of a ``when`` that is nested deeper
+is computed before the others, if all the conditions that lead to it are true, and assigned to a
+variable.
 """
 
 from __future__ import annotations
@@ -41,22 +42,28 @@ from tltlc.program.tree import (
 )
 
 _DEEPEST: Final = 30
-"""The depth at which expressions are split. C# and GDScript compilers take hundreds of levels, Lua takes 200."""
+"""The greatest depth of an expression.
+
+C# and GDScript compilers allow hundreds of levels, Lua 200.
+"""
 
 _MOST_BRANCHES: Final = 20
-"""The depth at which branches are split. Cases inside cases and cases one after another are counted separately."""
+"""The greatest depth of ``if`` statements.
+
+A ``when`` inside a ``when``, and the later cases of a ``when``, are counted separately.
+"""
 
 _Node = Union[source.Expression, source.Condition]
 _Path = tuple[source.Condition, ...]
-"""The conditions that must hold for an expression to be evaluated."""
+"""The conditions that are all true when an expression is computed."""
 
 
 def with_declaration(name: str, statements: Sequence[Statement], *, changes: bool = True) -> tuple[Statement, ...]:
-    """Return the statements of :meth:`ExpressionTranslator.assign` with a declaration of the variable.
+    """Return the statements of :meth:`ExpressionTranslator.assign`, with a declaration of the variable.
 
-    If there is a single assignment, the declaration includes its value. Pass ``changes=True`` if the
-    variable is assigned again later, for example because the value of an atom is clamped to its
-    range.
+    If the last statement assigns the value, it becomes the declaration. ``changes`` says whether
+    the variable is assigned again later, for example when the value of an atom is clamped to [-1,
+    1].
     """
     *before, last = statements
     if isinstance(last, Assign) and last.name == name:
@@ -65,7 +72,7 @@ def with_declaration(name: str, statements: Sequence[Statement], *, changes: boo
 
 
 def _is_reassigned(name: str, statements: Sequence[Statement]) -> bool:
-    """Whether statements assign a value to a variable that later ones replace."""
+    """Whether the statements may assign a value to the variable and then another one."""
     for place, statement in enumerate(statements, start=1):
         if isinstance(statement, Assign) and statement.name == name and place < len(statements):
             return True
@@ -77,10 +84,10 @@ def _is_reassigned(name: str, statements: Sequence[Statement]) -> bool:
 
 
 class ExpressionTranslator:
-    """Translates expressions; ``signals`` and ``params`` map names to the names of variables.
+    """Translates expressions to statements.
 
-    New variables are called ``PREFIX1``, ``PREFIX2`` and so on. Their numbers continue from call to
-    call.
+    ``signals`` and ``params`` map the names of signals and params to variables. Temporary variables
+    are called ``PREFIX1``, ``PREFIX2`` and so on; all have different names.
     """
 
     def __init__(self, signals: Mapping[str, str], params: Mapping[str, str], prefix: str) -> None:
@@ -88,7 +95,7 @@ class ExpressionTranslator:
         self._count = 0
 
     def assign(self, name: str, expression: source.Expression) -> list[Statement]:
-        """Return statements that assign the value of an expression to a declared variable."""
+        """Return statements that assign the value of an expression to the variable ``name``."""
         lines: list[Statement] = []
         if _branch_depth(expression) > _MOST_BRANCHES:
             expression = self._split(expression, lines, (), 0)
@@ -98,9 +105,11 @@ class ExpressionTranslator:
         return [*lines, Assign(name, value)]
 
     def _cases(self, name: str, node: source.When, depth: int = 1) -> list[Statement]:
-        """Return a ``when`` as branches, which nest only where a condition needs statements of its own.
+        """Return statements that assign the value of a ``when`` to the variable ``name``.
 
-        ``depth`` is how deep branches already nest for this reason.
+        They are one ``if`` with a case for each case of the ``when``. If a condition needs
+        statements of its own, these and the remaining cases are nested in the ``else``. ``depth``
+        is the number of ``if`` statements that are nested for this reason.
         """
         condition, value = node.cases[0]
         before: list[Statement] = []
@@ -119,9 +128,10 @@ class ExpressionTranslator:
     def _sequential_cases(
         self, name: str, first: tuple[tuple[Expression, tuple[Statement, ...]], ...], rest: source.When
     ) -> list[Statement]:
-        """Return cases as branches one after another.
+        """Return cases as ``if`` statements one after another, which need no nesting.
 
-        A new variable says whether no case was selected yet.
+        The cases of ``first`` come before those of ``rest``. A temporary variable is true until a
+        case is selected.
         """
         lines: list[Statement] = [Assign(name, Real(0.0))]
         open_ = Variable(self._declare("bool", lines, changes=True))
@@ -147,8 +157,8 @@ class ExpressionTranslator:
     def _split(self, node: _Node, lines: list[Statement], path: _Path, depth: int) -> _Node:
         """Return the node with every ``when`` at the depth :data:`_MOST_BRANCHES` replaced by a variable.
 
-        Statements that compute these variables are appended to ``lines``. They run only if all
-        conditions of ``path``, which lead to the node, hold.
+        Appends to ``lines`` the statements that compute these variables; they run only if all
+        conditions in ``path`` are true. ``depth`` is the depth of the node.
         """
         if isinstance(node, source.When):
             if depth == _MOST_BRANCHES:
@@ -180,7 +190,7 @@ class ExpressionTranslator:
             lines.append(If(((test, tuple(self.assign(name, node))),)))
         else:
             lines += with_declaration(name, self.assign(name, node), changes=False)
-        # No signal of a spec has a name with blanks.
+        # A blank makes this name different from the names of all signals.
         stand_in = source.SignalValue(f"computed before: {name}")
         self._signals[stand_in.name] = name
         return stand_in
@@ -188,7 +198,7 @@ class ExpressionTranslator:
     # --- numbers ----------------------------------------------------------------------------------
 
     def _value(self, node: source.Expression, lines: list[Statement]) -> Expression:
-        """Return the value of an expression; statements that must run first are appended to ``lines``."""
+        """Return the value of an expression, and append to ``lines`` the statements that must run before it."""
         if isinstance(node, source.Const):
             return Real(float(node.value))
         if isinstance(node, source.SignalValue):
@@ -233,7 +243,7 @@ class ExpressionTranslator:
     # --- tests ------------------------------------------------------------------------------------
 
     def _test(self, node: _Node, lines: list[Statement]) -> Expression:
-        """Return a test; statements that must run first are appended to ``lines``."""
+        """Return the test of a condition, and append to ``lines`` the statements that must run before it."""
         assert isinstance(node, source.Condition), "and, or, not and cases take conditions"
         if node.op == "not":
             return Not(self._part(node.args[0], lines))
@@ -253,10 +263,10 @@ class ExpressionTranslator:
         return Variable(name)
 
     def _join(self, node: source.Condition, lines: list[Statement]) -> Expression:
-        """Return ``and`` or ``or`` of several tests.
+        """Return the test of an ``and`` or ``or``, and append to ``lines`` the statements that must run before it.
 
-        If an operand needs statements of its own, they run only if the operands before it do not
-        decide the result.
+        The statements that an operand needs run only if the operands before it do not decide the
+        result.
         """
         tests: list[Expression] = []
         for part in node.args:
@@ -276,7 +286,10 @@ class ExpressionTranslator:
     # --- variables --------------------------------------------------------------------------------
 
     def _as_variable(self, value: Expression, lines: list[Statement]) -> Expression:
-        """Return the value as a variable or number, which can be repeated without computing it again."""
+        """Return a variable or number with this value, which can be used several times without computing it again.
+
+        Appends to ``lines`` the declaration of the variable, if a new one is needed.
+        """
         if isinstance(value, (Variable, Real)):
             return value
         self._count += 1
@@ -302,7 +315,7 @@ class ExpressionTranslator:
 
 
 def _branch_depth(node: _Node) -> int:
-    """Return how deep ``when`` nests in a node."""
+    """Return how deep ``when`` expressions are nested in a node."""
     if isinstance(node, source.When):
         inside = [*(part for case in node.cases for part in case), node.otherwise]
         return 1 + max(map(_branch_depth, inside))
@@ -318,7 +331,10 @@ def _all_or_any(op: str, tests: list[Expression]) -> Expression:
 
 
 def _divide(left: Expression, right: Expression) -> Expression:
-    """Return a quotient: with ``/`` if the divisor is a literal other than 0, else with ``divide``, which may fail."""
+    """Return a quotient: ``/`` if the divisor is a literal other than 0, and a call of ``divide`` otherwise.
+
+    ``divide`` reports a division by 0.
+    """
     if isinstance(right, Real) and right.value != 0.0:
         return BinaryNumber("/", left, right)
     return NumericCall("divide", (left, right))

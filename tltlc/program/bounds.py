@@ -1,8 +1,9 @@
-"""Interval analysis: find divisors that are never 0, and atoms that never leave their range.
+"""Interval analysis: find divisors that are never 0, and atoms whose values are always in [-1, 1].
 
-Signals and params are finite and within their ranges; the monitor checks that. Intervals are
-computed from these ranges, narrowed by the tests that lead to a statement. Operations of doubles
-round, but rounding keeps the order, so the rounded ends of an interval bound the rounded results.
+The monitor checks that signals and params are finite and in their ranges. The interval of each
+expression is computed from these ranges, and from the tests that are true where the expression is
+computed. Operations round their results, but rounding keeps their order, so the rounded ends of an
+interval are bounds of the rounded results.
 """
 
 from __future__ import annotations
@@ -37,7 +38,10 @@ _OPPOSITE: Final[Mapping[str, Literal["<", "<=", ">", ">="]]] = {"<": ">=", "<="
 
 @record
 class Range:
-    """The interval of a value that is certainly a number, both ends included; the ends may be infinite."""
+    """An interval that contains a value which is never NaN.
+
+    Both ends are included and may be infinite.
+    """
 
     low: float
     high: float
@@ -48,17 +52,21 @@ class Range:
 
 
 def range_between(low: float | None, high: float | None) -> Range:
-    """Return the interval of a finite value between the given ends; None means no bound."""
+    """Return the interval of a finite value from ``low`` to ``high``.
+
+    None means that there is no bound.
+    """
     return Range(-_MOST if low is None else low, _MOST if high is None else high)
 
 
 def prove_ranges(
     name: str, statements: Sequence[Statement], known: Mapping[str, Range]
 ) -> tuple[tuple[Statement, ...], Range | None]:
-    """Return the statements with plain ``/`` where the divisor is certainly not 0, and the range of a variable.
+    """Return the statements with ``/`` instead of ``divide`` where the divisor is never 0, and a range.
 
-    ``known`` maps the variables that exist before the statements to their ranges. The range is that
-    of the variable ``name`` after the statements. It is None if the variable may not be a number.
+    The range is the one that the variable ``name`` has after the statements; it is None if the
+    variable may be NaN. ``known`` maps the variables that exist before the statements to their
+    ranges.
     """
     facts = _Facts({Variable(variable): range_ for variable, range_ in known.items()}, frozenset())
     written = facts.statements(statements)
@@ -68,7 +76,8 @@ def prove_ranges(
 class _Facts:
     """What is known at a point of a program: ranges of expressions, and pairs ``(a, b)`` with ``a <= b``.
 
-    ``assigned_variables`` are the variables of the enclosing scope that statements have assigned.
+    ``assigned_variables`` has the variables that were declared outside the current body and
+    assigned inside it.
     """
 
     def __init__(self, ranges: dict[Expression, Range], ordered: frozenset[tuple[Expression, Expression]]) -> None:
@@ -80,7 +89,7 @@ class _Facts:
     # --- statements -------------------------------------------------------------------------------
 
     def statements(self, statements: Iterable[Statement]) -> tuple[Statement, ...]:
-        """Return the statements, rewritten, and update the facts to what holds after them."""
+        """Return the statements with rewritten divisions, and update the facts to what is known after them."""
         rewritten: list[Statement] = []
         declared: set[str] = set()
         for statement in statements:
@@ -99,7 +108,10 @@ class _Facts:
         return tuple(rewritten)
 
     def _branches(self, statement: If) -> If:
-        """Rewrite a branch. After the branch, a variable is in the union of its ranges over all cases."""
+        """Return an ``if`` with rewritten divisions, and update the facts to what is known after it.
+
+        After the ``if``, the range of a variable covers its ranges after all cases.
+        """
         before = self._copy()
         ends: list[_Facts] = []
         cases = []
@@ -137,7 +149,7 @@ class _Facts:
     # --- tests ------------------------------------------------------------------------------------
 
     def _assume(self, test: Expression, holds: bool) -> None:
-        """Record that a test holds, or that it fails."""
+        """Update the facts to what is known where a test is true (``holds``) or false."""
         match test:
             case Not(operand):
                 self._assume(operand, not holds)
@@ -149,7 +161,7 @@ class _Facts:
                     self._assume(argument, False)
             case Compare(op, left, right) if op in _OPPOSITE:
                 low, high = self.range(left), self.range(right)
-                # Comparisons with NaN are false, so if a value may be NaN, a failed test proves nothing about it.
+                # Comparisons with NaN are false, so nothing follows from a false test of a value that may be NaN.
                 if low is None or high is None:
                     return
                 op = op if holds else _OPPOSITE[op]
@@ -166,14 +178,14 @@ class _Facts:
                 self._narrow(right, Range(max(least, high.low), high.high))
 
     def _narrow(self, node: Expression, range_: Range) -> None:
-        # An empty range means that the test cannot have this result. The branch is unreachable: any facts will do.
+        # If the range is empty, the test never has this result, and its body never runs: the facts do not matter there.
         if range_.low <= range_.high and not isinstance(node, Real):
             self._ranges[node] = range_
 
     # --- expressions ------------------------------------------------------------------------------
 
     def rewrite(self, node: Expression) -> Expression:
-        """Return the expression with plain ``/`` where the divisor is certainly not 0."""
+        """Return the expression with ``/`` instead of ``divide`` where the divisor is never 0."""
         match node:
             case NumericCall("divide", (left, right)):
                 left, right = self.rewrite(left), self.rewrite(right)
@@ -198,7 +210,10 @@ class _Facts:
         return node
 
     def range(self, node: Expression) -> Range | None:
-        """Return the range of an expression; None if it may not be a number, or if nothing is known."""
+        """Return the range of an expression.
+
+        Returns None if it may be NaN or have no value, or if nothing is known.
+        """
         if node in self._cache:
             return self._cache[node]
         computed = self._compute(node)
@@ -234,7 +249,7 @@ class _Facts:
                 range_ = self.range(operand)
                 return range_ and _absolute(range_)
             case NumericCall("tanh", (operand,)):
-                # Some languages lack tanh and compute it from other functions, so rounding may exceed 1.
+                # Languages without tanh compute it from other functions, whose rounded result may exceed 1.
                 return Range(-2.0, 2.0) if self.range(operand) else None
         return None
 
@@ -254,7 +269,7 @@ class _Facts:
         return range_
 
     def _at_most(self, left: Expression, right: Expression) -> bool:
-        """Whether ``left <= right`` follows, for differences ``a - b`` and ``a - c`` with ``c <= b``."""
+        """Whether two differences are known to satisfy ``left <= right``: ``a - b`` and ``a - c`` with ``c <= b``."""
         match left, right:
             case BinaryNumber("-", minuend, b), BinaryNumber("-", other_minuend, c) if minuend == other_minuend:
                 b_range, c_range = self.range(b), self.range(c)
@@ -263,7 +278,7 @@ class _Facts:
 
 
 def _ends(operation: Callable[[float, float], float], left: Range | None, right: Range | None, op: str) -> Range | None:
-    """Return the range of an operation that is monotonic in each operand; None if an end is NaN."""
+    """Return the range of an operation that is monotonic in each operand; None if it may be NaN."""
     if left is None or right is None:
         return None
     if op == "*" and (_is_zero_by_infinity(left, right) or _is_zero_by_infinity(right, left)):

@@ -34,18 +34,18 @@ class Program:
     Signals, params, atoms and states have the order that they have in the automaton.
 
     - ``signals``, ``params`` and ``atoms`` are the names of the variables for their values.
-    - ``values`` are, for each atom, the statements that assign its value.
+    - ``values`` has, for each atom, the statements that assign its value.
     - ``always_in_range`` says, for each atom, whether it is proved that its value exists and lies in
       [-1, 1].
-    - ``only_in`` is, for each atom, the state that alone needs its value: only this state computes
-      the atom. It is -1 if no state needs the value, and None if every step computes it.
-    - ``read_in`` is, for each signal, the state whose atoms alone read it. It is -1 if no atom
-      reads the signal, and None if every step reads it.
-    - ``remarks`` are, for each atom, its name, with the documentation of its predicate where the
-      predicate appears first. They become comments.
-    - ``exclusive`` are the groups of at least two exclusive atoms, each with its index in the
+    - ``only_in`` has, for each atom, the number of the only state that needs the atom: the atom is
+      computed only there. It is -1 if no state needs the atom, and None if every step computes it.
+    - ``read_in`` has, for each signal, the number of the only state whose atoms read it. It is -1 if
+      no atom reads the signal, and None if every step reads it.
+    - ``remarks`` has, for each atom, the text of a comment: the name of the atom. The first atom of
+      a predicate also has the documentation of the predicate.
+    - ``exclusive`` has the groups of at least two exclusive atoms, each after its index in the
       automaton.
-    - ``states`` are, for each state, the statements that compute a transition from it. They assign
+    - ``states`` has, for each state, the statements that compute a transition from it. They assign
       the variables of :mod:`tltlc.program.states`.
     - ``reward_statements`` compute progress, reward and the end of the episode after a transition.
       They read and assign the variables of :mod:`tltlc.program.reward_step`.
@@ -67,38 +67,48 @@ class Program:
     ends: tuple[bool, ...]
 
     def computed_in(self, state: int | None) -> list[int]:
-        """Return the indices of the atoms that only this state computes; for None, of those computed at every step."""
+        """Return the indices of the atoms that only this state computes.
+
+        If ``state`` is None, return those that every step computes.
+        """
         return [index for index, only in enumerate(self.only_in) if only == state]
 
     def bools_read_in(self, state: int | None) -> list[str]:
-        """Return the variables of the bool signals that only this state reads; for None, those read at every step."""
+        """Return the variables of the bool signals that only this state reads.
+
+        If ``state`` is None, return those that every step reads.
+        """
         signals = zip(self.fspa.signals, self.signals, self.read_in, strict=True)
         return [name for signal, name, only in signals if signal.type == "bool" and only == state]
 
     @property
     def reads_sample(self) -> bool:
-        """Whether a step reads any signal. Every step checks numbers; it reads a bool only if an atom needs it."""
+        """Whether a step reads any signal.
+
+        A step reads all numbers, to check them, but a bool signal only if an atom needs it.
+        """
         signals = zip(self.fspa.signals, self.read_in, strict=True)
         return any(signal.type != "bool" or only != -1 for signal, only in signals)
 
     @property
     def variables_used(self) -> frozenset[str]:
-        """The variables that the values of the atoms are computed from."""
+        """The names of the variables that the statements in ``values`` read."""
         return variables_read(statement for value in self.values for statement in value)
 
     @property
     def functions(self) -> frozenset[Function]:
-        """The functions that the values of the atoms call."""
+        """The functions that the statements in ``values`` call."""
         return functions_called(statement for value in self.values for statement in value)
 
 
 def program(fspa: Fspa, reserved: Iterable[str]) -> Program:
     """Return the program of an automaton's monitor.
 
-    ``reserved`` are words of a language and names of a template. No variable has such a name.
+    ``reserved`` are the names that no variable may have: words of the language and names in its
+    template.
     """
     names = VariableNames([*reserved, *_OWN])
-    # Deeply nested predicates need a higher recursion limit.
+    # Expressions of deeply nested predicates need a higher recursion limit.
     with recursion_room():
         return _program(fspa, names)
 
@@ -116,7 +126,7 @@ def _program(fspa: Fspa, names: VariableNames) -> Program:
         prove_ranges(name, arithmetic.assign(name, atom.expression), ranges)
         for name, atom in zip(atoms, fspa.atoms, strict=True)
     ]
-    # The range of a result does not tell whether a function in a condition may fail, so calls are checked separately.
+    # A function that may fail can be in the condition of a `when`, where the range of the result says nothing about it.
     in_range = tuple(
         range_ is not None and range_.low >= -1.0 and range_.high <= 1.0 and not functions_called(statements) & FAILING
         for statements, range_ in values
@@ -149,10 +159,10 @@ def _program(fspa: Fspa, names: VariableNames) -> Program:
 def _only_in(
     atoms: Sequence[str], silent: Sequence[bool], transitions: Sequence[tuple[Statement, ...]]
 ) -> tuple[int | None, ...]:
-    """Return, for each atom, the only state that reads it; -1 if none does, None if every step must compute it.
+    """Return :attr:`Program.only_in`.
 
-    ``silent`` says, for each atom, that computing it gives no error or notice. Every step computes
-    the other atoms.
+    ``silent`` says, for each atom, whether to compute it can give no error or notice. Every step
+    computes the other atoms, so that all monitors give the same errors and notices.
     """
     used = [variables_read(statements) for statements in transitions]
     only_in: list[int | None] = []
@@ -165,10 +175,9 @@ def _only_in(
 def _read_in(
     signals: Sequence[str], only_in: Sequence[int | None], values: Sequence[Sequence[Statement]]
 ) -> tuple[int | None, ...]:
-    """Return, for each signal, the only state whose atoms read it.
+    """Return :attr:`Program.read_in`.
 
-    The result is -1 if no atom reads the signal, and None if an atom that every step computes, or
-    atoms of several states, read it.
+    A signal that atoms of several states read gets None, like one that every step needs.
     """
     places: dict[str, set[int | None]] = {name: set() for name in signals}
     for only, statements in zip(only_in, values, strict=True):
@@ -178,10 +187,10 @@ def _read_in(
 
 
 def _remarks(fspa: Fspa, only_in: Sequence[int | None]) -> tuple[str, ...]:
-    """Return the atoms' names.
+    """Return :attr:`Program.remarks`.
 
-    The first atom of each predicate, in order of computation, gets the predicate's documentation
-    too.
+    The first atom of a predicate is the one that a step would compute first: atoms of all steps
+    come first, then those of single states.
     """
     remarks = [atom.name for atom in fspa.atoms]
     explained = {""}
@@ -200,7 +209,7 @@ def _range(signal: Signal) -> Range:
 
 
 def _prefix(names: Sequence[str]) -> str:
-    """Return a prefix that no name begins with."""
+    """Return a prefix for temporary variables that none of the names begins with."""
     number, prefix = 1, f"{TEMPORARY}_"
     while any(name.startswith(prefix) for name in names):
         number += 1

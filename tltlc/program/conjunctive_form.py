@@ -1,4 +1,4 @@
-"""Convert terms to clauses: an ``or`` of ``and``s to an ``and`` of ``or``s."""
+"""Convert a disjunction of conjunctions (terms) to an equivalent conjunction of disjunctions (clauses)."""
 
 from __future__ import annotations
 
@@ -6,26 +6,27 @@ from collections.abc import Sequence
 from typing import Final, TypeVar
 
 _MOST: Final = 16
-"""The conversion stops if there are more clauses than this; their number can be exponential."""
+"""The most clauses; if there are more, which can be exponentially many, the conversion gives up."""
 
 _Literal = TypeVar("_Literal")
 
 
 def shorter_clauses(terms: Sequence[Sequence[_Literal]]) -> list[list[_Literal]] | None:
-    """Return the clauses equivalent to some terms if they have fewer literals, else None.
+    """Return the clauses that are equivalent to some terms, or None if they do not have fewer literals.
 
-    ``min`` and ``max`` distribute, so the maximum over terms of their minima equals the minimum
-    over clauses of their maxima, except for the sign of a zero. Literals keep the order of the
-    terms, none of which may be empty.
+    The clauses have the same robustness: the greatest minimum of a term equals the least maximum of
+    a clause, except for the sign of a zero. Literals keep the order of the terms. No term may be
+    empty.
     """
     clauses = _clauses(terms)
     return clauses if clauses is not None and sum(map(len, clauses)) < sum(map(len, terms)) else None
 
 
 def _clauses(terms: Sequence[Sequence[_Literal]]) -> list[list[_Literal]] | None:
-    """Return the minimal sets of literals that have a literal of every term; None if there are more than :data:`_MOST`.
+    """Return the clauses: the minimal sets that have at least one literal of every term.
 
-    C. Berge, Hypergraphs, 1989.
+    Returns None if there are more than :data:`_MOST`. The method is from C. Berge, Hypergraphs,
+    1989.
     """
     literals = list(dict.fromkeys(literal for term in terms for literal in term))
     bits = {literal: 1 << index for index, literal in enumerate(literals)}

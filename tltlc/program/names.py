@@ -1,4 +1,4 @@
-"""Make names and texts of a specification safe for source code; by default for Python."""
+"""Convert the names and texts of a spec to names, comments and literals in source code."""
 
 from __future__ import annotations
 
@@ -13,13 +13,16 @@ _WORDS: Final = {">": " over ", "<": " under ", "-": " minus ", "+": " plus ", "
 
 
 class VariableNames:
-    """Makes unique variable names: short, readable ASCII, none of them ``reserved``."""
+    """Chooses unique names of variables that are short, readable ASCII identifiers and not in ``reserved``."""
 
     def __init__(self, reserved: Iterable[str]) -> None:
         self._taken = set(reserved)
 
     def new_name(self, name: str, suffix: str = "") -> str:
-        """Return a new name that resembles ``name``; if that is taken, ``suffix`` is tried before numbers."""
+        """Return a new name that resembles ``name``.
+
+        If it is taken, ``_`` and ``suffix`` are appended, and if that is taken too, a number.
+        """
         spelt = "".join(_WORDS.get(character, character) for character in name)
         base = re.sub(r"[^A-Za-z0-9]+", "_", spelt)[:_LONGEST].strip("_") or "x"
         if base[0].isdigit():
@@ -40,7 +43,7 @@ def printable_line(text: str) -> str:
 
 
 def call_lines(head: str, arguments: Sequence[str], tail: str = "") -> list[str]:
-    """Return ``head(arguments)tail`` on one line, or on several if that is too long."""
+    """Return the lines of ``head(arguments)tail`` in Python: one, or several if one would be too long."""
     line = f"{head}({', '.join(arguments)}){tail}"
     if len(line) <= 110:
         return [line]
@@ -48,7 +51,7 @@ def call_lines(head: str, arguments: Sequence[str], tail: str = "") -> list[str]
 
 
 def docstring_text(text: str) -> str:
-    """Return the text escaped for a docstring; line breaks and indentation are kept."""
+    """Return the text escaped for a Python docstring, with its line breaks and indentation."""
     lines = [" " * (len(line) - len(line.lstrip(" "))) + printable_line(line) for line in text.splitlines()]
     return "\n".join(lines).replace("\\", "\\\\").replace('"', '\\"')
 
@@ -60,5 +63,5 @@ def string_literal(text: str) -> str:
 
 
 def float_literal(value: float) -> str:
-    """Return a Python float literal; infinity is ``inf``."""
+    """Return a Python float literal, or the name ``inf`` for infinity."""
     return repr(float(value))

@@ -1,4 +1,7 @@
-"""Print a program in C-like syntax; each language overrides what differs."""
+"""Print a program in the syntax of C.
+
+The printers of other languages override what they write differently.
+"""
 
 from __future__ import annotations
 
@@ -30,14 +33,14 @@ from tltlc.program.tree import (
 )
 
 _OR, _AND, _COMPARISON, _SUM, _PRODUCT, _SIGN, _UNIT = range(7)
-"""Binding strengths of operators, loosest first."""
+"""Binding strengths of operators: a higher number binds more tightly."""
 
 _BINDING = {"+": _SUM, "-": _SUM, "*": _PRODUCT, "/": _PRODUCT}
 _LONGEST_COMMENT = 100
 _LONGEST_LIST = 60
 _LONGEST_ROW = 97
 _SHORT = 12
-"""Items shorter than this share a line."""
+"""If all items of a list are shorter than this, several of them share a line."""
 
 
 class Printer:
@@ -82,7 +85,7 @@ class Printer:
         return f"{self.name(statement.name)} = {self.text(statement.value)}{self.END}"
 
     def branches(self, statement: If, depth: int) -> list[str]:
-        """Return the lines of a branch: its cases and its ``else``."""
+        """Return the lines of an ``if`` with all its cases and its ``else``."""
         indent = self.INDENT * depth
         lines: list[str] = []
         for index, (test, body) in enumerate(statement.cases):
@@ -94,7 +97,7 @@ class Printer:
         return [*lines, *(f"{indent}{line}" for line in self.closing())]
 
     def head(self, test: str, *, first: bool) -> str:
-        """Return the first line of a case."""
+        """Return the line that begins a case: ``if`` or ``else if``, with its test."""
         return f"if ({test}) {{" if first else f"}} else if ({test}) {{"
 
     def otherwise(self) -> str:
@@ -102,15 +105,15 @@ class Printer:
         return "} else {"
 
     def closing(self) -> list[str]:
-        """Return the lines that end a branch."""
+        """Return the lines that end an ``if``."""
         return ["}"]
 
     def nothing(self, depth: int) -> list[str]:
-        """Return the lines of an empty body."""
+        """Return the lines of a body without statements, indented by ``depth`` levels."""
         return []
 
     def comment(self, text: str) -> list[str]:
-        """Return a comment, on as many lines as it needs."""
+        """Return the lines of a comment."""
         return [f"{self.COMMENT} {line}" for line in comment_lines(text)]
 
     # --- pieces of files --------------------------------------------------------------------------
@@ -124,7 +127,8 @@ class Printer:
     def items(cls, items: Sequence[str], depth: int = 0) -> str:
         """Return the items of a list as the text between its brackets.
 
-        The items are on one line if this is short, else on lines one level deeper than ``depth``.
+        If they are too long for one line, they are on lines of their own, indented one level deeper
+        than ``depth``.
         """
         line = ", ".join(items)
         if len(line) <= _LONGEST_LIST:
@@ -141,16 +145,16 @@ class Printer:
     # --- expressions ------------------------------------------------------------------------------
 
     def text(self, node: Expression, room: int = _OR) -> str:
-        """Return an expression, in parentheses if it binds more loosely than ``room``."""
+        """Return the text of an expression, in parentheses if its binding strength is lower than ``room``."""
         text, binding = self._text_and_binding(node)
         return text if binding >= room else f"({text})"
 
     def name(self, name: str) -> str:
-        """Return a variable as it is read or assigned."""
+        """Return the text of a variable, given its name in the program."""
         return name
 
     def real(self, value: float) -> str:
-        """Return a literal of a number that is not negative."""
+        """Return the literal of a number that is not negative."""
         return repr(value)
 
     def call(self, function: str, arguments: Sequence[str]) -> str:
@@ -161,7 +165,7 @@ class Printer:
         """Return the text of an expression and its binding strength."""
         match node:
             case Real(value):
-                # The text shows the sign of -0.0, which a comparison with 0 would miss.
+                # Look at the text, because -0.0 is not less than 0.
                 return (f"-{self.real(-value)}", _SIGN) if repr(value)[0] == "-" else (self.real(value), _UNIT)
             case Int(value):
                 return str(value), _SIGN if value < 0 else _UNIT
@@ -189,9 +193,10 @@ class Printer:
 
 
 def comment_lines(text: str) -> list[str]:
-    """Return a text as comment lines of visible characters.
+    """Return a text as lines of a comment, without the marks that begin the comment.
 
-    No line ends in a backslash, which would join it to the next line.
+    Characters that do not print are escaped. No line ends in a backslash, because this would join
+    it to the next line in some languages.
     """
     lines = wrap(printable_line(text), _LONGEST_COMMENT, break_long_words=False, break_on_hyphens=False)
     return [re.sub(r"\\$", r"\\ .", line) for line in lines]

@@ -1,6 +1,6 @@
 """The statements that compute the progress and the reward of one step, and whether the episode ends.
 
-They follow Algorithm 1, with the undiscounted terminal penalty.
+They follow Algorithm 1 (:mod:`tltlc.monitor.reward`), with the undiscounted terminal penalty.
 """
 
 from __future__ import annotations
@@ -24,19 +24,20 @@ from tltlc.program.tree import (
 STEPS, STEPS_REAL, BEST, REWARD, DONE, ENDS, VIOLATED, SATISFIED = (
     *("steps", "steps_real", "best", "reward", "done", "ends", "violated", "satisfied"),
 )
-"""Variables of the statements.
+"""The variables of these statements.
 
-They read ``STEPS`` and ``STEPS_REAL`` (the number of this step, from 1, as an int and as a real),
-and ``ENDS``, ``VIOLATED`` and ``SATISFIED`` (whether entering the new state ends episodes, and its
-verdict). They read and assign ``BEST`` (the best progress so far) and ``DONE`` (whether the episode
-is over), and assign ``REWARD``.
+``STEPS`` and ``STEPS_REAL`` are the number of this step, from 1, as an int and as a real number.
+``ENDS`` says whether an episode ends when it enters the new state, ``VIOLATED`` and ``SATISFIED``
+whether the new state has this verdict. The statements only read these five. They read and assign
+``BEST`` (the best progress so far) and ``DONE`` (whether the episode is over), and assign
+``REWARD``.
 """
 BEFORE = "before"
 """The best progress before this step."""
 
 
 def statements(fspa: Fspa) -> tuple[Statement, ...]:
-    """Return the statements, which run after the transition."""
+    """Return the statements of a spec's automaton, which run after the transition."""
     limit = fspa.limit_steps
     steps, zero = Variable(STEPS), Real(0.0)
     lines: list[Statement] = [] if fspa.judge == "goal" else _survived(limit)
@@ -58,10 +59,11 @@ def statements(fspa: Fspa) -> tuple[Statement, ...]:
 
 
 def _survived(limit: int | None) -> list[Statement]:
-    """Return statements for the progress of a spec that is judged at its limit.
+    """Return statements that compute the progress of a spec that is judged at its limit.
 
-    The progress is the share of the limit that the episode has survived. Without a limit, it is 1
-    if the spec is satisfied, else 0.
+    The progress is the share of the limit that the episode has survived. It is 1 as soon as the
+    spec is satisfied, and 0 as soon as it is violated. Without a limit, it is 0 until the spec is
+    satisfied.
     """
     cases: list[tuple[Expression, tuple[Statement, ...]]] = [
         (Variable(SATISFIED), (Assign(PROGRESS, Real(1.0)),)),

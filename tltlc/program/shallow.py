@@ -1,7 +1,7 @@
-"""Split deeply nested values, for languages whose parsers or compilers limit nesting.
+"""Split deeply nested expressions, for languages whose parsers or compilers limit nesting.
 
-Guards of many literals nest deep: the robustness of an edge is a chain of ``min`` and ``max`` over
-them.
+The robustness of a guard with many literals is such an expression: nested calls of ``min`` and
+``max``.
 """
 
 from __future__ import annotations
@@ -16,13 +16,13 @@ PART: Final = "part"
 """The prefix of new variables, which are numbered from 1."""
 
 _DEEPEST: Final = 30
-"""The same limit as for predicates, see :mod:`tltlc.program.arithmetic`."""
+"""The greatest depth of an expression, the same as for predicates (:mod:`tltlc.program.arithmetic`)."""
 
 
 def split_deep_values(statements: Sequence[Statement], taken: Collection[str] = ()) -> tuple[Statement, ...]:
-    """Return the statements of a state with parts of deep values moved to new variables.
+    """Return the statements of a state, with parts of deep expressions moved to new variables.
 
-    No name in ``taken`` begins with the prefix of the new variables.
+    The prefix of the new variables is chosen so that no name in ``taken`` begins with it.
     """
     prefix = PART
     while any(name.startswith(prefix) for name in taken):
@@ -47,7 +47,10 @@ def _split_statements(statements: Sequence[Statement], names: Iterator[str]) -> 
 
 
 def _cut(value: Expression, lines: list[Statement], names: Iterator[str]) -> tuple[Expression, int]:
-    """Return the value with its deep parts replaced by variables, and the depth that remains."""
+    """Return the expression with its deep parts replaced by variables, and its new depth.
+
+    Appends the declarations of these variables to ``lines``.
+    """
     if isinstance(value, Negate):
         operand, depth = _cut(value.operand, lines, names)
         return Negate(operand), depth

@@ -1,4 +1,4 @@
-"""Pieces of generated files that several languages share, besides the program itself."""
+"""Texts that generated files in several languages share: comments, and literals of strings and numbers."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _KINDS = {"ratio": "A ratio in"}
 def title_comment(fspa: Fspa, comment: Callable[[str], list[str]]) -> str:
     """Return the first comment: the name of the spec, its documentation and its formula.
 
-    ``comment`` turns a text into comment lines.
+    ``comment`` returns a text as the lines of a comment.
     """
     about = [comment(f"Monitor of the specification `{fspa.name}`, written by tltlc."), comment(fspa.doc)]
     about.append([line.replace(" ", "     ", 1) for line in comment(str(fspa.formula))])
@@ -28,8 +28,8 @@ def title_comment(fspa: Fspa, comment: Callable[[str], list[str]]) -> str:
 def field_comment(name: str, field: Signal | Param, escape: Callable[[str], str] = str) -> str:
     """Return the comment on a field called ``name``: its documentation and its possible values.
 
-    If the field has another name in the spec, the comment begins with that name. ``escape``
-    replaces characters that have a meaning in a comment; it is not applied to the values.
+    If the spec has another name for the field, the comment begins with this name. ``escape``
+    escapes characters that have a meaning in a comment; it is not applied to the values.
     """
     # A documented bool needs no "True or false."
     values = "" if field.doc and field.type == "bool" else values_sentence(field)
@@ -39,14 +39,14 @@ def field_comment(name: str, field: Signal | Param, escape: Callable[[str], str]
 
 
 def values_sentence(field: Signal | Param) -> str:
-    """Return a sentence about the possible values of a signal or param, in SI units."""
+    """Return a sentence with the possible values of a signal or param, in SI units: "In [0, 1].", for example."""
     if field.type == "bool":
         return "True or false."
     return f"{_KINDS.get(field.type, 'In')} {range_text(field.low, field.high)}{_UNITS.get(field.type, '')}."
 
 
 def example_sample(signals: Sequence[Signal], key: Callable[[str], str], equals: str) -> str:
-    """Return an example sample in the syntax of a call, for a comment."""
+    """Return an example of a sample in the language's syntax, for a comment: ``{ health: …, seen: true }``."""
     shown = [f"{key(signal.name)}{equals}{'true' if signal.type == 'bool' else '…'}" for signal in signals[:2]]
     text = f"{{ {', '.join([*shown, *(['…'] if len(signals) > 2 else [])])} }}" if signals else "{}"
     return printable_line(text) if len(text) <= _LONGEST_EXAMPLE else "signals"
@@ -79,5 +79,8 @@ def paragraphs(*parts: Sequence[str]) -> list[str]:
 
 
 def number_literal(value: float | None, otherwise: str = "") -> str:
-    """Return a number in the syntax that most languages share with Python; ``otherwise`` if it is None."""
+    """Return a float literal in the syntax that most languages share.
+
+    Returns ``otherwise`` if the value is None.
+    """
     return otherwise if value is None else repr(float(value))

@@ -1,4 +1,4 @@
-"""The statements of each state: they find the edge taken from the values of the atoms, and compute the results."""
+"""The statements of each state: they find the edge to take from the values of the atoms, and compute its results."""
 
 from __future__ import annotations
 
@@ -30,18 +30,22 @@ from tltlc.program.tree import (
 from tltlc.program.used_names import variables_read
 
 TARGET, ROBUSTNESS, PROGRESS, LIMITING = "target", "robustness", "progress", "limiting"
-"""Variables that the statements of a state assign.
+"""The variables that the statements of a state assign.
 
 They are the next state, the robustness of the edge taken, the progress of this step alone, and the
-index of the limiting atom (-1 for none).
+index of the limiting atom: the atom that keeps the most robust edge towards a goal from being
+taken, or -1 if there is none.
 """
 NEAREST, OTHER = "nearest", "other"
-"""Local variables: the robustness of the best prime so far, and of the prime that is compared with it."""
+"""Two local variables: the robustness of the best prime implicant so far, and of the one compared with it."""
 _ZERO: Final = Real(0.0)
 
 
 def state_statements(tables: MonitorTables, state: int, atoms: Sequence[str]) -> tuple[Statement, ...]:
-    """Return the statements of a state; ``atoms`` are the variables of the atoms' values."""
+    """Return the statements of a state, given its number.
+
+    ``atoms`` are the variables with the values of the atoms.
+    """
     return _StateCode(tables, state, atoms).statements()
 
 
@@ -51,7 +55,10 @@ class _StateCode:
         self._at_goal = tables.fspa.judge == "goal"
 
     def statements(self) -> tuple[Statement, ...]:
-        """Return a case for each edge. Exactly one guard is true, so the longest needs no test."""
+        """Return statements with a case for each edge.
+
+        Exactly one guard is true, so the edge with the longest guard needs no test.
+        """
         edges = sorted(self._tables.edges[self._state], key=lambda edge: (_size(edge.guard), edge.target))
         *tested, last = edges
         if not tested:
@@ -67,21 +74,21 @@ class _StateCode:
         base = Real(self._tables.base_progress[edge.target])
         if not improving:
             return (*lines, *self._progress(base), Assign(LIMITING, Int(-1)))
-        # The improving guards are all false, so each of their primes has a literal at or below 0. A literal that is
-        # known to be above 0 is therefore never the least one.
+        # The guards of the edges towards a goal are false, so each of their prime implicants has a literal at or
+        # below 0. A literal that the guard of this edge makes positive is therefore never the least one.
         above = [literal for literal in _shared(edge.guard.primes) if literal[1]]
         primes = [prime for candidate in improving for prime in candidate.guard.primes]
         lines += self._nearest([[literal for literal in prime if literal not in above] for prime in primes])
-        # The improving guards are false, so their robustness is at most 0 and needs no cap.
+        # The guards of the edges towards a goal are false, so their robustness is at most 0 without `min(0, …)`.
         share = BinaryNumber(
             "/", BinaryNumber("+", Real(1.0), Variable(NEAREST)), Real(float(self._tables.fspa.spec_size))
         )
         return (*lines, *self._progress(BinaryNumber("+", base, share) if base.value else share))
 
     def _progress(self, value: Expression) -> list[Statement]:
-        """Return the assignment of progress.
+        """Return the assignment of progress, or nothing for a spec that is judged at its limit.
 
-        There is none for a spec that is judged at its limit: its progress does not depend on edges.
+        The progress of such a spec does not depend on the edge taken.
         """
         return [Assign(PROGRESS, value)] if self._at_goal else []
 
@@ -95,10 +102,10 @@ class _StateCode:
         return tests[0] if len(tests) == 1 else Any(tuple(tests))
 
     def _robustness(self, primes: Sequence[Implicant]) -> Expression:
-        """Return the maximum over primes of the least literal, or an equal expression with fewer literals.
+        """Return the robustness of a guard: the maximum of the robustness of its prime implicants.
 
-        The two expressions may differ in the sign of 0. Literals that all primes share are factored
-        out.
+        The robustness of a prime implicant is its least literal. The expression is rewritten if
+        that saves literals, which may change the sign of a 0.
         """
         shared = _shared(primes)
         rest = [[literal for literal in prime if literal not in shared] for prime in primes]
@@ -111,7 +118,11 @@ class _StateCode:
         return _fold("min", [*terms, *(self._greatest(clause) for clause in clauses)])
 
     def _nearest(self, primes: Sequence[Sequence[tuple[int, bool]]]) -> list[Statement]:
-        """Return statements for the most robust prime (the first of equals) and the first atom that bounds it."""
+        """Return statements that find the most robust prime implicant and its least literal.
+
+        Of equal prime implicants or literals, the first one counts. The robustness is assigned to
+        ``NEAREST``, the index of the literal's atom to ``LIMITING``.
+        """
         first, *following = primes
         lines: list[Statement] = [Declare(NEAREST, "real", self._least(first), changes=bool(following))]
         lines += self._limiting_statements(first, NEAREST)
@@ -122,11 +133,14 @@ class _StateCode:
                 lines.append(Assign(OTHER, self._least(prime)))
             better = (Assign(NEAREST, Variable(OTHER)), *self._limiting_statements(prime, OTHER))
             lines.append(If(((Compare(">", Variable(OTHER), Variable(NEAREST)), better),)))
-        # If primes have one literal each, nothing is compared with NEAREST. Without a use, its declaration is dropped.
+        # A single prime implicant with one literal is compared with nothing: drop NEAREST if nothing reads it.
         return lines if self._at_goal or NEAREST in variables_read(lines) else lines[1:]
 
     def _limiting_statements(self, prime: Sequence[tuple[int, bool]], value: str) -> list[Statement]:
-        """Return statements for the first atom of the prime whose literal has the given value."""
+        """Return statements that assign to ``LIMITING`` the first atom of ``prime`` whose literal has this value.
+
+        ``value`` is the variable with the value.
+        """
         *before, (last, _) = prime
         otherwise = Assign(LIMITING, Int(last))
         if not before:
@@ -149,7 +163,7 @@ class _StateCode:
 
 
 def _shared(primes: Sequence[Implicant]) -> list[tuple[int, bool]]:
-    """Return the literals that all primes contain."""
+    """Return the literals that all prime implicants contain."""
     return [literal for literal in primes[0] if all(literal in prime for prime in primes)]
 
 
@@ -158,7 +172,10 @@ def _size(guard: Guard) -> int:
 
 
 def _fold(function: str, terms: Sequence[Expression]) -> Expression:
-    """Return ``min`` or ``max`` of several terms; without terms, 1 (the ``min`` of no literals)."""
+    """Return ``min`` or ``max`` of several terms.
+
+    Returns 1 if there are none, which is the robustness of a true guard.
+    """
     if not terms:
         return Real(1.0)
     return reduce(lambda left, right: NumericCall("min" if function == "min" else "max", (left, right)), terms)

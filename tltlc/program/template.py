@@ -1,4 +1,4 @@
-"""Fill the templates of generated code: texts with places for the parts that differ between monitors."""
+"""Fill templates: texts of generated code with placeholders for the parts that differ between monitors."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ _PLACE = re.compile(r"@@(\w+)@@")
 
 
 def fill_template(file: str, pieces: Mapping[str, str], present: Collection[str] = ()) -> str:
-    """Return the text of a file of the folder ``templates`` with its places filled.
+    """Return the text of a file in ``backends/templates`` with its placeholders replaced.
 
-    ``@@NAME@@`` becomes ``pieces["NAME"]``. A line that has only a place disappears if the piece is
-    empty. Lines from ``@@if NAME@@`` to ``@@end@@``, which may be comments and do not nest, are kept
-    if NAME is in ``present``.
+    ``@@NAME@@`` is replaced by ``pieces["NAME"]``. If this is empty, a line with nothing but the
+    placeholder is removed. The lines between ``@@if NAME@@`` and ``@@end@@`` are kept if NAME is in
+    ``present``, and removed otherwise; these two marks may be in comments and cannot be nested.
 
     Raises:
-        KeyError: there is no piece for a place.
+        KeyError: ``pieces`` has no entry for a placeholder.
     """
     path = os.path.join(os.path.dirname(__file__), "..", "backends", "templates", file)  # noqa: PTH118, PTH120 (as codes.py)
     with open(path, encoding="utf-8") as template:  # noqa: PTH123
@@ -27,7 +27,7 @@ def fill_template(file: str, pieces: Mapping[str, str], present: Collection[str]
 
 
 def fill(text: str, pieces: Mapping[str, str], present: Collection[str] = ()) -> str:
-    """Return a text with its places filled, as in :func:`fill_template`; places inside pieces are left alone."""
+    """Return a text with its placeholders replaced as in :func:`fill_template`, except those inside ``pieces``."""
     remaining = _BLOCK.sub(lambda block: block[2] if block[1] in present else "", text)
     remaining = _LINE.sub(lambda line: line[0] if pieces[line[1]] else "", remaining)
     return _PLACE.sub(lambda place: pieces[place[1]], remaining)

@@ -1,8 +1,8 @@
 """The statements and expressions of a monitor's step.
 
-Numbers are IEEE doubles. Operations run in the order written, and each result is rounded. Where an
-operation has no value in Python (division by 0, root of a negative number), the printed program
-records that the atom has no value, and continues.
+Numbers are IEEE doubles. Operations run in the order written, and each result is rounded. If an
+operation has no value (division by 0, root of a negative number), the monitor reports that the atom
+has no value.
 """
 
 from __future__ import annotations
@@ -16,8 +16,8 @@ Type = Literal["real", "int", "bool"]
 Function = Literal["divide", "power", "sqrt", "exp", "tanh", "abs", "min", "max"]
 """The numeric functions.
 
-``min`` and ``max`` take two arguments, and return the first one if both are equal: ``b < a ? b : a``
-and ``b > a ? b : a``.
+``min`` and ``max`` take two arguments, and return the first one if both are equal:
+``b < a ? b : a`` and ``b > a ? b : a``.
 """
 
 FAILING: Final[frozenset[Function]] = frozenset({"divide", "power", "sqrt", "exp"})
@@ -50,7 +50,7 @@ class Bool:
 
 @record
 class Variable:
-    """A variable, by its name in the program; :class:`tltlc.program.names.VariableNames` gives these names."""
+    """A variable, by its name in the program, which :class:`tltlc.program.names.VariableNames` has chosen."""
 
     name: str
 
@@ -64,7 +64,7 @@ class Negate:
 
 @record
 class BinaryNumber:
-    """``left op right`` of two numbers."""
+    """An arithmetic operation on two numbers."""
 
     op: Literal["+", "-", "*", "/"]
     left: Expression
@@ -81,7 +81,7 @@ class NumericCall:
 
 @record
 class Compare:
-    """A comparison of two numbers of one type."""
+    """A comparison of two numbers of the same type."""
 
     op: Literal["<", "<=", ">", ">=", "==", "!="]
     left: Expression
@@ -90,21 +90,21 @@ class Compare:
 
 @record
 class Not:
-    """A test that holds if its operand fails."""
+    """The negation of a test."""
 
     operand: Expression
 
 
 @record
 class All:
-    """``and`` of at least two tests, evaluated left to right up to the first that fails."""
+    """The ``and`` of at least two tests, evaluated from left to right up to the first that is false."""
 
     args: tuple[Expression, ...]
 
 
 @record
 class Any:
-    """``or`` of at least two tests, evaluated left to right up to the first that holds."""
+    """The ``or`` of at least two tests, evaluated from left to right up to the first that is true."""
 
     args: tuple[Expression, ...]
 
@@ -117,9 +117,10 @@ Expression = Union[Real, Int, Bool, Variable, Negate, BinaryNumber, NumericCall,
 
 @record
 class Declare:
-    """A new variable.
+    """The declaration of a variable.
 
-    Without a value, it is assigned later: exactly once on each path, unless it ``changes``.
+    If it has no value, each path through the program assigns one later. ``changes`` is true if the
+    variable is then assigned again.
     """
 
     name: str
@@ -138,7 +139,10 @@ class Assign:
 
 @record
 class If:
-    """A branch: runs the body of the first case whose test holds, else ``otherwise``."""
+    """Runs the body of the first case whose test is true, or ``otherwise`` if no test is.
+
+    A case is a test and its body.
+    """
 
     cases: tuple[tuple[Expression, tuple[Statement, ...]], ...]
     otherwise: tuple[Statement, ...] = ()

@@ -1,4 +1,7 @@
-"""Find the variables and functions that statements use; some compilers warn about unused ones."""
+"""Find the variables and functions that statements use.
+
+The backends declare only these, since some compilers warn about unused ones.
+"""
 
 from __future__ import annotations
 
@@ -23,17 +26,20 @@ from tltlc.program.tree import (
 
 
 def variables_read(statements: Iterable[Statement]) -> frozenset[str]:
-    """Return the variables that are read."""
+    """Return the names of the variables that the statements read."""
     return frozenset(node.name for node in parts(_values(statements)) if isinstance(node, Variable))
 
 
 def functions_called(statements: Iterable[Statement]) -> frozenset[Function]:
-    """Return the functions that are called."""
+    """Return the functions that the statements call."""
     return frozenset(node.function for node in parts(_values(statements)) if isinstance(node, NumericCall))
 
 
 def parts(expressions: Iterable[Expression]) -> Iterator[Expression]:
-    """Yield every expression and subexpression. An explicit stack handles deeply nested predicates."""
+    """Yield the expressions and all their subexpressions.
+
+    Uses a stack and no recursion, so that deeply nested predicates cause no RecursionError.
+    """
     stack = list(expressions)
     while stack:
         node = stack.pop()

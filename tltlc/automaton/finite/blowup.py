@@ -1,4 +1,4 @@
-"""Find the part of a spec that makes its automaton outgrow the budget."""
+"""Find the clause of a spec that makes its automaton larger than the budget allows."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ from tltlc.resolve.spec import Conjunct, Spec
 ADVICE: Final = "split the spec, shorten the bounds, or declare atoms that never hold together `exclusive`"
 _RECURSION_ROOM = 10_000
 _PART_BUDGET = 2_000
-"""The state budget of one part alone: enough to rank the parts, small enough for a quick answer."""
+"""The state budget for the automaton of one clause alone: enough to compare the clauses, small enough to be quick."""
 
 
 class Size(NamedTuple):
-    """The size of a part's own automaton: a number to compare parts by, and its text in messages."""
+    """The size of the automaton of one clause alone: a number for comparing clauses, and its text in messages."""
 
     number: int
     words: str
@@ -33,9 +33,9 @@ class Size(NamedTuple):
 
 @contextmanager
 def recursion_room() -> Iterator[None]:
-    """Raise Python's recursion limit inside the ``with`` block.
+    """Raise Python's recursion limit inside the ``with`` block, for functions that recurse over diagrams.
 
-    Diagrams are as deep as a spec has atoms and temporal subformulas.
+    A diagram can be as deep as the spec has atoms and temporal subformulas.
     """
     before = sys.getrecursionlimit()
     sys.setrecursionlimit(max(before, _RECURSION_ROOM))
@@ -46,14 +46,17 @@ def recursion_room() -> Iterator[None]:
 
 
 def budget_error(spec: Spec, reason: Exception, state_budget: int) -> TltlError:
-    """Return the error for a spec whose automaton outgrew a budget: TLT0501 (states) or TLT0502 (prime implicants)."""
+    """Return the error for a spec whose automaton is too large.
+
+    It is TLT0502 if there are too many edges or prime implicants, and TLT0501 otherwise.
+    """
     too_large = f"needs more than {state_budget} states" if isinstance(reason, OutOfStates) else failure_text(reason)
     remaining = WORK["states of blamed parts"]
 
     def size(part: Conjunct, spec: Spec) -> Size | None:
         nonlocal remaining
         if remaining < 0:
-            # A message names fewer parts than were measured so far.
+            # The message names at most three clauses, and more have been measured by now.
             return Size(0, "")
         measured = _size(part, spec)
         remaining -= measured.number if measured else 0
@@ -63,7 +66,7 @@ def budget_error(spec: Spec, reason: Exception, state_budget: int) -> TltlError:
 
 
 def failure_text(reason: Exception) -> str:
-    """Return why the automaton failed, for reasons other than its budget of states or work."""
+    """Return in words why the automaton could not be built, for reasons other than a budget of states or work."""
     if isinstance(reason, LabelsTooLong):
         return f"needs labels of more than {WORK['label nodes']} operators and atoms"
     return "needs formulas that nest too deeply" if isinstance(reason, RecursionError) else "needs too much memory"
@@ -72,17 +75,18 @@ def failure_text(reason: Exception) -> str:
 def error_with_clauses(
     spec: Spec, reason: Exception, too_large: str, size: Callable[[Conjunct, Spec], Size | None], advice: str = ADVICE
 ) -> TltlError:
-    """Return the error, labelled with the parts of the spec whose own automata are largest.
+    """Return the error, with labels on the clauses of the spec whose own automata are largest.
 
-    ``too_large`` says why the automaton failed, unless its guards are the reason.  ``size`` returns
-    None for a part that is too large alone.
+    ``too_large`` says why the automaton could not be built; it is not used if ``reason`` is
+    TooManyPrimes.  ``size`` returns the size of a clause's own automaton, or None if it is too
+    large.
     """
     sizes: dict[Conjunct, Size | None] = {}
     alone: list[Conjunct] = []
     for part in spec.parts:
         sizes[part] = size(part, spec)
         if sizes[part] is None:
-            # Blame the first part that is too large alone.
+            # One clause that is too large alone is cause enough.
             alone.append(part)
             break
     worst = sorted(
@@ -115,9 +119,10 @@ def _guard_advice(spec: Spec, reason: TooManyPrimes) -> str:
 
 
 def _cause_label(part: Conjunct) -> Label:
-    """Return a label on the part's longest bound, or on the part if it has no bound.
+    """Return a label on the clause's longest bound, or on the clause if it has no bound.
 
-    An automaton may have to count a bound of n samples from n different starts at once.
+    Long bounds make automata large: a bound of n samples may have to be counted from n different
+    starts at once.
     """
     bound = max(part.bounds, key=lambda bound: bound.samples, default=None)
     if bound is None:
@@ -126,7 +131,10 @@ def _cause_label(part: Conjunct) -> Label:
 
 
 def _size(part: Conjunct, spec: Spec) -> Size | None:
-    """Return the number of states of a part's own automaton; None for :data:`_PART_BUDGET` states or more."""
+    """Return the number of states of a clause's own automaton; None if it is too large to build.
+
+    Too large are :data:`_PART_BUDGET` states or more, or diagrams of too many steps.
+    """
     normal = negation_normal_form(part.formula)
     successors = Successors([atom.name for atom in spec.atoms], TransitionDiagrams(steps=100_000))
     successors.number_variables(normal)

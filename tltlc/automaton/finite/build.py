@@ -1,7 +1,7 @@
-"""Build the automaton of a resolved spec over finite traces: run the stages of this package in order.
+"""Build the automaton of a resolved spec over finite traces.
 
-formula -> normal form -> minimal machine -> states with acceptance -> distances, verdicts, guards,
-labels -> :class:`~tltlc.automaton.fspa.Fspa`.
+The stages are: formula -> negation normal form -> minimal machine (accepting transitions) -> states
+with acceptance -> distances, verdicts, guards, labels -> :class:`~tltlc.automaton.fspa.Fspa`.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ def build(spec: Spec, *, state_budget: int = DEFAULT_STATE_BUDGET) -> Fspa:
 
     Raises :class:`~tltlc.diagnostics.diagnostic.TltlError`: TLT0501 if the construction needs more
     than ``state_budget`` states or the labels get too long, TLT0502 if there are too many edges or
-    prime implicants.  Both name the part of the spec that is to blame.
+    prime implicants.  Both point at the clauses that make the automaton large.
     """
     with recursion_room():
         try:
@@ -52,7 +52,11 @@ def minimal_machine(
     exclusive: Iterable[Sequence[int]] = (),
     diagrams: TransitionDiagrams | None = None,
 ) -> tuple[Successors, Machine, int]:
-    """Return the tables of a formula's minimal machine, the machine, and the letters that ``exclusive`` allows."""
+    """Return the minimal machine of a formula, and what is needed to use it.
+
+    Returns the :class:`Successors` with the machine's obligations and transitions, the machine, and
+    a guard that is true on the letters that ``exclusive`` allows.
+    """
     normal = negation_normal_form(formula)
     diagrams = TransitionDiagrams() if diagrams is None else diagrams
     successors = Successors(atoms, diagrams)
@@ -62,7 +66,10 @@ def minimal_machine(
 
 
 def _build(spec: Spec, state_budget: int) -> Fspa:
-    """Build the automaton; if the given order of the atoms makes large diagrams, use another one."""
+    """Build the automaton, with its atoms in another order if the given order makes the diagrams large.
+
+    The result has its atoms in the given order in any case.
+    """
     order = better_order(spec.formula, [atom.name for atom in spec.atoms])
     if order is None:
         return _build_in_order(spec, state_budget)
@@ -126,15 +133,15 @@ def _build_in_order(spec: Spec, state_budget: int, steps: int | None = None) -> 
 
 
 # --- states ---------------------------------------------------------------------------------------
-# A state is a leaf: the obligation that remains, and whether the trace may end here.
+# A state of the automaton is a leaf of the machine: the obligation that remains, and whether the state is accepting.
 
 
 def state_leaves(minimal: Machine, diagrams: TransitionDiagrams) -> list[int]:
     """Return the states of the automaton, the initial one first.
 
-    No trace is empty, so the initial state may accept or reject.  If exactly one leaf of its
-    obligation is reached, that leaf is the initial state, too.  Otherwise the initial state is the
-    rejecting leaf.
+    No trace is empty, so it does not matter whether the initial state accepts.  It is accepting if
+    transitions reach its obligation only with an accepting leaf: the two are then one state.
+    Otherwise it is rejecting.
     """
     reached = diagrams.leaves(*minimal.transitions.values())
     rejecting, accepting = diagrams.leaf((minimal.initial, 0)), diagrams.leaf((minimal.initial, 1))
@@ -143,7 +150,7 @@ def state_leaves(minimal: Machine, diagrams: TransitionDiagrams) -> list[int]:
 
 
 def _targets(minimal: Machine, diagrams: TransitionDiagrams) -> dict[int, list[int]]:
-    """Map each state, the initial one first, to the states that it leads to, with one edge to each.
+    """Map each state, the initial one first, to its successors.
 
     Raises :class:`TooManyPrimes` if there are more edges than the row "edges" of ``WORK`` allows.
     """
@@ -159,10 +166,7 @@ def _targets(minimal: Machine, diagrams: TransitionDiagrams) -> dict[int, list[i
 
 
 def distances(targets: Mapping[int, list[int]], accepting: Callable[[int], bool]) -> dict[int, int | None]:
-    """Return the least number of transitions from each state to an accepting state, None for traps.
-
-    Searches backward, breadth-first.
-    """
+    """Return the least number of transitions from each state to an accepting state, None for traps."""
     sources: dict[int, list[int]] = {state: [] for state in targets}
     for state, successors in targets.items():
         for target in successors:
@@ -180,7 +184,7 @@ def distances(targets: Mapping[int, list[int]], accepting: Callable[[int], bool]
 
 
 def breadth_first(initial: int, targets: Mapping[int, list[int]], distance: Mapping[int, int | None]) -> list[int]:
-    """Return the states in breadth-first order; a state's successors are sorted by distance, traps last."""
+    """Return the states in breadth-first order, with the successors of each state sorted by distance, traps last."""
     position = {state: index for index, state in enumerate(targets)}
 
     def rank(state: int) -> tuple[bool, int, int]:
@@ -202,8 +206,9 @@ def verdicts(
 ) -> dict[int, Verdict]:
     """Return the verdict of each state.
 
-    ``satisfied`` if no rejecting state can be reached, ``violated`` if no accepting state can be
-    reached, else ``holding`` for accepting states and ``pending`` for rejecting ones.
+    It is ``satisfied`` if no rejecting state can be reached, and ``violated`` if no accepting state
+    can be reached.  Otherwise it is ``holding`` for accepting states, ``pending`` for rejecting
+    ones.
     """
     to_rejection = distances(targets, lambda state: not accepting(state))
 
@@ -237,8 +242,8 @@ def _labels(
 ) -> dict[int, Formula]:
     """Return the label of every state, with the operators of the source (``a -> b``, not ``!a | b``).
 
-    Raises :class:`LabelsTooLong` if all labels together have more nodes than the row "label nodes"
-    of ``WORK`` allows.
+    Raises :class:`LabelsTooLong` if all labels together have more operators and atoms than the row
+    "label nodes" of ``WORK`` allows.
     """
     diagrams = successors.diagrams
     labels = Labels(successors, minimal, negation_normal_form(source), allowed)
@@ -257,10 +262,10 @@ def _labels(
 
 
 def _arrow_forms(source: Formula, labels: Labels) -> dict[Formula, Formula]:
-    """Map the normal form of each ``->`` and ``<->`` in the source to the formula as written.
+    """Map the negation normal form of each ``->`` and ``<->`` in the source to the formula as written.
 
-    Leaves out parts that are too long to read.  If the remaining parts together have more nodes
-    than the row "arrow nodes" of ``WORK`` allows, leaves out the largest ones too.
+    Leaves out subformulas that are too long to read.  If the others together have more operators
+    and atoms than the row "arrow nodes" of ``WORK`` allows, the largest of them are left out too.
     """
     parts = [part for part in source.walk() if part.op in ("implies", "iff")]
     remaining = WORK["arrow nodes"]
@@ -274,10 +279,10 @@ def _arrow_forms(source: Formula, labels: Labels) -> dict[Formula, Formula]:
 
 
 def _restore_arrows(formula: Formula, restored: dict[Formula, Formula]) -> Formula:
-    """Return the formula with ``->`` and ``<->`` in every part that the source writes with them.
+    """Return the formula with each subformula that the source writes with ``->`` or ``<->`` as in the source.
 
-    ``restored`` maps formulas to their results.  It starts with the parts of the source; this
-    function adds its results.
+    ``restored`` is the result of :func:`_arrow_forms`.  The results of this function are added to
+    it.
     """
     for node in formula.bottom_up(known=restored):
         restored[node] = rebuild(node, tuple(restored[argument] for argument in node.args))

@@ -1,11 +1,11 @@
 """Build the machines of large conjunctions and disjunctions part by part.
 
-Each part gets its own minimal machine.  Then the product of the two smallest machines is built and
-minimised, until one machine is left.
+Each operand gets its own minimal machine.  Then the two smallest machines are replaced by the
+minimal machine of their product, again and again, until one machine is left.
 
-Exploring a formula as a whole visits every combination of the parts' obligations, even combinations
-that minimisation would merge at once.  This is cheap for rules of games, which are small, but not
-for random conjunctions of dozens of clauses.
+The alternative is to explore the formula as a whole.  That visits every combination of obligations
+of the operands, even combinations that are merged in the end.  It is faster for small formulas, as
+most rules of games are, but too slow for conjunctions of dozens of clauses.
 """
 
 from __future__ import annotations
@@ -21,21 +21,25 @@ from tltlc.io.limits import WORK
 from tltlc.logic.formula import Formula
 
 WHOLE_STEPS = 5_000
-"""Steps that exploring the whole formula may take before the parts are tried: a few milliseconds."""
+"""Steps for exploring a formula as a whole, a few milliseconds.
+
+A formula that takes more is built part by part.
+"""
 
 
 def minimal_machine(successors: Successors, formula: Formula, state_budget: int, allowed: int = ACCEPT) -> Machine:
-    """Return the minimal machine of a formula in negation normal form: as a whole if that is cheap, else by parts.
+    """Return the minimal machine of a formula in negation normal form.
 
-    Raises the errors of :func:`tltlc.automaton.finite.machine.machine`, and :class:`OutOfStates` if
-    all parts and products together need more states than both the row "states of parts" of
-    :data:`~tltlc.io.limits.WORK` and three times the budget.
+    Explores the formula as a whole if that takes few steps, and builds it part by part otherwise.
+    ``allowed`` and the errors are as in :func:`tltlc.automaton.finite.machine.machine`.  Also
+    raises :class:`OutOfStates` if all machines together need more states than both the row "states
+    of parts" of :data:`~tltlc.io.limits.WORK` and three times ``state_budget``.
     """
     return _Composition(successors, state_budget, allowed).minimal(formula)
 
 
 class _Composition:
-    """Builds the machine of one formula; counts the states of all intermediate machines."""
+    """Builds the machine of one formula, and counts the states of all machines built on the way."""
 
     def __init__(self, successors: Successors, state_budget: int, allowed: int) -> None:
         self._successors = successors
@@ -67,7 +71,7 @@ class _Composition:
         machines = [self.minimal(part) for part in formula.args]
         if self._estimate.exceeds(machines, formula.op == "and", self._state_budget):
             raise OutOfStates
-        # The running number breaks ties, so that the order is deterministic.
+        # Machines of equal size are ordered by their number, so that the result is always the same.
         heap = [(len(minimal.transitions), number, minimal) for number, minimal in enumerate(machines)]
         heapify(heap)
         number = len(heap)
@@ -80,9 +84,9 @@ class _Composition:
 
 
 def _embed(successors: Successors, minimal: Machine) -> int:
-    """Return an obligation for the machine's initial state.
+    """Return an obligation with the language of a machine.
 
-    Each state of the machine becomes a variable with a known transition.
+    Each state of the machine becomes a variable of obligations, with the state's transition.
     """
     diagrams = successors.diagrams
     obligations: dict[int, int] = {}
@@ -100,8 +104,11 @@ def _embed(successors: Successors, minimal: Machine) -> int:
 
 
 def _constant_obligation(diagrams: TransitionDiagrams, state: int, transition: int) -> int | None:
-    """Return TRUE or FALSE for a state that every possible letter leads back to, None for the others."""
-    # The empty letter is always possible: if it leads elsewhere, the other letters do not matter.
+    """Return TRUE or FALSE if every letter that can occur leads back to the state, None otherwise.
+
+    It is TRUE if the state accepts these letters.
+    """
+    # The letter in which no atom holds can always occur. If it leads to another state, the result is None.
     leaf = transition
     while diagrams.variable[leaf] != LEAF:
         leaf = diagrams.low[leaf]

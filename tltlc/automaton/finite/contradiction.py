@@ -1,4 +1,4 @@
-"""Find the parts of an unsatisfiable spec that contradict each other."""
+"""Find the clauses of an unsatisfiable spec that contradict each other."""
 
 from __future__ import annotations
 
@@ -15,18 +15,21 @@ from tltlc.resolve.spec import Conjunct, Spec
 _MOST_PARTS = 40
 _STATES = 1_000
 _STEPS = 50_000
-"""Limits of the search, above which it gives up: a warning must not take longer than the compilation."""
+"""Limits of the search: the most clauses that it tries to leave out, and the most states and steps of an automaton.
+
+A warning must not take longer than the compilation.
+"""
 
 
 Decision = Callable[[Sequence[Conjunct], Spec], bool]
-"""Whether it can be proved that no trace satisfies all of the parts."""
+"""A function that returns True if it can prove that no trace satisfies all of the given clauses of a spec."""
 
 
 def contradiction(spec: Spec, decision: Decision | None = None) -> tuple[Conjunct, ...]:
-    """Return parts of an unsatisfiable spec that contradict each other and are all needed for that.
+    """Return clauses of an unsatisfiable spec that contradict each other, without any that are not needed for this.
 
-    ``decision`` decides whether parts contradict each other, by default over finite traces.  If a
-    decision takes too much work, some of the parts returned may not be needed.
+    ``decision`` decides whether clauses contradict each other, by default over finite traces.  If a
+    decision takes too much work, some of the returned clauses may not be needed.
     """
     decision = decision or unsatisfiable
     needed = list(spec.parts)
@@ -38,7 +41,10 @@ def contradiction(spec: Spec, decision: Decision | None = None) -> tuple[Conjunc
 
 
 def unsatisfiable(parts: Sequence[Conjunct], spec: Spec) -> bool:
-    """Whether it can be proved, within the limits, that no finite trace satisfies all of the parts."""
+    """Whether no finite trace satisfies all of these clauses.
+
+    Returns False as well if a proof would exceed the limits of the search.
+    """
     whole = and_(*(part.formula for part in parts))
     names = [atom.name for atom in spec.atoms]
     try:
@@ -49,6 +55,6 @@ def unsatisfiable(parts: Sequence[Conjunct], spec: Spec) -> bool:
     except (OutOfStates, OutOfSteps, RecursionError):
         return False
     diagrams = successors.diagrams
-    # The minimal machine of `false` has one state: a trap that no possible letter leaves or accepts in.
+    # The minimal machine of `false` has one state, and no letter is accepted in it.
     leaves = [leaf for leaf in diagrams.leaves(*machine.transitions.values()) if leaf != IMPOSSIBLE]
     return len(machine.transitions) == 1 and not any(diagrams.value[leaf][1] for leaf in leaves)

@@ -1,13 +1,13 @@
 """Prove early that a large conjunction or disjunction needs more states than its budget.
 
-Two states differ if some word is accepted from one of them and not from the other.  Take a list of
-words.  The *answer* of a state is the set of these words that it accepts.  The minimal machine has
-at least as many states as the reachable states have different answers.  Each part computes its own
-answer: a conjunction accepts the words that all parts accept, a disjunction the words that at least
-one part accepts.
+The machines of the parts are known; their product is the machine of the whole.  Take a fixed list
+of words.  The *answer* of a state is the set of these words that are accepted from it.  States with
+different answers have different languages, so the minimal machine has at least as many states as
+there are answers.  The answer of a state of the product follows from the answers of its parts:
+their intersection for a conjunction, their union for a disjunction.
 
-The words use only letters with at most one atom.  Other letters could only add states, so a count
-over the budget is a proof.
+The words use only letters in which at most one atom holds.  Other letters could only add states, so
+a count over the budget is a proof.
 """
 
 from __future__ import annotations
@@ -23,13 +23,13 @@ from tltlc.automaton.finite.machine import Machine
 from tltlc.automaton.transitions import IMPOSSIBLE, TransitionDiagrams
 
 _NONE: Final = -1
-"""The letter without an atom; every other letter is the index of its atom."""
+"""The letter in which no atom holds; any other letter is the index of the one atom that holds."""
 _FEW: Final = 500
-"""The count gives up if, after more states than this, less than half of the answers are distinct."""
+"""How many states are counted before the count may give up, if less than half of them have distinct answers."""
 
 Word = list[int]
 _Table = dict[int, dict[int, tuple[int, int]]]
-"""By letter and state: the state that the letter leads to, and 1 if the trace may end with it, else 0."""
+"""For each letter and state: the next state, and 1 if a trace that ends with the letter is accepted, 0 otherwise."""
 
 
 class _EstimateStopped(Exception):
@@ -37,7 +37,10 @@ class _EstimateStopped(Exception):
 
 
 class Estimate:
-    """Counts the states of products; ``steps`` bounds the look-ups of all counts together."""
+    """Counts the states of products of machines.
+
+    All counts together take at most ``steps`` steps.
+    """
 
     def __init__(self, diagrams: TransitionDiagrams, steps: int) -> None:
         self._diagrams = diagrams
@@ -45,10 +48,10 @@ class Estimate:
         self._leaf_without_atoms: dict[int, int] = {}
 
     def exceeds(self, machines: Sequence[Machine], conjunction: bool, budget: int) -> bool:
-        """Whether the conjunction, or disjunction, of the machines certainly has more than ``budget`` states.
+        """Whether the minimal machine of the conjunction or disjunction has more than ``budget`` states for certain.
 
-        Also returns False if this is unknown: the steps ran out, or the words distinguish too few
-        states.
+        False may also mean that this is unknown, because no steps are left, or because too few
+        states have different answers.
         """
         if prod(len(machine.transitions) for machine in machines) <= budget:
             return False
@@ -83,7 +86,7 @@ class Estimate:
             raise _EstimateStopped
 
     def _table(self, machine: Machine) -> _Table:
-        """Return the moves of a machine, for the letters that ``exclusive`` allows."""
+        """Return the table of a machine, with the letters that ``exclusive`` allows."""
         value = self._diagrams.value
         leaves = {state: self._leaves(transition) for state, transition in machine.transitions.items()}
         letters = sorted(set().union(*leaves.values()))
@@ -91,13 +94,16 @@ class Estimate:
         table: _Table = {}
         for letter in letters:
             reached = {state: of_state.get(letter, of_state[_NONE]) for state, of_state in leaves.items()}
-            # Impossible letters are left out; they are the same for all machines.
+            # Leave out letters that `exclusive` rules out. They are the same for all machines.
             if IMPOSSIBLE not in reached.values():
                 table[letter] = {state: value[leaf] for state, leaf in reached.items()}
         return table
 
     def _leaves(self, node: int) -> dict[int, int]:
-        """Map letters to the leaves of a transition; a missing letter leads to the leaf of ``_NONE``."""
+        """Map letters to the leaves of a transition.
+
+        A letter that is missing has the same leaf as ``_NONE``.
+        """
         atom, low, high = self._diagrams.variable, self._diagrams.low, self._diagrams.high
         leaves = {}
         while atom[node] != LEAF:
@@ -107,7 +113,7 @@ class Estimate:
         return {_NONE: node, **leaves}
 
     def _without_atoms(self, node: int) -> int:
-        """Return the leaf below a node for the letter without further atoms; cached for all nodes on the path."""
+        """Return the leaf below a node for the letter in which no further atom holds."""
         atom, low, known = self._diagrams.variable, self._diagrams.low, self._leaf_without_atoms
         path = []
         while node not in known and atom[node] != LEAF:
@@ -119,9 +125,9 @@ class Estimate:
         return leaf
 
     def _reachable_states(self, initial: Sequence[int], tables: Sequence[_Table]) -> Iterator[tuple[int, ...]]:
-        """Yield the reachable states of the product, breadth-first: tuples with one state of each machine."""
+        """Yield the reachable states of the product, which have one state of each machine, breadth-first."""
         letters = sorted({letter for table in tables for letter in table} - {_NONE})
-        # The machines that distinguish a letter from the empty letter, each with its moves.
+        # For each letter: the machines for which it differs from the letter without atoms, with their next states.
         seeing = {
             letter: [
                 (place, moves)
@@ -148,9 +154,9 @@ class Estimate:
 
 
 def _settling_word(machine: Machine, table: _Table, accepting: bool) -> Word | None:
-    """Return a shortest word that a machine accepts or, if not ``accepting``, rejects.
+    """Return a shortest word that a machine accepts (if ``accepting``) or rejects (if not).
 
-    Returns None if there is no such word over the letters of the table.
+    Returns None if the letters of the table have no such word.
     """
     queue: list[tuple[int, Word]] = [(machine.initial, [])]
     seen = {machine.initial}
@@ -166,11 +172,11 @@ def _settling_word(machine: Machine, table: _Table, accepting: bool) -> Word | N
 
 
 def _words(settling: Sequence[Word | None]) -> list[Word]:
-    """Return words whose acceptance depends on one machine at a time.
+    """Return words that distinguish the states of one machine at a time.
 
     ``settling`` has one word for each machine: for a conjunction one that it accepts, for a
-    disjunction one that it rejects.  For each machine, the words of all the others come first,
-    followed by every suffix of its own word.
+    disjunction one that it rejects.  For each machine and each suffix of its own word, the result
+    has a word: the words of all other machines, then the suffix.
     """
     if None in settling:
         return []
@@ -183,7 +189,7 @@ def _words(settling: Sequence[Word | None]) -> list[Word]:
 
 
 def _answers(table: _Table, words: Sequence[Word]) -> dict[int, int]:
-    """Return for each state of a machine the words that it accepts, as a bit set."""
+    """Return, for each state of a machine, the words accepted from it: bit ``i`` is set for ``words[i]``."""
     answers = {}
     for start in table[_NONE]:
         bits = 0

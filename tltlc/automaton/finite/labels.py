@@ -1,9 +1,10 @@
 """Label each state with a short formula that says what remains to be done there.
 
-First, temporal subformulas are removed from the state's obligation if a proof on the automaton
-shows that they make no difference there.  The rest is written back as a formula, and the named
-rewrites shorten it.  Then each operand of an ``and`` or ``or`` is removed if the automaton proves
-that the language stays the same without it.
+First, each temporal subformula is removed from the state's obligation if the language stays the
+same without it.  What is left is written as a formula, and the rules of :mod:`tltlc.logic.rewrite`
+simplify it.  Then each operand of an ``and`` or ``or`` is removed if the language stays the same
+without it.  A comparison with the machine, called a proof here, decides whether the language stays
+the same.
 """
 
 from __future__ import annotations
@@ -20,21 +21,24 @@ from tltlc.logic.formula import Formula
 from tltlc.logic.rewrite import simplify
 
 _MEMBERS = 6
-"""A state stands for several obligations; the smallest ones, at most this many, are written as formulas."""
+"""Several obligations can have the language of one state.
+
+At most this many, the smallest, are written as formulas.
+"""
 _CANDIDATES = 3
-"""The smallest of these formulas, at most this many, are shortened."""
+"""How many of these formulas, the smallest ones, are shortened."""
 
 LONGEST_SIMPLIFIED = 200
-"""Labels with more nodes are not rewritten: they are too long to read."""
+"""Labels with more operators and atoms are not simplified: they are too long to read."""
 _LONGEST_PROVED = 60
-"""Labels with more nodes are not shortened operand by operand."""
+"""Labels with more operators and atoms are not shortened operand by operand."""
 
 _PROOF_STEPS = 2_000
-"""A proof fails after this many steps of the diagrams."""
+"""A proof gives up after this many steps of the diagrams."""
 _PROOF_PAIRS = 100
-"""A proof fails after this many pairs of an obligation and a state."""
+"""A proof gives up after it has compared this many obligations with a state."""
 _COST_OF_GIVING_UP = 30
-"""A proof that reaches one of these limits counts as this many proofs."""
+"""A proof that gives up counts as this many proofs."""
 
 
 class LabelsTooLong(Exception):
@@ -42,10 +46,11 @@ class LabelsTooLong(Exception):
 
 
 class Labels:
-    """The labels of one machine's states.
+    """Computes the labels of the states of a machine.
 
-    ``work`` bounds the number of proofs for all labels together; when it is used up, the remaining
-    labels are not shortened.  It is a count and not a time, so that equal input gives equal output.
+    ``work`` is the most proofs for all labels together.  When it is used up, the remaining labels
+    are not shortened.  It is a count and not a time, so that the same spec always gets the same
+    labels.
     """
 
     __slots__ = (
@@ -89,7 +94,7 @@ class Labels:
         return min((self._shorten(formula, state) for formula in written[:_CANDIDATES]), key=self.size)
 
     def size(self, formula: Formula) -> int:
-        """Return the number of nodes of the formula's text; sizes are cached, since labels share parts."""
+        """Return the number of operators and atoms in the formula's text."""
         for node in formula.bottom_up(known=self._sizes):
             self._sizes[node] = 1 + sum(self._sizes[argument] for argument in node.args)
         return self._sizes[formula]
@@ -97,7 +102,8 @@ class Labels:
     def _drop_needless_variables(self, obligation: int, state: int) -> int:
         """Return the obligation without the variables that make no difference to its language.
 
-        The variable with the largest formula is tried first.
+        The variables with the largest formulas are tried first.  ``state`` is the state with the
+        language of the obligation.
         """
         if obligation in (FALSE, TRUE):
             return obligation
@@ -118,7 +124,7 @@ class Labels:
         return 0 if formula is None else self.size(formula)
 
     def simplify_label(self, formula: Formula) -> Formula:
-        """Return the formula after the named rewrites; a formula too long to read is returned as it is."""
+        """Return the formula, simplified unless it is too long to read."""
         return formula if self.size(formula) > LONGEST_SIMPLIFIED else simplify(formula, self._simplified)
 
     def _shorten(self, formula: Formula, state: int) -> Formula:
@@ -137,7 +143,10 @@ class Labels:
         return formula
 
     def _prove(self, label: Formula | int, state: int) -> bool:
-        """Whether a proof within the remaining work shows that a formula or obligation has the language of a state."""
+        """Whether a formula or obligation has the language of a state.
+
+        Returns False as well if the proof gives up or no work is left.
+        """
         if self._work <= 0:
             return False
         successors = self._successors

@@ -1,9 +1,9 @@
-"""Build the minimal machine of an obligation: explore the obligations, then merge those of equal language.
+"""Build the minimal machine of an obligation: find all reachable obligations, then merge those of equal language.
 
-A machine is a deterministic automaton with acceptance on transitions.  Its states are obligations
-(what remains after the samples so far); the leaf that a letter leads to says whether the trace may
-end with that letter.  :mod:`tltlc.automaton.finite.build` moves acceptance to the states at the
-end.
+A machine is a deterministic automaton whose transitions, not states, decide acceptance.  Its states
+are obligations (what remains after the samples so far).  A letter leads to a leaf, which has the
+next obligation and says whether a trace that ends with this letter is accepted.
+:mod:`tltlc.automaton.finite.build` then makes an automaton with accepting states from the machine.
 """
 
 from __future__ import annotations
@@ -17,16 +17,16 @@ from tltlc.core.record import record
 
 
 class OutOfStates(Exception):
-    """Raised when exploration needs more states than its budget."""
+    """Raised when a machine needs more states than its budget allows."""
 
 
 @record
 class Machine:
     """The minimal machine of an obligation.
 
-    A state is an obligation that represents all obligations of equal language.  ``transitions``
-    maps each state to its transition, whose leaves lead to states; the first key is the initial
-    state. ``representative`` maps every explored obligation to the state that represents it.
+    Of all reachable obligations with the same language, one is the state.  ``transitions`` maps
+    each state to its transition, whose leaves have states; the first key is ``initial``, the
+    initial state.  ``representative`` maps every reachable obligation to its state.
     """
 
     initial: int
@@ -35,24 +35,27 @@ class Machine:
 
 
 def machine(successors: Successors, obligation: int, state_budget: int, allowed: int = ACCEPT) -> Machine:
-    """Return the minimal machine of an obligation over the letters that ``allowed`` accepts.
+    """Return the minimal machine of an obligation.
 
-    ``allowed`` is a transition as in :meth:`TransitionDiagrams.constrain`.  Raises :class:`OutOfStates` if
-    more than ``state_budget`` obligations are reached, and :class:`OutOfSteps` if their transitions
-    take too many steps.
+    ``allowed`` is a guard: only letters on which it is true can occur.  Raises
+    :class:`OutOfStates` if there are more than ``state_budget`` reachable obligations, and
+    :class:`OutOfSteps` if their transitions take too many steps.
     """
     return minimise(successors, explore(successors, obligation, state_budget, allowed))
 
 
 def explore(successors: Successors, initial: int, state_budget: int, allowed: int = ACCEPT) -> dict[int, int]:
-    """Return the transition of every reachable obligation in breadth-first order, the initial one first."""
+    """Map every reachable obligation to its transition, in breadth-first order from ``initial``.
+
+    ``allowed`` and the errors are as in :func:`machine`.
+    """
     diagrams = successors.diagrams
     atom, low, high, value = diagrams.variable, diagrams.low, diagrams.high, diagrams.value
     transition_of = successors.of_obligation
     transitions: dict[int, int] = {}
     seen = {initial}
     queue = [initial]
-    # Transitions share nodes: the leaves below a visited node are already queued.
+    # Transitions share nodes. The obligations in the leaves below a visited node are already in the queue.
     visited = {IMPOSSIBLE}
     for state in queue:
         if len(queue) > state_budget:
@@ -77,12 +80,12 @@ def explore(successors: Successors, initial: int, state_budget: int, allowed: in
 
 
 def minimise(successors: Successors, transitions: dict[int, int]) -> Machine:
-    """Merge obligations of equal language by partition refinement.
+    """Merge the obligations of equal language.
 
-    A block splits if the transitions of its members differ when each leaf is read as the block of
-    its obligation.  The largest part keeps the block's number, so only nodes that lead into the
-    smaller parts are visited again: each time a state moves, its block shrinks to at most half, as
-    in Hopcroft's algorithm.
+    ``transitions`` is the result of :func:`explore`.  The method is partition refinement: start
+    with all obligations in one block, and split a block while its members have transitions to
+    different blocks.  After a split, the largest part keeps the block's number.  So only nodes that
+    lead to the smaller parts are visited again, as in Hopcroft's algorithm.
     """
     diagrams = successors.diagrams
     atom, low, high, value = diagrams.variable, diagrams.low, diagrams.high, diagrams.value
@@ -93,14 +96,14 @@ def minimise(successors: Successors, transitions: dict[int, int]) -> Machine:
         states_of.setdefault(transition, []).append(state)
     parents, leaves_of = _links(diagrams, states_of)
 
-    # The signature of a node identifies its diagram with leaves read as blocks: negative for a leaf, else
-    # the number of a triple (atom, signature, signature).
+    # Nodes have the same signature if they are equal after each leaf's obligation is replaced by its block. The
+    # signature of a leaf is negative; that of an inner node is the number of its triple (atom, low, high).
     signature: dict[int, int] = {}
     triples: dict[tuple[int, int, int], int] = {}
     changed = sorted(parents)
     while changed:
         touched: set[int] = set()
-        # A node is made after its children, so ascending order visits children first.
+        # Children have lower numbers than their parents, so ascending order visits children first.
         for node in changed:
             if atom[node] == LEAF:
                 following, accepted = value[node]
@@ -136,7 +139,10 @@ def minimise(successors: Successors, transitions: dict[int, int]) -> Machine:
 
 
 def _ancestors(nodes: list[int], parents: dict[int, list[int]]) -> set[int]:
-    """Return the nodes and all nodes above them."""
+    """Return the given nodes and all their ancestors.
+
+    ``parents`` maps each node to its parents.
+    """
     ancestors = set(nodes)
     stack = list(ancestors)
     while stack:
@@ -148,7 +154,7 @@ def _ancestors(nodes: list[int], parents: dict[int, list[int]]) -> set[int]:
 
 
 def _links(diagrams: TransitionDiagrams, roots: Iterable[int]) -> tuple[dict[int, list[int]], dict[int, list[int]]]:
-    """Return the parents of every node under ``roots``, and the leaves that lead to each state."""
+    """Map every node below ``roots`` to its parents, and every state to the leaves that have it as the next one."""
     atom, low, high, value = diagrams.variable, diagrams.low, diagrams.high, diagrams.value
     parents: dict[int, list[int]] = {root: [] for root in roots}
     leaves_of: dict[int, list[int]] = {}
@@ -169,7 +175,7 @@ def _links(diagrams: TransitionDiagrams, roots: Iterable[int]) -> tuple[dict[int
 
 
 def _quotient(successors: Successors, transitions: dict[int, int], blocks: list[list[int]]) -> Machine:
-    """Return the machine whose states are the blocks, each represented by the member that was reached first."""
+    """Return the machine with one state for each block: the block's member that comes first in ``transitions``."""
     initial = next(iter(transitions))
     if len(blocks) == len(transitions):
         return Machine(initial, transitions, {state: state for state in transitions})
@@ -204,12 +210,13 @@ def matches_state(
     pair_limit: int,
     allowed: int = ACCEPT,
 ) -> bool:
-    """Whether an obligation has the language of a state of a minimal machine.
+    """Whether an obligation has the same language as a state of a minimal machine.
 
-    Follows the letters from both at once.  No two states of a minimal machine have the same
-    language, so each obligation reached must match exactly one state.  ``known`` maps obligations to
-    the states that they are known to match; a successful comparison adds its matches.  Raises
-    :class:`OutOfSteps` after ``pair_limit`` obligations.
+    ``known`` maps obligations to the states with the same language, as far as these are known.  If
+    the result is True, the obligations that were compared are added to it.  The comparison follows
+    all letters from the obligation and from the state together.  States of a minimal machine have
+    different languages, so each obligation must meet only one state.  Raises :class:`OutOfSteps`
+    after ``pair_limit`` obligations.
     """
     diagrams = successors.diagrams
     atom, low, high, value = diagrams.variable, diagrams.low, diagrams.high, diagrams.value

@@ -1,8 +1,9 @@
-"""Find an order of atoms that keeps diagrams small: atoms of the same subformula lie side by side.
+"""Find an order of the atoms that keeps diagrams small: atoms of the same subformula are next to each other.
 
 The heuristic is FORCE (Aloul, Markov and Sakallah, "FORCE: a fast and easy-to-implement
-variable-ordering heuristic", GLSVLSI 2003): each atom moves to the middle of the groups that it
-belongs to, until the groups get no narrower.
+variable-ordering heuristic", GLSVLSI 2003).  A group is the set of atoms of a subformula; its width
+is the distance between its first and its last atom.  Each atom moves to the middle of its groups,
+again and again, until the groups get no narrower.
 """
 
 from __future__ import annotations
@@ -16,13 +17,16 @@ from tltlc.logic.formula import Formula
 from tltlc.resolve.spec import Spec
 
 _LARGEST_GROUP: Final = 8
-"""The most atoms in a group; larger groups say little about which of their atoms belong together."""
+"""The most atoms in a group.
+
+Subformulas with more atoms say little about which atoms belong together.
+"""
 _MOST_ROUNDS: Final = 50
 _Group = frozenset[int]
 
 
 def better_order(formula: Formula, names: Sequence[str]) -> list[int] | None:
-    """Return an order of the atoms, by index, in which the groups together are at most half as wide as now.
+    """Return the indices of the atoms in an order in which the sum of all widths is at most half of the present sum.
 
     Returns None if the heuristic finds no such order.
     """
@@ -38,7 +42,7 @@ def better_order(formula: Formula, names: Sequence[str]) -> list[int] | None:
 
 
 def reorder(spec: Spec, order: Sequence[int]) -> Spec:
-    """Return the spec with its atoms in another order."""
+    """Return the spec with its atoms in another order: first the atom with the index ``order[0]``, and so on."""
     place = {index: number for number, index in enumerate(order)}
     atoms = tuple(spec.atoms[index] for index in order)
     return replace(spec, atoms=atoms, exclusive=tuple(tuple(place[atom] for atom in group) for group in spec.exclusive))
@@ -56,7 +60,7 @@ def restore_order(fspa: Fspa, spec: Spec, order: Sequence[int]) -> Fspa:
 
 
 def _primes(primes: Iterable[Implicant], order: Sequence[int]) -> tuple[Implicant, ...]:
-    """Return the prime implicants with their atoms renumbered.
+    """Return the prime implicants with atom ``i`` replaced by ``order[i]``.
 
     They are sorted as :meth:`~tltlc.automaton.guards.Guards.primes` sorts them.
     """
@@ -85,7 +89,7 @@ def _width(order: Sequence[int], groups: Iterable[_Group]) -> int:
 
 
 def _move_to_middles(order: Sequence[int], groups: Iterable[_Group]) -> list[int]:
-    """Return the atoms sorted by the mean of the middles of their groups."""
+    """Return the atoms, sorted by the mean of the middle positions of their groups."""
     place = {index: number for number, index in enumerate(order)}
     middles: dict[int, list[float]] = {index: [] for index in order}
     for group in groups:

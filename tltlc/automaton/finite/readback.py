@@ -1,4 +1,4 @@
-"""Write obligations back as formulas: common factors first, operands in source order."""
+"""Convert obligations to formulas, with common factors in front and operands in the order of the source."""
 
 from __future__ import annotations
 
@@ -11,7 +11,10 @@ from tltlc.logic.bounded import bounded_operator, count_down
 from tltlc.logic.formula import Formula
 
 _TERM_LIMIT = 64
-"""Obligations whose sum of products has more terms are written as nested case distinctions."""
+"""The most terms of a disjunction of conjunctions.
+
+A longer one is written as nested ``a & … | …`` instead.
+"""
 
 _MOST_FACTORED = 40
 """In obligations with more variables, only the first variable is tried as a common factor."""
@@ -22,7 +25,7 @@ _Positioned = tuple[int, Formula]
 
 
 class ObligationWriter:
-    """Writes the obligations of one table as formulas, with operands in the order of ``source``."""
+    """Converts obligations to formulas, with operands in the order of ``source``."""
 
     __slots__ = ("_formulas", "_long_bounds", "_position", "_successors", "_sums", "_without_shorter")
 
@@ -39,10 +42,10 @@ class ObligationWriter:
         return self._with_position(obligation)[1]
 
     def long_bound(self, obligation: int) -> Formula | None:
-        """Return the bounded operator of the source that has this obligation, if the operator is long; else None.
+        """Return the bounded operator of the source with this obligation, None if there is none or it is short.
 
-        Long means more than :data:`_MOST_FACTORED` steps.  No shorter formula exists, and a search
-        would take n² steps for the n states that count the bound down.
+        A bound of more than :data:`_MOST_FACTORED` samples is long.  A search for a shorter formula
+        would find none, and would take n² steps for the n states that count the bound down.
         """
         return self._long_bounds.get(obligation)
 
@@ -63,7 +66,7 @@ class ObligationWriter:
         return sorted(variables)
 
     def restrict(self, obligation: int, variables: Collection[int], value: bool) -> int:
-        """Return the obligation with all the variables set to ``value``."""
+        """Return the obligation with these variables replaced by the truth value ``value``."""
         obligations = self._successors.diagrams.obligations
         last = max(variables)
         memo: dict[int, int] = {}
@@ -85,9 +88,8 @@ class ObligationWriter:
     def without_shorter_bounds(self, obligation: int) -> int:
         """Return the obligation without the variables of bounds that a longer bound makes redundant.
 
-        The obligation of a bound has a variable for each shorter bound, so that bounds can be
-        compared.  Without this method, labels would have to prove for each of these variables that
-        it can be removed.
+        The obligation of ``F[0,n] p`` also has the variables of ``F[0,n-1] p`` and so on.  Without
+        this method, labels would need a proof for each of these variables that it can be removed.
         """
         known = self._without_shorter.get(obligation)
         if known is None:
@@ -157,8 +159,8 @@ class ObligationWriter:
     def _factors(self, obligation: int, absorbing: int) -> tuple[list[tuple[int, bool]], int]:
         """Return the common factors of the obligation, and the obligation without them.
 
-        If ``absorbing`` is FALSE, the factors are the literals without which the obligation is
-        false.  If it is TRUE, they are the literals with which the obligation is true.
+        If ``absorbing`` is FALSE, the factors are the literals whose negation makes the obligation
+        false.  If it is TRUE, they are the literals that make the obligation true.
         """
         factors: list[tuple[int, bool]] = []
         wanted = absorbing == FALSE
@@ -172,10 +174,9 @@ class ObligationWriter:
         return factors, obligation
 
     def _drop_redundant(self, literals: Collection[tuple[int, bool]], absorbing: int) -> list[tuple[int, bool]]:
-        """Return the literals of an ``and`` (``absorbing`` is FALSE) or ``or`` that no other literal makes redundant.
+        """Return the literals of an ``and`` (``absorbing`` is FALSE) or an ``or``, without the redundant ones.
 
-        The obligation of ``F(a & X F b)`` already contains the variable of ``F b``, so ``F b``
-        beside it is redundant.
+        For example, ``F b`` is redundant in ``F(a & X F b) & F b``.
         """
         successors = self._successors
         variables = {variable for variable, _ in literals}
@@ -192,7 +193,10 @@ class ObligationWriter:
         return [(variable, polarity) for variable, polarity in literals if not (polarity and variable in redundant)]
 
     def _terms(self, obligation: int) -> list[_Term] | None:
-        """Return the obligation as a sum of products, or None if it has too many terms."""
+        """Return the obligation as a disjunction of conjunctions of literals.
+
+        Returns None if there are too many terms.
+        """
         if obligation in self._sums:
             return self._sums[obligation]
         obligations = self._successors.diagrams.obligations

@@ -1,6 +1,6 @@
-"""Compute the transition of a formula or an obligation: the semantics of one step.
+"""Compute the transition of a formula or an obligation: what remains of it after one letter.
 
-Each temporal operator has a rule, its expansion law on finite traces (semantics, section 2):
+Each temporal operator has an expansion law on finite traces (semantics, section 2):
 ``F p = p | X F p``, ``G p = p & N G p``, ``p U q = q | p & X(p U q)``,
 ``p W q = q | p & N(p W q)``, ``p R q = q & (p | N(p R q))``, ``p M q = q & (p | X(p M q))``.
 ``X p`` and ``N p`` leave the obligation p; if the trace ends, ``X p`` rejects and ``N p`` accepts.
@@ -16,11 +16,12 @@ from tltlc.logic.formula import Formula
 
 
 class Successors:
-    """Transitions of formulas in negation normal form and of obligations, over one table of diagrams.
+    """Computes transitions of obligations, and of formulas in negation normal form, in one table of diagrams.
 
-    ``formulas[v]`` is the formula of variable ``v``: an atom, or a formula whose outermost operator
-    is temporal.  It is None if the variable stands for a state of a separately built machine; then
-    ``stands_for[v]`` is the obligation that is this state.
+    Obligations are Boolean functions of variables.  ``formulas[v]`` is the formula of variable
+    ``v``: an atom, or a formula whose outermost operator is temporal. A variable can also be a
+    state of a smaller automaton that was built for a part of the formula (:meth:`new_state`).  Then
+    ``formulas[v]`` is None, and ``stands_for[v]`` is the obligation that remains in this state.
     """
 
     __slots__ = (
@@ -47,10 +48,10 @@ class Successors:
         self._of_obligation: dict[int, int] = {FALSE: REJECT, TRUE: ACCEPT}
 
     def number_variables(self, formula: Formula) -> None:
-        """Number the temporal subformulas in source order, so that related variables are tested together.
+        """Give the temporal subformulas of a formula the next variables, in the order of the formula.
 
-        Obligations of ``G(a -> F b) & G(c -> F d)`` then share their tails: with six such parts, a
-        third of the steps.
+        Variables of the same part are then next to each other, which keeps the diagrams small.  A
+        conjunction of six formulas ``G(a -> F b)`` takes a third of the steps.
         """
         for part in formula.walk():
             if part.is_temporal:
@@ -61,8 +62,8 @@ class Successors:
         known = self._obligation_of.get(formula)
         if known is not None:
             return known
-        # Convert the shortest bound first, so that long bounds need no deep recursion. Variables get numbers before, in
-        # source order.
+        # Convert the shortest bound first, so that long bounds need no deep recursion. Before that, number the
+        # variables from the longest bound to the shortest.
         chain = [formula, *count_down_from(formula, self._obligation_of)]
         for bound in chain[:-1]:
             self.variable(bound)
@@ -99,14 +100,18 @@ class Successors:
         return number
 
     def new_state(self, stands_for: int) -> int:
-        """Return an obligation for a state of a separately built machine; :meth:`define_state` must follow."""
+        """Return a new obligation for a state of a machine that was built for a part of the formula.
+
+        ``stands_for`` is the obligation that remains in this state.  Call :meth:`define_state`
+        next.
+        """
         variable = len(self.formulas)
         self.formulas.append(None)
         self.stands_for[variable] = stands_for
         return self.diagrams.obligations.node(variable, FALSE, TRUE)
 
     def define_state(self, state: int, transition: int) -> None:
-        """Give an obligation made by :meth:`new_state` its transition."""
+        """Set the transition of an obligation that :meth:`new_state` returned."""
         self._of_state[self.diagrams.obligations.variable[state]] = transition
 
     def of_obligation(self, obligation: int) -> int:
@@ -131,8 +136,8 @@ class Successors:
     def _by_variable(self, obligation: int, absent: int, present: int) -> int:
         """Return the transition of an obligation, given the transitions of its two cofactors.
 
-        ``absent`` and ``present`` are the transitions of the obligation with its first variable
-        false and true.
+        ``absent`` is the transition of the obligation with its first variable false, ``present``
+        with it true.
         """
         diagrams = self.diagrams
         variable = diagrams.obligations.variable[obligation]
@@ -147,10 +152,7 @@ class Successors:
         return diagrams.disjoin(absent, diagrams.conjoin(self.of_formula(formula), present))
 
     def of_formula(self, formula: Formula) -> int:
-        """Return the transition of a formula in negation normal form.
-
-        Computes the transitions of operands first, without recursion over them.
-        """
+        """Return the transition of a formula in negation normal form."""
         known = self._of_formula
         result = known.get(formula)
         if result is not None:
@@ -161,7 +163,7 @@ class Successors:
             if node in known:
                 stack.pop()
                 continue
-            # The operand of a next is an obligation for the next sample: its transition is not needed now.
+            # The operand of X or N is the obligation that remains: its transition is not needed here.
             missing = [] if node.op in ("X", "N") else [argument for argument in node.args if argument not in known]
             if missing:
                 stack.extend(missing)
@@ -202,13 +204,13 @@ class Successors:
         raise ValueError(f"not in negation normal form: {op}")
 
 
-# Implications between temporal formulas are part of their obligations if they need no new variable.  So `p U q | q` and
-# `p U q` are one obligation, and so are `F(p & X F q) | F q` and `F q`.  Nests of n untils and sequences of n goals
-# reach n obligations instead of 2^n.  Of the bounds that `G(a -> F[0,n] b)` counts down at once, the shortest stays.
+# The obligation of a temporal formula includes the subformulas that imply it or that it implies.  So `p U q | q` and
+# `p U q` are one obligation, and so are `F(p & X F q) | F q` and `F q`.  For n nested untils, or n goals in sequence,
+# this gives n obligations instead of 2^n.  `G(a -> F[0,n] b)` counts down many bounds at once: only the shortest stays.
 
 
 def _weaker_subformulas(formula: Formula) -> list[Formula]:
-    """Return temporal subformulas that the formula implies."""
+    """Return some of the temporal subformulas that a temporal formula implies."""
     op, args = formula.op, formula.args
     if op in ("X", "N") and args[0].op == "and" and (shorter := count_down(formula)):
         return [shorter]
@@ -221,7 +223,7 @@ def _weaker_subformulas(formula: Formula) -> list[Formula]:
 
 
 def _stronger_subformulas(formula: Formula) -> list[Formula]:
-    """Return temporal subformulas that imply the formula."""
+    """Return some of the temporal subformulas that imply a temporal formula."""
     op, args = formula.op, formula.args
     if op in ("X", "N") and args[0].op == "or" and (shorter := count_down(formula)):
         return [shorter]

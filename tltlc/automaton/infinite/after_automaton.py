@@ -1,8 +1,9 @@
 """The after-automaton: its states are obligations, that is, what remains of the formula after the letters so far.
 
-An *obligation* is a Boolean function over literals, ``X``, ``U``, ``W`` and rigid formulas, stored
-as a binary decision diagram (:class:`~tltlc.automaton.transitions.ObligationDiagrams`).  Formulas that are equal
-as such functions are therefore one state.
+An *obligation* is a Boolean function of literals, of formulas with the outermost operator ``X``,
+``U`` or ``W``, and of rigid formulas (:mod:`tltlc.automaton.infinite.normal_form`).  It is stored
+as a binary decision diagram (:class:`~tltlc.automaton.transitions.ObligationDiagrams`), so formulas
+with the same function are one state.
 """
 
 from __future__ import annotations
@@ -19,22 +20,23 @@ from tltlc.logic.bounded import count_down, count_down_from
 from tltlc.logic.formula import Formula
 
 STEPS_PER_OBLIGATION: Final = 100
-"""The least steps of work that each successor of an obligation takes.
+"""The fewest steps of work that each successor of an obligation takes.
 
-If the budget cannot pay for this many steps for each successor of an obligation, the construction
-fails before it lists them.
+If an obligation has more successors than the work budget can pay for, the construction fails before
+it lists them.
 """
 
 _TEMPORAL: Final = ("U", "W", "X")
 
 
 class ObligationAutomaton:
-    """Successors of obligations over ``atoms``, as functions of the letter in the table ``letters``.
+    """Computes obligations over ``atoms``, and the successors of an obligation as a function of the letter.
 
-    ``formulas[v]`` is the formula of variable ``v``: an atom, ``X``, ``U``, ``W`` or a rigid
-    formula.  Methods that make obligations raise :class:`~tltlc.automaton.diagrams.OutOfSteps` if
-    one becomes too large.  Methods that make functions of letters raise
-    :class:`~tltlc.automaton.work.OutOfWork`.
+    These functions are in the table ``letters``.  ``formulas[v]`` is the formula of variable ``v``
+    of the obligations: an atom, a formula with the outermost operator ``X``, ``U`` or ``W``, or a
+    rigid formula.  Methods that build obligations raise
+    :class:`~tltlc.automaton.diagrams.OutOfSteps` if one becomes too large.  Methods that build
+    functions of letters raise :class:`~tltlc.automaton.work.OutOfWork`.
     """
 
     def __init__(self, atoms: Sequence[str], letters: Diagrams[Any]) -> None:
@@ -118,10 +120,10 @@ class ObligationAutomaton:
         return known[obligation]
 
     def _by_variable(self, obligation: int, absent: int, present: int) -> int:
-        """Return what remains of an obligation after each letter, given what remains of its two cofactors.
+        """Return what remains of an obligation, as a function of the letter, given the same for its two cofactors.
 
-        ``absent`` and ``present`` are the functions of the obligation with its first variable false
-        and true.
+        ``absent`` is the function of the obligation with its first variable false, ``present`` with
+        it true.
         """
         formula, letters = self.formulas[self.obligations.variable[obligation]], self.letters
         if formula.op == "atom":
@@ -133,15 +135,15 @@ class ObligationAutomaton:
         return self.either(absent, self.both(self.of_formula(formula), present))
 
     def both(self, x: int, y: int) -> int:
-        """Return the ``and`` of two functions on every letter."""
+        """Return the function whose value on each letter is the conjunction of the values of two functions."""
         return self.letters.apply(self._with_counter(self.obligations.both), x, y, self._both)
 
     def either(self, x: int, y: int) -> int:
-        """Return the ``or`` of two functions on every letter."""
+        """Return the function whose value on each letter is the disjunction of the values of two functions."""
         return self.letters.apply(self._with_counter(self.obligations.either), x, y, self._either)
 
     def _with_counter(self, combine: Callable[[int, int], int]) -> Callable[[int, int], int]:
-        """Return ``combine`` with a counter: raise OutOfWork if a function gets too many different values."""
+        """Return ``combine`` as a function that raises OutOfWork after too many different results."""
         reached: set[int] = set()
         most = self._most_reached
 
@@ -155,7 +157,7 @@ class ObligationAutomaton:
         return counted
 
     def of_formula(self, formula: Formula) -> int:
-        """Return what remains of a formula after each letter."""
+        """Return the obligation that remains of a formula, as a function of the letter."""
         step = self._of_formula.get(formula)
         if step is None:
             step = self._of_formula[formula] = self._expand(formula)
@@ -187,7 +189,11 @@ class ObligationAutomaton:
     # --- obligations as formulas ------------------------------------------------------------------
 
     def formula(self, obligation: int) -> Formula:
-        """Return a formula of an obligation: the smallest one met so far, or else one read from its diagram."""
+        """Return a formula for an obligation.
+
+        It is the smallest formula that :meth:`obligation` converted to this obligation so far.  If
+        there is none, the formula is made from the diagram.
+        """
         known = self._sources.get(obligation)
         if known is None:
             obligations = self.obligations
@@ -202,9 +208,9 @@ class ObligationAutomaton:
         return known
 
     def replace_temporal(self, obligation: int, change: Callable[[Formula], int], memo: dict[int, int]) -> int:
-        """Return the obligation with every temporal formula replaced by the obligation that ``change`` returns for it.
+        """Return the obligation with each temporal formula replaced by the obligation ``change(formula)``.
 
-        Calls with the same ``change`` may share ``memo``.
+        ``memo`` caches results; pass the same dict only to calls with the same ``change``.
         """
         if obligation in (FALSE, TRUE):
             return obligation
@@ -225,7 +231,7 @@ class ObligationAutomaton:
 
 
 def _weaker_subformulas(formula: Formula) -> Iterator[Formula]:
-    """Yield temporal subformulas that the formula implies: ``F b`` for ``F(a & X F b)``."""
+    """Yield temporal subformulas that a temporal formula implies: ``F b`` for ``F(a & X F b)``."""
     if formula.op == "X" and formula.args[0].op == "and" and (shorter := count_down(formula)):
         yield shorter
     left, right = formula.args if formula.op in ("U", "W") else (None, None)
@@ -237,7 +243,7 @@ def _weaker_subformulas(formula: Formula) -> Iterator[Formula]:
 
 
 def _stronger_subformulas(formula: Formula) -> Iterator[Formula]:
-    """Yield temporal subformulas that imply the formula: ``G b`` for ``a U G b``."""
+    """Yield temporal subformulas that imply a temporal formula: ``G b`` for ``a U G b``."""
     if formula.op == "X" and formula.args[0].op == "or" and (shorter := count_down(formula)):
         yield shorter
     left, right = formula.args if formula.op in ("U", "W") else (None, None)

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def analysis_of_rabin(automaton: Rabin, work: Work) -> Analysis:
-    """Return the analysis of an automaton from the construction."""
+    """Return the analysis of a Rabin automaton."""
     edges = [
         (state, target, pair_marks(marks))
         for state in range(len(automaton.steps))
@@ -26,7 +26,10 @@ def analysis_of_rabin(automaton: Rabin, work: Work) -> Analysis:
 
 
 def analysis_of_fspa(fspa: Fspa, work: Work) -> Analysis:
-    """Return the analysis of an automaton; reads only its edges and pairs, whose indices must be in range."""
+    """Return the analysis of an FSPA.
+
+    Uses only the number of its states, its edges and its Rabin pairs, whose indices must be valid.
+    """
     edges = [
         (edge.source, edge.target, pair_marks(marks)) for edge, marks in zip(fspa.edges, fspa.marks(), strict=True)
     ]
@@ -34,11 +37,12 @@ def analysis_of_fspa(fspa: Fspa, work: Work) -> Analysis:
 
 
 class Analysis:
-    """The successors and verdicts of states, and the goals: states on an accepted cycle (semantics, section 5).
+    """What the cycles of an automaton say about its states (semantics, section 5).
 
-    ``targets`` maps each state to its successors; ``goals`` is the set of goals.  State 0 is
-    initial.  Marks are numbered as by :func:`~tltlc.automaton.infinite.mark_conditions.pair_marks`.
-    The constructor and every method may raise :class:`~tltlc.automaton.work.OutOfWork`.
+    ``targets`` maps each state to its successors.  ``goals`` is the set of the states on an
+    accepted cycle.  State 0 is initial. The marks of ``edges`` are numbered as by
+    :func:`~tltlc.automaton.infinite.mark_conditions.pair_marks`.  The constructor and every method
+    may raise :class:`~tltlc.automaton.work.OutOfWork`.
     """
 
     def __init__(self, states: int, edges: Sequence[Edge], pairs: int, work: Work) -> None:
@@ -57,8 +61,8 @@ class Analysis:
     def verdict(self, state: int) -> Verdict:
         """Return the verdict of a state.
 
-        ``satisfied`` if every run from it is accepted, ``violated`` if none is, else ``holding``
-        for goals and ``pending`` for other states.
+        It is ``satisfied`` if every run from the state is accepted, and ``violated`` if no run is.
+        Otherwise it is ``holding`` if the state is a goal, and ``pending`` if not.
         """
         if state not in self._alive:
             return "violated"
@@ -67,9 +71,10 @@ class Analysis:
         return "holding" if state in self.goals else "pending"
 
     def default_judge(self) -> Judge:
-        """Return ``goal`` if the initial state is no goal, and every run from a goal that avoids traps is accepted.
+        """Return when a spec without a ``judge`` clause is judged.
 
-        Otherwise return ``limit``.
+        Returns ``goal`` if the initial state is not a goal, and every run from a goal that avoids
+        traps is accepted.  Otherwise returns ``limit``.
         """
         if 0 in self.goals:
             return "limit"

@@ -1,4 +1,4 @@
-"""Join components into one automaton and merge states that cannot be distinguished."""
+"""Join components into one automaton, and merge states that accept the same runs with the same marks."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ def join_components(
     initial: Place,
     apart: Collection[int] = (),
 ) -> tuple[Rabin, dict[Place, int]]:
-    """Return the automaton of all reachable states, and the number of each component state in it.
+    """Return the automaton of all reachable states, and the number of each reachable state in it.
 
     ``initial`` becomes state 0.  ``entry`` maps each label to the state that an exit to this label
-    leads to.  States keep the labels of the components.  States whose labels are in ``apart`` are
-    not merged with other states.
+    leads to.  States keep the labels of the components.  A state whose label is in ``apart`` is
+    not merged with a state whose label is not.
     """
     steps = _steps(letters, components, entry)
     reached = _reachable(letters, steps, initial)
@@ -44,7 +44,7 @@ def join_components(
 def _steps(
     letters: Diagrams[Any], components: Sequence[RabinComponent], entry: Mapping[int, Place]
 ) -> dict[Place, int]:
-    """Return the steps of all components, with each exit replaced by the entry of the next component."""
+    """Return the steps of all components, with each exit replaced by the state of another component it leads to."""
     steps: dict[Place, int] = {}
     for number, component in enumerate(components):
 
@@ -73,11 +73,12 @@ def _reachable(letters: Diagrams[Any], steps: Mapping[Place, int], initial: Plac
 def _number_states(
     letters: Diagrams[Any], steps: Mapping[Place, int], reached: Sequence[Place], apart: Sequence[bool]
 ) -> dict[Place, int]:
-    """Number the states from 0 in order; states that cannot be distinguished get the same number.
+    """Number the states from 0 in the order of ``reached``.
 
-    States are distinguished by ``apart``, by the numbers of their targets, and by marks.  This is
-    partition refinement: blocks are split until each has one step, and only states that lead to a
-    changed state are visited again.
+    States that are merged get the same number.  States are merged if they have the same value in
+    ``apart`` and, on each letter, the same marks and merged targets.  The method is partition
+    refinement: a block of states is split while its states have different steps, and only states
+    that lead to a state of a new block are examined again.
     """
     sources: dict[Place, list[Place]] = {place: [] for place in reached}
     for place in reached:
@@ -87,7 +88,10 @@ def _number_states(
     block: dict[Place, int] = dict(zip(reached, map(int, apart), strict=True))
     sizes = Counter(block.values())
     signature: dict[int, int | None] = dict.fromkeys(sizes)
-    """The step, read as blocks, that all states of a block have; None before the block's first visit."""
+    """The step of all states of a block, with blocks as targets.
+
+    It is None until the block is examined.
+    """
     dirty: Iterable[Place] = reached
     while dirty:
         memo: dict[int, int] = {}

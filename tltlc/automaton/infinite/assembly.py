@@ -28,7 +28,10 @@ class TargetsAndGoals(Protocol):
 
 @record
 class AssembledParts:
-    """The fields of an Fspa that depend on the steps; edges are sorted by source, target and marks."""
+    """The fields of an Fspa that are computed from a Rabin automaton.
+
+    Edges are sorted by source, target and marks.
+    """
 
     states: tuple[State, ...]
     edges: tuple[Edge, ...]
@@ -44,10 +47,12 @@ def assemble(
     label: Callable[[int], Formula | Text],
     first: Sequence[int] | None = None,
 ) -> AssembledParts:
-    """Return states, edges and pairs, with the states in the order of an artefact.
+    """Return states, edges and Rabin pairs, with the states in breadth-first order, as artefacts have them.
 
-    ``label`` returns the label of a state, given its number in the automaton.  ``first``, if given,
-    lists all states in the order that breaks ties.
+    ``atoms`` are the names of the atoms, ``exclusive`` groups of their indices.  ``label`` returns
+    the label of a state, given its number in ``automaton``.  Successors of a state are sorted by
+    distance; those with equal distance have the order of ``first``, if it is given, which lists all
+    states.
 
     Raises :class:`~tltlc.automaton.guards.TooManyPrimes` and
     :class:`~tltlc.automaton.diagrams.OutOfSteps`.
@@ -71,9 +76,9 @@ def _edges(
     atoms: Sequence[str],
     exclusive: Sequence[Sequence[int]],
 ) -> tuple[tuple[Edge, ...], tuple[Pair, ...]]:
-    """Return the edges, sorted by source, target and marks, and the pairs, by indices of edges.
+    """Return the edges, sorted by source, target and marks, and the Rabin pairs.
 
-    Each edge has one set of marks.
+    Letters with the same source and target but different marks get different edges.
     """
     diagrams, leaves = TransitionDiagrams(), _Leaves()
     guards = Guards(diagrams, atoms, diagrams.allowed_letters(exclusive))
@@ -98,7 +103,10 @@ def _edges(
 
 
 class _Leaves:
-    """Converts steps to transitions of diagrams, whose leaves are indices into ``values``: targets with marks."""
+    """Converts steps of a Rabin automaton to transitions of another table of diagrams.
+
+    The leaves of these transitions have an index into ``values``, the list of targets with marks.
+    """
 
     def __init__(self) -> None:
         self.values: list[Any] = []

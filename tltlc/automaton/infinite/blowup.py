@@ -13,13 +13,16 @@ from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.resolve.spec import Conjunct, Spec
 
 _FOR_A_PART: Final = 500_000
-"""Steps of work for the automaton of one part alone: enough to rank the parts, few enough for a quick answer."""
+"""Steps of work for the automaton of one clause alone: enough to compare the clauses, few enough to be quick."""
 _FOR_ALL_PARTS: Final = 2_000_000
-"""Steps of work for the automata of all parts."""
+"""Steps of work for the automata of all clauses together."""
 
 
 def budget_error(spec: Spec, reason: Exception) -> TltlError:
-    """Return the error for a spec whose automaton is too expensive: TLT0501, or TLT0502 for prime implicants."""
+    """Return the error for a spec whose automaton is too expensive.
+
+    It is TLT0502 if there are too many edges or prime implicants, and TLT0501 otherwise.
+    """
     too_large, advice = failure_text(reason), ADVICE
     if isinstance(reason, OutOfWork):
         too_large, advice = "takes too long to make", f"{ADVICE}; or allow more work by `--state-budget`"
@@ -28,7 +31,7 @@ def budget_error(spec: Spec, reason: Exception) -> TltlError:
     def size(part: Conjunct, spec: Spec) -> Size | None:
         nonlocal remaining
         if remaining < _FOR_A_PART:
-            # A message names fewer parts than were measured so far.
+            # The message names at most three clauses, and more have been measured by now.
             return Size(0, "")
         try:
             automaton = rabin(part.formula, [atom.name for atom in spec.atoms], spec.exclusive, _FOR_A_PART)

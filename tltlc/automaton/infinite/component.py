@@ -1,6 +1,8 @@
-"""Convert a strongly connected component of the after-automaton to an automaton of its own.
+"""Convert a strongly connected component of the after-automaton to an automaton with an acceptance condition.
 
-Its states are labels (obligations) combined with the memories of the formula's parts.
+The states of the after-automaton are labels (obligations).  A state of the new automaton is a
+label, and for each part of the formula the state of a small automaton that observes this part (its
+memory).
 """
 
 from __future__ import annotations
@@ -18,22 +20,24 @@ from tltlc.core.record import record
 from tltlc.logic.formula import Formula
 
 IMPOSSIBLE: Final = -1
-"""Sentinel: no successor on this letter."""
+"""Takes the place of a label where a letter has no successor because ``exclusive`` rules it out."""
 
 State = tuple[Any, ...]
-"""A label and the memories of the parts; a target outside the component is ``("exit", label)``."""
+"""A label, then the memory of each part.  A target outside the component is ``("exit", label)``."""
 
 Leaf = tuple[State, Marks]
-"""The state after a letter, and the marks of the letter."""
+"""The state after a letter, and the marks of the edge: the indices of the parts that mark the letter."""
 
 _NONE: Final[Marks] = frozenset()
 
 
 @record
 class ComponentAutomaton:
-    """A component: states with their labels and steps, each step a function from the letter to a :data:`Leaf`.
+    """A strongly connected component of the after-automaton, with an acceptance condition.
 
-    A run that stays in the component is accepted if it meets one of the clauses ``accepts``.
+    ``labels`` maps each state to its label, ``steps`` each state to a function from the letter to a
+    :data:`Leaf`.  A run that stays in the component is accepted if it meets a clause of
+    ``accepts``.
     """
 
     labels: dict[State, int]
@@ -44,11 +48,11 @@ class ComponentAutomaton:
 def parts_of(
     after: ObligationAutomaton, normal: Formula, *, keep: bool, in_turn: bool
 ) -> tuple[Skeleton, list[LeafAutomaton]]:
-    """Return the Boolean skeleton of a normalised formula, and its parts.
+    """Return the Boolean structure of a normalised formula over its parts, and an automaton for each part.
 
-    If ``in_turn``, parts that can be followed one at a time are joined in a
-    :class:`~tltlc.automaton.infinite.leaf_automata.RoundRobin`.  For ``keep`` see
-    :class:`~tltlc.automaton.infinite.leaf_automata.Recurrence`.
+    If ``in_turn``, the operands ``G F p`` of a conjunction, and ``F G p`` of a disjunction, share
+    one automaton, a :class:`~tltlc.automaton.infinite.leaf_automata.RoundRobin`.  ``keep`` is the
+    parameter of :class:`~tltlc.automaton.infinite.leaf_automata.Recurrence`.
     """
     index_of: dict[Formula | tuple[Formula, ...], int] = {}
     parts: list[LeafAutomaton] = []
@@ -73,7 +77,10 @@ def parts_of(
 
 
 def has_turns(normal: Formula) -> bool:
-    """Whether parts of a normalised formula can be followed one at a time."""
+    """Whether a conjunction in a normalised formula has several ``G F p``, or a disjunction several ``F G p``.
+
+    :func:`parts_of` can then join their automata with ``in_turn``.
+    """
     rigid = {"and": "G", "or": "F"}.get(normal.op)
     if rigid is None:
         return False
@@ -96,10 +103,12 @@ def bottom_component(
     skeleton: Skeleton,
     parts: Sequence[LeafAutomaton],
 ) -> ComponentAutomaton:
-    """Return the smallest bottom component of the product of the labels ``inside`` with the parts' memories.
+    """Return an automaton with an acceptance condition for the component of the labels ``inside``.
 
-    The product starts at the label ``first`` with the initial memories.  ``step_of`` returns the
-    label after a given label, as a function of the letter.
+    It is a part of the product of the labels with the automata ``parts``, which starts at the label
+    ``first`` with the initial memories.  Of the strongly connected parts that no edge leaves,
+    except to labels outside ``inside``, it is the smallest.  ``step_of`` returns the label after a
+    given label, as a function of the letter.
     """
     initial: State = (first, *(part.initial for part in parts))
     steps, best = explore(letters, initial, lambda state: _step(letters, step_of, inside, state, parts))
@@ -116,7 +125,11 @@ def bottom_component(
 def explore(
     letters: Diagrams[Any], initial: State, step_of: Callable[[State], int]
 ) -> tuple[dict[State, int], list[State]]:
-    """Return the steps of all reachable states, in breadth-first order, and the smallest bottom component."""
+    """Return the steps of all reachable states in breadth-first order, and the states of a part of them.
+
+    Of the strongly connected parts that no edge leaves, except to targets ``("exit", label)``, it
+    is the smallest.
+    """
     steps: dict[State, int] = {}
     targets: dict[State, list[State]] = {}
     queue = [initial]
@@ -132,7 +145,11 @@ def explore(
 
 
 def merge_equal_states(letters: Diagrams[Any], component: ComponentAutomaton) -> ComponentAutomaton:
-    """Merge states that cannot be distinguished by labels and by the marks that clauses use."""
+    """Return the component with equal states merged.
+
+    States are equal if they have the same label and, on each letter, the same marks used by clauses
+    and equal successors.
+    """
     labels, steps, accepts = component.labels, component.steps, component.accepts
     used = frozenset().union(*(clause.fins | clause.infs for clause in accepts))
     block = {state: labels[state] for state in steps}

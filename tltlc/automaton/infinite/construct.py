@@ -1,10 +1,11 @@
 """Build the deterministic Rabin automaton of a formula.
 
-The states of the after-automaton are what remains of the formula.  Each of its strongly connected
-components becomes an automaton of its own (:mod:`tltlc.automaton.infinite.component`): the simplest
-formula in the component is normalised, the automata of its parts run beside the labels, and their
-marks become Rabin pairs.  Then the components are joined.  If some states have the same language,
-the whole construction runs again with their labels merged.
+The construction starts from the after-automaton.  Its states, called labels, are what remains of
+the formula; it has no acceptance yet.  Each of its strongly connected components is converted to an
+automaton with acceptance (:mod:`tltlc.automaton.infinite.component`): the simplest formula in the
+component is normalised, a small automaton observes each part of the formula, and their acceptance
+conditions become Rabin pairs.  Then the components are joined.  If some states have the same
+language, the whole construction runs again with their labels merged.
 """
 
 from __future__ import annotations
@@ -39,14 +40,24 @@ from tltlc.io.limits import WORK
 from tltlc.logic.formula import Formula
 
 _FOR_AN_ATTEMPT: Final = 400_000
-"""Steps for one attempt at a component; an attempt that takes more is dropped."""
+"""Steps of work for one attempt to convert a component; an attempt that takes more is dropped."""
 _FOR_LANGUAGES: Final = 1_000_000
-"""Steps for finding states of equal language and for the second construction; if they take more, both are dropped."""
+"""Steps of work for finding states of equal language and the second construction.
+
+If they take more, the result of the first construction stays.
+"""
 _FOR_SHRINKING: Final = 400_000
-"""Steps for removing states of a component; when they are used up, the remaining states stay."""
+"""Steps of work for removing states of a component.
+
+When they are used up, the remaining states stay.
+"""
 
 Labels = dict[int, int]
-"""A map from labels: obligations of :class:`~tltlc.automaton.infinite.after_automaton.ObligationAutomaton`."""
+"""A map from labels to labels, states or positions.
+
+A label is an obligation of an
+:class:`~tltlc.automaton.infinite.after_automaton.ObligationAutomaton`.
+"""
 
 
 def rabin(
@@ -57,11 +68,11 @@ def rabin(
 ) -> Rabin:
     """Return the automaton of a formula over infinite traces.
 
-    ``atoms`` are the names of the atoms of a letter, in order; by default the atoms of the formula.
-    ``exclusive`` are groups of atoms, by index, of which at most one holds in a letter.  Raises
-    :class:`OutOfWork` after ``work`` steps, :class:`~tltlc.automaton.diagrams.OutOfSteps` if an
-    obligation becomes too large, and :class:`~tltlc.automaton.guards.TooManyPrimes` if there are
-    too many edges.
+    ``atoms`` are the names of the atoms of a letter, in order; by default the atoms of the
+    formula.  ``exclusive`` has groups of indices of atoms; at most one atom of a group holds in a
+    letter.  Raises :class:`OutOfWork` after ``work`` steps,
+    :class:`~tltlc.automaton.diagrams.OutOfSteps` if an obligation becomes too large, and
+    :class:`~tltlc.automaton.guards.TooManyPrimes` if there are too many edges.
     """
     normal = infinite_form(formula)
     return _Construction(normal, formula.atoms() if atoms is None else atoms, exclusive, work).automaton()
@@ -70,7 +81,7 @@ def rabin(
 class _Construction:
     def __init__(self, formula: Formula, atoms: Sequence[str], exclusive: Sequence[Sequence[int]], work: int) -> None:
         self.work = Work(work)
-        # Users set a larger budget because the default is too little for some component.
+        # Users raise the budget if some component needs more work, so attempts at a component get more, too.
         self._for_an_attempt = _FOR_AN_ATTEMPT * max(1, work // DEFAULT_WORK)
         self.letters: Diagrams[Any] = Diagrams(self.work)
         self.after = ObligationAutomaton(atoms, self.letters)
@@ -80,7 +91,7 @@ class _Construction:
         self._constrained: dict[tuple[int, int], int] = {}
 
     def automaton(self) -> Rabin:
-        """Return the automaton, with labels of equal language merged if that makes it smaller."""
+        """Return the automaton, with states of equal language merged if that makes it smaller."""
         first, state_of, depth = self._construct({})
         try:
             with self.work.at_most(_FOR_LANGUAGES):
@@ -94,9 +105,10 @@ class _Construction:
         return first
 
     def _equal_labels(self, automaton: Rabin, state_of: Labels, depth: Labels) -> Labels:
-        """Map each label to the representative of its language.
+        """Map each label to the label that represents its language.
 
-        It is the shortest label of this language in the component nearest to the end.
+        Of the labels with the same language, this is one in the component that comes first in
+        ``depth``, and there the shortest.
         """
         same = equal_states(automaton, len(self.after.atoms), self._exclusive, self.work)
         representatives: Labels = {}
@@ -106,10 +118,10 @@ class _Construction:
         return representatives
 
     def _construct(self, representatives: Labels) -> tuple[Rabin, Labels, Labels]:
-        """Build the automaton with labels replaced by their representatives.
+        """Build the automaton, with labels replaced by their representatives.
 
-        Returns the automaton, the state of each label, and the position of each label's component,
-        where a component comes after the components that it leads to.  Raises
+        Returns the automaton, the state of each label, and the position of each label's component.
+        A component has a higher position than all components that can be reached from it.  Raises
         :class:`TooManyPrimes` if there are more edges between labels than the row "edges" of
         ``WORK`` allows.
         """
@@ -150,7 +162,10 @@ class _Construction:
     # --- letters ----------------------------------------------------------------------------------
 
     def _step(self, label: int) -> int:
-        """Return the label after each letter, ``IMPOSSIBLE`` after letters that are not allowed."""
+        """Return the next label as a function of the letter.
+
+        Its value is ``IMPOSSIBLE`` for letters that are not allowed.
+        """
         step = self.after.after(label)
         if not self._exclusive:
             return step
@@ -164,7 +179,7 @@ class _Construction:
     # --- components -------------------------------------------------------------------------------
 
     def _rabin_component(self, step_of: Callable[[int], int], group: Sequence[int]) -> RabinComponent:
-        """Return the smallest of the automata with pairs that were built for a component of the after-automaton."""
+        """Return the smallest automaton found for a component of the after-automaton, with Rabin pairs."""
         inside = frozenset(group)
         if not any(target in inside for label in group for target in self._targets(step_of(label))):
             (label,) = group
@@ -182,7 +197,10 @@ class _Construction:
         return shrink(self.letters, best, self.work, _FOR_SHRINKING) if len(best.steps) > len(group) else best
 
     def _attempts(self, step_of: Callable[[int], int], inside: frozenset[int], first: int) -> Iterator[RabinComponent]:
-        """Yield automata for a component that starts at the label ``first``, within the work for an attempt."""
+        """Yield automata for the component with the labels ``inside``, built in different ways.
+
+        Each starts at the label ``first``.  Attempts that take too much work yield nothing.
+        """
         formula = self.after.formula(first)
         forms = []
         for normalise in (delta_2, delta_2_dually):
@@ -213,5 +231,5 @@ class _Construction:
 
 
 def _key_function(chosen: Sequence[int]) -> Callable[[State], State]:
-    """Return the function that maps a state to its label and the chosen memories."""
+    """Return the function that maps a state to its label and the memories with these indices."""
     return lambda state: (state[0], *(state[index] for index in chosen))

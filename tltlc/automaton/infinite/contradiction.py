@@ -1,4 +1,4 @@
-"""Find the parts of an unsatisfiable spec over infinite traces that contradict each other."""
+"""Find the clauses of an unsatisfiable spec over infinite traces that contradict each other."""
 
 from __future__ import annotations
 
@@ -15,11 +15,14 @@ from tltlc.logic.formula import and_
 from tltlc.resolve.spec import Conjunct, Spec
 
 _WORK: Final = 100_000
-"""Steps above which the search gives up: a warning must not take longer than the compilation."""
+"""Steps of work after which the search gives up: a warning must not take longer than the compilation."""
 
 
 def unsatisfiable(parts: Sequence[Conjunct], spec: Spec) -> bool:
-    """Whether it can be proved, within the steps, that no infinite trace satisfies all of the parts."""
+    """Whether no infinite trace satisfies all of these clauses.
+
+    Returns False as well if a proof takes more than ``_WORK`` steps.
+    """
     whole = and_(*(part.formula for part in parts))
     names = [atom.name for atom in spec.atoms]
     try:

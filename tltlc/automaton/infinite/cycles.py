@@ -1,4 +1,4 @@
-"""The alternating cycle decomposition: a tree of the accepted and rejected sets of edges.
+"""The alternating cycle decomposition: a tree of sets of edges, each accepted or rejected.
 
 A. Casares, T. Colcombet, N. Fijalkow, "Optimal Transformations of Games and Automata Using Muller
 Conditions" (ICALP 2021).  A node is a strongly connected set of edges.  The children of an accepted
@@ -18,17 +18,21 @@ from tltlc.automaton.work import Work
 from tltlc.core.record import record
 
 Edge = tuple[Any, Any, Marks]
-"""Source, target and marks; a state is any hashable value."""
+"""The source, the target and the marks of an edge; a state is any hashable value."""
 
 Edges = frozenset[Edge]
 
 LOOKS_PER_STEP: Final = 16
-"""How many edges one step of work pays for, if they are only read."""
+"""How many edges a function may read for one step of work."""
 
 
 @record
 class Node:
-    """A node of the tree; ``index`` numbers all nodes of a tree, ``states`` are the ends of the node's edges."""
+    """A node of the tree.
+
+    ``index`` numbers the nodes of a tree from 0.  ``states`` are the sources and targets of
+    ``edges``.
+    """
 
     index: int
     edges: Edges
@@ -38,10 +42,11 @@ class Node:
 
 
 def decomposition(edges: Iterable[Edge], clauses: Sequence[MarkClause], work: Work) -> Node:
-    """Return the tree of a strongly connected set of edges, with children in the order of their edges.
+    """Return the tree of a strongly connected set of edges.
 
-    In this module, work counts the edges that are visited; its functions raise
-    :class:`~tltlc.automaton.work.OutOfWork`.
+    A set is accepted if one of ``clauses`` accepts its marks.  Children have the order of their
+    first edges in ``edges``.  Like all functions of this module, this one takes steps of ``work``
+    for the edges that it visits, and raises :class:`~tltlc.automaton.work.OutOfWork`.
     """
     order = {edge: place for place, edge in enumerate(edges)}
     count = 0
@@ -83,7 +88,7 @@ def marks_of(edges: Iterable[Edge]) -> Marks:
 
 
 def accepting_parts(edges: Edges, clauses: Sequence[MarkClause], work: Work) -> list[Edges]:
-    """Return, for each clause, the maximal strongly connected subsets that it accepts."""
+    """Return, for each clause, the maximal strongly connected subsets of ``edges`` that the clause accepts."""
     work.spend(len(edges) * len(clauses) // LOOKS_PER_STEP)
     return [
         part
@@ -94,7 +99,7 @@ def accepting_parts(edges: Edges, clauses: Sequence[MarkClause], work: Work) -> 
 
 
 def rejecting_parts(edges: Edges, clauses: Sequence[MarkClause], work: Work) -> list[Edges]:
-    """Return strongly connected subsets that no clause accepts; all maximal subsets are among them."""
+    """Return strongly connected subsets of ``edges`` that no clause accepts, all maximal ones included."""
     rejected: dict[Edges, None] = {}
     seen: set[Edges] = set()
     stack = [edges]
@@ -116,7 +121,7 @@ def rejecting_parts(edges: Edges, clauses: Sequence[MarkClause], work: Work) -> 
 
 
 def parts(edges: Iterable[Edge], work: Work) -> list[Edges]:
-    """Return the maximal strongly connected sets of edges."""
+    """Return the maximal strongly connected subsets of ``edges``."""
     leaving: dict[Any, list[Edge]] = {}
     for edge in edges:
         leaving.setdefault(edge[0], []).append(edge)

@@ -1,7 +1,8 @@
 """Normalise formulas to Boolean combinations of four kinds of formulas.
 
-These are Sigma-2 formulas, Pi-2 formulas, ``G F p`` with p in Sigma-1, and ``F G p`` with p in
-Pi-1.  The rewrites are from S. Sickert, J. Esparza, "An Efficient Normalisation Procedure for
+The four kinds are Sigma-2 formulas (no ``U`` inside a ``W``), Pi-2 formulas (no ``W`` inside a
+``U``), ``G F p`` with p in Sigma-1 (no ``W``), and ``F G p`` with p in Pi-1 (no ``U``).
+The rewrites are from S. Sickert, J. Esparza, "An Efficient Normalisation Procedure for
 Linear Temporal Logic and Very Weak Alternating Automata" (LICS 2020), and from their rewrite system
 (TACAS 2023).  Formulas that are already Sigma-2 or Pi-2 are not changed.
 """
@@ -24,7 +25,7 @@ def contains(formula: Formula, op: str) -> bool:
 
 @lru_cache(maxsize=65536)
 def is_sigma_2(formula: Formula) -> bool:
-    """Whether no ``W`` has a ``U`` below it, and no part is rigid."""
+    """Whether a formula has no ``U`` inside a ``W``, and no ``G F p`` or ``F G p``."""
     if formula.op in ("G", "F"):
         return False
     if formula.op == "W" and contains(formula, "U"):
@@ -34,7 +35,7 @@ def is_sigma_2(formula: Formula) -> bool:
 
 @lru_cache(maxsize=65536)
 def is_pi_2(formula: Formula) -> bool:
-    """Whether no ``U`` has a ``W`` below it, and no part is rigid."""
+    """Whether a formula has no ``W`` inside a ``U``, and no ``G F p`` or ``F G p``."""
     if formula.op in ("G", "F"):
         return False
     if formula.op == "U" and contains(formula, "W"):
@@ -48,9 +49,9 @@ def delta_2(formula: Formula) -> Formula:
 
 
 def delta_2_dually(formula: Formula) -> Formula:
-    """Return another normalised form: normalise the formula's negation, and negate the result.
+    """Return another normalised formula: the negation of the normalised negation.
 
-    Raises OutOfWork if it becomes too large.
+    Raises OutOfWork if the formula becomes too large.
     """
     return normal_form.negation(delta_2(normal_form.negation(formula)))
 
@@ -88,7 +89,7 @@ class _Normaliser:
             return _push_next(self.normal(args[0]))
         flat = self.flat(formula)
         if flat is formula:
-            # The formula has too many rigid parts to move them out.
+            # The formula has too many subformulas G F p and F G p to move them out.
             raise OutOfWork
         return flat if is_sigma_2(flat) else self.normal(flat)
 
@@ -115,7 +116,7 @@ class _Normaliser:
         )
 
     def flat(self, formula: Formula) -> Formula:
-        """Return the formula without any ``U`` below a ``W``, except inside rigid parts."""
+        """Return an equivalent formula without any ``U`` inside a ``W``, except within ``G F p`` and ``F G p``."""
         result = self._flat.get(formula)
         if result is None:
             self._spend()
@@ -141,7 +142,7 @@ class _Normaliser:
             return self.flat(normal_form.disjunction((normal_form.until(a, b), normal_form.weak_until(a, FALSE))))
         outermost = _outermost(a, "U")
         if outermost is None:
-            # Every U is inside a rigid part.
+            # Every U is within a G F p or F G p.
             raise OutOfWork
         p, q = outermost.args
         weak = normal_form.weak_until(normal_form.substitute(a, {outermost: normal_form.weak_until(p, q)}), b)
@@ -166,7 +167,7 @@ def _push_next(formula: Formula) -> Formula:
 
 
 def _outermost(formula: Formula, op: str) -> Formula | None:
-    """Return the first outermost subformula with operator ``op`` that is not inside a rigid part, or None."""
+    """Return the first outermost subformula with operator ``op`` that is not within ``G F p`` or ``F G p``, or None."""
     if formula.op == op:
         return formula
     if formula.op in ("G", "F") or not contains(formula, op):

@@ -1,11 +1,14 @@
-"""Find smaller automata of a component that remember only its label and a few memories.
+"""Find smaller automata for a component, by merging states.
 
-Such a factor merges the states of the component that have the same key.  An edge of the factor
-stands for all edges of the component with its source and letter.  If none of these lies on a
-rejected cycle, a run that takes the edge infinitely often is accepted, and the edge gets rank 0.
-Edges without a rank are then examined again, in turn for accepted and rejected cycles, and get
-ranks 1, 2 and so on.  If every edge gets a rank, the ranks decide acceptance as priorities do: a
-run is accepted if the least rank that it takes infinitely often is even.
+A state of a component is a label and the memories of the formula's parts.  A *factor* of the
+component merges all states with the same key, such as the label and one of the memories.  So an
+edge of the factor replaces several edges of the component.
+
+The factor must accept the same runs.  For this, its edges get ranks.  An edge gets rank 0 if none
+of the edges that it replaces lies on a rejected cycle.  Among the edges without a rank, an edge
+gets rank 1 if none of its edges lies on an accepted cycle, then rank 2 for rejected cycles, and so
+on.  If every edge gets a rank, a run is accepted if the least rank that it takes infinitely often
+is even.
 """
 
 from __future__ import annotations
@@ -23,18 +26,19 @@ from tltlc.automaton.infinite.pairs import RabinComponent
 from tltlc.automaton.work import Work
 
 _MOST_TOGETHER: Final = 48
-"""The most states of a component that one state of a factor may stand for."""
+"""The most states of a component that a factor may merge into one."""
 
 _Edge = tuple[State, State, Marks, int]
-"""An edge of the component, and the number of the factor's edge that stands for it."""
+"""An edge of the component (source, target, marks), and the number of the factor's edge that replaces it."""
 
 
 def factor(
     letters: Diagrams[Any], component: ComponentAutomaton, key: Callable[[State], State], work: Work
 ) -> RabinComponent | None:
-    """Return the factor of a component by a key of its states; None if its edges cannot decide acceptance.
+    """Return the component with all states merged that have the same key.
 
-    The key after a letter must depend only on the key before it and on the letter.  Raises
+    The key after a letter must depend only on the key before it and on the letter.  Returns None if
+    some edge gets no rank, or if more than :data:`_MOST_TOGETHER` states have the same key.  Raises
     OutOfWork.
     """
     groups: dict[State, list[State]] = {}

@@ -1,4 +1,4 @@
-"""Strongly connected components of graphs that are given by a successor function."""
+"""Strongly connected components of graphs."""
 
 from __future__ import annotations
 
@@ -9,7 +9,9 @@ Node = TypeVar("Node", bound=Hashable)
 
 
 def components(roots: Iterable[Node], successors: Callable[[Node], Iterable[Node]]) -> list[list[Node]]:
-    """Return the strongly connected components that the roots reach, each after the components that it leads to.
+    """Return the strongly connected components of the nodes that can be reached from ``roots``.
+
+    A component comes after all components that can be reached from it.
 
     R. Tarjan, "Depth-First Search and Linear Graph Algorithms", SIAM J. Comput. 1972.
     """
@@ -55,9 +57,10 @@ def components(roots: Iterable[Node], successors: Callable[[Node], Iterable[Node
 
 
 def smallest_bottom(targets: Mapping[Node, Sequence[Node]], root: Node) -> list[Node]:
-    """Return the smallest strongly connected component that leads to no other one.
+    """Return the smallest strongly connected component that no edge leaves.
 
-    Of several such components, it is the first in the order of :func:`components` from ``root``.
+    ``targets`` maps each node to its successors.  Of several smallest components, returns the first
+    one in the order of :func:`components`.
     """
     bottoms = []
     for group in components([root], targets.__getitem__):

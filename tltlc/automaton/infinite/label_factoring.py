@@ -1,8 +1,8 @@
 """Write Boolean combinations of temporal formulas in a short form, with common factors in front.
 
-The construction reads labels from decision diagrams, or uses the first formula that it met.  This
-module rewrites labels, once from their prime implicants and once from their prime implicates:
-``b & !d | d`` becomes ``b | d``, and ``F b & G F c | F b & G F d`` becomes
+The labels of states are often longer than necessary, because they are made from decision diagrams.
+This module rewrites a label in two forms: a disjunction of prime implicants, and a conjunction of
+prime implicates.  ``b & !d | d`` becomes ``b | d``, and ``F b & G F c | F b & G F d`` becomes
 ``F b & (G F c | G F d)``.
 """
 
@@ -20,12 +20,12 @@ from tltlc.automaton.work import Work
 from tltlc.logic.formula import Formula, not_
 
 _MOST_TERMS: Final = 48
-"""A formula with more prime implicants, or implicates, is not written from them."""
+"""The most prime implicants, or prime implicates, of a formula that is rewritten in this form."""
 _MOST_STEPS: Final = 20_000
-"""A formula that takes more steps of the diagrams is not rewritten."""
+"""The most steps of the diagrams for one form of a formula; if it takes more, it is left out."""
 
 _Term = frozenset[int]
-"""A set of literals: twice the variable of a formula, plus 1 for its negation."""
+"""A set of literals.  The literal of variable ``v`` is ``2 * v``, its negation ``2 * v + 1``."""
 
 _Op = Literal["or", "and"]
 """The operator that joins terms: ``or`` for implicants, which are conjunctions, ``and`` for implicates."""
@@ -36,7 +36,7 @@ class _TooManyTerms(Exception):
 
 
 class Factoring:
-    """Rewrites formulas in normal form over ``atoms``; the results are equal on every infinite trace."""
+    """Rewrites formulas in normal form over ``atoms`` to equivalent ones over infinite traces."""
 
     def __init__(self, atoms: Sequence[str]) -> None:
         self._after = ObligationAutomaton(atoms, Diagrams(Work(0)))
@@ -50,7 +50,10 @@ class Factoring:
         self._redundant: dict[tuple[_Op, int], _Term] = {}
 
     def forms(self, formula: Formula) -> Iterator[Formula]:
-        """Yield the formula from its prime implicants, and from its prime implicates, unless there are too many."""
+        """Yield the formula as a disjunction of prime implicants and as a conjunction of prime implicates.
+
+        Both have their common factors in front.  A form with too many terms is left out.
+        """
         operators: tuple[_Op, ...] = ("or", "and")
         for op in operators:
             try:
@@ -66,7 +69,7 @@ class Factoring:
     # --- terms ------------------------------------------------------------------------------------
 
     def _primes(self, obligation: int, op: _Op) -> tuple[_Term, ...]:
-        """Return all prime implicants, or implicates."""
+        """Return all prime implicants of an obligation if ``op`` is ``or``, all prime implicates if it is ``and``."""
         primes = self._terms.get((op, obligation))
         if primes is None:
             obligations = self._after.obligations
@@ -85,7 +88,7 @@ class Factoring:
         return primes
 
     def _drop_redundant_terms(self, terms: Sequence[_Term], op: _Op) -> list[_Term]:
-        """Return the terms without the literals and terms that other literals and terms make redundant."""
+        """Return the terms without redundant literals and without redundant terms."""
         kept = [self._drop_redundant_literals(term, op) for term in terms]
         for term in sorted(kept, key=len, reverse=True) if len(kept) > 1 else ():
             others = [other for other in kept if other is not term]
@@ -101,7 +104,7 @@ class Factoring:
         return term
 
     def _redundant_beside(self, literal: int, op: _Op) -> _Term:
-        """Return literals that are redundant beside ``literal``: in an ``and``, ``F b`` beside ``F(a & X F b)``."""
+        """Return the literals that are redundant in the same term: in an ``and``, ``F b`` beside ``F(a & X F b)``."""
         redundant = self._redundant.get((op, literal))
         if redundant is None:
             redundant = frozenset()
@@ -113,7 +116,7 @@ class Factoring:
         return redundant
 
     def _is_consensus(self, term: _Term, others: Sequence[_Term], op: _Op) -> bool:
-        """Whether the other terms together cover a term, as ``a & b | !a & c`` covers ``b & c``."""
+        """Whether a term is redundant beside the other terms together, as ``b & c`` beside ``a & b | !a & c``."""
         literals = frozenset().union(*others)
         if not any(literal ^ 1 in literals for literal in literals):
             return False
@@ -129,9 +132,9 @@ class Factoring:
     def _factor(self, terms: Sequence[_Term], op: _Op) -> Formula:
         """Return the terms as a formula, with the literals that all terms share in front.
 
-        If the terms share no literal, the literal that most terms have is factored out, together
-        with every other factor that occurs with the same rests.  The remaining terms are factored
-        separately.
+        If the terms share no literal, the literal of the most terms is factored out.  What is left
+        of these terms are the rests.  Other factors that occur with every rest are factored out as
+        well.  The remaining terms are factored separately.
         """
         if len(terms) < 2:
             return self._join(terms, op)

@@ -11,14 +11,14 @@ from tltlc.automaton.infinite.products import Leaf, StatePair, conditions, produ
 from tltlc.automaton.work import Work
 
 _WORDS: Final = 48
-"""The number of random cycles that distinguish states before they are compared exactly."""
+"""The number of random cycles on which states are compared first, before the exact comparison."""
 
 
 def equal_states(automaton: Rabin, atoms: int, exclusive: Sequence[Sequence[int]], work: Work) -> list[int]:
-    """Return for each state the first state that has the same language.
+    """Return, for each state, the first state that has the same language.
 
-    ``atoms`` is the number of atoms of a letter; of each group of ``exclusive`` at most one atom
-    holds.  Raises OutOfWork.
+    ``atoms`` is the number of atoms of a letter.  ``exclusive`` has groups of indices of atoms; at
+    most one atom of a group holds in a letter.  Raises OutOfWork.
     """
     representatives: list[int] = []
     signatures = _signatures(automaton, atoms, exclusive, work)
@@ -33,17 +33,14 @@ def equal_states(automaton: Rabin, atoms: int, exclusive: Sequence[Sequence[int]
 
 
 def _equal(automaton: Rabin, one: int, other: int, work: Work) -> bool:
-    """Whether two states have the same language: in their product, both accept the same cycles.
-
-    Raises OutOfWork.
-    """
+    """Whether two states have the same language.  Raises OutOfWork."""
     steps, pairs = automaton.steps, automaton.pairs
     together = product_leaves(automaton.letters, pairs, lambda leaf: leaf is None)
 
     def leaves(both: StatePair) -> list[Leaf]:
         successors = together(steps[both[0]], steps[both[1]])
         work.spend(5 + len(successors))
-        # No word distinguishes a state from itself.
+        # From two equal states, no trace can be accepted by only one: do not explore further.
         return [leaf for leaf in successors if leaf[0][0] != leaf[0][1]]
 
     of_one, of_other = conditions(pairs, pairs)
@@ -51,7 +48,7 @@ def _equal(automaton: Rabin, one: int, other: int, work: Work) -> bool:
 
 
 def _signatures(automaton: Rabin, atoms: int, exclusive: Sequence[Sequence[int]], work: Work) -> list[tuple[bool, ...]]:
-    """Return for each state which of the random cycles it accepts.  Raises OutOfWork."""
+    """Return, for each state, which of the random cycles it accepts.  Raises OutOfWork."""
     # A fixed seed, so that the same formula gives the same automaton.
     rng = Random(1)
 
@@ -67,12 +64,15 @@ def _signatures(automaton: Rabin, atoms: int, exclusive: Sequence[Sequence[int]]
 
 
 def accepting(automaton: Rabin, cycle: Sequence[Sequence[bool]], work: Work) -> list[bool]:
-    """Return for each state whether it accepts the infinite repetition of a cycle of letters.  Raises OutOfWork."""
+    """Return, for each state, whether it accepts a cycle of letters that repeats for ever.
+
+    Raises OutOfWork.
+    """
     work.spend(len(automaton.steps))
     rounds = [_round(automaton, state, cycle) for state in range(len(automaton.steps))]
     answers: list[bool | None] = [None] * len(rounds)
     for state in range(len(rounds)):
-        # The states after each round, up to one that is known or comes again.
+        # The states after each round of the cycle, until one comes again or its result is known.
         visited: dict[int, None] = {}
         while answers[state] is None and state not in visited:
             visited[state] = None
@@ -89,7 +89,7 @@ def accepting(automaton: Rabin, cycle: Sequence[Sequence[bool]], work: Work) -> 
 
 
 def _round(automaton: Rabin, state: int, cycle: Sequence[Sequence[bool]]) -> tuple[int, PairMarks]:
-    """Return the state after one round of a cycle of letters, and all marks of the round."""
+    """Return the state after one round of a cycle of letters, and all marks of the edges taken."""
     marks = NO_MARKS
     for letter in cycle:
         state, letter_marks = automaton.step(state, letter)

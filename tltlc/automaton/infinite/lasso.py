@@ -1,6 +1,6 @@
-"""Evaluate formulas over infinite traces on traces that end in a cycle, directly from the definitions.
+"""Evaluate formulas on infinite traces that repeat a cycle, directly from the definitions of the operators.
 
-This is slow and serves as the reference: tests compare the rest of this package with it.
+This is slow.  Tests compare the automata of this package with it.
 """
 
 from __future__ import annotations
@@ -29,7 +29,10 @@ def holds_on_lasso(formula: Formula, prefix: Sequence[Collection[str]], cycle: S
 def _values(
     node: Formula, operands: list[list[bool]], trace: Sequence[Collection[str]], following: Sequence[int]
 ) -> list[bool]:
-    """Return the truth value of a formula at each place, given the truth values of its operands."""
+    """Return the truth value of a formula at each sample of ``trace``, given the values of its operands there.
+
+    ``following`` has the index of the sample after each sample.
+    """
     count = len(trace)
     a = operands[0] if operands else []
     b = operands[1] if len(operands) > 1 else []
@@ -65,9 +68,9 @@ def _values(
 
 
 def _fixed_point(go_on: list[bool], ends: list[bool], following: Sequence[int], *, least: bool) -> list[bool]:
-    """Return the least or greatest solution of ``v = ends | go_on & X v``."""
+    """Return the least or greatest solution of ``v = ends | go_on & X v``, as a truth value for each sample."""
     values = [not least] * len(ends)
-    # Each round fixes the value of at least one more place.
+    # Each round gives at least one more sample its final value.
     for _ in range(len(ends) + 1):
         for place in reversed(range(len(ends))):
             values[place] = ends[place] or (go_on[place] and values[following[place]])

@@ -1,4 +1,8 @@
-"""Small deterministic automata for the parts of a normalised formula, which mark the letters that decide acceptance."""
+"""Small deterministic automata for the parts of a normalised formula.
+
+Each automaton marks some of the letters that it reads.  Whether it accepts depends on whether it
+marks infinitely many.
+"""
 
 from __future__ import annotations
 
@@ -14,36 +18,39 @@ from tltlc.logic import formula as build
 from tltlc.logic.formula import Formula
 
 Memory = tuple[Any, ...]
-"""Obligations and numbers, but no truth values: a table of leaves could not tell them from the numbers 1 and 0."""
+"""The state of a small automaton: obligations and other ints.
+
+It has no truth values, because in a table of leaves True would be equal to 1, and False to 0.
+"""
 
 
 class LeafAutomaton(Protocol):
-    """A deterministic automaton whose states are memories.
+    """A deterministic automaton for a part of a formula; its states are called memories.
 
-    A run is accepted if its marks come infinitely often (``kind`` is ``inf``) or finitely often
-    (``fin``).
+    A run is accepted if infinitely many letters are marked (``kind`` is ``inf``), or only finitely
+    many (``kind`` is ``fin``).
     """
 
     kind: Kind
     initial: Memory
 
     def step(self, memory: Memory) -> int:
-        """Return the memory after each letter and whether the letter is marked, as a function of the letter."""
+        """Return the next memory and whether the letter is marked, as a function of the letter."""
 
     def final_value(self, memory: Memory) -> bool | None:
-        """Return whether the part holds, if no further letter can change this; else None."""
+        """Return True if the part holds whatever letters follow, False if it then fails, None if it is open."""
 
 
 class Breakpoint:
     """A breakpoint automaton for a Pi-2 formula (``inf``) or a Sigma-2 formula (``fin``).
 
-    The memory is two obligations: what remains of the formula, and a current obligation.  For a
-    Pi-2 formula, the current obligation starts as what remains with each outermost ``W`` replaced
-    by true.  When it becomes true, the letter is marked, and the current obligation starts again
-    from what remains then.  The formula holds if infinitely many letters are marked and what
-    remains never becomes false.  Sigma-2 is dual: each outermost ``U`` is replaced by false, a
-    letter is marked when the current obligation becomes false, and the formula holds if finitely
-    many letters are marked.
+    The memory is two obligations: what remains of the formula, and a second one.  For a Pi-2
+    formula, the second obligation starts as what remains with each outermost ``W`` replaced by
+    true.  When it becomes true, the letter is marked, and the second obligation starts again in the
+    same way from what remains at that letter.  The formula holds if infinitely many letters are
+    marked and what remains never becomes false.  For a Sigma-2 formula, each outermost ``U`` is
+    replaced by false, the letter is marked when the second obligation becomes false, and the
+    formula holds if only finitely many letters are marked.
     """
 
     def __init__(self, after: ObligationAutomaton, formula: Formula, kind: Kind) -> None:
@@ -64,7 +71,7 @@ class Breakpoint:
         return self._after.obligation(_replace_outermost(formula, "W" if self.kind == "inf" else "U"))
 
     def step(self, memory: Memory) -> int:
-        """Return the memory after each letter and whether the letter is marked, as a function of the letter."""
+        """Return the next memory and whether the letter is marked, as a function of the letter."""
         step = self._steps.get(memory)
         if step is None:
             letters = self._after.letters
@@ -84,7 +91,7 @@ class Breakpoint:
         return (rest, owed), False
 
     def final_value(self, memory: Memory) -> bool | None:
-        """Return True if nothing remains of the formula, False if it cannot hold any more, else None."""
+        """Return True if nothing remains of the formula, False if it cannot hold any more, None otherwise."""
         return memory[0] == TRUE if len(memory) == 1 else None
 
 
@@ -101,9 +108,9 @@ def _replace_outermost(formula: Formula, op: str) -> Formula:
 class Recurrence:
     """An automaton for ``G F p`` with p in Sigma-1 (``inf``), or ``F G p`` with p in Pi-1 (``fin``).
 
-    Each letter starts an attempt to satisfy p.  The memory holds the obligations of the attempts
-    that are undecided.  A letter is marked if an attempt succeeds (for ``F G p``: fails).  The
-    other attempts are then dropped, unless ``keep`` is true.
+    At each letter, an attempt to satisfy p starts.  The memory has what remains of p for each
+    attempt that has not succeeded or failed yet.  A letter is marked if an attempt succeeds (for
+    ``F G p``: fails).  The other attempts are then dropped, unless ``keep`` is true.
     """
 
     def __init__(self, after: ObligationAutomaton, formula: Formula, kind: Kind, *, keep: bool) -> None:
@@ -117,7 +124,7 @@ class Recurrence:
         self._last: dict[int, int] = {}
 
     def step(self, memory: Memory) -> int:
-        """Return the memory after each letter and whether the letter is marked, as a function of the letter."""
+        """Return the next memory and whether the letter is marked, as a function of the letter."""
         step = self._steps.get(memory)
         if step is None:
             letters = self._after.letters
@@ -136,7 +143,7 @@ class Recurrence:
         undecided = {attempt for attempt in attempts if attempt not in (over, out)}
         combine: Callable[[int, int], int]
         combine = self._after.obligations.either if self.kind == "inf" else self._after.obligations.both
-        # If an attempt succeeds only if another one does, remembering the other one is enough.
+        # Drop an attempt that succeeds (for F G p: fails) only if another attempt does.
         needed = [
             attempt
             for attempt in undecided
@@ -149,11 +156,12 @@ class Recurrence:
 
 
 class RoundRobin:
-    """An automaton for a conjunction of ``G F p``, or a disjunction of ``F G p``, that follows one of them at a time.
+    """An automaton for a conjunction of ``G F p``, or a disjunction of ``F G p``, that observes one operand at a time.
 
-    The memory is the index of the current part and this part's attempts.  On a letter that the
-    current part marks, the automaton moves on to the next part; it marks the letter if this
-    completes the round.  So the numbers of memories of the parts add up instead of multiplying.
+    The memory is the index of the current operand and the memory of its :class:`Recurrence`.  On a
+    letter that the current operand marks, the automaton moves on to the next operand.  It marks the
+    letter if all operands have had their turn.  The automaton then has as many memories as the
+    operands together; automata side by side would have the product of their numbers.
     """
 
     def __init__(self, after: ObligationAutomaton, parts: Sequence[Recurrence]) -> None:
@@ -164,7 +172,7 @@ class RoundRobin:
         self._steps: dict[Memory, int] = {}
 
     def step(self, memory: Memory) -> int:
-        """Return the memory after each letter and whether the letter is marked, as a function of the letter."""
+        """Return the next memory and whether the letter is marked, as a function of the letter."""
         step = self._steps.get(memory)
         if step is None:
             letters, count = self._letters, len(self._parts)

@@ -1,4 +1,7 @@
-"""Acceptance conditions over marks: which marks must come infinitely often, and which only finitely often."""
+"""Acceptance conditions over the marks of edges.
+
+A condition says which marks a run must take infinitely often, and which only finitely often.
+"""
 
 from __future__ import annotations
 
@@ -11,13 +14,16 @@ from tltlc.automaton.work import Work
 from tltlc.core.record import record
 
 Kind = Literal["inf", "fin"]
-"""Whether marks must come infinitely often or finitely often."""
+"""Whether a run must take a mark infinitely often or only finitely often."""
 
 Marks = frozenset[int]
-"""The marks of a letter: indices of parts, or for pairs the numbers of :func:`pair_marks`."""
+"""The marks of an edge: indices of the formula's parts, or numbers of :func:`pair_marks` for Rabin pairs."""
 
 Skeleton = tuple[Any, ...]
-"""``("leaf", index)``, ``("and", …)`` or ``("or", …)``."""
+"""The Boolean structure of a formula over its parts: ``("leaf", index)``, ``("and", …)`` or ``("or", …)``.
+
+``index`` is the index of a part; the operands of ``and`` and ``or`` are skeletons.
+"""
 
 
 @record
@@ -33,22 +39,26 @@ class MarkClause:
 
 
 def pair_marks(marks: Iterable[Mark], first: int = 0) -> Marks:
-    """Return marks of Rabin pairs as numbers: from ``first`` on two for each pair, ``fin`` then ``inf``."""
+    """Return marks of Rabin pairs as numbers.
+
+    The marks of pair ``i`` are ``first + 2 * i`` for ``fin`` and ``first + 2 * i + 1`` for ``inf``.
+    """
     return frozenset(first + 2 * pair + (kind == "inf") for pair, kind in marks)
 
 
 def pair_clauses(pairs: int, first: int = 0) -> list[MarkClause]:
-    """Return ``pairs`` Rabin pairs as clauses over the numbers of :func:`pair_marks`."""
+    """Return the conditions of ``pairs`` Rabin pairs, with marks numbered as in :func:`pair_marks`."""
     return [MarkClause(frozenset((fin,)), frozenset((fin + 1,))) for fin in range(first, first + 2 * pairs, 2)]
 
 
 def clauses(
     skeleton: Skeleton, kinds: Sequence[Kind], values: Sequence[bool | None], work: Work
 ) -> list[MarkClause] | bool:
-    """Return the disjunctive normal form of a skeleton over parts of these kinds; True or False if it is constant.
+    """Return clauses, one of which a run must meet so that the formula of a skeleton holds.
 
-    ``values`` has True or False for parts that are settled, None for the others.  Raises OutOfWork
-    if there are too many clauses.
+    The mark of each part is its index in ``kinds``.  ``values`` has True or False for a part whose
+    value is known, None for the others.  Returns True or False if the formula is constant.  Raises
+    OutOfWork if there are too many clauses.
     """
     result = _clauses(skeleton, kinds, values, work)
     if not result:
@@ -77,7 +87,7 @@ def _clauses(skeleton: Skeleton, kinds: Sequence[Kind], values: Sequence[bool | 
 
 
 def _drop_covered(disjuncts: list[MarkClause], work: Work) -> list[MarkClause]:
-    """Return the clauses that no other clause covers."""
+    """Return the clauses without duplicates and without those that are met only if another one is met."""
     distinct = list(dict.fromkeys(disjuncts))
     work.spend(len(distinct) ** 2 // 16)
     return [

@@ -1,4 +1,4 @@
-"""The normal form of formulas over infinite traces, and constructors that simplify.
+"""The normal form of formulas over infinite traces, and functions that build simplified formulas in it.
 
 The operators of the normal form are ``true false atom not and or X U W``, with ``not`` only before
 atoms, and the *rigid* formulas ``G F p`` and ``F G p``, whose truth does not change with time.
@@ -17,11 +17,14 @@ from tltlc.logic.formula import FALSE, TRUE, Formula
 from tltlc.logic.normal_form import negation_normal_form
 
 _MOST_PULLED = 6
-"""The most rigid formulas that are moved out of a temporal operator: each doubles the formula."""
+"""The most rigid formulas that are moved out of a temporal operator.
+
+Each of them doubles the formula's size.
+"""
 
 
 def infinite_form(formula: Formula) -> Formula:
-    """Return the formula in normal form, equal on every infinite trace."""
+    """Return the formula in normal form; the result is equivalent on every infinite trace."""
     normal = negation_normal_form(formula)
     done: dict[Formula, Formula] = {}
     for node in normal.bottom_up():
@@ -81,7 +84,7 @@ def negation(formula: Formula) -> Formula:
                 inner = done[node.args[0].args[0]]
                 done[node] = always_eventually(inner) if node.op == "F" else eventually_always(inner)
             case _:
-                # This is the inner operator of a rigid formula; the case of the outer operator negates both.
+                # The inner operator of a rigid formula.  The case above negates it together with the outer one.
                 done[node] = node
     return done[formula]
 
@@ -116,21 +119,21 @@ def _nary(op: str, operands: Iterable[Formula]) -> Formula:
 
 
 def is_rigid(formula: Formula) -> bool:
-    """Whether the truth of a formula does not change with time."""
+    """Whether a formula in normal form has the same truth value at every sample of a trace."""
     if formula.op in ("and", "or"):
         return all(map(is_rigid, formula.args))
     return formula.op in ("true", "false", "G", "F")
 
 
 def next_(operand: Formula) -> Formula:
-    """Return ``X operand``."""
+    """Return ``X operand``, simplified."""
     if is_rigid(operand):
         return operand
     return _pull_rigid(next_, operand) or build.next_(operand)
 
 
 def until(left: Formula, right: Formula) -> Formula:
-    """Return ``left U right``, which is ``F right`` if ``left`` is true."""
+    """Return ``left U right``, simplified."""
     if is_rigid(right) or left is FALSE or left is right:
         return right
     if pulled := _pull_rigid(until, left, right):
@@ -154,7 +157,7 @@ def _until(left: Formula, right: Formula) -> Formula:
 
 
 def weak_until(left: Formula, right: Formula) -> Formula:
-    """Return ``left W right``, which is ``G left`` if ``right`` is false."""
+    """Return ``left W right``, simplified."""
     if left is TRUE or right is TRUE or left is right:
         return TRUE if TRUE in (left, right) else right
     if left is FALSE:
@@ -183,13 +186,16 @@ def weak_until(left: Formula, right: Formula) -> Formula:
 
 
 def _splits(formula: Formula, op: str) -> bool:
-    """Whether an operand has this operator, so that an outer ``F`` or ``G`` makes a part of it rigid."""
+    """Whether an operand has this outermost operator.
+
+    An ``F`` around a ``W``, or a ``G`` around a ``U``, can be rewritten with a rigid formula.
+    """
     return any(operand.op == op for operand in formula.args)
 
 
 @lru_cache(maxsize=4096)
 def always_eventually(inner: Formula) -> Formula:
-    """Return ``G F inner``."""
+    """Return ``G F inner``, simplified."""
     if is_rigid(inner):
         return inner
     if inner.op == "or":
@@ -209,7 +215,7 @@ def always_eventually(inner: Formula) -> Formula:
 
 @lru_cache(maxsize=4096)
 def eventually_always(inner: Formula) -> Formula:
-    """Return ``F G inner``."""
+    """Return ``F G inner``, simplified."""
     if is_rigid(inner):
         return inner
     if inner.op == "and":
@@ -230,7 +236,8 @@ def eventually_always(inner: Formula) -> Formula:
 def with_derived_operators(formula: Formula, known: dict[Formula, Formula] | None = None) -> Formula:
     """Return the formula with ``F p`` for ``true U p`` and ``G p`` for ``p W false``.
 
-    ``known`` caches the result for each part; calls with formulas that share parts can share it.
+    ``known`` caches the result of each subformula; pass the same dict for formulas that share
+    subformulas.
     """
     done: dict[Formula, Formula] = {} if known is None else known
     for node in formula.bottom_up(known=done):
@@ -249,7 +256,7 @@ def with_derived_operators(formula: Formula, known: dict[Formula, Formula] | Non
 
 @lru_cache(maxsize=16384)
 def rigid_parts(formula: Formula) -> tuple[Formula, ...]:
-    """Return the outermost rigid formulas ``G F p`` and ``F G p`` in a formula, in order."""
+    """Return the outermost subformulas ``G F p`` and ``F G p``, in the order of the formula."""
     if formula.op in ("G", "F"):
         return (formula,)
     return tuple(dict.fromkeys(chain.from_iterable(map(rigid_parts, formula.args))))
@@ -273,14 +280,15 @@ def _substitute(formula: Formula, done: dict[Formula, Formula]) -> Formula:
 
 
 def substitute_operands(formula: Formula, values: dict[Formula, Formula]) -> Formula:
-    """Return the formula with each operand replaced by its value."""
+    """Return the formula with each operand replaced by its value in ``values``."""
     return _rebuild(formula, [values[operand] for operand in formula.args])
 
 
 def _pull_rigid(make: Callable[..., Formula], *args: Formula) -> Formula | None:
-    """Return ``g & f[g := true] | f[g := false]`` for a rigid formula g in f, which is ``make(*args)``.
+    """Return the formula f = ``make(*args)`` with a rigid subformula g moved out of its outermost operator.
 
-    Returns None if f has no rigid part, or more than :data:`_MOST_PULLED`.
+    The result is ``g & f[g := true] | f[g := false]``.  Returns None if f has no rigid subformula,
+    or more than :data:`_MOST_PULLED`.
     """
     rigid = tuple(dict.fromkeys(chain.from_iterable(map(rigid_parts, args))))
     if not rigid or len(rigid) > _MOST_PULLED:

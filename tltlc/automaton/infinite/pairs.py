@@ -1,10 +1,11 @@
-"""Convert clauses over marks to Rabin pairs with the alternating cycle decomposition.
+"""Convert the acceptance condition of a component from clauses to Rabin pairs.
 
-At an accepted node, the automaton visits the rejected children in turn.  It stays at a child while
-the run takes only edges of that child.  Otherwise it moves on to the next child and marks the
-letter.  A run with infinitely many such marks stays in no child, so it is accepted.  At a rejected
-node, the automaton follows all accepted children at once, each with its own pair.  Nodes that have
-no state in common may share a pair.
+The conversion uses the alternating cycle decomposition (:mod:`tltlc.automaton.infinite.cycles`).
+The new states also store a position in its tree.  At an accepted node, the position is in one child
+at a time.  It stays there while the run takes only edges of that child.  Otherwise it moves on to
+the next child, and the edge gets an ``inf`` mark.  A run with infinitely many of these marks stays
+in no rejected child, so it is accepted.  At a rejected node, the position is in all accepted
+children at once, each with its own pair.  Nodes that have no state in common may share a pair.
 """
 
 from __future__ import annotations
@@ -20,15 +21,22 @@ from tltlc.automaton.work import OutOfWork, Work
 from tltlc.core.record import record
 
 _FOR_FEWER_PAIRS: Final = 100_000
-"""Steps for a decomposition if the clauses are Rabin pairs already: it can then only reduce their number."""
+"""Steps of work for a decomposition that is not needed: the clauses are Rabin pairs already, perhaps too many."""
 
 Walk = tuple[Any, ...]
-"""The position of a run in a tree: a child's index and its walk, or the walks of all children with the state."""
+"""The position of a run below a node of the tree.
+
+If the position is in one child: the child's index and the position below the child.  If it is in
+several children at once: the positions below all children that contain the run's state.
+"""
 
 
 @record
 class RabinComponent:
-    """A component whose letters are marked with Rabin pairs; exits and labels are as in :class:`ComponentAutomaton`."""
+    """A component whose acceptance condition is ``pairs`` Rabin pairs.
+
+    ``labels`` and ``steps`` are as in :class:`ComponentAutomaton`, with marks of Rabin pairs.
+    """
 
     labels: dict[State, int]
     steps: dict[State, int]
@@ -36,9 +44,10 @@ class RabinComponent:
 
 
 def with_pairs(letters: Diagrams[Any], component: ComponentAutomaton, work: Work) -> RabinComponent:
-    """Return the component with Rabin pairs: the smallest result of the methods of this module.
+    """Return the component with Rabin pairs instead of clauses.
 
-    Raises OutOfWork.
+    Of the automata that this module can build, it is the one with the fewest states, and then the
+    fewest pairs.  Raises OutOfWork.
     """
     candidates: list[RabinComponent] = []
     direct = clauses_as_pairs(letters, component)
@@ -57,7 +66,10 @@ def with_pairs(letters: Diagrams[Any], component: ComponentAutomaton, work: Work
 
 
 def clauses_as_pairs(letters: Diagrams[Any], component: ComponentAutomaton) -> RabinComponent | None:
-    """Return the component with its clauses as pairs; None unless each clause has at most one ``inf`` mark."""
+    """Return the component with a Rabin pair for each clause.
+
+    Returns None if a clause needs more than one ``inf`` mark.
+    """
     if any(len(clause.infs) > 1 for clause in component.accepts):
         return None
 
@@ -75,7 +87,11 @@ def clauses_as_pairs(letters: Diagrams[Any], component: ComponentAutomaton) -> R
 
 
 def _wait_in_turn(letters: Diagrams[Any], component: ComponentAutomaton, work: Work) -> RabinComponent:
-    """Return the component with a Rabin pair for each clause, which waits for the clause's ``infs`` in turn."""
+    """Return the component with a Rabin pair for each clause.
+
+    A new state also stores, for each clause, which of its ``infs`` the run must take next.  The
+    edge on which the run has taken all of them gets the ``inf`` mark of the pair.
+    """
     orders = [sorted(clause.infs) for clause in component.accepts]
     first = next(iter(component.steps))
 
@@ -119,7 +135,10 @@ def _edges(letters: Diagrams[Any], component: ComponentAutomaton) -> list[Edge]:
 
 
 class _Walks:
-    """The walks along a tree; if ``one_at_a_time``, rejected nodes too follow one child and then the next."""
+    """Computes the positions of runs in a tree.
+
+    If ``one_at_a_time``, the position is in only one child of a rejected node too.
+    """
 
     def __init__(self, tree: Node, *, one_at_a_time: bool) -> None:
         self._one_at_a_time = one_at_a_time
@@ -129,7 +148,7 @@ class _Walks:
         self.pairs = len(set(self.pair.values()))
 
     def _assign_pairs(self, tree: Node) -> None:
-        """Assign pairs to the accepted nodes."""
+        """Give each accepted node the number of a Rabin pair in ``pair``, by the node's index."""
         taken: list[list[Node]] = []
         stack = [tree]
         while stack:
@@ -150,7 +169,7 @@ class _Walks:
                 self.pair[node.index] = free
 
     def begin(self, node: Node, state: State) -> Walk:
-        """Return the initial walk below a node in one of its states."""
+        """Return the initial position below a node for a run in ``state``."""
         places = [place for place, child in enumerate(node.children) if state in child.states]
         if not places:
             return ()
@@ -159,10 +178,11 @@ class _Walks:
         return tuple(self.begin(node.children[place], state) for place in places)
 
     def step(self, node: Node, walk: Walk, edge: Edge, active: set[int], marked: set[int]) -> Walk:
-        """Return the walk after an edge of the node.
+        """Return the position below a node after an edge of the node.
 
-        Adds the accepted nodes that contain the edge to ``active``, and those that move on to their
-        next child to ``marked``.
+        Adds the indices of two kinds of accepted nodes to sets: those at the position that contain
+        the edge to ``active``, and those where the position moves on to the next child to
+        ``marked``.
         """
         source, target, _ = edge
         if node.accepted:

@@ -15,25 +15,31 @@ StatePair = tuple[Any, Any]
 """A state of the first automaton and a state of the second."""
 
 Leaf = tuple[StatePair, Marks]
-"""The states after a letter, and both automata's marks; the second's are numbered after the first's."""
+"""The states after a letter, and the marks of both edges.
+
+The second automaton's marks have the higher numbers.
+"""
 
 Alternatives = Sequence[tuple[Sequence[MarkClause], Sequence[MarkClause]]]
-"""Pairs of clauses to separate: one of the first clauses must accept a cycle, and none of the second ones may."""
+"""Pairs of lists of clauses.
+
+A cycle meets a pair if a clause of its first list accepts it, and none of its second.
+"""
 
 
 def conditions(pairs: int, others: int) -> tuple[list[MarkClause], list[MarkClause]]:
-    """Return the clauses of two automata, the first with ``pairs`` pairs and the second with ``others``."""
+    """Return the clauses of two automata with ``pairs`` and ``others`` Rabin pairs, numbered as in :data:`Leaf`."""
     return pair_clauses(pairs), pair_clauses(others, first=2 * pairs)
 
 
 def product_leaves(
     letters: Diagrams[Any], pairs: int, is_over: Callable[[Any], bool]
 ) -> Callable[[int, int], list[Leaf]]:
-    """Return a function that maps the steps of two automata to the successors in their product.
+    """Return a function that maps the steps of two states to the successors of the two states in the product.
 
-    Each automaton has ``pairs`` pairs.  The leaves of steps are targets with marks.  A leaf for
-    which ``is_over`` holds has no target; it must be over in both automata on the same letters, and
-    the product then has no successor.
+    A step is a function from the letter to a target and marks.  Each automaton has ``pairs`` Rabin
+    pairs.  ``is_over`` returns whether a value of a step has no target.  The product has no
+    successor on such letters, which must be the same in both automata.
     """
     memo: dict[tuple[int, int], int] = {}
 
@@ -52,10 +58,10 @@ def product_leaves(
 def separating_component(
     starts: Iterable[StatePair], leaves: Callable[[StatePair], Sequence[Leaf]], alternatives: Alternatives, work: Work
 ) -> Edges | None:
-    """Return a reachable strongly connected set of edges that meets one of ``alternatives``; None if none does.
+    """Return a strongly connected set of edges of the product that meets one of ``alternatives``, or None.
 
-    ``leaves`` returns the successors of a pair of states and is called once for each pair.  Raises
-    OutOfWork.
+    The set can be reached from ``starts``.  ``leaves`` returns the successors of a pair of states
+    and is called once for each pair.  Raises OutOfWork.
     """
     known: dict[StatePair, Sequence[Leaf]] = {}
 
@@ -75,10 +81,7 @@ def separating_component(
 def _separating_part(
     edges: Sequence[Edge], accepting: Sequence[MarkClause], rejecting: Sequence[MarkClause], work: Work
 ) -> Edges | None:
-    """Return a strongly connected subset; None if there is none.
-
-    One of the clauses ``accepting`` accepts it, and none of the clauses ``rejecting``.
-    """
+    """Return a strongly connected subset that a clause of ``accepting`` accepts and none of ``rejecting``, or None."""
     for clause in accepting:
         # Removing edges is cheap; `parts` counts its own work.
         work.spend(1 + len(edges) // 128)

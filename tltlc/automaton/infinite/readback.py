@@ -1,4 +1,4 @@
-"""Write what remains in a state in the style of the source: its operators, and operands in its order."""
+"""Write the label of a state with the operators that the source text uses, and operands in the order of the source."""
 
 from __future__ import annotations
 
@@ -10,16 +10,19 @@ from tltlc.logic.formula import FALSE, TRUE, Formula, rebuild
 from tltlc.logic.text.printer import ascii_text
 
 _MOST_PARTS: Final = 300
-"""If a spec has more subformulas, its labels stay as the construction made them: they are too long to read."""
+"""If a spec has more subformulas, its labels are not rewritten: they are too long to read in any style."""
 
 
 def without_constants(formula: Formula) -> Formula:
-    """Return a formula that is equal on every infinite trace, and is a constant or contains no constant."""
+    """Return an equivalent formula without ``true`` and ``false``, unless the whole formula is constant.
+
+    The result is equivalent on every infinite trace.
+    """
     return NormalFormWriter(formula).formula(infinite_form(formula)) if _has_constants(formula) else formula
 
 
 class NormalFormWriter:
-    """Writes formulas in the construction's normal form as ``source`` does: ``a -> F b`` for ``!a | F b``."""
+    """Writes formulas in normal form as ``source`` writes them: ``a -> F b`` instead of ``!a | F b``."""
 
     def __init__(self, source: Formula) -> None:
         self._place: dict[Formula, int] = {}
@@ -34,7 +37,7 @@ class NormalFormWriter:
             form = with_derived_operators(infinite_form(part), self._readable)
             if form not in (TRUE, FALSE):
                 self._place.setdefault(form, place)
-                # Do not use parts that the source writes longer than necessary.
+                # Do not copy parts that the source writes in a longer form than necessary.
                 if part.op == "not" or (has_constants and _has_constants(part)):
                     continue
                 if self._size(part) <= self._size(self._done.get(form, form)):
@@ -42,7 +45,7 @@ class NormalFormWriter:
         self._last = len(parts)
 
     def formula(self, label: Formula) -> Formula:
-        """Return a short formula, in the style of the source, that is equal to the label on every infinite trace."""
+        """Return a short formula in the style of the source that is equivalent to ``label`` on every infinite trace."""
         candidates = [self._in_source_style(label)]
         if self._source and label.op in ("and", "or"):
             self._factoring = self._factoring or Factoring(self._source.atoms())

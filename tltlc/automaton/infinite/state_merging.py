@@ -1,9 +1,9 @@
 """Remove states of a component by redirecting their edges to another state with the same label.
 
-States with the same label have the same language.  Still, a run that is redirected infinitely often
-may lose what its memory has counted, and be accepted or rejected wrongly.  So each removal is
-checked exactly: a state is removed only if the automata before and after the removal accept the
-same cycles of their product (docs/adr/0021).
+States with the same label have the same language.  But a run that is redirected infinitely often
+may be accepted or rejected wrongly, because the memories of the two states differ.  So each removal
+is checked: a state is removed only if the automaton without it accepts the same cycles as the
+original one (docs/adr/0021).
 """
 
 from __future__ import annotations
@@ -18,7 +18,10 @@ from tltlc.automaton.work import OutOfWork, Work
 
 
 def shrink(letters: Diagrams[Any], component: RabinComponent, work: Work, steps: int) -> RabinComponent:
-    """Return the component without states that another state can replace; stops after ``steps`` steps of work."""
+    """Return the component without states that another state can replace.
+
+    After ``steps`` steps of work, the states that are left stay.
+    """
     original = component
     try:
         with work.at_most(steps):
@@ -39,7 +42,10 @@ def shrink(letters: Diagrams[Any], component: RabinComponent, work: Work, steps:
 
 
 def _redirect(letters: Diagrams[Any], component: RabinComponent, state: Any, other: Any) -> RabinComponent:
-    """Return the component with ``other`` in place of ``state``, without the states that are then left for ever."""
+    """Return the component with all edges to ``state`` redirected to ``other``.
+
+    ``state`` is removed, and so are the states that a run can then leave but not reach again.
+    """
 
     def redirected(leaf: Any) -> Any:
         return (other, leaf[1]) if leaf[0] == state else leaf
@@ -65,9 +71,9 @@ def _redirect(letters: Diagrams[Any], component: RabinComponent, state: Any, oth
 
 
 def _is_equal(letters: Diagrams[Any], one: RabinComponent, other: RabinComponent, work: Work) -> bool:
-    """Whether each state of ``one`` accepts the same runs that stay in the component as the same state of ``other``.
+    """Whether each state of ``one`` accepts the same traces in ``one`` as in ``other``.
 
-    Raises OutOfWork.
+    Only traces whose runs stay in the component for ever are compared.  Raises OutOfWork.
     """
     together = product_leaves(letters, one.pairs, lambda leaf: leaf[0][0] == "exit")
 

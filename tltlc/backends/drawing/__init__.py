@@ -1,1 +1,1 @@
-"""Code shared by the targets that draw: texts for pictures, and the layout in a child process."""
+"""Code that the targets for pictures share: the texts in pictures, and the layout in a child process."""

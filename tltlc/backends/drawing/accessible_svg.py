@@ -1,4 +1,4 @@
-"""Make a layout's SVG accessible: titles for screen readers, and texts that stay in place in any font."""
+"""Make the SVG that Graphviz writes accessible: titles for screen readers, and texts that fit in any font."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _SVG: Final = "{http://www.w3.org/2000/svg}"
 _LINK_TITLE: Final = "{http://www.w3.org/1999/xlink}title"
 
 Area = tuple[float, float, float, float]
-"""Left, top, right and bottom."""
+"""The left, top, right and bottom edges of a shape, in the units of the SVG."""
 
 _number = re.compile(r"-?\d+(?:\.\d+)?")
 _ends = re.compile(r"(\d+)(?::\w+)?->(\d+)(?::\w+)?")
@@ -23,10 +23,10 @@ _ends = re.compile(r"(\d+)(?::\w+)?->(\d+)(?::\w+)?")
 def make_accessible(svg: bytes, name: str, folded: Mapping[int, Sequence[State]]) -> bytes:
     """Return the picture with a title, and with the tooltips of its states and edges as their titles.
 
-    ``name`` is the automaton's name. A state gets the attribute ``data-states``: its number, or the
-    numbers of all states that ``folded`` lists for it. An edge gets ``data-source`` and
-    ``data-target``. Texts are centred in their shapes: at the start position that Graphviz
-    computes, a text in a wider font would leave its shape.
+    ``name`` is the automaton's name. Each drawn state gets the attribute ``data-states`` with the
+    number of its state, or the numbers of all states that are folded into it. Each edge gets
+    ``data-source`` and ``data-target`` with the numbers of its states. Texts are centred in their
+    shapes, so that they do not leave them if the reader's font is wider than Graphviz assumed.
     """
     root = ET.fromstring(svg)
     root.set("role", "group")
@@ -48,7 +48,10 @@ def make_accessible(svg: bytes, name: str, folded: Mapping[int, Sequence[State]]
 
 
 def _set_title(group: ET.Element, folded: Mapping[int, Sequence[State]]) -> None:
-    """Give a state or an edge its tooltip as title, in place of its name in the graph."""
+    """Replace the title of a state or an edge, which is its name in the graph, by its tooltip.
+
+    Also sets the attributes ``data-states``, ``data-source`` and ``data-target``.
+    """
     title = group[0]
     name = title.text or ""
     title.text = next((link.get(_LINK_TITLE, "") for link in group.iter(f"{_SVG}a")), "start")
@@ -64,7 +67,7 @@ def _set_title(group: ET.Element, folded: Mapping[int, Sequence[State]]) -> None
 
 
 def _unwrap_links(group: ET.Element) -> None:
-    """Replace links by their contents: they carry a tooltip but have no target."""
+    """Replace each link by its contents; Graphviz makes links only to attach tooltips."""
     children: list[ET.Element] = []
     for child in group:
         link = child.find(f"{_SVG}a")
@@ -73,8 +76,8 @@ def _unwrap_links(group: ET.Element) -> None:
 
 
 def _centre_texts(group: ET.Element) -> None:
-    """Anchor each text at the middle of the smallest shape that contains its start."""
-    # An edge's curve has no fill and is not a shape around text.
+    """Centre each text in the narrowest shape that contains the text's start."""
+    # The curve of an edge has no fill; it is not a shape around a text.
     shapes = (
         element
         for element in group

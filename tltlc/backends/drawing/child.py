@@ -1,6 +1,7 @@
-"""Child process that lays out a graph: ``python child.py FORMAT ENGINE < graph.dot > picture``.
+"""The program of a child process that draws a graph: ``python child.py FORMAT ENGINE < graph.dot > picture``.
 
-A layout cannot be interrupted from within Python, so it runs in a process that the parent can kill.
+Python cannot interrupt a layout that takes too long, so it runs in a process that the parent can
+kill.
 """
 
 from __future__ import annotations
@@ -10,9 +11,9 @@ import sys
 
 
 def main() -> None:
-    """Read a DOT text and write the picture."""
+    """Read a DOT text from standard input, and write the picture to standard output."""
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
-        # Ctrl-C also reaches the parent, which recognises that the child died of SIGINT.
+        # Let Ctrl-C end this process without a traceback. The parent gets the signal too, and sees why the child ended.
         signal.signal(signal.SIGINT, signal.SIG_DFL)
     import pygraphviz
 

@@ -1,7 +1,7 @@
-"""Fold runs that count in step, as in `F[0,100] a & F[0,100] b`; together they form a ladder.
+"""Fold several runs of states that count at the same time, as in `F[0,100] a & F[0,100] b`.
 
-Each rung is a row with one state of each run. A step leads from a rung to the next one, and may
-lead to another run.
+These runs form a ladder. Rung n of the ladder has the n-th state of each run. An edge from a rung
+leads to the next rung, in the same run or in another one, or out of the ladder.
 """
 
 from __future__ import annotations
@@ -14,16 +14,17 @@ from tltlc.core.record import replace
 
 Rung = tuple[int, ...]
 Steps = Mapping[int, Mapping[EdgeLabel, int]]
-"""Per state, the target of each label of an edge."""
+"""For each state and each label of an edge that leaves it, the target of the edge."""
 
 
 def fold_ladders(fspa: Fspa) -> Drawing:
-    """Return the drawing with the inner rungs of each ladder folded into the first inner rung.
+    """Return the drawing with the inner rungs of each ladder folded into the first of them.
 
-    Each state of a rung agrees with the next state of its run in verdict, acceptance and the labels
-    of its edges. Edges of the two states with equal labels lead to the same target, or to states of
-    one run in neighbouring rungs. An inner rung is entered only from the rung before it. Edges along
-    a run, which would lead from the folded rung to itself, are drawn to the last rung.
+    Two states that follow each other in a run of a ladder have the same verdict, the same
+    acceptance and the same labels of edges. Edges of the two states with the same label lead to the
+    same state, or to two states that follow each other in a run. Only edges from the rung before
+    lead to an inner rung. An edge along a run would lead from the folded rung to itself, so it is
+    drawn to the last rung.
     """
     states, all_edges = fspa.states, whole_drawing(fspa).edges
     ladders = _ladders(states, all_edges)
@@ -39,16 +40,17 @@ def fold_ladders(fspa: Fspa) -> Drawing:
 
 
 def _redirect(edge: DrawnEdge, first: Mapping[int, int], last: Mapping[int, int]) -> DrawnEdge:
-    """Return an edge of a drawn state with its target in the drawing.
+    """Return an edge with a target that is drawn: ``first`` and ``last`` map states of folded runs to others.
 
-    Edges into an inner rung lead to the first inner rung; edges along a run lead to the last rung.
+    An edge to an inner rung leads to the first inner rung, and an edge along a run to the last
+    rung.
     """
     target = first.get(edge.target, edge.target)
     return replace(edge, target=last[target] if target == edge.source and target in last else target)
 
 
 def _ladders(states: Sequence[State], edges: Sequence[DrawnEdge]) -> list[list[Rung]]:
-    """Return the inner rungs of each ladder that is long enough, and the rung after them."""
+    """Return, for each ladder that is folded, the inner rungs and the rung after them."""
     steps: dict[int, dict[EdgeLabel, int]] = {state.id: {} for state in states}
     entering: list[set[int]] = [set() for _ in states]
     for edge in edges:
@@ -68,9 +70,10 @@ def _ladders(states: Sequence[State], edges: Sequence[DrawnEdge]) -> list[list[R
 def _ladders_from(
     rung: Rung, following: Rung, states: Sequence[State], steps: Steps, entering: Sequence[set[int]]
 ) -> list[list[Rung]]:
-    """Return the ladders, in order, of the path that begins with two given rungs.
+    """Return the ladders on the path that begins with two given rungs, in order.
 
-    The path ends where rungs do not agree.
+    The path ends at a rung whose states do not continue the runs. Where the number of runs
+    changes, a new ladder begins.
     """
     ladders: list[list[Rung]] = []
     ladder: list[Rung] = []
@@ -90,7 +93,10 @@ def _ladders_from(
 
 
 def _next_rung(rung: Rung, following: Rung, states: Sequence[State], steps: Steps) -> dict[int, int] | None:
-    """Return, for each state of the following rung, the next state of its run; None if the two rungs do not agree."""
+    """Map each state of the rung ``following`` to the next state of its run.
+
+    Returns None if the two rungs do not belong to a ladder.
+    """
     successors: dict[int, int] = {}
     for state, after in zip(rung, following, strict=True):
         current, next_ = states[state], states[after]

@@ -1,4 +1,4 @@
-"""Fold counting states: draw only the ends of a long run of states that differ only in a count."""
+"""Fold long runs of states that differ only in a count, as in ``F[0,100] p``: draw their inner states as one."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from tltlc.automaton.fspa import Fspa, Guard, Mark, State
 from tltlc.core.record import EMPTY, record, replace
 
 LEAST_FOLDED = 3
-"""A run is folded if it has at least this many inner states; with both ends, it then has five states."""
+"""The fewest inner states of a run that is folded, that is, without its first and last state."""
 
 _number = re.compile(r"(\d+)")
 _one_step = re.compile(r"\b1 step\b")
 
 
 class EdgeLabel(NamedTuple):
-    """The guard of an edge, and the sets of pairs that contain the edge: none over finite traces."""
+    """The guard of an edge, and the sets of the Rabin pairs that contain the edge (none over finite traces)."""
 
     guard: Guard
     marks: tuple[Mark, ...]
@@ -25,7 +25,7 @@ class EdgeLabel(NamedTuple):
 
 @record
 class DrawnEdge:
-    """An edge of a drawing. Edges that differ only in their pairs have different labels."""
+    """An edge of a drawing, between the numbers of two states."""
 
     source: int
     target: int
@@ -36,8 +36,8 @@ class DrawnEdge:
 class Drawing:
     """The states and edges that are drawn, in the automaton's order.
 
-    One state is drawn for all inner states of a folded run: the first of them. ``folded`` maps it
-    to the inner states. Its edge along the run leads to the last state of the run.
+    Of the inner states of a folded run, only the first is in ``states``; its edge leads to the last
+    state of the run. ``folded`` maps its number to all inner states of the run.
     """
 
     states: tuple[State, ...]
@@ -57,10 +57,9 @@ def whole_drawing(fspa: Fspa) -> Drawing:
 def fold_runs(fspa: Fspa) -> Drawing:
     """Return the drawing with the inner states of each run folded into one.
 
-    A run is a path on which each state has an edge with the same label to the next state; the last
-    state has such an edge to another state. All states of the path agree in verdict, acceptance and
-    the labels and targets of their other edges. An inner state is entered only from the state
-    before it, so distances stay equal or fall by one.
+    A run is a path on which all edges have the same label, and the last state has an edge with this
+    label, too. All states of the path have the same verdict, the same acceptance, and the same
+    labels and targets of their other edges. Only the edge of the path leads to an inner state.
     """
     states, edges = fspa.states, whole_drawing(fspa).edges
     runs = _inner_runs(states, edges)
@@ -77,14 +76,14 @@ def fold_runs(fspa: Fspa) -> Drawing:
 
 
 def _inner_runs(states: Sequence[State], edges: Sequence[DrawnEdge]) -> list[list[tuple[int, DrawnEdge]]]:
-    """Return the inner states of each run that is long enough, each with its edge along the run."""
+    """Return, for each run that is folded, its inner states, each with its edge to the next state of the run."""
     outgoing: list[list[DrawnEdge]] = [[] for _ in states]
     entering: list[list[DrawnEdge]] = [[] for _ in states]
     for edge in edges:
         outgoing[edge.source].append(edge)
         entering[edge.target].append(edge)
     along: dict[int, DrawnEdge] = {}
-    for state in range(1, len(states)):  # not state 0, which the start of the trace also enters
+    for state in range(1, len(states)):  # State 0 is no inner state, because traces also start there.
         if len(entering[state]) == 1:
             onward = _next_edge(entering[state][0], states, outgoing)
             if onward is not None and _next_edge(onward, states, outgoing) is not None:
@@ -101,7 +100,10 @@ def _inner_runs(states: Sequence[State], edges: Sequence[DrawnEdge]) -> list[lis
 
 
 def _next_edge(edge: DrawnEdge, states: Sequence[State], outgoing: list[list[DrawnEdge]]) -> DrawnEdge | None:
-    """Return the edge that continues a run after this edge; None if its two states do not belong to one run."""
+    """Return the edge that follows this edge in a run.
+
+    Returns None if its two states do not belong to a run.
+    """
     source, target = states[edge.source], states[edge.target]
     if (source.verdict, source.accepting) != (target.verdict, target.accepting):
         return None
@@ -121,7 +123,10 @@ def _without(left_out: DrawnEdge, edges: list[DrawnEdge]) -> list[tuple[EdgeLabe
 
 
 def text_range(first: str, last: str) -> str:
-    """Return two texts as one: with ranges if they differ only in numbers (``F[0,39…2] p``), else both."""
+    """Return one text for two: ``F[0,39…2] p`` for ``F[0,39] p`` and ``F[0,2] p``.
+
+    If the texts differ in more than numbers, return both with an ellipsis between them.
+    """
     for texts in ((first, last), [_one_step.sub("1 steps", text) for text in (first, last)]):
         first_parts, last_parts = map(_number.split, texts)
         if first_parts[::2] == last_parts[::2]:

@@ -1,4 +1,4 @@
-"""Texts in Graphviz syntax: HTML-like labels, and plain strings."""
+"""Texts in the syntax of Graphviz: HTML-like labels, and plain strings."""
 
 from __future__ import annotations
 
@@ -10,13 +10,14 @@ CENTRED, LEFT, BACKED = "<TD>", '<TD ALIGN="LEFT">', '<TD BGCOLOR="white">'
 """Table cells; a white background keeps text readable over edges that pass behind it."""
 
 LONGEST_TEXT = 2000
-"""The most characters of a text. Graphviz reads strings of at most 16 KiB, and a character may take seven bytes."""
+"""The most characters of a plain string: Graphviz reads at most 16 KiB, and a character may take seven bytes."""
 
 
 def table(rows: Iterable[str], cell: str = CENTRED, spacing: int = 0) -> str:
-    """Return a table with one cell in each row.
+    """Return a table with one column.
 
-    As lines of a single cell, texts in different fonts would be too close to each other.
+    A row for each text keeps more distance than lines in a single cell, which would be too close if
+    their fonts differ.
     """
     inside = "".join(f"<TR>{cell}{row}</TD></TR>" for row in rows)
     return f'<TABLE BORDER="0" CELLBORDER="0" CELLPADDING="0" CELLSPACING="{spacing}">{inside}</TABLE>'
@@ -29,10 +30,13 @@ def escape_html(text: str) -> str:
 
 
 def literal_text(text: str) -> str:
-    """Return a text that Graphviz takes literally, without escapes or markup; a long one is cut."""
+    """Return a text that Graphviz shows as it is, even if it looks like escapes or markup.
+
+    A long text is cut.
+    """
     from graphviz import escape
 
-    # `escape` returns a subclass of str that marks the text as literal. As a bare str, "<b>" would become markup.
+    # `escape` returns a subclass of str, which graphviz does not read as markup; "<b>" as a plain str would be.
     text = escape_invisible(text)
     literal: str = escape(text if len(text) <= LONGEST_TEXT else f"{text[:LONGEST_TEXT]} …")
     return literal

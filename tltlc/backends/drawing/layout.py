@@ -18,10 +18,13 @@ from tltlc.io.child_interrupts import raise_if_interrupted
 CHILD = Path(__file__).with_name("child.py")
 
 MOST_EDGES_WITH_GUARDS = 150
-"""With more edges, guards cover each other or push the states too far apart to be readable."""
+"""The most edges of a picture with guards.
+
+More guards would cover each other, or push the states too far apart.
+"""
 
 MOST_EDGES_IN_LAYERS = 400
-"""With more edges, the layered layout would only run into its time limit."""
+"""The most edges of a picture in layers; with more, this layout would reach its time limit."""
 
 WHOLE_GRAPH = "`tltlc compile -t dot` writes the whole graph for other tools"
 
@@ -30,17 +33,22 @@ ATTEMPTS: tuple[tuple[Detail, str, float, str], ...] = (
     ("labels", "dot", MOST_EDGES_IN_LAYERS, "without guards"),
     ("sketch", "sfdp", float("inf"), "by number, without guards"),
 )
-"""Detail, layout engine, the most edges for which it is tried, and how a message describes the reduced detail."""
+"""The ways to draw a graph, which are tried in this order.
+
+Each has what the drawing shows, the layout engine, the most edges for which it is tried, and the
+words for what is left out in a message.
+"""
 
 
 def draw(fspa: Fspa, options: Options, picture_format: str) -> Files:
     """Return ``NAME.FORMAT``, with the most detail that can be drawn in time.
 
-    Counting states are folded. Each attempt takes at most ``options.layout_limit_s`` seconds, and
-    is skipped if there are too many edges. The attempts are, in order: everything in layers; the
-    same without guards, which an SVG still has as tooltips; only the states' numbers, with a
-    force-directed layout. If no attempt succeeds, the result is ``NAME.dot`` with nothing folded.
-    ``options.report`` receives a note on what was left out (TLT0711).
+    Long runs of states that differ only in a count are folded. The first attempt draws everything,
+    with the states in layers. The second leaves out guards, which are then only in the tooltips of
+    an SVG. The third draws only the numbers of the states, with a force-directed layout. An attempt
+    takes at most ``options.layout_limit_s`` seconds, and is skipped if there are too many edges. If
+    no attempt succeeds, the result is ``NAME.dot`` with nothing folded. ``options.report`` is
+    called with a note (TLT0711) if anything was left out.
 
     Raises:
         TltlError: TLT0730 pygraphviz is not installed, TLT0712 the layout itself failed.
@@ -68,7 +76,8 @@ def draw(fspa: Fspa, options: Options, picture_format: str) -> Files:
 def _lay_out(dot: str, picture_format: str, engine: str, limit_s: float) -> bytes | None:
     """Return the picture of a graph; None if the layout reached its time limit or its process was killed.
 
-    Raises KeyboardInterrupt if Ctrl-C ended the process, and TltlError, TLT0712, if the layout failed.
+    Raises KeyboardInterrupt if Ctrl-C ended the process, and TltlError, TLT0712, if the layout
+    failed.
     """
     command = [sys.executable, str(CHILD), picture_format, engine]
     try:
@@ -77,7 +86,7 @@ def _lay_out(dot: str, picture_format: str, engine: str, limit_s: float) -> byte
         return None
     raise_if_interrupted(process.returncode)
     if process.returncode < 0:
-        return None  # a signal ended the process, usually because it ran out of memory or stack
+        return None  # A signal ended the process, usually because it ran out of memory or stack.
     if process.returncode or not process.stdout:
         reason = process.stderr.decode(errors="replace").strip().splitlines() or [f"exit status {process.returncode}"]
         raise TltlError([Diagnostic("TLT0712", f"the picture could not be drawn: {reason[-1]}", help=WHOLE_GRAPH)])

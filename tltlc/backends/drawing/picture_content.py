@@ -1,4 +1,4 @@
-"""The content of every picture of an automaton: what it shows, and its legend."""
+"""What all pictures of automata share: the states and edges that are drawn, and the sentences of the legend."""
 
 from __future__ import annotations
 
@@ -8,19 +8,25 @@ from tltlc.backends.drawing.folding import Drawing, fold_runs
 
 
 def folded_drawing(fspa: Fspa) -> Drawing:
-    """Return the drawing with counting states folded, as single runs or as ladders, whichever leaves fewer states."""
+    """Return the drawing with the states folded that differ only in a count.
+
+    Folds single runs or ladders of several runs, whichever leaves fewer states.
+    """
     return min(fold_runs(fspa), fold_ladders(fspa), key=lambda drawing: len(drawing.states))
 
 
 def distance_note(drawing: Drawing, place: str, outline: str) -> str:
-    """Return a sentence about the number at a state, which is at ``place``; goal states have an ``outline``."""
+    """Return the sentence of the legend that explains the number in each state.
+
+    ``place`` says where the number is, and ``outline`` how the outlines of goal states look.
+    """
     goal = f" ({outline})" if any(state.accepting for state in drawing.states) else ""
     none = ", ∞ if none can be reached" if any(state.distance is None for state in drawing.states) else ""
     return f"{place}: distance to a goal{goal}{none}."
 
 
 def notes(fspa: Fspa, drawing: Drawing) -> tuple[str, ...]:
-    """Return sentences about the folded states and the marks of pairs."""
+    """Return the sentences of the legend that explain folded states and the marks of Rabin pairs, if there are any."""
     return tuple(filter(None, (_folding_note(fspa, drawing), _pairs_note(fspa))))
 
 
@@ -30,9 +36,9 @@ def _folding_note(fspa: Fspa, drawing: Drawing) -> str:
 
 
 def _pairs_note(fspa: Fspa) -> str:
-    """Return a sentence about the marks of the edges that an accepted trace takes.
+    """Return the sentence that explains which marks an accepted trace must take.
 
-    The text is empty over finite traces, and if no trace is accepted.
+    It is empty over finite traces, and if no trace is accepted.
     """
     if not any(pair.inf for pair in fspa.acceptance):
         return ""

@@ -20,16 +20,16 @@ BREAK_BEFORE = ("∧", "∨", "⇒", "⇔", "𝒰", "&", "|", "->", "<->", "and"
 
 
 _TIES = frozenset({"not", "<", ">", "<=", ">=", "≤", "≥", "+", "-", "*", "/", "^"})
-# A line end that splits a bound from its operand (`F[0,3] p`), the arguments of an atom (`near(a, b)`), or the mark of
-# a pair (`[inf 0]`).
+# Matches text after which a line must not end: it would split a bound from its operand (`F[0,3] p`), the arguments of
+# an atom (`near(a, b)`), or the mark of a Rabin pair (`[inf 0]`).
 _tied_end = re.compile(r"\]$|\w\([^()]*,$|\[(?:fin|inf)$")
 
 
 def guards_by_arrow(edges: Iterable[DrawnEdge], notation: Notation) -> Mapping[tuple[int, int], list[str]]:
-    """Return the guards of the edges between each source and target.
+    """Map each source and target to the texts of the guards of the edges between them.
 
-    Over infinite traces, the pairs that name an edge follow its guard: ``a & b [fin 0] [inf 1]``.
-    Several edges that differ in their pairs share one arrow.
+    Over infinite traces, a guard is followed by the sets of Rabin pairs that contain its edge:
+    ``a & b [fin 0] [inf 1]``. Edges that differ only in these sets share an arrow.
     """
     guards_of_arrow: dict[tuple[int, int], list[str]] = {}
     for edge in edges:
@@ -40,15 +40,16 @@ def guards_by_arrow(edges: Iterable[DrawnEdge], notation: Notation) -> Mapping[t
 
 
 def escape_invisible(text: str) -> str:
-    r"""Return the text with invisible characters, and characters that reorder others, as ``\uXXXX``."""
+    r"""Return the text with ``\uXXXX`` for characters that are invisible or change the direction of text."""
     return _unseen.sub(lambda match: f"\\u{ord(match.group()):04x}", text)
 
 
 def wrap_text(text: str, width: int, most_lines: int = 8) -> list[str]:
-    """Return the lines of the text, of about ``width`` characters, broken at blanks and before infix operators.
+    """Return the text in lines of about ``width`` characters, broken at blanks.
 
-    Words are not split, and neither are comparisons or lists of arguments of up to twice the width.
-    Text beyond ``most_lines`` lines is replaced by an ellipsis.
+    A line never ends with an infix operator. Words are not split. Comparisons and lists of
+    arguments are not split if they have at most twice the width. Text after ``most_lines`` lines is
+    replaced by an ellipsis.
     """
     pieces = _pieces(escape_invisible(" ".join(text.split())).split(" "), 2 * width)
     lines = [pieces[0]]
@@ -63,7 +64,7 @@ def wrap_text(text: str, width: int, most_lines: int = 8) -> list[str]:
 
 
 def _pieces(words: list[str], longest: int) -> list[str]:
-    """Return the words; words that belong on one line are joined, up to ``longest`` characters."""
+    """Return the words, with words joined that must be on one line, up to ``longest`` characters."""
     pieces = [words[0]]
     for before, word in pairwise(words):
         tied = word in _TIES or before in _TIES or _tied_end.search(pieces[-1]) is not None

@@ -1,1 +1,1 @@
-"""Code shared by the monitors for all versions of Godot."""
+"""Code that the targets for all versions of Godot share."""

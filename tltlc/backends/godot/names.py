@@ -1,4 +1,4 @@
-"""Names that GDScript, the engine or the template reserve, and names in GDScript style."""
+"""Names of variables in GDScript: those that are taken already, and the conversion to snake_case."""
 
 from __future__ import annotations
 
@@ -48,13 +48,20 @@ _OWN: Final = """
     sample clear given params values notices noticed which problem verdict accepting limiting limiting_atom label
     message step steps begin reset state progress done reward robustness reached ends best target
 """.split()
-"""Names of the template's own variables; generated names never begin with ``_``."""
+"""Names of variables in the template that do not begin with ``_``.
+
+No other name can clash with a generated one.
+"""
 
 RESERVED: Final = frozenset((*_WORDS, *_FUNCTIONS, *_OBJECT, *_OWN))
 
 
 def snake_case(names: Iterable[str]) -> dict[str, str]:
-    """Return unique new names for those that are not in lower case; the engine's classes use capitals."""
+    """Map each name with a capital letter to a new, unique name in snake_case.
+
+    The other names are left out. A variable with a capital letter could have the name of a class of
+    the engine, such as ``Node``.
+    """
     all_names = list(names)
     unique_names = VariableNames({*RESERVED, *all_names})
     return {name: unique_names.new_name(_lower(name)) for name in all_names if name != name.lower()}

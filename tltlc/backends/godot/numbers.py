@@ -8,17 +8,18 @@ from typing import Final
 
 _EXACT: Final = 2**53
 _LARGEST_POWER: Final = 22
-"""The largest power of ten that is exactly a double is 10 to this power."""
+"""10 to this power is the largest power of ten that a double represents exactly."""
 _MOST_DIGITS: Final = 18
-"""The engine ignores digits after this many; leading zeros count."""
+"""The engine reads at most this many digits of a literal, leading zeros included."""
 _LARGEST_DIVISOR: Final = 10_000
 
 
 def number(value: float) -> str:
-    """Return a nonnegative number as a literal, else as a quotient, else as an integer times a power of two.
+    """Return an expression whose value in the engine is exactly the given nonnegative number.
 
-    The engine reads a literal as an integer and a power of ten, which it multiplies or divides. The
-    result is exact if both are doubles, usually up to 15 digits.
+    The engine computes a literal from an integer and a power of ten. The result is exact only if
+    doubles represent both exactly, which is usual up to 15 digits. For other numbers, the
+    expression is a quotient, or an integer times a power of two.
     """
     literal = repr(value)
     _, digits, exponent = Decimal(literal).as_tuple()
@@ -35,7 +36,7 @@ def number(value: float) -> str:
 
 
 def _split(value: float) -> tuple[int, int]:
-    """Return an odd factor and the exponent of the power of two to multiply it by."""
+    """Return the odd integer f and the exponent n with ``value == f * 2**n``."""
     factor, divisor = value.as_integer_ratio()
     power = 1 - divisor.bit_length()
     while factor % 2 == 0:

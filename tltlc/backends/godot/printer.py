@@ -11,15 +11,15 @@ from tltlc.program.tree import Assign, Declare, Expression, Negate, NumericCall,
 
 _BETTER = {"min": "<", "max": ">"}
 _CHOICE = -1
-"""The binding strength of ``a if b else c``: looser than anything else."""
+"""The binding strength of ``a if b else c``, lower than that of all other expressions."""
 
 
 class Gd(Printer):
-    """Prints GDScript.
+    """Prints a program in GDScript.
 
     ``names`` maps variables of the program to their names in the script. ``functions`` maps
-    functions that the engine has to their names in the engine; ``swapped`` are those whose
-    arguments are passed in reverse order. The other functions belong to the script.
+    functions of the program to functions of the engine; all others are in the script. Functions in
+    ``swapped`` get their arguments in reverse order.
     """
 
     INDENT: ClassVar[str] = "\t"
@@ -33,7 +33,10 @@ class Gd(Printer):
         self._names, self._functions, self._swapped = names, functions, swapped
 
     def declaration(self, statement: Declare) -> str:
-        """Return a declaration; every variable has an initial value."""
+        """Return a declaration.
+
+        A variable without a value gets 0 or false, because GDScript needs one.
+        """
         value = self._START[statement.type] if statement.value is None else self.text(statement.value, _CHOICE)
         return f"var {self.name(statement.name)}: {self.TYPES[statement.type]} = {value}"
 
@@ -42,7 +45,7 @@ class Gd(Printer):
         return f"{self.name(statement.name)} = {self.text(statement.value, _CHOICE)}"
 
     def head(self, test: str, *, first: bool) -> str:
-        """Return the first line of a case; tests need no parentheses."""
+        """Return the first line of a case: ``if`` or ``elif`` with its test."""
         return f"if {test}:" if first else f"elif {test}:"
 
     def otherwise(self) -> str:
@@ -50,26 +53,26 @@ class Gd(Printer):
         return "else:"
 
     def closing(self) -> list[str]:
-        """Return no lines: indentation ends a branch."""
+        """Return no lines, because GDScript ends a branch by its indentation."""
         return []
 
     def nothing(self, depth: int) -> list[str]:
-        """Return ``pass``: a body cannot be empty."""
+        """Return ``pass``, because the body of a branch cannot be empty."""
         return [f"{self.INDENT * depth}pass"]
 
     def name(self, name: str) -> str:
-        """Return the name of a variable here."""
+        """Return the name that a variable of the program has in the script."""
         return self._names.get(name, name)
 
     def real(self, value: float) -> str:
-        """Return a number that the engine reads exactly."""
+        """Return an expression whose value in the engine is exactly this number."""
         return number(value)
 
     def _text_and_binding(self, node: Expression) -> tuple[str, int]:
         """Return the text of an expression and its binding strength.
 
-        ``min`` and ``max`` of two variables or numbers become a conditional expression: a call would
-        cost more than the comparison.
+        A ``min`` or ``max`` of two variables or numbers that would call a function of the script
+        becomes a conditional expression, which is faster.
         """
         match node:
             case NumericCall("min" | "max" as function, (first, second)) if function not in self._functions:
@@ -85,5 +88,5 @@ class Gd(Printer):
 
 
 def _is_simple(node: Expression) -> bool:
-    """Whether the expression is cheap enough to be written twice."""
+    """Whether an expression is a variable, a number or the negative of one, which may be computed twice."""
     return isinstance(node.operand if isinstance(node, Negate) else node, (Variable, Real))

@@ -42,9 +42,10 @@ _MEMBERS = {
     reward_step.VIOLATED: "verdict == Verdict.VIOLATED",
     reward_step.SATISFIED: "verdict == Verdict.SATISFIED",
 }
-"""The texts for variables of the program, which are mostly members of the monitor here.
+"""How the script writes some variables of the program: mostly as members of the monitor.
 
-A step that refuses its sample returns before it assigns any of them.
+A step that refuses its sample returns before it assigns to any member, so the monitor stays
+unchanged.
 """
 
 
@@ -52,11 +53,12 @@ A step that refuses its sample returns before it assigns any of them.
 class Dialect:
     """How a version of the engine differs from others.
 
-    ``version`` is the name that the templates test for, ``base`` the engine's class of
-    reference-counted objects. ``functions`` are exact functions of the engine. Those in ``swapped``
-    take their arguments in reverse order, so that the first of equal values is returned. ``typed``
-    says whether arrays and enums can be types, and ``wide`` whether strings have escapes for
-    characters beyond U+FFFF.
+    ``version`` is the name of the version in templates, and ``title`` its name for readers.
+    ``base`` is the engine's class of reference-counted objects. ``functions`` maps functions of a
+    program to functions of the engine with exactly the same results. Those in ``swapped`` get their
+    arguments in reverse order, so that of equal values (0 and -0) they return the first. ``typed``
+    says whether the language has types for arrays with elements of a type and for enums, and
+    ``wide`` whether strings have escapes for characters above U+FFFF.
     """
 
     version: str
@@ -68,7 +70,7 @@ class Dialect:
     wide: bool
 
     def types(self) -> dict[str, str]:
-        """Return the types that fill the templates' places."""
+        """Return, for each type that templates name, the type in this version."""
         arrays = {"strings": "String", "bools": "bool", "ints": "int", "floats": "float", "arrays": "Array"}
         arrays["verdict_array"] = "Verdict"
         types = {name: f"Array[{element}]" if self.typed else "Array" for name, element in arrays.items()}
@@ -87,7 +89,7 @@ def files(fspa: Fspa, dialect: Dialect) -> Files:
 
 
 class _Source:
-    """The script of one monitor: the pieces that fill the template."""
+    """Makes the script of one monitor, by filling the template."""
 
     def __init__(self, fspa: Fspa, dialect: Dialect) -> None:
         self._fspa, self._dialect = fspa, dialect
@@ -100,7 +102,7 @@ class _Source:
         self._atoms = [self._printer.name(name) for name in program_.atoms]
 
     def text(self) -> str:
-        """Return the whole file."""
+        """Return the text of the file."""
         fspa, program_ = self._fspa, self._program
         failing = program_.functions & FAILING
         present = [*failing, *(["note"] if failing else [])]
@@ -157,10 +159,10 @@ class _Source:
         return self._fields([(name, "float", _signed(param.value), param) for param, name in fields])
 
     def _fields(self, fields: Sequence[tuple[str, str, str, Signal | Param]]) -> str:
-        """Return the members of a class, each with its documentation."""
+        """Return the variables of a class, each with its documentation."""
         lines: list[str] = []
         for name, type_, value, declared in fields:
-            # Godot 4 shows `##` comments as documentation. An opening bracket would begin a tag, except before numbers.
+            # Godot 4 shows `##` comments as documentation. There, `[` begins a tag, except before a number.
             description = snippets.field_comment(name, declared, lambda text: text.replace("[", "[lb]"))
             remarks = [f"#{line}" for line in self._printer.comment(description)]
             field = f"var {name}: {type_} = {value}"
@@ -182,7 +184,7 @@ class _Source:
         return snippets.paragraphs(self._read(), self._compute(), self._check(), self._move(), self._judge())
 
     def _read(self) -> list[str]:
-        """Return code that reads signals, clamped to their ranges, and params into local variables."""
+        """Return the code that reads signals, clamped to their ranges, and params into local variables."""
         used = self._program.variables_used
         lines: list[str] = []
         checked = False
@@ -205,9 +207,9 @@ class _Source:
         return [*lines, *self._stop()] if checked else lines
 
     def _bools(self, state: int | None) -> list[str]:
-        """Return code that converts the bools that only this state reads to numbers.
+        """Return the code that converts the bool signals that only this state reads to 0 or 1.
 
-        For None, it converts the bools that every step reads.
+        If ``state`` is None, it converts the bool signals that every step reads.
         """
         names = map(self._printer.name, self._program.bools_read_in(state))
         return [f"var {name}: float = 1.0 if sample.{name} else 0.0" for name in names]
@@ -216,7 +218,7 @@ class _Source:
         return ["if problem != Problem.NONE:", "\treturn false"]
 
     def _compute(self) -> list[str]:
-        """Return code for the atoms that every step computes."""
+        """Return the code that computes the atoms needed at every step."""
         lines = self._values(None)
         unsure = [(index, name) for index, name in enumerate(self._atoms) if not self._program.always_in_range[index]]
         for index, name in unsure:
@@ -224,11 +226,11 @@ class _Source:
         return [*lines, *(self._stop() if unsure else [])]
 
     def _values(self, state: int | None) -> list[str]:
-        """Return code for the atoms that only this state computes; for None, for those that every step computes."""
+        """Return the code for the atoms that only this state needs, or if ``state`` is None, those every step needs."""
         return [line for index in self._program.computed_in(state) for line in self._value(index)]
 
     def _value(self, index: int) -> list[str]:
-        """Return code for the value of one atom."""
+        """Return the code that computes the value of an atom, given its index."""
         program_, statements = self._program, self._program.values[index]
         lines = self._printer.comment(program_.remarks[index])
         lines += self._printer.lines(with_declaration(program_.atoms[index], statements))
@@ -237,7 +239,7 @@ class _Source:
         return lines
 
     def _check(self) -> list[str]:
-        """Return code that checks exclusive atoms."""
+        """Return the code that refuses a sample at which exclusive atoms hold together."""
         lines: list[str] = []
         for index, group in self._program.exclusive:
             names = [self._atoms[atom] for atom in group]
@@ -257,8 +259,8 @@ class _Source:
         return lines
 
     def _judge(self) -> list[str]:
-        """Return code for progress, reward and the end of the episode."""
-        # Adding 0 turns -0 into 0.
+        """Return the code that computes progress and reward, and whether the episode ends."""
+        # Adding 0 replaces -0 by 0, as in all monitors.
         lines = ["robustness += 0.0", "verdict = VERDICTS[state]", "accepting = ACCEPTING[state]", "steps += 1"]
         return [*lines, *self._printer.lines(self._program.reward_statements)]
 
@@ -270,7 +272,7 @@ class _Source:
     def _string(self, text: str) -> str:
         """Return a string literal with escapes for characters that do not print.
 
-        NUL is left out: it would end a string of the engine.
+        NUL characters are left out, because they would end the string in the engine.
         """
         return snippets.string_literal(text.replace("\0", ""), self._escape)
 
@@ -288,12 +290,12 @@ def _signed(value: float) -> str:
 
 
 def _ends(field: Signal | Param) -> tuple[str, str]:
-    """Return the ends of the range of a signal or a param."""
+    """Return the lowest and the highest value of a signal or a param, as expressions."""
     return "-INF" if field.low is None else _signed(field.low), "INF" if field.high is None else _signed(field.high)
 
 
 def _within(value: str, field: Signal | Param) -> str:
-    """Return a test whether a value is finite and in the range."""
+    """Return a test that is true if ``value`` is finite and in the range of the signal or param."""
     low, high = _ends(field)
     return (
         f"{value} {'>' if field.low is None else '>='} {low} and {value} {'<' if field.high is None else '<='} {high}"

@@ -1,1 +1,1 @@
-"""One module per format of diagnostics, each with a function ``render``."""
+"""The formats of diagnostics, each a module with a function ``render``."""

@@ -1,4 +1,4 @@
-"""Diagnostics as workflow commands of GitHub Actions, which displays them at the changed lines."""
+"""Diagnostics as workflow commands of GitHub Actions, which shows them beside the lines of a file."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ _COMMANDS = {"error": "error", "warning": "warning", "note": "notice"}
 
 
 def render(diagnostics: Sequence[Diagnostic], *, color: bool = False) -> str:
-    """Return one command per diagnostic, each on a line."""
+    """Return a command for each diagnostic, each on a line of its own."""
     return "".join(_command(diagnostic) + "\n" for diagnostic in diagnostics)
 
 

@@ -10,7 +10,10 @@ from tltlc.diagnostics.diagnostic import Diagnostic, Fix, Label
 
 
 def render(diagnostics: Sequence[Diagnostic], *, color: bool = False) -> str:
-    """Return ``{"diagnostics": […]}``; lines and columns start at 1, offsets at 0, all count characters."""
+    """Return ``{"diagnostics": […]}``.
+
+    Lines and columns count from 1, offsets from 0; columns and offsets are in characters.
+    """
     entries = [
         {
             "code": diagnostic.code,
@@ -30,7 +33,7 @@ def _label(label: Label) -> dict[str, object]:
 
 
 def _fix(fix: Fix, source: SourceFile) -> dict[str, object]:
-    """Return the JSON of a fix; its edits refer to the file of the first label."""
+    """Return the JSON of a fix, whose edits are in ``source``."""
     edits = [{**_range(source, edit.span), "text": edit.text} for edit in fix.edits]
     return {"title": fix.title, "applicability": fix.applicability, "edits": edits}
 

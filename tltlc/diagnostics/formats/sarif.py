@@ -17,7 +17,10 @@ _SCHEMA: Final = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/os/schemas/sari
 
 
 def render(diagnostics: Sequence[Diagnostic], *, color: bool = False) -> str:
-    """Return one SARIF log with one run; paths in the current folder are relative to it."""
+    """Return a SARIF log with one run.
+
+    The paths of files in the current folder are relative to it.
+    """
     rules = sorted({diagnostic.code for diagnostic in diagnostics})
     run = {
         "tool": {"driver": {"name": "tltlc", "version": __version__, "rules": [_rule(code) for code in rules]}},

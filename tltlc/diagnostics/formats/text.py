@@ -12,7 +12,10 @@ _DIM: Final = "2"
 _COLOURS: Final = {"error": "1;31", "warning": "1;33", "note": "1;36"}
 _TAB: Final = 4
 _WIDTH: Final = 160
-"""The most columns of a source line that are shown. A longer line is cut around the span."""
+"""The most columns of a source line that are shown.
+
+Of a longer line, only the part around the span is shown.
+"""
 
 
 def render(diagnostics: Sequence[Diagnostic], *, color: bool = False) -> str:
@@ -36,7 +39,10 @@ def _diagnostic_text(diagnostic: Diagnostic, color: bool) -> str:
 
 
 def _label_lines(label: Label, gutter: int, colour: str, color: bool) -> list[str]:
-    """Return the lines for a label: file, line and column; the source line; the caret with the label's message."""
+    """Return the lines of a label: its place, the source line, and carets below it with the label's message.
+
+    ``gutter`` is the width of the line number in characters.
+    """
     source, span = label.source, label.span
     number, column = source.position(span.start)
     last, _ = source.position(max(span.start, span.end - 1))
@@ -57,7 +63,7 @@ def _label_lines(label: Label, gutter: int, colour: str, color: bool) -> list[st
 
 
 def _window(line: str, start: int, length: int) -> tuple[str, int, int]:
-    """Return the part of a line to show, the column of the caret in it, and the width of the caret."""
+    """Return the part of a line to show, and the column of the first caret and the number of carets below it."""
     # A line may be a megabyte long, so first cut each part to the most that can be shown.
     end = start + length
     parts = (
@@ -79,7 +85,7 @@ def _window(line: str, start: int, length: int) -> tuple[str, int, int]:
 
 
 def _replace_except_tabs(text: str) -> str:
-    """Return a part of a line with unprintable characters replaced, but with its tabs."""
+    """Return a part of a line with all unprintable characters replaced except tabs."""
     return "\t".join(replace_unprintable(piece) for piece in text.split("\t"))
 
 
@@ -102,7 +108,7 @@ def replace_unprintable(text: str) -> str:
 
 
 def columns(text: str) -> int:
-    """Return how many columns a terminal needs for a text: two per wide character, none per combining one."""
+    """Return how many columns of a terminal a text takes up: two for a wide character, none for a combining one."""
     if text.isascii():
         return len(text)
     from unicodedata import combining, east_asian_width

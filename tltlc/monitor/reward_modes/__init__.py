@@ -1,11 +1,10 @@
-"""Alternative rewards to compare with Algorithm 1: one module per mode, loaded on first use.
+"""Alternative rewards to compare with Algorithm 1: a module for each mode, imported on first use.
 
-A module defines ``reward(tables, transition, options, memory) -> (reward, memory)``, a pure
-function. ``memory`` is the mode's state from step to step, None at the start of an episode. None of
-these modes has step or terminal penalties. To add a mode, add its name to
-:data:`tltlc.monitor.progress_and_reward.Mode`, a module of this name here, and another one in
-``tltl_runtime.spec.batch.reward_modes`` for many environments. Options, settings files and tests
-read the names from :data:`~tltlc.monitor.progress_and_reward.Mode`.
+A module defines a pure function ``reward(tables, transition, options, memory) -> (reward,
+memory)``. ``memory`` is what the mode remembers from step to step; it is None at the start of an
+episode. These modes have no penalties for steps or failures. To add a mode, add its name to
+:data:`tltlc.monitor.reward.Mode`, a module of this name here, and another one in
+``tltl_runtime.spec.batch.reward_modes`` for many environments.
 """
 
 from __future__ import annotations
@@ -21,9 +20,10 @@ from tltlc.monitor.tables import MonitorTables
 
 @record
 class Transition:
-    """One step of the automaton, from ``state`` to ``target``, at the ``values`` of the atoms.
+    """One step of the automaton, from ``state`` to ``target``.
 
-    ``done`` says whether the episode ends with this step, ``success`` whether it ends in success.
+    ``values`` are the values of the atoms. ``done`` says whether the episode ends with this step,
+    ``success`` whether it ends in success.
     """
 
     state: int

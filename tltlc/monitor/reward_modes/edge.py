@@ -1,4 +1,4 @@
-"""Reward the robustness of leaving the state, at every step (Li, Serlin, Yang, Belta, Science Robotics 2019)."""
+"""Reward, at every step, how near the automaton is to leaving its state (Li, Serlin, Yang, Belta, Sci. Robot. 2019)."""
 
 from __future__ import annotations
 
@@ -9,9 +9,11 @@ from tltlc.monitor.tables import MonitorTables
 
 
 def reward(tables: MonitorTables, transition: Transition, _: RewardOptions, memory: None) -> tuple[float, None]:
-    """Return the robustness of the disjunction of the edges that leave the state, in [-1, 1]; 0 without such edges.
+    """Return the robustness of the most robust edge to another state, in [-1, 1].
 
-    ▲ Edges into a trap are left out: with them, the disjunction would reward a violation.
+    Returns 0 if there is no such edge.
+
+    ▲ Edges into a trap are left out, because they would reward a violation.
     """
     states = tables.fspa.states
     leaving = [

@@ -1,7 +1,7 @@
-"""Reward success, with progress as the potential of a shaping reward.
+"""Reward success, and add a shaping reward with progress as its potential.
 
-Shaping does not change the optimal policies: they are optimal for the reward of success alone (Ng,
-Harada, Russell, Policy invariance under reward transformations, ICML 1999).
+Shaping of this form does not change which policies are optimal (Ng, Harada, Russell, Policy
+invariance under reward transformations, ICML 1999).
 """
 
 from __future__ import annotations
@@ -14,11 +14,12 @@ from tltlc.monitor.tables import MonitorTables
 def reward(
     tables: MonitorTables, transition: Transition, options: RewardOptions, memory: float | None
 ) -> tuple[float, float]:
-    """Return ``1`` on success, plus ``gamma * potential after - potential before``.
+    """Return 1 on success (0 otherwise), plus ``gamma * potential after - potential before``.
 
-    The potential of a state at a sample is its base progress plus what line 14 of Algorithm 1 adds,
-    whether or not the state changed. After the end of the episode the potential is 0; before the
-    first sample it is the base progress of the initial state.
+    The second result is the potential after this step, which is ``memory`` at the next step. The
+    potential at a sample is the base progress of the state, plus how near the next edge towards a
+    goal is (line 14 of Algorithm 1, but also if the state changed). After the end of the episode it
+    is 0. Before the first sample it is the base progress of the initial state.
     """
     before = tables.base_progress[0] if memory is None else memory
     after = 0.0 if transition.done else _potential(tables, transition)

@@ -8,9 +8,10 @@ from tltlc.monitor.reward_modes import Transition
 from tltlc.monitor.tables import MonitorTables
 
 Widths = dict[int, float]
-"""For each state that a trace of this length can reach, the width of the widest run to it.
+"""For each state that some run of this length reaches, the width of the widest run to the state.
 
-The width of a run is its least edge robustness.
+A run is a path through the automaton, for any samples. Its width is the least robustness of its
+edges at the samples of the trace.
 """
 
 
@@ -19,15 +20,14 @@ def reward(
 ) -> tuple[float, Widths]:
     """Return 0, and at the end of the episode the robustness of its trace, in [-1, 1].
 
-    The robustness is the signed distance from the trace to the nearest trace with the opposite
-    judgement; the distance of two traces is the greatest difference of an atom's value. The
-    robustness is positive if and only if the trace is accepted. The least robust edge of a run
-    gives the least change that makes the run possible. So the nearest trace with the opposite
-    judgement belongs to the widest run to a state with the opposite acceptance. If there is no such
-    state, the robustness is 1 or -1.
+    The robustness of a trace is positive if and only if the trace is accepted. Its absolute value
+    is the distance to the nearest trace that is judged in the opposite way: how much the values of
+    the atoms must change at least, at any sample. It is computed from the widest run to a state
+    with the opposite acceptance, since the width of a run tells how much the values must change for
+    the trace to take this run. If there is no such state, the robustness is 1 or -1.
 
     ▲ The paper uses the robustness of the formula. Both values agree if no atom's value is 0 and no
-    other way to write the formula gives a value nearer to 0.
+    equivalent formula has a robustness nearer to 0.
     """
     widths = _widen(tables, {0: 1.0} if memory is None else memory, transition)
     if not transition.done:
