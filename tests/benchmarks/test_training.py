@@ -9,6 +9,7 @@ import pytest
 
 from benchmarks import training, training_report
 from benchmarks.store import Record, Store
+from tltlc.interfaces.cli.main import main
 
 
 def trained(pass_rate: float, minutes: float, end: str = "met") -> Record:
@@ -38,16 +39,26 @@ def test_a_quick_run_is_resumed_and_skips_finished_work(tmp_path: Path, monkeypa
     ran: list[str] = []
     run, failing = training._tltlc, iter([2])
 
-    def recorded_run(*arguments: object) -> int:
-        """Run the command, but interrupt after the first training and let the first evaluation fail."""
+    def run_here(*arguments: object) -> object:
+        """Run the command in this process."""
+        with pytest.raises(SystemExit) as ended:
+            main([*map(str, arguments)])
+        return ended.value.code
+
+    def recorded_run(*arguments: object) -> object:
+        """Run the command, but interrupt after the first training and let the first evaluation fail.
+
+        The first training runs in a process of its own, and has two workers.
+        """
         paths = [argument for argument in arguments if isinstance(argument, Path)]
         (cell_name,) = (path.name for path in paths if path.parent == folder and not path.suffix)
         ran.append(f"{arguments[0]} {cell_name}")
         status = next(failing, None) if arguments[0] == "evaluate" else None
-        status = run(*arguments) if status is None else status
         if len(ran) == 1:
+            run(*arguments)
+            monkeypatch.setattr(training, "CORES", 1)
             raise KeyboardInterrupt
-        return status
+        return run_here(*arguments) if status is None else status
 
     monkeypatch.setattr(training, "_tltlc", recorded_run)
     messages: list[str] = []

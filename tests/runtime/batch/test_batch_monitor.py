@@ -56,7 +56,7 @@ def assert_equal(batch: BatchStep, steps: list[Step], successes: list[bool], fsp
         assert getattr(batch, field).tolist() == pytest.approx(expected, rel=0.0, abs=tolerance), field
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=80, deadline=None)
 @given(st.data(), automata(), options, st.booleans())
 def test_a_batch_equals_scalar_monitors(
     data: st.DataObject, fspa: Fspa, reward: RewardOptions, by_primes: bool

@@ -47,7 +47,7 @@ def truths(fspa: Fspa, samples: Sequence[Sequence[float]], dtype: torch.dtype, c
     return (step.values[0] > 0.0).tolist()
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=150, deadline=None)
 @given(THREE, FINITE)
 def test_a_comparison_with_a_threshold_is_exact_in_float64(ends: Sequence[float], x: float) -> None:
     low, threshold, high = ends
@@ -61,7 +61,7 @@ def test_a_comparison_with_a_threshold_is_exact_in_float64(ends: Sequence[float]
         assert results == [Fraction(number) < Fraction(threshold) for (number,) in samples]
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=150, deadline=None)
 @given(THREE_NARROW)
 def test_a_comparison_of_float32_numbers_is_exact_in_float32(ends: Sequence[float]) -> None:
     """Thresholds and samples are float32 numbers, so nothing is rounded before the comparison."""

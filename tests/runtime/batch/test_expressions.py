@@ -49,7 +49,7 @@ def exact(node: Any) -> Any:
     return Op(node.op if is_product else REPLACED.get(node.op, node.op), parts)
 
 
-@settings(max_examples=400, deadline=None)
+@settings(max_examples=200, deadline=None)
 @given(expressions(), st.lists(st.tuples(numbers, numbers), min_size=1, max_size=4), st.tuples(numbers, numbers))
 def test_columns_give_the_values_of_single_samples(
     expression: Expression, samples: list[tuple[float, float]], given_params: tuple[float, float]

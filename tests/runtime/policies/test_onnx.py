@@ -48,7 +48,7 @@ def check_alike(policy: Policy, model: bytes, seeds: int) -> None:
 
 
 def test_the_model_plays_as_the_policy(policy: Policy, model: bytes) -> None:
-    check_alike(policy, model, 100)
+    check_alike(policy, model, 30)
 
 
 @pytest.mark.parametrize("level", sorted(shipped_policies()))

@@ -10,25 +10,26 @@ import pytest
 from tltl_runtime.evaluation.statistics import wilson
 from tltl_runtime.regression.verdict.confidence import mean_p_value, rate_interval
 
-SEQUENCES = 400
-EPISODES = 150
+SEQUENCES, EPISODES = 400, 150
+SIZES = [(200, 60), pytest.param((SEQUENCES, EPISODES), marks=pytest.mark.slow)]
+"""Numbers of sequences and of their episodes: the small ones already refute an interval for one evaluation."""
 
 
-def most(error: float) -> int:
+def most(error: float, sequences: int = SEQUENCES) -> int:
     """The number of wrong sequences that is exceeded with probability 1e-6.
 
-    Each of the :data:`SEQUENCES` is wrong with probability ``error``.
+    Each of the sequences is wrong with probability ``error``.
     """
     left, count = 1.0, -1
     while left > 1e-6:
         count += 1
-        left -= comb(SEQUENCES, count) * error**count * (1 - error) ** (SEQUENCES - count)
+        left -= comb(sequences, count) * error**count * (1 - error) ** (sequences - count)
     return count
 
 
-def ever_outside(rate: float, error: float, seed: int, interval: object = rate_interval) -> int:
+def ever_outside(rate: float, error: float, seed: int, size: tuple[int, int], interval: object = rate_interval) -> int:
     """The number of sequences in which the rate is ever outside its interval."""
-    met = np.random.default_rng(seed).random((SEQUENCES, EPISODES)) < rate
+    met = np.random.default_rng(seed).random(size) < rate
     outside: dict[tuple[int, int], bool] = {}
 
     def is_outside(passed: int, failed: int) -> bool:
@@ -45,16 +46,19 @@ def ever_outside(rate: float, error: float, seed: int, interval: object = rate_i
 
 @pytest.mark.parametrize("rate", [0.5, 0.85, 0.97])
 @pytest.mark.parametrize("error", [0.2, 0.05])
-def test_the_rate_is_rarely_ever_outside_its_interval(rate: float, error: float) -> None:
-    assert ever_outside(rate, error, seed=3) <= most(error)
+@pytest.mark.parametrize("size", SIZES)
+def test_the_rate_is_rarely_ever_outside_its_interval(rate: float, error: float, size: tuple[int, int]) -> None:
+    assert ever_outside(rate, error, 3, size) <= most(error, size[0])
 
 
-def test_an_interval_for_one_evaluation_fails_when_evaluated_often() -> None:
+@pytest.mark.parametrize("size", [(200, 60), (SEQUENCES, EPISODES)])
+def test_an_interval_for_one_evaluation_fails_when_evaluated_often(size: tuple[int, int]) -> None:
     def once(passed: int, failed: int, error: float) -> tuple[float, float]:
         assert error == 0.05
         return wilson(passed, passed + failed)
 
-    assert ever_outside(0.85, 0.05, 3, once) > 3 * 0.05 * SEQUENCES
+    outside = ever_outside(0.85, 0.05, 3, size, once)
+    assert outside > 3 * 0.05 * size[0] and outside > most(0.05, size[0])
 
 
 @pytest.mark.parametrize(("passed", "failed"), [(0, 0), (25, 0), (0, 25), (24, 1), (190, 10), (7, 93)])

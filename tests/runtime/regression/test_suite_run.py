@@ -59,8 +59,21 @@ def run(folder: str = "run", suite: Suite | None = None) -> tuple[list[FinishedC
     return list(running(suite or read_suite(Path("game.toml")), folder, played)), played.counts
 
 
-def test_cases_are_judged_in_order(game: Path) -> None:
-    results, played = run("new")
+@pytest.fixture(scope="module")
+def again(recorded: Path, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, list[FinishedCase], dict[str, int]]:
+    """A second run of the recorded game, which must only be read: its folder, results and numbers of episodes."""
+    copy = tmp_path_factory.mktemp("again") / "game"
+    shutil.copytree(recorded, copy)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(copy)
+        return copy, *run("new")
+
+
+def test_cases_are_judged_in_order(
+    again: tuple[Path, list[FinishedCase], dict[str, int]], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    game, results, played = again
+    monkeypatch.chdir(game)
     assert [(done.report.name, done.report.verdict) for done in results] == [
         ("room:v0", "pass"),
         ("room:v1", "pass"),
@@ -79,18 +92,18 @@ def test_cases_are_judged_in_order(game: Path) -> None:
             assert read_episode(folder / name).seed == report.accounts[index].summary.seed
 
 
-def test_two_runs_give_equal_results(game: Path) -> None:
-    first, _ = run("one")
-    second, _ = run("two")
-    assert [done.report for done in first] == [done.report for done in second]
-    for path in Path("one").rglob("*.json"):
-        assert path.read_bytes() == (Path("two") / path.relative_to("one")).read_bytes()
+def test_two_runs_give_equal_results(recorded: Path, again: tuple[Path, list[FinishedCase], dict[str, int]]) -> None:
+    first, second = recorded / "run", again[0] / "new"
+    paths = [path.relative_to(first) for path in first.rglob("*.json")]
+    assert len(paths) == 3
+    for path in paths:
+        assert (first / path).read_bytes() == (second / path).read_bytes()
 
 
-def test_a_cached_case_is_not_played_again(game: Path) -> None:
+def test_a_cached_case_is_not_played_again(game: Path, again: tuple[Path, list[FinishedCase], dict[str, int]]) -> None:
     kept, played = run()
     assert played == {} and all(done.is_cached for done in kept)
-    new, _ = run("new")
+    _, new, _ = again
     assert [done.report for done in kept] == [done.report for done in new]
 
 

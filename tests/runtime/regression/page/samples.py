@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from functools import cache
 
+from tests.runtime.stealth.expert_episodes import played
 from tltl_runtime.evaluation.figures import figures_of
 from tltl_runtime.regression.explain.explain import findings
 from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode, explain_episode, summaries_of
@@ -13,43 +14,33 @@ from tltl_runtime.regression.report.page.contents import ReportedCase, SuiteRepo
 from tltl_runtime.regression.verdict.verdict import Verdict
 from tltl_runtime.stealth.env import make_env
 from tltl_runtime.stealth.episode_recorder import RecordEpisode
-from tltl_runtime.stealth.expert.expert import Expert, play_episode
 from tltl_runtime.stealth.recordings.episode import Episode
 from tltl_runtime.stealth.recordings.episode_summary import summary_of
 
 
 def navigation() -> tuple[Episode, ...]:
     """Two episodes that meet the spec."""
-    return _played("navigation", "v0", 2)
+    return _played("navigation", 2)
 
 
 def branching() -> tuple[Episode, ...]:
     """One episode with two enemies, movers and a laser."""
-    return _played("branching", "v0", 1)
+    return _played("branching", 1)
 
 
 def cover_and_hide_met() -> tuple[Episode, ...]:
     """Two episodes that meet the spec."""
-    return _played("cover_and_hide", "v0", 2)
+    return _played("cover_and_hide", 2)
 
 
 def cover_and_hide_failed() -> tuple[Episode, ...]:
     """Three episodes of a player that does not hide."""
-    return _played("cover_and_hide", "v0", 3, careful=False)
+    return _played("cover_and_hide", 3, careful=False)
 
 
 @cache
-def _played(level: str, variant: str, count: int, *, careful: bool = True) -> tuple[Episode, ...]:
-    env = RecordEpisode(make_env(level, variant), "expert")
-    try:
-        expert = Expert(env, careful=careful)
-        episodes = []
-        for seed in range(count):
-            play_episode(env, expert, seed)
-            episodes.append(env.episode)
-        return tuple(episodes)
-    finally:
-        env.close()
+def _played(level: str, count: int, *, careful: bool = True) -> tuple[Episode, ...]:
+    return tuple(played(level, seed=seed, careful=careful) for seed in range(count))
 
 
 @cache

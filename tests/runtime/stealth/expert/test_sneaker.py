@@ -7,6 +7,7 @@ from contextlib import closing
 import pytest
 
 from tests.runtime.stealth.enemy_levels import box, level
+from tests.runtime.stealth.expert_episodes import played
 from tltl_runtime.stealth.env import make_env
 from tltl_runtime.stealth.episode_recorder import RecordEpisode
 from tltl_runtime.stealth.expert.expert import Expert, play_episode
@@ -65,14 +66,11 @@ def test_the_walker_does_not_crouch_and_is_seen() -> None:
     ],
 )
 def test_the_careful_expert_finishes_without_a_chase(name: str, variant: str, seeds: tuple[int, ...]) -> None:
-    env = RecordEpisode(make_env(name, variant))
-    with closing(env):
-        expert = Expert(env)
-        for seed in seeds:
-            assert play_episode(env, expert, seed)["success"]
-            episode = env.episode
-            assert "chase" not in {mode for snapshot in episode.snapshots for mode in snapshot.modes}
-            assert episode.snapshots[-1].health == 1.0
+    for seed in seeds:
+        episode = played(name, variant, seed)
+        assert episode.success
+        assert "chase" not in {mode for snapshot in episode.snapshots for mode in snapshot.modes}
+        assert episode.snapshots[-1].health == 1.0
 
 
 def test_the_careless_expert_loses_most_episodes_with_a_guard() -> None:
