@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tests.resolve.helpers import codes, formula, only_spec, resolve_text, valid_program
-from tltlc.resolve.spec import Expect, Signal, TestSample
+from tltlc.resolve.spec import Expect, Signal, RepeatedSample
 
 COVER_AND_HIDE = """
 import stealth
@@ -103,8 +103,8 @@ def test_a_test_block_resolves_to_samples_and_expectations() -> None:
     """
     (test,) = valid_program(text).tests
     assert (test.title, test.spec) == ("t", "s")
-    assert test.items[0] == TestSample(3, frozenset({"alive"}))
-    assert test.items[2] == TestSample(1, frozenset())
+    assert test.items[0] == RepeatedSample(3, frozenset({"alive"}))
+    assert test.items[2] == RepeatedSample(1, frozenset())
     expectations = [item for item in test.items if isinstance(item, Expect)]
     assert [(e.kind, e.value, e.comparison) for e in expectations] == [
         ("verdict", "pending", None),

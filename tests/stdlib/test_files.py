@@ -16,7 +16,7 @@ from tltlc.expression.evaluate import evaluate
 from tltlc.grammar.parser import parse
 from tltlc.grammar.tree import PredicateDecl, SignalDecl
 from tltlc.logic.oracle import holds
-from tltlc.resolve.spec import Expect, ResolvedFile, Spec, TestSample
+from tltlc.resolve.spec import Expect, ResolvedFile, Spec, RepeatedSample
 
 ROOT = Path(__file__).parents[2]
 LIBRARIES = sorted(path for path in (ROOT / "stdlib_predicates").glob("*.tltl") if "_tests" not in path.name)
@@ -50,7 +50,7 @@ def test_the_test_blocks_agree_with_the_oracle(path: Path) -> None:
     for test in program.tests:
         trace: list[frozenset[str]] = []
         for item in test.items:
-            if isinstance(item, TestSample):
+            if isinstance(item, RepeatedSample):
                 trace += [item.holds] * item.times
             elif item.kind == "verdict":
                 assert _agrees(str(item.value), specs[test.spec], trace), (test.title, item)

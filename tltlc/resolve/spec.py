@@ -137,7 +137,7 @@ class Vocabulary:
 
 
 @record
-class TestSample:
+class RepeatedSample:
     """One line of a test: the atoms that hold (the others are false), repeated ``times``."""
 
     times: int
@@ -164,7 +164,7 @@ class Test:
 
     title: str
     spec: str
-    items: tuple[TestSample | Expect, ...]
+    items: tuple[RepeatedSample | Expect, ...]
     source: SourceFile
     span: Span
 

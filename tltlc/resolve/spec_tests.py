@@ -11,7 +11,7 @@ from tltlc.grammar.typos import likely_name
 from tltlc.grammar.walk import conjuncts
 from tltlc.resolve.formulas import formula
 from tltlc.resolve.problem import ResolutionError, problem
-from tltlc.resolve.spec import Expect, Spec, Test, TestSample
+from tltlc.resolve.spec import Expect, Spec, Test, RepeatedSample
 from tltlc.resolve.values import Env
 
 
@@ -34,7 +34,7 @@ def resolve_test(declaration: TestDecl, specs: dict[str, Spec | None], env: Env)
     spec = specs[name]
     if spec is None:
         return None
-    items: list[TestSample | Expect] = []
+    items: list[RepeatedSample | Expect] = []
     complete = True
     for item in declaration.items:
         try:
@@ -50,7 +50,7 @@ def resolve_test(declaration: TestDecl, specs: dict[str, Spec | None], env: Env)
     return Test(declaration.title, name, tuple(items), source, declaration.span) if complete else None
 
 
-def _step(item: TestStep, spec: Spec, env: Env) -> TestSample:
+def _step(item: TestStep, spec: Spec, env: Env) -> RepeatedSample:
     source = env.scope.source
     names = {_without_spaces(atom.name): atom.name for atom in spec.atoms}
     values: dict[str, bool] = {}
@@ -68,7 +68,7 @@ def _step(item: TestStep, spec: Spec, env: Env) -> TestSample:
                 literal_expr.span,
                 advice="leave one out",
             )
-    return TestSample(item.times, frozenset(name for name, holds in values.items() if holds))
+    return RepeatedSample(item.times, frozenset(name for name, holds in values.items() if holds))
 
 
 def _literal(literal_expr: Expr, names: Mapping[str, str], env: Env) -> tuple[str, bool]:

@@ -6,8 +6,8 @@ from contextlib import closing
 from functools import cache
 
 from tltl_runtime.stealth.env import make_env
-from tltl_runtime.stealth.expert.expert import Expert, play_episode
 from tltl_runtime.stealth.episode_recorder import RecordEpisode
+from tltl_runtime.stealth.expert.expert import Expert, play_episode
 from tltl_runtime.stealth.recordings.episode import Episode
 
 

@@ -9,7 +9,6 @@ import pytest
 from tests.runtime.stealth.enemy_levels import box, level
 from tests.runtime.stealth.expert_episodes import played
 from tltl_runtime.stealth.env import make_env
-from tltl_runtime.stealth.episode_recorder import RecordEpisode
 from tltl_runtime.stealth.expert.expert import Expert, play_episode
 from tltl_runtime.stealth.expert.sneaker import Sneaker
 from tltl_runtime.stealth.expert.walker import Walker
