@@ -165,7 +165,7 @@ print([build(spec_from_formula(formula)) for formula in small])
 """
     root = Path(__file__).parents[2]
     outputs = set()
-    for seed in ("0", "1", "2"):
+    for seed in ("0", "1"):
         environment = {**os.environ, "PYTHONHASHSEED": seed}
         result = subprocess.run(
             [sys.executable, "-c", program], env=environment, cwd=root, capture_output=True, check=True
