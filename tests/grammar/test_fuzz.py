@@ -5,10 +5,11 @@ import re
 from pathlib import Path
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.calls import calls
+from tests.fuzzing import times
 from tltlc.core.source import SourceFile
 from tltlc.diagnostics.codes import codes
 from tltlc.diagnostics.render import FORMATS, render
@@ -60,7 +61,7 @@ def test_words_in_any_order_are_parsed_without_an_exception(words: list[str], be
     check_diagnostics(between.join(words))
 
 
-@settings(max_examples=200)
+@times(80)
 @given(st.randoms(use_true_random=False), st.integers(1, 5))
 def test_mutated_specs_are_parsed_without_an_exception(generator: random.Random, times: int) -> None:
     text = TEXT
