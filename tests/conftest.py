@@ -17,9 +17,10 @@ from tests import quick
 
 # The time of an example, and of drawing it, depends more on the load of the machine than on the code.
 settings.register_profile("any", deadline=None, suppress_health_check=[HealthCheck.too_slow])
-settings.register_profile("fuzz", settings.get_profile("any"), print_blob=True)
-# Draw the same examples in every run, so that a new failure comes from a change of the code; `make fuzz` draws others.
-settings.register_profile("tests", settings.get_profile("any"), derandomize=True)
+settings.register_profile("fuzz", settings.get_profile("any"), max_examples=500, print_blob=True)
+# Draw the same examples in every run, so that a new failure comes from a change of the code; `make fuzz` draws others,
+# and more of them.
+settings.register_profile("tests", settings.get_profile("any"), max_examples=50, derandomize=True)
 settings.load_profile("tests")
 
 LEFT_OUT = (

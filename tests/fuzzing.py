@@ -23,7 +23,7 @@ SEEDS: Final = st.integers(0, 2**64 - 1)
 
 def times(usual: int) -> settings:
     """Settings with ``usual`` examples in `make test`, and thirty times as many in `make fuzz`."""
-    count = usual if settings.default.derandomize else 30 * usual
+    count = usual if settings().derandomize else 30 * usual
     return settings(max_examples=count, deadline=None, suppress_health_check=list(HealthCheck))
 
 

@@ -7,9 +7,10 @@ import sys
 from itertools import product
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 
 from tests.automaton.infinite.runs import compiled
+from tests.fuzzing import times
 from tests.logic.strategies import formulas
 from tests.reference_formulas import read_formula
 from tltlc import compile_text
@@ -31,7 +32,7 @@ def finite(formula: Formula | str, *exclusive: tuple[str, ...]) -> Fspa:
     return build(spec_from_formula(formula, exclusive=exclusive))
 
 
-@settings(max_examples=150, deadline=None)
+@times(60)
 @given(SMALL, SMALL)
 def test_over_finite_traces_a_shortest_counterexample_is_found(one: Formula, other: Formula) -> None:
     counterexample = separating(finite(one), finite(other))
@@ -45,7 +46,7 @@ def test_over_finite_traces_a_shortest_counterexample_is_found(one: Formula, oth
     assert expected or len(counterexample.prefix) > 3
 
 
-@settings(max_examples=100, deadline=None)
+@times(40)
 @given(SMALL, SMALL)
 def test_a_counterexample_has_no_impossible_samples(one: Formula, other: Formula) -> None:
     a, b = finite(one), finite(other)
@@ -82,7 +83,7 @@ def test_after_a_goal_less_remains() -> None:
         state_inclusion(fspa, work=1)(0, 1)
 
 
-@settings(max_examples=150, deadline=None)
+@times(60)
 @given(SMALL, SMALL)
 def test_over_infinite_traces_a_lasso_is_found(one: Formula, other: Formula) -> None:
     lasso = separating(compiled(one), compiled(other))

@@ -13,6 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.automaton.letters import holds, letters, minimal_size, named, run, table, traces
+from tests.fuzzing import times
 from tests.logic.strategies import formulas
 from tests.reference_formulas import read_formula
 from tltlc.automaton.finite.build import build, spec_from_formula
@@ -40,7 +41,7 @@ def labels(fspa: Fspa) -> list[str]:
 
 
 @given(SMALL)
-@settings(max_examples=300)
+@times(100)
 def test_accepts_the_traces_on_which_the_formula_holds(formula: Formula) -> None:
     fspa = compiled(formula)
     for trace in traces(fspa, 4):
@@ -48,7 +49,7 @@ def test_accepts_the_traces_on_which_the_formula_holds(formula: Formula) -> None
 
 
 @given(WIDE, GROUPS)
-@settings(max_examples=150)
+@times(60)
 def test_accepts_the_right_traces_if_atoms_are_exclusive(formula: Formula, groups: tuple[tuple[str, ...], ...]) -> None:
     fspa = compiled(formula, *groups)
     for trace in islice(traces(fspa, 3), 600):
@@ -56,7 +57,7 @@ def test_accepts_the_right_traces_if_atoms_are_exclusive(formula: Formula, group
 
 
 @given(WIDE, GROUPS)
-@settings(max_examples=150)
+@times(60)
 def test_automata_are_complete_deterministic_and_minimal(formula: Formula, groups: tuple[tuple[str, ...], ...]) -> None:
     """No automaton of this language is smaller, whether or not it accepts the empty trace (size convention)."""
     fspa = compiled(formula, *groups)
@@ -117,7 +118,7 @@ def test_accepts_the_right_traces_for_nested_formulas_that_imply_each_other(text
 
 
 @given(WIDE, GROUPS)
-@settings(max_examples=150)
+@times(60)
 def test_distances_and_verdicts_match_reachability(formula: Formula, groups: tuple[tuple[str, ...], ...]) -> None:
     fspa = compiled(formula, *groups)
     moves = table(fspa)
@@ -139,7 +140,7 @@ def test_distances_and_verdicts_match_reachability(formula: Formula, groups: tup
 
 
 @given(WIDE)
-@settings(max_examples=100)
+@times(40)
 def test_states_are_numbered_breadth_first_and_edges_sorted(formula: Formula) -> None:
     fspa = compiled(formula)
     pairs = [(edge.source, edge.target) for edge in fspa.edges]
@@ -165,7 +166,7 @@ print([build(spec_from_formula(formula)) for formula in small])
 """
     root = Path(__file__).parents[2]
     outputs = set()
-    for seed in ("0", "1", "2"):
+    for seed in ("0", "1"):
         environment = {**os.environ, "PYTHONHASHSEED": seed}
         result = subprocess.run(
             [sys.executable, "-c", program], env=environment, cwd=root, capture_output=True, check=True
@@ -178,7 +179,7 @@ print([build(spec_from_formula(formula)) for formula in small])
 
 
 @given(WIDE, GROUPS)
-@settings(max_examples=100)
+@times(40)
 def test_guards_have_all_primes_and_a_formula_that_means_the_same(
     formula: Formula, groups: tuple[tuple[str, ...], ...]
 ) -> None:
@@ -215,7 +216,7 @@ def _primes_by_brute_force(fspa: Fspa, taken: set[tuple[bool, ...]]) -> set[tupl
 
 
 @given(SMALL, st.sampled_from([(), (("a", "b"),)]))
-@settings(max_examples=150)
+@times(60)
 def test_a_state_accepts_the_traces_on_which_its_label_holds(
     formula: Formula, groups: tuple[tuple[str, ...], ...]
 ) -> None:

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.fuzzing import times
 from tests.logic.strategies import formulas
 from tests.reference_formulas import read_formula
 from tltlc.automaton.finite import composition
@@ -26,7 +27,7 @@ def shape(fspa: Fspa) -> tuple[object, ...]:
 
 
 @given(PARTS, st.sampled_from([and_, or_]), GROUPS)
-@settings(max_examples=150)
+@times(60)
 def test_the_parts_give_the_same_automaton(
     parts: list[Formula], join: Callable[..., Formula], groups: tuple[tuple[str, ...], ...]
 ) -> None:

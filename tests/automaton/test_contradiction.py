@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.fuzzing import times
 from tests.logic.strategies import formulas
 from tests.reference_formulas import read_formula
 from tltlc.automaton.finite.build import build, spec_from_formula
@@ -35,7 +36,7 @@ def test_only_contradicting_parts_are_blamed() -> None:
 
 
 @given(st.lists(formulas(max_leaves=4), min_size=1, max_size=4))
-@settings(max_examples=150, deadline=None)
+@times(60)
 def test_the_blamed_parts_are_a_minimal_unsatisfiable_set(parts: list[Formula]) -> None:
     if is_unsatisfiable(parts):
         core = [part.formula for part in contradiction(spec_of(parts))]

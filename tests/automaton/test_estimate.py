@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.automaton.test_budgets import any_order, names, refusal
+from tests.fuzzing import times
 from tests.logic.strategies import formulas
 from tltlc.automaton.finite import composition
 from tltlc.automaton.finite.build import build, minimal_machine, spec_from_formula
@@ -38,7 +39,7 @@ def machines(
     st.booleans(),
     st.sampled_from([[], [[0, 1]], [[0, 1, 2]]]),
 )
-@settings(max_examples=300, deadline=None)
+@times(100)
 def test_the_estimate_never_rejects_a_product_that_fits(
     parts: list[Formula], conjunction: bool, exclusive: list[list[int]]
 ) -> None:

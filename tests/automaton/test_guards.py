@@ -6,9 +6,10 @@ from collections.abc import Sequence
 from itertools import product
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.fuzzing import times
 from tests.logic.strategies import state_formulas
 from tltlc.automaton import guards
 from tltlc.automaton.finite.build import build, spec_from_formula
@@ -62,13 +63,13 @@ def signed_distance(formula: Formula, values: Sequence[float]) -> float:
 
 
 @given(state_formulas(ATOMS, max_leaves=8), VALUES)
-@settings(max_examples=400)
+@times(133)
 def test_robustness_is_the_signed_distance_to_the_border(formula: Formula, values: tuple[float, ...]) -> None:
     assert robustness(guard_of(formula), values) == signed_distance(formula, values)
 
 
 @given(state_formulas(ATOMS, max_leaves=6))
-@settings(max_examples=100)
+@times(40)
 def test_robustness_does_not_depend_on_how_the_guard_is_written(formula: Formula) -> None:
     """Shannon's expansion can change min and max, but keeps the prime implicants."""
     split = or_(and_(atom("a"), formula), and_(not_(atom("a")), formula))

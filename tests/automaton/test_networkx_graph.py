@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import networkx
-from hypothesis import given, settings
+from hypothesis import given
 
+from tests.fuzzing import times
 from tests.logic.strategies import formulas
 from tltlc import compile_text
 from tltlc.automaton.finite.build import build, spec_from_formula
@@ -21,7 +22,7 @@ def test_parallel_edges_become_one() -> None:
 
 
 @given(formulas(atoms=("a", "b", "c"), max_leaves=8))
-@settings(max_examples=100)
+@times(40)
 def test_networkx_finds_the_same_distances_and_traps(formula: Formula) -> None:
     fspa = build(spec_from_formula(formula))
     graph = to_networkx(fspa)

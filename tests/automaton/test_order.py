@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.automaton.test_composition import _isomorphic
+from tests.fuzzing import times
 from tests.logic.strategies import formulas
 from tests.reference_formulas import read_formula
 from tltlc.automaton.finite import build as build_module
@@ -44,7 +45,7 @@ def test_a_good_order_is_kept(text: str) -> None:
 
 
 @given(formulas(atoms=ATOMS, max_leaves=8), st.permutations(range(4)), st.sampled_from([(), (ATOMS[:2],)]))
-@settings(max_examples=100, deadline=None)
+@times(40)
 def test_any_order_of_atoms_gives_the_same_automaton(
     formula: Formula, order: list[int], groups: tuple[tuple[str, ...], ...]
 ) -> None:

@@ -290,18 +290,24 @@ def compile_spec(text: str) -> Fspa:
     return fspa
 
 
-def verdicts(fspa: Fspa) -> Iterator[tuple[Trace, bool]]:
-    """Yield every trace of up to ``LONGEST`` samples, and whether the automaton accepts it."""
-    edges, values_of = tables(fspa).edges, {letter: letter_values(fspa, letter) for letter in LETTERS}
+def verdicts(fspa: Fspa, atoms: str = ATOMS) -> Iterator[tuple[Trace, bool]]:
+    """Yield every trace of up to ``LONGEST`` samples of ``atoms``, and whether the automaton accepts it."""
+    letters = [letter for letter in LETTERS if letter <= set(atoms)]
+    edges, values_of = tables(fspa).edges, {letter: letter_values(fspa, letter) for letter in letters}
     following = {
         (state.id, letter): next(edge.target for edge in edges[state.id] if holds(edge.guard, values_of[letter]))
         for state in fspa.states
-        for letter in LETTERS
+        for letter in letters
     }
     reached: list[tuple[Trace, int]] = [((), 0)]
     for _ in range(LONGEST):
-        reached = [((*trace, letter), following[state, letter]) for trace, state in reached for letter in LETTERS]
+        reached = [((*trace, letter), following[state, letter]) for trace, state in reached for letter in letters]
         yield from ((trace, fspa.states[state].accepting) for trace, state in reached)
+
+
+def atoms_of(text: str) -> str:
+    """Return the atoms that a text names; the edit and the meaning depend on no others."""
+    return "".join(atom for atom in ATOMS if re.search(rf"\b{atom}\b", text))
 
 
 @pytest.mark.parametrize(("clause", "meaning"), CASES.items(), ids=CASES)
@@ -310,8 +316,8 @@ def test_an_edit_has_the_meaning_of_the_sentence(clause: str, meaning: Whole | N
     if text is None:
         return
     assert meaning is not None, text
-    assert set(re.findall(r"\b[abc]\b", clause)) <= set(re.findall(r"\b[abc]\b", text))
-    wrong = [trace for trace, accepted in verdicts(compile_spec(text)) if accepted != meaning(trace)]
+    assert set(atoms_of(clause)) <= set(atoms_of(text))
+    wrong = [trace for trace, accepted in verdicts(compile_spec(text), atoms_of(text)) if accepted != meaning(trace)]
     assert not wrong, f"{text}: {[sorted(letter) for letter in wrong[0]]}"
 
 

@@ -5,10 +5,11 @@ import re
 from pathlib import Path
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.calls import calls
+from tests.fuzzing import times
 from tltlc.core.source import SourceFile
 from tltlc.diagnostics.codes import codes
 from tltlc.diagnostics.render import FORMATS, render
@@ -60,7 +61,7 @@ def test_words_in_any_order_are_parsed_without_an_exception(words: list[str], be
     check_diagnostics(between.join(words))
 
 
-@settings(max_examples=200)
+@times(80)
 @given(st.randoms(use_true_random=False), st.integers(1, 5))
 def test_mutated_specs_are_parsed_without_an_exception(generator: random.Random, times: int) -> None:
     text = TEXT
@@ -74,35 +75,47 @@ def test_mutated_specs_are_parsed_without_an_exception(generator: random.Random,
 BIG = MAX_CHARACTERS // 8
 
 
+@pytest.mark.parametrize("divisor", [pytest.param(1, marks=pytest.mark.slow), 8], ids=["large", "smaller"])
+@pytest.mark.parametrize(
+    ("start", "repeated", "times", "end"),
+    [
+        ("spec s = ", "!", BIG, "a"),
+        ("spec s = ", "(", BIG, ""),
+        ("spec s = ", "a & ", BIG, "a"),
+        ("spec s = ", "a then ", 10_000, "a"),
+        ("spec s = ", "a -> ", 10_000, "a"),
+        ("predicate p = ", "when a: ", 10_000, ""),
+        ("spec s = ", "f(", 10_000, ""),
+        ("", "a b\n", BIG, ""),
+        ("", "spec a { keep a }\n", 20_000, ""),
+        ("", "spec a {\n", 20_000, ""),
+        ("spec a {\n", "keep\n", 20_000, ""),
+        ("spec a {\n", "kepe a\n", 20_000, "}"),
+        ("spec a {\n keep b", " &\na b", 20_000, "}"),
+        ("spec a {\n", "1 2 3 4 ", 20_000, "}"),
+        ("spec a { limit ", "3 steps ", 20_000, "}"),
+        ("spec a { reach ", "a then ", 20_000, "b for 5 steps }"),
+        ("", "{}", BIG, ""),
+        ("", '"', BIG, ""),
+        ("", "aé", BIG, ""),
+    ],
+)
+def test_large_texts_take_a_few_calls_for_each_character(
+    start: str, repeated: str, times: int, end: str, divisor: int
+) -> None:
+    check_number_of_calls(start + repeated * (times // divisor) + end)
+
+
 @pytest.mark.parametrize(
     "text",
-    [
-        "spec s = " + "!" * BIG + "a",
-        "spec s = " + "(" * BIG,
-        "spec s = " + "a & " * BIG + "a",
-        "spec s = " + "a then " * 10_000 + "a",
-        "spec s = " + "a -> " * 10_000 + "a",
-        "predicate p = " + "when a: " * 10_000,
-        "spec s = " + "f(" * 10_000,
-        "a b\n" * BIG,
-        "spec a { keep a }\n" * 20_000,
-        "spec a {\n" * 20_000,
-        "spec a {\n" + "keep\n" * 20_000,
-        "spec a {\n" + "kepe a\n" * 20_000 + "}",
-        "spec a {\n keep b" + " &\na b" * 20_000 + "}",
-        "spec a {\n" + "1 2 3 4 " * 20_000 + "}",
-        "spec a { limit " + "3 steps " * 20_000 + "}",
-        "spec a { reach " + "a then " * 20_000 + "b for 5 steps }",
-        "{}" * BIG,
-        '"' * BIG,
-        "1" * MAX_CHARACTERS,
-        "aé" * BIG,
-        "x" * (MAX_CHARACTERS + 1),
-        "\n" * MAX_CHARACTERS,
-    ],
-    ids=lambda text: repr(text[:12]),
+    ["1" * MAX_CHARACTERS, "x" * (MAX_CHARACTERS + 1), "\n" * MAX_CHARACTERS, "a " * (BIG + 1)],
+    ids=lambda text: repr(text[:2]),
 )
-def test_large_texts_take_a_few_calls_for_each_character(text: str) -> None:
+def test_texts_at_the_limits_take_a_few_calls_for_each_character(text: str) -> None:
+    check_number_of_calls(text)
+
+
+def check_number_of_calls(text: str) -> None:
     def parse_and_render() -> None:
         _, diagnostics = parse(SourceFile("a", text))
         render(diagnostics)

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 
+from tests.fuzzing import times
 from tests.logic.small_formulas import formulas_of_size, formulas_up_to
 from tests.logic.strategies import formulas
 from tests.logic.truth_table import TruthTable
@@ -26,7 +27,7 @@ def test_implication_is_sound_between_small_formulas() -> None:
                 assert TABLE.implies(premise, conclusion), f"{premise} implies {conclusion}"
 
 
-@settings(max_examples=1000)
+@times(333)
 @given(formulas(("a", "b"), 6), formulas(("a", "b"), 6))
 def test_implication_is_sound(premise: Formula, conclusion: Formula) -> None:
     for weaker in (conclusion, f.or_(premise, conclusion), f.until(conclusion, premise)):

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.fuzzing import times
 from tests.logic.strategies import formulas
 from tests.reference_formulas import read_formula
 from tltlc.automaton.infinite.readback import without_constants
@@ -46,7 +47,7 @@ def test_an_outline_over_infinite_traces_lists_recurring_goals() -> None:
     assert result.throughout == ("keep c", "whenever a, reach b at that step or later")
 
 
-@settings(max_examples=300, deadline=None)
+@times(100)
 @given(SMALL, st.booleans())
 def test_the_outline_of_every_formula_is_in_english(formula: Formula, endless: bool) -> None:
     formula = without_constants(formula) if endless else formula

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 
+from tests.fuzzing import times
 from tests.logic.small_formulas import formulas_up_to
 from tests.logic.strategies import formulas
 from tests.logic.truth_table import TruthTable
@@ -43,7 +44,7 @@ def test_each_rewrite_keeps_the_meaning_of_every_small_formula() -> None:
                 assert_sound(rewrite, formula, SMALL_TABLE)
 
 
-@settings(max_examples=500)
+@times(166)
 @given(formulas(("a", "b", "c"), 12))
 def test_each_rewrite_keeps_the_meaning_and_never_lengthens(formula: Formula) -> None:
     for node in formula.walk():
@@ -67,7 +68,7 @@ def test_simplify_keeps_the_meaning_of_every_small_formula() -> None:
         assert simplify(simpler) is simpler
 
 
-@settings(max_examples=500)
+@times(166)
 @given(formulas(("a", "b", "c"), 20))
 def test_simplify_keeps_the_meaning_and_never_lengthens(formula: Formula) -> None:
     simpler = simplify(formula)

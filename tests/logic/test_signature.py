@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from hypothesis import given, settings
+from hypothesis import given
 
+from tests.fuzzing import times
 from tests.logic.small_formulas import formulas_up_to
 from tests.logic.strategies import formulas
 from tests.logic.truth_table import TruthTable
@@ -15,7 +16,7 @@ from tltlc.logic.signature import signature
 TABLE = TruthTable("ab", 3)
 
 
-@settings(max_examples=300)
+@times(100)
 @given(formulas(max_leaves=12))
 def test_a_signature_is_the_truth_on_the_sampled_traces(formula: Formula) -> None:
     atoms = {name: signature(f.atom(name)) for name in "abc"}

@@ -15,12 +15,13 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.automaton import letters
 from tests.backends.strategies import HOSTILE, hostile_automata
 from tests.fixtures import cover_and_hide
+from tests.fuzzing import times
 from tests.logic.strategies import formulas
 from tests.monitor.strategies import PARAMS, SIGNALS, atom_traces, automata, expressions, numbers
 from tltlc.automaton.finite.build import build, spec_from_formula
@@ -69,7 +70,7 @@ def notices(monitor: Monitor) -> list[str]:
 # --- equality -------------------------------------------------------------------------------------
 
 
-@settings(max_examples=150)
+@times(60)
 @given(st.data(), automata())
 def test_steps_agree_with_the_monitor_on_random_automata(data: st.DataObject, fspa: Fspa) -> None:
     generated, monitor = module_of(fspa).Monitor(), Monitor(fspa)
@@ -79,7 +80,7 @@ def test_steps_agree_with_the_monitor_on_random_automata(data: st.DataObject, fs
         assert outcome(generated.step, sample) == outcome(monitor.step, sample)
 
 
-@settings(max_examples=150)
+@times(60)
 @given(st.data(), formulas(), st.sampled_from([(), (("a", "b"),), (("a", "b"), ("b", "c", "d"))]))
 def test_oracle_automaton_monitor_and_generated_monitor_agree(
     data: st.DataObject, formula: f.Formula, exclusive: tuple[tuple[str, ...], ...]
@@ -215,6 +216,7 @@ def test_deep_arithmetic_agrees_with_the_monitor(depth: int) -> None:
 # --- names and texts ------------------------------------------------------------------------------
 
 
+@times(40)
 @given(hostile_automata())
 def test_hostile_texts_are_no_code(fspa: Fspa) -> None:
     module = module_of(fspa)

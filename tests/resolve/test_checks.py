@@ -107,7 +107,9 @@ def chain(count: int) -> str:
     ("body", "expected_codes", "reason"),
     [
         (nested(8), ["TLT0503"], "the check takes too many steps: 600,000 are allowed"),
-        (nested(16), ["TLT0503"], "the check takes too many steps: 600,000 are allowed"),
+        pytest.param(
+            nested(16), ["TLT0503"], "the check takes too many steps: 600,000 are allowed", marks=pytest.mark.slow
+        ),
         (nested(22), ["TLT0503"], "the check takes too many steps: 600,000 are allowed"),
         (nested(40), ["TLT0503"], "more than 24 cases of its `when` may meet"),
         (chain(16), ["TLT0402"], None),

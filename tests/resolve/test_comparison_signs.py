@@ -8,9 +8,10 @@ from fractions import Fraction
 from math import inf, nextafter
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.fuzzing import times
 from tests.resolve.helpers import codes, only_spec, resolve_text, robustness_of
 from tltlc.expression.evaluate import evaluate
 from tltlc.expression.python import compile_expressions
@@ -42,7 +43,7 @@ def holds(expression: Expression, x: float, y: float = 0.0) -> bool:
     return result > 0.0
 
 
-@settings(max_examples=1000, deadline=None)
+@times(250)
 @given(THREE, FINITE)
 def test_a_threshold_agrees_with_the_exact_comparison(ends: Sequence[float], x: float) -> None:
     low, threshold, high = ends
@@ -54,7 +55,7 @@ def test_a_threshold_agrees_with_the_exact_comparison(ends: Sequence[float], x: 
             assert holds(robustness(fixed, side), number) == (Fraction(number) < Fraction(threshold))
 
 
-@settings(max_examples=1000, deadline=None)
+@times(250)
 @given(THREE, THREE, FINITE, FINITE)
 def test_two_sides_agree_with_the_exact_comparison(
     of_x: Sequence[float], of_y: Sequence[float], x: float, y: float

@@ -6,10 +6,11 @@ import random
 import re
 from pathlib import Path
 
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.calls import calls
+from tests.fuzzing import times
 from tltlc.core.source import SourceFile
 from tltlc.grammar.parser import parse
 from tltlc.resolve.resolution import resolve
@@ -42,7 +43,7 @@ PIECES = [
 ]
 
 
-@settings(max_examples=150, deadline=None)
+@times(60)
 @given(number=st.integers(0, len(TEXTS) - 1), seed=st.integers(0, 10_000), edits=st.integers(1, 6))
 def test_mutated_programs_raise_no_exception(number: int, seed: int, edits: int) -> None:
     tokens = TOKEN.findall(TEXTS[number])
@@ -75,4 +76,4 @@ def test_suggestions_for_misspelt_names_take_linear_work() -> None:
         assert "did you mean `player_near_" in diagnostics[0].labels[0].message
 
     # If each name were compared with all others, twice as many names would take four times the work.
-    assert calls(lambda: resolve_misspelt_names(1000)) < 3 * calls(lambda: resolve_misspelt_names(500))
+    assert calls(lambda: resolve_misspelt_names(400)) < 3 * calls(lambda: resolve_misspelt_names(200))

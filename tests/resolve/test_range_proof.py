@@ -7,9 +7,10 @@ import random
 from collections.abc import Iterator
 
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.fuzzing import times
 from tltlc.expression.evaluate import evaluate
 from tltlc.expression.tree import Condition, Const, Expression, Op, ParamValue, SignalValue, When
 from tltlc.resolve import spec
@@ -223,7 +224,7 @@ def samples(seed: int, count: int) -> Iterator[dict[str, float]]:
         }
 
 
-@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@times(60)
 @given(EXPRESSIONS, st.sampled_from([(-1.0, 1.0), (0.0, 1.0), (-0.5, 3.0)]), st.integers(0, 10**6))
 def test_proved_ranges_hold_and_wrong_ones_fail_at_the_witness(
     expression: Expression, declared: tuple[float, float], seed: int
@@ -242,7 +243,7 @@ def test_proved_ranges_hold_and_wrong_ones_fail_at_the_witness(
             assert low - 1e-8 <= value <= high + 1e-8
 
 
-@settings(max_examples=100, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@times(40)
 @given(LEAVES, EXPRESSIONS, EXPRESSIONS, st.sampled_from([X, H]), st.integers(0, 10**6))
 def test_values_agree_across_borders_unless_a_jump_is_found(
     at: Expression, inside: Expression, outside: Expression, variable: SignalValue, seed: int

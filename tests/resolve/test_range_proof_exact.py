@@ -5,9 +5,10 @@ from __future__ import annotations
 import random
 
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.fuzzing import times
 from tests.resolve.test_range_proof import CLOSE, FAR, D, H, X, Y, near, op, value_at
 from tltlc.expression.tree import Const, Expression, ParamValue, SignalValue
 from tltlc.resolve.range_proof.cases import Constraint, cases
@@ -96,7 +97,7 @@ RATIONAL = st.recursive(
 )
 
 
-@settings(max_examples=100, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@times(40)
 @given(RATIONAL, st.one_of(st.none(), RATIONAL), st.integers(-4, 4), st.integers(0, 4), st.integers(0, 10**6))
 def test_a_proof_holds_at_every_sample(
     value: Expression, limit: Expression | None, low: int, width: int, seed: int

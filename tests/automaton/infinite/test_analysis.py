@@ -7,9 +7,10 @@ from __future__ import annotations
 
 from itertools import combinations
 
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.fuzzing import times
 from tltlc.automaton.infinite.analysis import Analysis
 from tltlc.automaton.infinite.cycles import Edge
 from tltlc.automaton.work import Work
@@ -58,7 +59,7 @@ def endpoints(sets: list[tuple[Edge, ...]]) -> set[int]:
     return {state for edges in sets for source, target, _ in edges for state in (source, target)}
 
 
-@settings(max_examples=200, deadline=None)
+@times(80)
 @given(graphs())
 def test_goals_verdicts_and_judge_match_their_definitions(graph: tuple[int, list[Edge]]) -> None:
     states, edges = graph

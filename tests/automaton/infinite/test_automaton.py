@@ -206,7 +206,7 @@ for text in ["F G(a | X X b) | F G(c | X X d)", "(G F a -> G F b) & G(c U d | X 
 """
     root = Path(__file__).parents[3]
     outputs = set()
-    for seed in ("0", "1", "2"):
+    for seed in ("0", "1"):
         environment = {**os.environ, "PYTHONHASHSEED": seed}
         result = subprocess.run(
             [sys.executable, "-c", program], env=environment, cwd=root, capture_output=True, check=True

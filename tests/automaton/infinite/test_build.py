@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from tests.automaton.infinite.runs import accepts, compiled, lassos
 from tests.automaton.letters import letters, named
+from tests.fuzzing import times
 from tests.logic.strategies import formulas
 from tests.reference_formulas import read_formula
 from tltlc import compile_text
@@ -60,7 +61,7 @@ def test_a_larger_budget_allows_larger_components(monkeypatch: pytest.MonkeyPatc
 # --- the language ---------------------------------------------------------------------------------
 
 
-@settings(max_examples=100, deadline=None)
+@times(40)
 @given(SMALL, GROUPS)
 def test_accepts_the_lassos_on_which_the_formula_holds(formula: Formula, groups: tuple[tuple[str, ...], ...]) -> None:
     fspa = compiled(formula, *groups)

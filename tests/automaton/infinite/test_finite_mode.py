@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from hypothesis import given, reject, settings
+from hypothesis import given, reject
 from hypothesis import strategies as st
 
 from tests.automaton.infinite.lassos import ABC, Lasso, accepts, lassos
 from tests.automaton.letters import step
+from tests.fuzzing import times
 from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
 from tltlc.automaton.infinite.construct import rabin
@@ -37,13 +38,13 @@ WORDS = st.lists(lassos(), min_size=6, max_size=6)
 
 
 @given(CO_SAFETY, WORDS)
-@settings(max_examples=150, deadline=None)
+@times(60)
 def test_a_co_safety_formula_holds_where_a_prefix_satisfies_it(formula: Formula, words: list[Lasso]) -> None:
     _agree(formula, words, "satisfied", if_met=True)
 
 
 @given(SAFETY, WORDS)
-@settings(max_examples=150, deadline=None)
+@times(60)
 def test_a_safety_formula_holds_where_no_prefix_violates_it(formula: Formula, words: list[Lasso]) -> None:
     _agree(formula, words, "violated", if_met=False)
 
@@ -75,7 +76,7 @@ def _meets(fspa: Fspa, word: Lasso, verdict: str) -> bool:
 
 
 @given(CO_SAFETY, lassos())
-@settings(max_examples=200, deadline=None)
+@times(80)
 def test_a_co_safety_formula_holds_on_a_lasso_if_it_holds_on_a_long_prefix(formula: Formula, word: Lasso) -> None:
     prefix, cycle = word
     rounds = 1 + sum(1 for node in formula.walk() if node.is_temporal)

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 
 from tests.automaton.infinite.lassos import Lasso, Sample, lasso, lassos
+from tests.fuzzing import times
 from tests.logic.strategies import formulas
 from tests.reference_formulas import read_formula
 from tltlc.automaton.infinite.lasso import holds_on_lasso
@@ -69,7 +70,7 @@ def test_an_empty_cycle_is_an_error() -> None:
 
 
 @given(formulas(max_leaves=6), lassos())
-@settings(max_examples=400, deadline=None)
+@times(133)
 def test_agrees_with_the_definitions_on_the_unrolled_trace(formula: Formula, word: Lasso) -> None:
     assert holds_on_lasso(formula, *word) == _holds(formula, word, 0, {})
 
