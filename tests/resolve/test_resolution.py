@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tests.resolve.helpers import codes, formula, only_spec, resolve_text, valid_program
-from tltlc.resolve.spec import Expect, Signal, RepeatedSample
+from tltlc.resolve.spec import Expect, RepeatedSample, Signal
 
 COVER_AND_HIDE = """
 import stealth

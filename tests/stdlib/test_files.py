@@ -16,7 +16,7 @@ from tltlc.expression.evaluate import evaluate
 from tltlc.grammar.parser import parse
 from tltlc.grammar.tree import PredicateDecl, SignalDecl
 from tltlc.logic.oracle import holds
-from tltlc.resolve.spec import Expect, ResolvedFile, Spec, RepeatedSample
+from tltlc.resolve.spec import Expect, RepeatedSample, ResolvedFile, Spec
 
 ROOT = Path(__file__).parents[2]
 LIBRARIES = sorted(path for path in (ROOT / "stdlib_predicates").glob("*.tltl") if "_tests" not in path.name)

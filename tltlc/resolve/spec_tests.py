@@ -11,7 +11,7 @@ from tltlc.grammar.typos import likely_name
 from tltlc.grammar.walk import conjuncts
 from tltlc.resolve.formulas import formula
 from tltlc.resolve.problem import ResolutionError, problem
-from tltlc.resolve.spec import Expect, Spec, Test, RepeatedSample
+from tltlc.resolve.spec import Expect, RepeatedSample, Spec, Test
 from tltlc.resolve.values import Env
 
 
