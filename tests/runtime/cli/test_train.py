@@ -11,6 +11,7 @@ import signal
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from multiprocessing import active_children
 from pathlib import Path
 
@@ -19,6 +20,7 @@ from tensorboard.backend.event_processing.event_accumulator import EventAccumula
 
 from tests.docs.blocks import DOCS
 from tests.interfaces.cli.conftest import EXAMPLE, Outcome, tltlc  # noqa: F401
+from tests.runtime.cli.signals import signal_at_call, with_signals  # noqa: F401
 from tests.runtime.training.test_settings import GOLDEN
 from tests.waiting import HANG_S
 from tltl_runtime.policies.file import read_policy
@@ -56,6 +58,9 @@ steps = 128
 
 SOON = "import stealth\nspec soon { level cover_and_hide\n limit 8 steps\n keep alive }\n"
 """A spec that any player meets after eight steps."""
+
+END = "\0"
+"""What a test writes after the output of a command; a terminal may stay open in a process that the command started."""
 
 
 @pytest.fixture
@@ -401,20 +406,50 @@ def test_the_effective_settings_are_printed(tltlc: TltlcFunction, here: Path) ->
     assert len(result.out.splitlines()) == len(default_text().splitlines())
 
 
-@pytest.mark.parametrize(("name", "status"), [("SIGINT", 130), ("SIGTERM", 143)])
-def test_a_training_ended_by_a_signal_resumes(tltlc: TltlcFunction, here: Path, name: str, status: int) -> None:  # noqa: F811
+SIGNALS = pytest.mark.parametrize(("name", "status"), [("SIGINT", 130), ("SIGTERM", 143)])
+
+
+@SIGNALS
+def test_a_training_ended_by_a_signal_resumes(
+    with_signals: TltlcFunction,  # noqa: F811
+    tltlc: TltlcFunction,  # noqa: F811
+    here: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    name: str,
+    status: int,
+) -> None:
+    with monkeypatch.context() as patch:
+        # An iteration steps 16 times; the signal arrives in the middle of the second one.
+        signal_at_call(patch, Runner, "_step", getattr(signal, name), call=16 + 8)
+        stopped = with_signals(*_arguments("--steps", "100000000"))
+    assert stopped.err.splitlines()[2].startswith("iteration 1: 64 steps in "), stopped.err
+    _check_stopped(stopped.status, status, stopped.err)
+    _check_resumed(tltlc, here / "run", done=1)
+
+
+@pytest.mark.slow
+@SIGNALS
+def test_a_process_that_trains_ends_by_a_signal(tltlc: TltlcFunction, here: Path, name: str, status: int) -> None:  # noqa: F811
     with _training(here, "--steps", "100000000") as process:
         assert process.stderr is not None
         first = [process.stderr.readline() for _ in range(3)][-1]
         assert first.startswith("iteration 1: 64 steps in "), first + process.stderr.read()
         process.send_signal(getattr(signal, name))
         _, err = process.communicate(timeout=HANG_S)
-    assert process.returncode == status
+    _check_stopped(process.returncode, status, err)
+    _check_resumed(tltlc, here / "run", done=len(read_metrics(here / "run" / METRICS)))
+
+
+def _check_stopped(status: int, expected: int, err: str) -> None:
+    assert status == expected
     assert err.splitlines()[-1] == "stopped; to go on: tltlc train --resume run"
-    done = len(read_metrics(here / "run" / METRICS))
+
+
+def _check_resumed(tltlc: TltlcFunction, run: Path, done: int) -> None:  # noqa: F811
+    """Resume a training for one iteration more than it has done."""
     resumed = tltlc("train", "--resume", "run", "--steps", str(64 * (done + 1)))
     assert resumed.status == 1, resumed.err
-    assert [line["iteration"] for line in read_metrics(here / "run" / METRICS)] == list(range(1, done + 2))
+    assert [line["iteration"] for line in read_metrics(run / METRICS)] == list(range(1, done + 2))
 
 
 def test_a_killed_worker_is_reported(
@@ -439,13 +474,21 @@ def test_a_killed_worker_is_reported(
     assert (here / "run" / "checkpoint.pt").is_file()
 
 
-def test_a_terminal_shows_the_live_display(here: Path) -> None:
+def test_a_terminal_shows_the_live_display(here: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for name, value in {"TERM": "xterm", "COLUMNS": "110", "LINES": "40"}.items():
+        monkeypatch.setenv(name, value)
     ours, theirs = pty.openpty()
-    environment = {**os.environ, "TERM": "xterm", "COLUMNS": "110", "LINES": "40"}
-    with subprocess.Popen(_command("--steps", "128"), cwd=here, stderr=theirs, env=environment) as process:
-        os.close(theirs)
-        shown = re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", b"".join(_output(ours)).decode())
-    assert process.returncode == 1
+    with os.fdopen(theirs, "w", encoding="utf-8") as terminal, ThreadPoolExecutor(1) as reading:
+        output = reading.submit(lambda: b"".join(_output(ours)))
+        with monkeypatch.context() as patch, pytest.raises(SystemExit) as ended:
+            patch.setattr(sys, "stderr", terminal)
+            try:
+                main(_arguments("--steps", "128"))
+            finally:
+                print(END, file=terminal, flush=True)
+    os.close(ours)
+    shown = re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", output.result().decode())
+    assert ended.value.code == 1
     assert "playing the first steps" in shown
     last = shown[shown.rindex("cover_and_hide on cover_and_hide v0, seed 0") :]
     for text in ("spec met", "met in a row", "of 2, then the policy is confirmed", "state 0", "Reach near(s1)"):
@@ -465,21 +508,17 @@ def test_the_page_lists_the_keys_of_the_record() -> None:
     assert tuple(dict.fromkeys(re.findall(r"`(\w+)`", search))) == SearchProgress.__match_args__
 
 
-def _command(*options: str) -> list[str]:
-    arguments = ["train", str(EXAMPLE), "--config", "small.toml", "--out", "run", *options]
-    return [sys.executable, "-m", "tltlc", *arguments]
+def _arguments(*options: str) -> list[str]:
+    return ["train", str(EXAMPLE), "--config", "small.toml", "--out", "run", *options]
 
 
 def _training(folder: Path, *options: str) -> subprocess.Popen[str]:
-    return subprocess.Popen(_command(*options), cwd=folder, stderr=subprocess.PIPE, text=True)
+    command = [sys.executable, "-m", "tltlc", *_arguments(*options)]
+    return subprocess.Popen(command, cwd=folder, stderr=subprocess.PIPE, text=True)
 
 
 def _output(terminal: int) -> Iterator[bytes]:
-    while True:
-        try:
-            data = os.read(terminal, 65536)
-        except OSError:
-            return
-        if not data:
-            return
+    data = b""
+    while END.encode() not in data:
+        data = os.read(terminal, 65536)
         yield data
