@@ -1,4 +1,4 @@
-"""Run a command line that handles signals in this process, and send it a signal at a chosen moment."""
+"""Run a command line that handles signals in this process, and interrupt it at a chosen moment."""
 
 from __future__ import annotations
 
@@ -28,6 +28,23 @@ def with_signals(tltlc: Run) -> Run:  # noqa: F811
         finally:
             for number, handler in handlers.items():
                 signal.signal(number, handler)
+
+    return run
+
+
+@pytest.fixture
+def interrupted(tltlc: Run, monkeypatch: pytest.MonkeyPatch) -> Run:  # noqa: F811
+    """A function that runs ``tltlc train`` and interrupts it before the environments of the training start."""
+
+    def stop(_: object) -> None:
+        raise KeyboardInterrupt
+
+    def run(*arguments: str | Path) -> Outcome:
+        with monkeypatch.context() as patch:
+            patch.setattr("tltl_runtime.training.run.train.make_environments", stop)
+            outcome = tltlc("train", *arguments)
+        assert outcome.status == 130, outcome.err
+        return outcome
 
     return run
 
