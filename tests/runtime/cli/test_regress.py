@@ -266,6 +266,9 @@ def test_changed_files_that_are_not_named_give_a_warning(tltlc: Run, game: Path)
     assert f"{warning}room:v0, room:v1" in result.err.splitlines()
     result = tltlc("regress", "game.toml", *ONE, "--changed", "README.md")
     assert f"{warning}room:v0, room:v1, hopeless" in result.err.splitlines() and result.status == 0
+    # One case is enough.
+    text = Path("game.toml").read_text(encoding="utf-8")
+    Path("game.toml").write_text("[[case]]".join(text.split("[[case]]")[:2]), encoding="utf-8")
     assert "warning" not in tltlc("regress", "game.toml", *ONE, "--changed", "room").err
     # Without a baseline, changes are unknown.
     Path("game.baseline.json").unlink()
