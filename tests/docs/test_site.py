@@ -16,6 +16,7 @@ import pytest
 
 from tests.docs.blocks import DOCS, ROOT
 from tests.runtime.regression.page import chromium
+from tests.shared import made_once
 from tests.waiting import HANG_S
 from tltlc.diagnostics.codes import codes, title
 from tltlc.interfaces.cli.command_line import BUILT_IN
@@ -57,7 +58,10 @@ class ParsedPage(HTMLParser):
 @pytest.fixture(scope="module")
 def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The site, built with warnings as errors."""
-    folder = tmp_path_factory.mktemp("site")
+    return made_once(tmp_path_factory, "site", _build)
+
+
+def _build(folder: Path) -> None:
     completed = subprocess.run(
         [sys.executable, "-m", "mkdocs", "build", "--strict", "--site-dir", folder],
         cwd=ROOT,
@@ -72,7 +76,6 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
         check=False,
     )
     assert completed.returncode == 0, completed.stderr
-    return folder
 
 
 @pytest.fixture(scope="module")

@@ -11,10 +11,12 @@ from pathlib import Path
 import pytest
 
 from tests.interfaces.cli.conftest import Outcome, tltlc  # noqa: F401
+from tests.runtime.cli.signals import signal_at_call, with_signals  # noqa: F401
 from tests.runtime.regression.game import SUITE, edit
 from tests.runtime.regression.recorded_game import _game, _recorded  # noqa: F401
 from tests.waiting import HANG_S
 from tltl_runtime.cli.baseline import _advice
+from tltl_runtime.evaluation.player import Player
 from tltl_runtime.regression.suite.suite import Case, Thresholds
 from tltl_runtime.regression.verdict.baseline import read_baseline
 from tltl_runtime.support.source_hash import sources_hash
@@ -62,14 +64,17 @@ def test_unchanged_references_are_kept_and_changes_are_reported(tltlc: Run, game
     ]
     text = Path("game.baseline.json").read_text(encoding="utf-8")
     Path("game.baseline.json").write_text(text.replace(sources_hash(), "0" * 64), encoding="utf-8")
+    edit("game.toml", "episodes = 50", "episodes = 25")
     assert "as before" not in tltlc("baseline", "game.toml", *ONE).out, "other code has played them"
     edit("room.toml", "8.0, 8.0", "8.0, 8.5")
     assert tltlc("baseline", "game.toml", *ONE).out.splitlines() == [
-        "room:v0: easy met in 50 of 50 episodes; before: 50 of 50",
+        "room:v0: easy met in 25 of 25 episodes; before: 25 of 25",
         "room:v0: soon met in 0 of 25 episodes; before: 0 of 25",
     ]
+    one_case = Path("game.toml").read_text(encoding="utf-8").partition('[[case]]\nlevel = "room.toml"\nvariant')[0]
+    Path("game.toml").write_text(one_case, encoding="utf-8")
     result = tltlc("baseline", "game.toml", "--fresh", *ONE)
-    assert "room:v0: 50 of 50 episodes, 50 met the spec" in result.err.splitlines()
+    assert "room:v0: 25 of 25 episodes, 25 met the spec" in result.err.splitlines()
     assert "as before" not in result.out
     Path("game.baseline.json").write_text("{}", encoding="utf-8")
     result = tltlc("baseline", "game.toml", *ONE)
@@ -95,16 +100,37 @@ def test_a_stopped_first_baseline_reports_its_partial_file(
     assert Path("game.baseline.json.partial").exists()
 
 
-def test_a_stopped_baseline_leaves_the_old_one(game: Path) -> None:
-    before = Path("game.baseline.json").read_bytes()
-    Path("game.toml").write_text(SUITE.replace("episodes = 50", "episodes = 10000"), encoding="utf-8")
+def test_a_stopped_baseline_leaves_the_old_one(
+    with_signals: Run,  # noqa: F811
+    game: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    before = _with_many_episodes()
+    signal_at_call(monkeypatch, Player, "play", signal.SIGINT)
+    result = with_signals("baseline", "game.toml", *ONE)
+    _check_old_baseline(before, result.status, result.err)
+
+
+@pytest.mark.slow
+def test_a_process_that_is_stopped_leaves_the_old_baseline(game: Path) -> None:
+    before = _with_many_episodes()
     command = [sys.executable, "-m", "tltlc", "baseline", "game.toml", *ONE]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as playing:
         assert playing.stderr is not None
         playing.stderr.readline()
         playing.send_signal(signal.SIGINT)
         _, err = playing.communicate(timeout=HANG_S)
-    assert playing.returncode == 130
+    _check_old_baseline(before, playing.returncode, err)
+
+
+def _with_many_episodes() -> bytes:
+    """Give the suite more episodes than a test can wait for; return its baseline."""
+    Path("game.toml").write_text(SUITE.replace("episodes = 50", "episodes = 10000"), encoding="utf-8")
+    return Path("game.baseline.json").read_bytes()
+
+
+def _check_old_baseline(before: bytes, status: int, err: str) -> None:
+    assert status == 130
     assert "stopped: `game.baseline.json` is as it was; the same command goes on with what is over" in err
     assert Path("game.baseline.json").read_bytes() == before
     assert sorted(path.name for path in Path().glob(".*")) == []

@@ -12,7 +12,9 @@ import pytest
 from PIL import Image
 
 from tests.interfaces.cli.conftest import Outcome, tltlc  # noqa: F401
+from tests.runtime.cli.signals import signal_at_call, with_signals  # noqa: F401
 from tests.waiting import HANG_S
+from tltl_runtime.stealth.episode_recorder import RecordEpisode
 from tltl_runtime.stealth.recordings.check import check
 from tltl_runtime.stealth.recordings.file import read_episode
 
@@ -33,20 +35,23 @@ def test_each_played_episode_is_recorded(tltlc, tmp_path: Path) -> None:  # type
 
 
 def test_equal_episodes_are_rewritten_and_other_files_are_kept(tltlc, tmp_path: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    spec, folder = _soon(tmp_path), tmp_path / "runs"
     for options in ([], [], ["--careless"]):
-        tltlc("demonstrate", "cover_and_hide", "-o", str(tmp_path), *options)
+        tltlc("demonstrate", "cover_and_hide", "--spec", spec, "-o", str(folder), *options)
     names = ["cover_and_hide-v0-0", "cover_and_hide-v0-0-2"]
-    assert [read_episode(tmp_path / f"{name}.episode.npz").player for name in names] == ["expert", "careless expert"]
-    assert sorted(path.name for path in tmp_path.glob("*.png")) == sorted(f"{name}.png" for name in names)
+    assert [read_episode(folder / f"{name}.episode.npz").player for name in names] == ["expert", "careless expert"]
+    assert sorted(path.name for path in folder.glob("*.png")) == sorted(f"{name}.png" for name in names)
 
 
 def test_other_pictures_are_not_overwritten(tltlc, tmp_path: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
-    other_picture = tmp_path / "cover_and_hide-v0-0.png"
+    folder = tmp_path / "runs"
+    folder.mkdir()
+    other_picture = folder / "cover_and_hide-v0-0.png"
     other_picture.write_text("mine")
-    tltlc("demonstrate", "cover_and_hide", "-o", str(tmp_path))
+    tltlc("demonstrate", "cover_and_hide", "--spec", _soon(tmp_path), "-o", str(folder))
     assert other_picture.read_text() == "mine"
     stem = "cover_and_hide-v0-0-2"
-    assert {path.name for path in tmp_path.iterdir()} == {other_picture.name, f"{stem}.png", f"{stem}.episode.npz"}
+    assert {path.name for path in folder.iterdir()} == {other_picture.name, f"{stem}.png", f"{stem}.episode.npz"}
 
 
 def test_a_failed_episode_gives_status_1(tltlc, tmp_path: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
@@ -60,16 +65,42 @@ def test_a_failed_episode_gives_status_1(tltlc, tmp_path: Path) -> None:  # type
 
 
 def test_a_film_is_written_with_the_episode(tltlc, tmp_path: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
-    (tmp_path / "soon.tltl").write_text("import stealth\nspec soon { limit 3 steps\n keep alive }")
-    spec = f"{tmp_path / 'soon.tltl'}"
-    result: Outcome = tltlc("demonstrate", "cover_and_hide", "--spec", spec, "-o", str(tmp_path), "--film", "gif")
+    result: Outcome = tltlc(
+        "demonstrate", "cover_and_hide", "--spec", _soon(tmp_path), "-o", str(tmp_path), "--film", "gif"
+    )
     assert result.status == 0, result.err
     with Image.open(tmp_path / "cover_and_hide-v0-0.gif") as film:
         assert (film.size, film.n_frames) == ((640, 480), 4)
 
 
-@pytest.mark.parametrize(("name", "status"), [("SIGTERM", 143), ("SIGINT", 130)])
-def test_a_signal_ends_it_with_the_number_of_recordings(tmp_path: Path, name: str, status: int) -> None:
+def _soon(folder: Path) -> str:
+    """Write a spec that is met after three steps; return its path."""
+    (folder / "soon.tltl").write_text("import stealth\nspec soon { limit 3 steps\n keep alive }")
+    return str(folder / "soon.tltl")
+
+
+SIGNALS = pytest.mark.parametrize(("name", "status"), [("SIGTERM", 143), ("SIGINT", 130)])
+
+
+@SIGNALS
+def test_a_signal_ends_it_with_the_number_of_recordings(
+    with_signals,  # type: ignore[no-untyped-def] # noqa: F811
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    name: str,
+    status: int,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    # The signal arrives in the second step of the second episode.
+    signal_at_call(monkeypatch, RecordEpisode, "step", getattr(signal, name), call=3 + 2)
+    result: Outcome = with_signals("demonstrate", "cover_and_hide", "--spec", _soon(tmp_path), "--episodes", "900")
+    assert (result.status, result.err) == (status, "stopped: 1 of 900 episodes were recorded\n")
+    assert [path.name for path in (tmp_path / "demonstrations").glob("*.npz")] == ["cover_and_hide-v0-0.episode.npz"]
+
+
+@pytest.mark.slow
+@SIGNALS
+def test_a_signal_ends_a_process_with_the_number_of_recordings(tmp_path: Path, name: str, status: int) -> None:
     command = [sys.executable, "-m", "tltlc", "demonstrate", "cover_and_hide", "--careless", "--episodes", "900"]
     with subprocess.Popen(
         command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True

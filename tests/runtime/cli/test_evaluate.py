@@ -150,7 +150,8 @@ def test_recordings_and_pictures_are_written(
     kept = ["cover_and_hide-v0-5.png", "cover_and_hide-v1-5-0-sampled.png", "notes.txt", "ways-of-mine.png"]
     for name in kept:
         (folder / name).touch()
-    again = tltlc(*command, "--record", "none")
+    fewer = ("--record", "none", "--episodes", "1")
+    again = tltlc(*command, *fewer)
     assert "removed" not in again.err
     assert sorted(path.name for path in folder.iterdir()) == sorted([*kept, *names])
     pipe = "cover_and_hide-v0-5-9-sampled.episode.npz"
@@ -159,7 +160,7 @@ def test_recordings_and_pictures_are_written(
     kept += [pipe, f"a_{pipe}"]
     policy_of_mine, other = untrained(), tmp_path / "other.safetensors"
     write_policy(other, Policy(replace(policy_of_mine.card, training={"seed": 9}), policy_of_mine.weights()))
-    again = tltlc("evaluate", other, *command[2:], "--record", "none")
+    again = tltlc("evaluate", other, *command[2:], *fewer)
     assert sorted(path.name for path in folder.iterdir()) == sorted([*kept, *names[-3:]])
     assert again.err.splitlines()[-2:] == [
         f"removed from {folder}, of an earlier evaluation: cover_and_hide-v0-5-0-arg-max.episode.npz, "
@@ -208,15 +209,17 @@ def test_the_json_report_is_written_into_a_pipe(tltlc: Run, policy: Path) -> Non
 
 
 def test_a_recording_names_its_player_once(tltlc: Run, tmp_path: Path) -> None:  # noqa: F811
-    folder = tmp_path / "runs"
-    result = tltlc("evaluate", "cover_and_hide", "--episodes", "1", "--out", folder, "--record", "all")
+    folder, policy = tmp_path / "runs", tmp_path / "policy.safetensors"
+    # Its spec is named like its level.
+    write_policy(policy, untrained(SOON.replace("spec soon", "spec cover_and_hide")))
+    result = tltlc("evaluate", policy, "--episodes", "1", "--out", folder, "--record", "all")
     assert result.status == 0, result.err
     path = folder / "cover_and_hide-v0-0-0-sampled.episode.npz"
     episode, sha256 = read_episode(path), json.loads((folder / "evaluation.json").read_text())["policy"]["sha256"]
     assert episode.player == f"policy cover_and_hide {sha256[:8]}, sampled, episode 0"
     # Recordings of this policy stay, whatever the name of their level.
     write_episode(path, replace(episode, player=f"policy cover, and_hide {sha256[:8]}, sampled, episode 0"))
-    tltlc("evaluate", "cover_and_hide", "--episodes", "1", "--out", folder, "--record", "none")
+    tltlc("evaluate", policy, "--episodes", "1", "--out", folder, "--record", "none")
     assert path.exists()
 
 
@@ -312,7 +315,7 @@ def test_invalid_options_are_rejected(
 
 
 def test_a_level_uses_its_shipped_policy(tltlc: Run) -> None:  # noqa: F811
-    result = tltlc("evaluate", "--level", "cover_and_hide", "--episodes", "10", "--json", "-")
+    result = tltlc("evaluate", "--level", "cover_and_hide", "--episodes", "3", "--json", "-")
     report = json.loads(result.out)
     assert report["level_hash"] == report["policy"]["level_hash"]
     named = json.loads(tltlc("evaluate", "cover_and_hide:v1", "--episodes", "1", "--json", "-").out)

@@ -6,18 +6,21 @@ import os
 import signal
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from tests.interfaces.cli.conftest import Outcome, tltlc  # noqa: F401
 from tests.runtime.cli.watched import Watched
 from tests.runtime.stealth.xvfb import MISSING, keys, screen
 from tests.waiting import HANG_S
 from tltl_runtime.stealth.recordings.check import check, resimulate
 from tltl_runtime.stealth.recordings.episode import Episode
 from tltl_runtime.stealth.recordings.file import read_episode
+
+Run = Callable[..., Outcome]
 
 needs_screen = pytest.mark.skipif(bool(MISSING), reason=f"not installed: {', '.join(MISSING)}")
 
@@ -155,11 +158,15 @@ def test_without_a_screen_an_error_is_reported(tmp_path: Path, driver: str | Non
     assert not list(tmp_path.iterdir())
 
 
-def test_a_spec_that_the_level_cannot_supply_is_rejected(tmp_path: Path) -> None:
-    (tmp_path / "alien.tltl").write_text(
+def test_a_spec_that_the_level_cannot_supply_is_rejected(
+    tltlc: Run,  # noqa: F811
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("alien.tltl").write_text(
         "signal fuel: number in [0, 1]\npredicate full in [-1, 1] = fuel\nspec alien { keep full }\n", encoding="utf-8"
     )
-    command = [sys.executable, "-m", "tltlc", "play", "navigation", "--spec", "alien.tltl"]
-    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=HANG_S)
-    assert done.returncode == 1
-    assert "TLT0811" in done.stderr and "`fuel`" in done.stderr
+    result = tltlc("play", "navigation", "--spec", "alien.tltl")
+    assert result.status == 1
+    assert "TLT0811" in result.err and "`fuel`" in result.err

@@ -5,21 +5,25 @@ from __future__ import annotations
 import json
 import os
 import re
+import shutil
 import signal
 import subprocess
 import sys
 from collections.abc import Callable
+from itertools import count
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree as ET
 
 import pytest
 
 from tests import pipes
 from tests.interfaces.cli.conftest import Outcome, tltlc  # noqa: F401
-from tests.runtime.regression.game import SUITE, edit, write_game
-from tests.runtime.regression.recorded_game import _game  # noqa: F401
+from tests.runtime.regression.game import SUITE, edit
+from tests.runtime.regression.recorded_game import _game, recorded_game  # noqa: F401
 from tests.waiting import HANG_S
 from tltl_runtime.regression.suite.suite import read_suite
+from tltl_runtime.regression.verdict import suite_run
 from tltl_runtime.regression.verdict.suite_run import CASES, case_folder
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.interfaces.cli.main import main
@@ -29,17 +33,23 @@ NAMES = ["room:v0", "room:v1", "hopeless"]
 ONE = ("--workers", "1")
 
 
+REPORTS = {"--json": "report.json", "--junit": "report.xml", "--html": "report.html"}
+
+
 @pytest.fixture(name="recorded", scope="module")
 def _recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A game with its baseline and the results of a first run of its suite."""
+    """A game with its baseline and the results of a first run of its suite; the reports are in another folder."""
     folder = tmp_path_factory.mktemp("recorded") / "game"
-    write_game(folder)
+    shutil.copytree(recorded_game(tmp_path_factory), folder)
+    (folder / "regression").mkdir()
+    (folder / "run").rename(folder / "regression" / "game")
+    (folder.parent / "reports").mkdir()
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(folder)
-        for command, status in (("baseline", 0), ("regress", 1)):
-            with pytest.raises(SystemExit) as ended:
-                main([command, "game.toml", *ONE])
-            assert ended.value.code == status
+        reports = [word for option, name in REPORTS.items() for word in (option, f"../reports/{name}")]
+        with pytest.raises(SystemExit) as ended:
+            main(["regress", "game.toml", *reports, *ONE])
+        assert ended.value.code == 1
     return folder
 
 
@@ -73,8 +83,9 @@ def test_cached_cases_are_marked(tltlc: Run, game: Path) -> None:  # noqa: F811
         False
     ]
     assert result.err == "wrote regression/game/report.html: open it in a browser\n"
-    fresh = tltlc("regress", "game.toml", "--fresh", *ONE)
-    assert fresh.out == result.out.replace("  (as before)", "")
+    one_case = ("regress", "game.toml", "--changed", "soon", *ONE)
+    cached, fresh = tltlc(*one_case), tltlc(*one_case, "--fresh")
+    assert fresh.out == cached.out.replace("  (as before)", "") != cached.out
     assert "25 of at most 50" in fresh.err
 
 
@@ -141,11 +152,11 @@ def test_the_default_folder_depends_on_the_path_of_the_suite(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.chdir(game.parent)
-    result = tltlc("regress", "game/game.toml", "--changed", "soon", *ONE)
+    result = tltlc("regress", "game/game.toml", "--changed", "README.md", *ONE)
     assert result.err.splitlines()[-1] == "wrote regression/game/game/report.html: open it in a browser"
     (game.parent / "elsewhere").mkdir()
     monkeypatch.chdir(game.parent / "elsewhere")
-    result = tltlc("regress", str(game / "game.toml"), "--changed", "soon", *ONE)
+    result = tltlc("regress", str(game / "game.toml"), "--changed", "README.md", *ONE)
     assert result.err.splitlines()[-1] == "wrote regression/game/game/report.html: open it in a browser"
 
 
@@ -255,25 +266,27 @@ def test_changed_files_that_are_not_named_give_a_warning(tltlc: Run, game: Path)
     assert f"{warning}room:v0, room:v1" in result.err.splitlines()
     result = tltlc("regress", "game.toml", *ONE, "--changed", "README.md")
     assert f"{warning}room:v0, room:v1, hopeless" in result.err.splitlines() and result.status == 0
+    # One case is enough.
+    text = Path("game.toml").read_text(encoding="utf-8")
+    Path("game.toml").write_text("[[case]]".join(text.split("[[case]]")[:2]), encoding="utf-8")
     assert "warning" not in tltlc("regress", "game.toml", *ONE, "--changed", "room").err
     # Without a baseline, changes are unknown.
     Path("game.baseline.json").unlink()
     assert "warning" not in tltlc("regress", "game.toml", *ONE, "--changed", "README.md").err
 
 
-@pytest.mark.parametrize("option", ["--json", "--junit", "--html"])
-@pytest.mark.parametrize("place", ["-", "/dev/stdout"])
+@pytest.mark.parametrize(("option", "place"), [*((option, "-") for option in REPORTS), ("--json", "/dev/stdout")])
 def test_each_report_can_be_written_to_standard_output(
     tltlc: Run,  # noqa: F811
+    recorded: Path,
     game: Path,
     option: str,
     place: str,
 ) -> None:
     result = tltlc("regress", "game.toml", option, place, *ONE)
     assert "3 cases: 2 pass, 1 fail" in result.err and "3 cases" not in result.out.splitlines()
-    again = tltlc("regress", "game.toml", option, "report", *ONE)
-    assert result.out == Path("report").read_text(encoding="utf-8")
-    assert "3 cases: 2 pass, 1 fail" in again.out and not Path("-").exists()
+    assert result.out == (recorded.parent / "reports" / REPORTS[option]).read_text(encoding="utf-8")
+    assert not Path("-").exists()
 
 
 def test_only_one_report_goes_to_standard_output(tltlc: Run, game: Path) -> None:  # noqa: F811
@@ -298,8 +311,35 @@ def test_a_report_is_written_into_a_pipe(tltlc: Run, game: Path) -> None:  # noq
         assert json.load(pipe)["left_out"] == NAMES
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="pipes close otherwise")
-def test_a_closed_pipe_does_not_stop_the_run(game: Path) -> None:
+pipes_that_close = pytest.mark.skipif(sys.platform == "win32", reason="pipes close otherwise")
+
+
+@pipes_that_close
+def test_a_closed_pipe_does_not_stop_the_run(game: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    Path("regression/game/report.html").unlink()
+    read_end, write_end = os.pipe()
+    reader, judge, judged = os.fdopen(read_end, encoding="utf-8"), suite_run._judge, count(1)
+
+    def close_after_one_line(*arguments: Any, **options: Any) -> Any:
+        # Close the pipe between the first two cases, as `head -1` does.
+        if next(judged) == 2:
+            assert reader.readline().startswith("room:v0")
+            reader.close()
+        return judge(*arguments, **options)
+
+    monkeypatch.setattr(suite_run, "_judge", close_after_one_line)
+    with os.fdopen(write_end, "w", encoding="utf-8") as pipe, monkeypatch.context() as patch:
+        patch.setattr(sys, "stdout", pipe)
+        patch.setattr(sys, "stderr", pipe)
+        with pytest.raises(SystemExit) as ended:
+            main(["regress", "game.toml", "--junit", "report.xml", *ONE])
+    assert reader.closed
+    _check_whole_run(ended.value.code)
+
+
+@pytest.mark.slow
+@pipes_that_close
+def test_a_closed_pipe_does_not_stop_the_process(game: Path) -> None:
     words = [sys.executable, "-m", "tltlc", "regress", "game.toml", "--fresh", "--junit", "report.xml", *ONE]
     Path("regression/game/report.html").unlink()
     with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT) as running:
@@ -307,7 +347,11 @@ def test_a_closed_pipe_does_not_stop_the_run(game: Path) -> None:
         # Close the pipe after one line, as `head -1` does.
         assert running.stdout.readline().startswith(b"room:v0")
         running.stdout.close()
-    assert running.returncode == 1
+    _check_whole_run(running.returncode)
+
+
+def _check_whole_run(status: object) -> None:
+    assert status == 1
     assert [test.get("name") for test in ET.parse("report.xml").iter("testcase")] == NAMES
     assert Path("regression/game/report.html").is_file()
 
@@ -453,9 +497,11 @@ def test_the_expected_findings_of_the_shipped_suite_are_explained(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     note = "v1 and v2 of the shipped levels are changed on purpose: see the page"
-    assert note not in tltlc("regress", "game.toml", *ONE).out
+    assert note not in tltlc("regress", "game.toml", *ONE, "--changed", "soon").out
     monkeypatch.setattr("tltl_runtime.cli.support.regression_run.SHIPPED", Path("game.toml"))
-    assert note not in tltlc("regress", "game.toml", *ONE).out, "the finding is of a level as it was designed"
+    assert note not in tltlc("regress", "game.toml", *ONE, "--changed", "soon").out, (
+        "the finding is of a level as it was designed"
+    )
     edit("game.toml", 'name = "hopeless"', 'name = "hopeless"\nvariant = "v1"')
     assert tltlc("regress", "game.toml", *ONE).out.splitlines()[-2:] == ["3 cases: 2 pass, 1 fail", note]
     assert note in tltlc("regress", "game.toml", "--json", "-", *ONE).err

@@ -5,7 +5,6 @@ from __future__ import annotations
 import csv
 import json
 import shlex
-import subprocess
 import sys
 from io import BytesIO, StringIO
 from itertools import count
@@ -18,7 +17,6 @@ from PIL import Image
 
 import tltl_runtime.stealth.rendering.film as film
 from tests.interfaces.cli.conftest import ROOT, Outcome, tltlc  # noqa: F401
-from tests.waiting import HANG_S
 from tltl_runtime.cli.replay import _VIEWS
 from tltl_runtime.cli.support.notation import NOTATIONS
 from tltl_runtime.stealth.env import make_env
@@ -129,13 +127,11 @@ def test_the_option_offers_all_notations() -> None:
     assert set(get_args(Notation)) == set(NOTATIONS)
 
 
-def test_messages_are_json_with_format_json(recorded: Path) -> None:
+def test_messages_are_json_with_format_json(tltlc, recorded: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     Path("cut.episode.npz").write_bytes(Path(FILE).read_bytes()[:-9])
-    program = "import sys; from tltlc.interfaces.cli.main import main; main(sys.argv[1:])"
-    arguments = [sys.executable, "-c", program, "replay", "cut.episode.npz", "--format", "json"]
-    done = subprocess.run(arguments, capture_output=True, check=False, timeout=HANG_S)
-    assert done.returncode == 1
-    assert [diagnostic["code"] for diagnostic in json.loads(done.stderr)["diagnostics"]] == ["TLT0820"]
+    result: Outcome = tltlc("replay", "cut.episode.npz", "--format", "json")
+    assert (result.status, json.loads(result.out)) == (1, [])
+    assert [diagnostic["code"] for diagnostic in json.loads(result.err)["diagnostics"]] == ["TLT0820"]
 
 
 def test_a_plan_is_written(tltlc, recorded: Path, episode: Episode) -> None:  # type: ignore[no-untyped-def] # noqa: F811

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -16,28 +17,37 @@ import pytest
 from tests.interfaces.cli.conftest import tltlc  # noqa: F401
 from tests.runtime.cli.test_regress import ONE, Run
 from tests.runtime.evaluation.untrained import untrained
-from tests.runtime.regression.game import NEVER, edit, with_baseline, with_few_environments, write_game
+from tests.runtime.regression.game import NEVER, Played, edit, with_few_environments
 from tests.runtime.regression.handmade import summaries
-from tests.runtime.regression.recorded_game import _game  # noqa: F401
+from tests.runtime.regression.recorded_game import _game, recorded_game  # noqa: F401
 from tests.waiting import HANG_S
 from tltl_runtime.evaluation.figures import figures_of
 from tltl_runtime.policies.file import write_policy
 from tltl_runtime.regression.retrain.retraining_result import FinishedRetraining, RetrainingResult
+from tltl_runtime.regression.suite.suite import read_suite
+from tltl_runtime.regression.verdict.baseline import baseline_of, read_baseline
+from tltl_runtime.regression.verdict.baseline_run import record_and_write_baseline
+from tltl_runtime.regression.verdict.suite_run import regress
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.stealth.world.physics import WorldError
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
-RETRAIN = ("regress", "game.toml", "--retrain", "--minutes", "0.02", *ONE)
+RETRAIN = ("regress", "game.toml", "--retrain", "--minutes", "0.01", *ONE)
 FOLDER = "regression/game/retrained/hopeless"
 
 
 @pytest.fixture(name="recorded", scope="module")
 def _recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A game with its baseline; no player can meet the spec of one case."""
+    """A game with its baseline and the results of a first run of its suite; no player can meet the spec of one case."""
     folder = tmp_path_factory.mktemp("recorded") / "game"
-    write_game(folder)
+    suite = read_suite(shutil.copytree(recorded_game(tmp_path_factory), folder) / "game.toml")
+    (folder / "regression").mkdir()
+    (folder / "run").rename(folder / "regression" / "game")
     write_policy(folder / "soon.safetensors", untrained(NEVER, str(folder / "room.toml")))
-    with_baseline(folder / "game.toml")
+    older = read_baseline(suite.baseline)
+    recorded = record_and_write_baseline(suite, suite.baseline, 1, Played(), older)
+    assert len(list(recorded)) == 2
+    list(regress(suite, suite.cases, baseline_of(suite), folder / "regression" / "game", 1, Played()))
     return folder
 
 
@@ -46,7 +56,11 @@ def _few_environments(monkeypatch: pytest.MonkeyPatch) -> None:
     with_few_environments(monkeypatch)
 
 
-def test_retraining_reports_that_no_demonstration_was_found(tltlc: Run, game: Path) -> None:  # noqa: F811
+def test_retraining_reports_that_no_demonstration_was_found(
+    tltlc: Run,  # noqa: F811
+    game: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     result = tltlc(*RETRAIN, "--json", "report.json", "--junit", "report.xml")
     assert result.status == 1
     (sentence,) = (line for line in result.out.splitlines() if line.startswith("hopeless, trained anew"))
@@ -55,8 +69,8 @@ def test_retraining_reports_that_no_demonstration_was_found(tltlc: Run, game: Pa
     reports = "--json report.json --junit report.xml --workers 1"
     again = f"tltlc regress game.toml --out regression/game {reports} --retrain --minutes "
     (longer,) = (line for line in result.out.splitlines() if line.startswith(f"    to train longer: {again}"))
-    assert float(longer.removeprefix(f"    to train longer: {again}")) >= 0.04
-    assert f"hopeless: a training begins with its policy, for 0.02 minutes at the most, in {FOLDER}" in result.err
+    assert float(longer.removeprefix(f"    to train longer: {again}")) >= 0.02
+    assert f"hopeless: a training begins with its policy, for 0.01 minutes at the most, in {FOLDER}" in result.err
     assert "hopeless, trained anew: 25 of at most 50 episodes, 0 met the spec" in result.err
     report = json.loads(Path("report.json").read_text(encoding="utf-8"))
     assert report["complete"] is True and report["verdicts"] == {"pass": 2, "review": 0, "fail": 1}
@@ -82,7 +96,10 @@ def test_retraining_reports_that_no_demonstration_was_found(tltlc: Run, game: Pa
     learned = Path(FOLDER, "policy.safetensors").read_bytes()
     write_policy("soon.safetensors", untrained(NEVER, "room.toml", seed=7))
     assert tltlc("baseline", "game.toml", *ONE).status == 0
-    third = tltlc(*RETRAIN)
+    with monkeypatch.context() as patch:
+        # The rest is about what happens before the training.
+        patch.setattr("tltl_runtime.cli.support.retraining.train_with_display", lambda *_, **__: _worker_lost())
+        third = tltlc(*RETRAIN)
     assert (
         "begins with its policy, anew, since what is kept is of another level, policy, spec, seed or settings"
         in third.err
@@ -128,10 +145,10 @@ def _worker_lost(*_: object) -> RetrainingResult:
     raise TltlError([Diagnostic("TLT0850", "a worker was lost")])
 
 
-def _write_three_cases(monkeypatch: pytest.MonkeyPatch, *outcomes: Callable[..., RetrainingResult]) -> None:
-    """Write a suite of three failing cases, whose retraining takes no time and has these outcomes."""
+def _write_failing_cases(monkeypatch: pytest.MonkeyPatch, *outcomes: Callable[..., RetrainingResult]) -> None:
+    """Write a suite of a failing case for each outcome; retraining takes no time and has these outcomes."""
     head, *_, hopeless = Path("game.toml").read_text(encoding="utf-8").split("[[case]]")
-    cases = [f"[[case]]{hopeless.replace('hopeless', name)}" for name in ("edited", "left", "told")]
+    cases = [f"[[case]]{hopeless.replace('hopeless', name)}" for name in ("edited", "left", "told")[: len(outcomes)]]
     Path("game.toml").write_text(head + "".join(cases), encoding="utf-8")
     waiting = iter(outcomes)
     monkeypatch.setattr("tltl_runtime.cli.support.retraining._train", lambda *_: None)
@@ -143,7 +160,7 @@ def test_an_error_in_one_training_does_not_stop_the_others(
     game: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    _write_three_cases(monkeypatch, _level_edited, _left_the_level, _no_way)
+    _write_failing_cases(monkeypatch, _level_edited, _left_the_level, _no_way)
     result = tltlc(*RETRAIN, "--json", "report.json")
     assert result.status == 1
     lines = result.err.splitlines()
@@ -161,7 +178,7 @@ def test_a_lost_worker_ends_the_run(
     game: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    _write_three_cases(monkeypatch, _worker_lost, _no_way)
+    _write_failing_cases(monkeypatch, _worker_lost, _no_way)
     result = tltlc(*RETRAIN)
     assert "error[TLT0850]: a worker was lost" in result.err and "trained anew" not in result.out
 
@@ -171,12 +188,13 @@ def test_fresh_moves_older_trainings_aside(
     game: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    _write_three_cases(monkeypatch, _worker_lost)
-    for slug in ("edited", "told"):
+    _write_failing_cases(monkeypatch, _worker_lost, _no_way)
+    slugs = ("edited", "left")
+    for slug in slugs:
         _training(slug)
     result = tltlc(*RETRAIN, "--fresh")
     folder = "regression/game/retrained"
-    for slug in ("edited", "told"):
+    for slug in slugs:
         assert (
             f"{slug}: the training that was in {folder}/{slug} is now in {folder}/{slug}-2" in result.err.splitlines()
         )
@@ -225,5 +243,5 @@ def test_a_signal_ends_it_and_keeps_the_results(game: Path) -> None:
     assert (report["complete"], len(report["cases"]), report["cases"][2]["retrained"]) == (False, 3, None)
     # Use another process: this one is patched to few environments, and a training resumes only with its own settings.
     resumed = subprocess.run([*command, *RETRAIN], capture_output=True, text=True, timeout=HANG_S, check=False)
-    assert f"hopeless: a training goes on, for 0.02 minutes at the most, in {FOLDER}" in resumed.stderr
+    assert f"hopeless: a training goes on, for 0.01 minutes at the most, in {FOLDER}" in resumed.stderr
     assert "hopeless, trained anew: no way found" in resumed.stdout

@@ -23,10 +23,10 @@ ONE = ("--workers", "1")
 
 @pytest.fixture(autouse=True)
 def _small(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Restrict the table to one level and few episodes."""
+    """Restrict the table to one level and one episode in each cell."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(paper_table, "LEVELS", (LEVEL,))
-    monkeypatch.setattr(table_cells, "EPISODES", 2)
+    monkeypatch.setattr(table_cells, "EPISODES", 1)
 
 
 def models(monkeypatch: pytest.MonkeyPatch, *names: str) -> None:
@@ -54,12 +54,12 @@ def test_the_expert_and_the_shipped_policies_fill_the_table(tltlc: Run, monkeypa
     assert set(before) == {f"{LEVEL}-{variant}-{model}.json" for variant in VARIANTS for model in ("expert", "ours")}
 
     # A second call plays only the missing cell.
-    Path(f"table1/{LEVEL}-v1-expert.json").unlink()
+    Path(f"table1/{LEVEL}-v1-ours.json").unlink()
     Path("table1/table1.md").unlink()
     again = tltlc("table1", "--shipped", *ONE)
     assert (again.status, again.out) == (0, result.out)
     after = cells(Path("table1"))
-    assert {name for name in after if after[name] != before[name]} == {f"{LEVEL}-v1-expert.json"}
+    assert {name for name in after if after[name] != before[name]} == {f"{LEVEL}-v1-ours.json"}
     assert Path("table1/table1.md").read_text(encoding="utf-8") == result.out
 
 

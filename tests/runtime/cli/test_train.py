@@ -11,6 +11,7 @@ import signal
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from multiprocessing import active_children
 from pathlib import Path
 
@@ -19,7 +20,9 @@ from tensorboard.backend.event_processing.event_accumulator import EventAccumula
 
 from tests.docs.blocks import DOCS
 from tests.interfaces.cli.conftest import EXAMPLE, Outcome, tltlc  # noqa: F401
+from tests.runtime.cli.signals import interrupted, signal_at_call, with_signals  # noqa: F401
 from tests.runtime.training.test_settings import GOLDEN
+from tests.shared import made_once
 from tests.waiting import HANG_S
 from tltl_runtime.policies.file import read_policy
 from tltl_runtime.training.exploration.search import SearchProgress
@@ -57,6 +60,9 @@ steps = 128
 SOON = "import stealth\nspec soon { level cover_and_hide\n limit 8 steps\n keep alive }\n"
 """A spec that any player meets after eight steps."""
 
+END = "\0"
+"""What a test writes after the output of a command; a terminal may stay open in a process that the command started."""
+
 
 @pytest.fixture
 def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
@@ -74,7 +80,10 @@ def _write_inputs(folder: Path) -> None:
 @pytest.fixture(scope="module")
 def trainings(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with two finished trainings: ``run``, ended by its limit of steps, and ``second``, whose spec is met."""
-    folder = tmp_path_factory.mktemp("trainings")
+    return made_once(tmp_path_factory, "cli-trainings", _train_twice)
+
+
+def _train_twice(folder: Path) -> None:
     _write_inputs(folder)
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(folder)
@@ -82,7 +91,6 @@ def trainings(tmp_path_factory: pytest.TempPathFactory) -> Path:
             with pytest.raises(SystemExit) as ended:
                 main(["train", spec, "--config", "small.toml", "--out", name])
             assert ended.value.code == status
-    return folder
 
 
 @pytest.fixture
@@ -172,12 +180,10 @@ def test_without_a_checkpoint_a_training_starts_again(tltlc: TltlcFunction) -> N
     assert [line["steps"] for line in read_metrics(Path("run") / METRICS)] == [64, 128, 192]
 
 
-def test_differing_sensors_are_named(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
+@pytest.mark.usefixtures("here")
+def test_differing_sensors_are_named(tltlc: TltlcFunction, interrupted: TltlcFunction) -> None:  # noqa: F811
     options_at_start = ("--no-map", "--entities", "s1,exit", "--variables", "health")
-    assert (
-        tltlc("train", EXAMPLE, "--config", "small.toml", "--steps", "64", "--out", "second", *options_at_start).status
-        == 1
-    )
+    interrupted(EXAMPLE, "--config", "small.toml", "--out", "second", *options_at_start)
     options = ("--map", "cell=1,types=wall,low", "--entities", "s1", "--variables", "distance(exit)")
     rejected = tltlc("train", "--resume", "second", *options)
     assert re.findall(r"^error\[TLT0870\]: the training in `second` senses as (.*)$", rejected.err, re.MULTILINE) == [
@@ -186,7 +192,7 @@ def test_differing_sensors_are_named(tltlc: TltlcFunction, here: Path) -> None: 
         "`--no-map` says, not as `--map cell=1.0,extent=15,types=wall,low`",
     ]
     # Options that are left out agree with the training.
-    assert tltlc("train", "--resume", "second", "--no-map", "--steps", "128").status == 1
+    assert tltlc("train", "--resume", "second", "--no-map", "--steps", "64").status == 1
 
 
 @pytest.mark.usefixtures("run")
@@ -288,12 +294,16 @@ def test_a_folder_holds_one_training(tltlc: TltlcFunction) -> None:  # noqa: F81
     assert tltlc("train", "soon.tltl", *same, "--resume", "second").status == 0
 
 
-def test_a_folder_with_other_files_is_rejected(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
+def test_a_folder_with_other_files_is_rejected(
+    tltlc: TltlcFunction,  # noqa: F811
+    interrupted: TltlcFunction,  # noqa: F811
+    here: Path,
+) -> None:
     (here / "mine").mkdir()
     (here / "mine" / ".hidden").touch()
-    arguments = ("train", "soon.tltl", "--config", "small.toml", "--out", "mine")
+    arguments = ("soon.tltl", "--config", "small.toml", "--out", "mine")
     (here / "mine" / "notes.txt").write_text("of mine")
-    assert tltlc(*arguments) == Outcome(
+    assert tltlc("train", *arguments) == Outcome(
         1,
         "",
         "error[TLT0873]: `mine` is no training, and has other files: `notes.txt`\n"
@@ -301,7 +311,8 @@ def test_a_folder_with_other_files_is_rejected(tltlc: TltlcFunction, here: Path)
     )
     assert {path.name for path in (here / "mine").iterdir()} == {".hidden", "notes.txt"}
     (here / "mine" / "notes.txt").unlink()
-    assert tltlc(*arguments).status == 0
+    interrupted(*arguments)
+    assert (here / "mine" / "run.json").is_file()
 
 
 @pytest.mark.parametrize(
@@ -354,9 +365,13 @@ def test_invalid_options_are_rejected(
     assert not (here / "training").exists()
 
 
-def test_a_settings_file_changes_only_the_settings_it_contains(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
+@pytest.mark.usefixtures("here")
+def test_a_settings_file_changes_only_the_settings_it_contains(
+    tltlc: TltlcFunction,  # noqa: F811
+    interrupted: TltlcFunction,  # noqa: F811
+) -> None:
     options = ("--config", "small.toml", "--out", "second", "--steps", "64", "--workers", "2", "--minutes", "60")
-    assert tltlc("train", EXAMPLE, *options).status == 1
+    interrupted(EXAMPLE, *options)
     settings = json.loads(Path("second/run.json").read_text())["settings"]
     Path("more.toml").write_text("checkpoint_s = 5\n[stop]\nsteps = 128\n")
     resumed = tltlc("train", "--resume", "second", "--config", "more.toml")
@@ -365,24 +380,28 @@ def test_a_settings_file_changes_only_the_settings_it_contains(tltlc: TltlcFunct
     assert json.loads(Path("second/run.json").read_text())["settings"] == settings
 
 
-def test_an_unreachable_goal_is_reported_first(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
+@pytest.mark.usefixtures("here")
+def test_an_unreachable_goal_is_reported_first(interrupted: TltlcFunction) -> None:  # noqa: F811
     Path("far.tltl").write_text("import spatial\nentity exit\nspec far { limit 5 steps\n reach near(exit) }")
-    result = tltlc("train", "far.tltl", "--level", "navigation:v2", "--config", "small.toml", "--steps", "64")
+    result = interrupted("far.tltl", "--level", "navigation:v2", "--config", "small.toml")
     first, warned = result.err.splitlines()[:2]
     assert first == "training far on navigation v2, seed 0, in training/navigation-v2-far-0"
     assert warned.startswith("warning[TLT0814]: nobody reaches `exit` in `navigation:v2`")
 
 
-def test_the_level_beside_the_spec_comes_first(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
+@pytest.mark.usefixtures("here")
+def test_the_level_beside_the_spec_comes_first(tltlc: TltlcFunction, interrupted: TltlcFunction) -> None:  # noqa: F811
     assert tltlc("new", "mine", "--level", "vault").status == 0
-    result = tltlc("train", "mine/vault.tltl", "--config", "small.toml", "--steps", "64")
-    assert result.status == 1, result.err
-    assert Path("training/vault-v0-unseen-0/policy.safetensors").is_file()
+    result = interrupted("mine/vault.tltl", "--config", "small.toml")
+    assert result.err.startswith("training unseen on vault v0, seed 0, in training/vault-v0-unseen-0\n")
+    run = json.loads(Path("training/vault-v0-unseen-0/run.json").read_text())
+    assert run["level"] == str(Path("mine/vault.toml").resolve())
 
 
-def test_a_level_may_be_named_in_place_of_a_spec(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
-    result = tltlc("train", "navigation:v1", "--config", "small.toml", "--steps", "64")
-    assert result.status == 1, result.err
+@pytest.mark.usefixtures("here")
+def test_a_level_may_be_named_in_place_of_a_spec(interrupted: TltlcFunction) -> None:  # noqa: F811
+    result = interrupted("navigation:v1", "--config", "small.toml")
+    assert result.err.startswith("training navigation on navigation v1, ")
     assert Path("training/navigation-v1-navigation-0").is_dir()
 
 
@@ -401,20 +420,50 @@ def test_the_effective_settings_are_printed(tltlc: TltlcFunction, here: Path) ->
     assert len(result.out.splitlines()) == len(default_text().splitlines())
 
 
-@pytest.mark.parametrize(("name", "status"), [("SIGINT", 130), ("SIGTERM", 143)])
-def test_a_training_ended_by_a_signal_resumes(tltlc: TltlcFunction, here: Path, name: str, status: int) -> None:  # noqa: F811
+SIGNALS = pytest.mark.parametrize(("name", "status"), [("SIGINT", 130), ("SIGTERM", 143)])
+
+
+@SIGNALS
+def test_a_training_ended_by_a_signal_resumes(
+    with_signals: TltlcFunction,  # noqa: F811
+    tltlc: TltlcFunction,  # noqa: F811
+    here: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    name: str,
+    status: int,
+) -> None:
+    with monkeypatch.context() as patch:
+        # An iteration steps 16 times; the signal arrives in the middle of the second one.
+        signal_at_call(patch, Runner, "_step", getattr(signal, name), call=16 + 8)
+        stopped = with_signals(*_arguments("--steps", "100000000"))
+    assert stopped.err.splitlines()[2].startswith("iteration 1: 64 steps in "), stopped.err
+    _check_stopped(stopped.status, status, stopped.err)
+    _check_resumed(tltlc, here / "run", done=1)
+
+
+@pytest.mark.slow
+@SIGNALS
+def test_a_process_that_trains_ends_by_a_signal(tltlc: TltlcFunction, here: Path, name: str, status: int) -> None:  # noqa: F811
     with _training(here, "--steps", "100000000") as process:
         assert process.stderr is not None
         first = [process.stderr.readline() for _ in range(3)][-1]
         assert first.startswith("iteration 1: 64 steps in "), first + process.stderr.read()
         process.send_signal(getattr(signal, name))
         _, err = process.communicate(timeout=HANG_S)
-    assert process.returncode == status
+    _check_stopped(process.returncode, status, err)
+    _check_resumed(tltlc, here / "run", done=len(read_metrics(here / "run" / METRICS)))
+
+
+def _check_stopped(status: int, expected: int, err: str) -> None:
+    assert status == expected
     assert err.splitlines()[-1] == "stopped; to go on: tltlc train --resume run"
-    done = len(read_metrics(here / "run" / METRICS))
+
+
+def _check_resumed(tltlc: TltlcFunction, run: Path, done: int) -> None:  # noqa: F811
+    """Resume a training for one iteration more than it has done."""
     resumed = tltlc("train", "--resume", "run", "--steps", str(64 * (done + 1)))
     assert resumed.status == 1, resumed.err
-    assert [line["iteration"] for line in read_metrics(here / "run" / METRICS)] == list(range(1, done + 2))
+    assert [line["iteration"] for line in read_metrics(run / METRICS)] == list(range(1, done + 2))
 
 
 def test_a_killed_worker_is_reported(
@@ -439,13 +488,21 @@ def test_a_killed_worker_is_reported(
     assert (here / "run" / "checkpoint.pt").is_file()
 
 
-def test_a_terminal_shows_the_live_display(here: Path) -> None:
+def test_a_terminal_shows_the_live_display(here: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for name, value in {"TERM": "xterm", "COLUMNS": "110", "LINES": "40"}.items():
+        monkeypatch.setenv(name, value)
     ours, theirs = pty.openpty()
-    environment = {**os.environ, "TERM": "xterm", "COLUMNS": "110", "LINES": "40"}
-    with subprocess.Popen(_command("--steps", "128"), cwd=here, stderr=theirs, env=environment) as process:
-        os.close(theirs)
-        shown = re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", b"".join(_output(ours)).decode())
-    assert process.returncode == 1
+    with os.fdopen(theirs, "w", encoding="utf-8") as terminal, ThreadPoolExecutor(1) as reading:
+        output = reading.submit(lambda: b"".join(_output(ours)))
+        with monkeypatch.context() as patch, pytest.raises(SystemExit) as ended:
+            patch.setattr(sys, "stderr", terminal)
+            try:
+                main(_arguments("--steps", "128"))
+            finally:
+                print(END, file=terminal, flush=True)
+    os.close(ours)
+    shown = re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", output.result().decode())
+    assert ended.value.code == 1
     assert "playing the first steps" in shown
     last = shown[shown.rindex("cover_and_hide on cover_and_hide v0, seed 0") :]
     for text in ("spec met", "met in a row", "of 2, then the policy is confirmed", "state 0", "Reach near(s1)"):
@@ -465,21 +522,17 @@ def test_the_page_lists_the_keys_of_the_record() -> None:
     assert tuple(dict.fromkeys(re.findall(r"`(\w+)`", search))) == SearchProgress.__match_args__
 
 
-def _command(*options: str) -> list[str]:
-    arguments = ["train", str(EXAMPLE), "--config", "small.toml", "--out", "run", *options]
-    return [sys.executable, "-m", "tltlc", *arguments]
+def _arguments(*options: str) -> list[str]:
+    return ["train", str(EXAMPLE), "--config", "small.toml", "--out", "run", *options]
 
 
 def _training(folder: Path, *options: str) -> subprocess.Popen[str]:
-    return subprocess.Popen(_command(*options), cwd=folder, stderr=subprocess.PIPE, text=True)
+    command = [sys.executable, "-m", "tltlc", *_arguments(*options)]
+    return subprocess.Popen(command, cwd=folder, stderr=subprocess.PIPE, text=True)
 
 
 def _output(terminal: int) -> Iterator[bytes]:
-    while True:
-        try:
-            data = os.read(terminal, 65536)
-        except OSError:
-            return
-        if not data:
-            return
+    data = b""
+    while END.encode() not in data:
+        data = os.read(terminal, 65536)
         yield data

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from tests.interfaces.cli.conftest import Outcome, tltlc  # noqa: F401
+from tests.runtime.cli.signals import interrupted  # noqa: F401
 from tests.runtime.cli.test_train import SMALL, SOON
 from tests.runtime.evaluation.untrained import untrained
 from tltl_runtime.policies.file import read_policy, write_policy
@@ -24,8 +25,12 @@ SENSES = "import spatial\nentity s1\nspec other { level cover_and_hide\n limit 8
 
 @pytest.fixture
 def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """The current folder with small settings, two specs and a policy for one of them."""
+    """The current folder with small settings, two specs and a policy for one of them.
+
+    ``small.toml`` has no network, as that of the policy is used; ``drawn.toml`` is for trainings without a policy.
+    """
     (tmp_path / "small.toml").write_text(SMALL.replace("[network]\nhidden = [8]\n", ""))
+    (tmp_path / "drawn.toml").write_text(SMALL)
     (tmp_path / "soon.tltl").write_text(SOON)
     (tmp_path / "other.tltl").write_text(SENSES)
     write_policy(tmp_path / "old.safetensors", untrained(str(tmp_path / "soon.tltl")))
@@ -58,18 +63,18 @@ def test_the_spec_the_sensors_and_the_network_come_from_the_policy(tltlc: TltlcF
 
 def test_the_default_level_is_the_level_of_the_policy(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
     assert (
-        tltlc("train", "soon.tltl", "--level", "cover_and_hide:v1", "--config", "small.toml", "--out", "it").status == 0
+        tltlc("train", "soon.tltl", "--level", "cover_and_hide:v1", "--config", "drawn.toml", "--out", "it").status == 0
     )
     again = tltlc("train", "--from", "it", "--config", "small.toml", "--out", "again")
     assert again.status == 0, again.err
     assert "training soon on cover_and_hide v1, seed 0, in again" in again.err
 
 
-def test_a_shipped_policy_is_named_by_its_level(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
+@pytest.mark.usefixtures("here")
+def test_a_shipped_policy_is_named_by_its_level(tltlc: TltlcFunction, interrupted: TltlcFunction) -> None:  # noqa: F811
     result = tltlc("train", "--from", "cover_and_hide", "--print-config")
     assert result.status == 0
-    started = tltlc("train", "--from", "cover_and_hide:v2", "--config", "small.toml", "--steps", "64", "--out", "it")
-    assert started.status == 1
+    started = interrupted("--from", "cover_and_hide:v2", "--config", "small.toml", "--out", "it")
     assert "training cover_and_hide on cover_and_hide v2, seed 0, in it" in started.err
     assert json.loads(Path("it/run.json").read_text())["initial"]["path"] == str(shipped_policy("cover_and_hide"))
 
@@ -100,44 +105,47 @@ def test_unfit_policies_and_options_are_rejected(
     assert not Path("training").exists()
 
 
-def test_on_resume_the_policy_may_have_moved_but_not_changed(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
+@pytest.mark.usefixtures("here")
+def test_on_resume_the_policy_may_have_moved_but_not_changed(
+    tltlc: TltlcFunction,  # noqa: F811
+    interrupted: TltlcFunction,  # noqa: F811
+) -> None:
     Path("small.toml").write_text(Path("small.toml").read_text().replace("episodes = 2", "episodes = 100_000"))
-    assert tltlc(*TRAIN_FROM, "--out", "it", "--steps", "64").status == 1
+    interrupted(*TRAIN_FROM[1:], "--out", "it")
     shutil.move("old.safetensors", "moved.safetensors")
     write_policy("another.safetensors", untrained("soon.tltl", seed=1))
     other_policy = tltlc("train", "--resume", "it", "--from", "another.safetensors", "--steps", "128")
     assert (
         "error[TLT0870]: the training in `it` begins with another policy than `another.safetensors`" in other_policy.err
     )
-    Path("it/checkpoint.pt").unlink()
     missing = tltlc("train", "--resume", "it", "--steps", "128")
     assert (missing.status, missing.out) == (1, "")
     assert "error[TLT0940]" in missing.err
     resumed = tltlc("train", "--resume", "it", "--from", "moved.safetensors", "--steps", "128")
     assert "error" not in resumed.err and "128 steps" in resumed.out, resumed.err
-    plain = tltlc("train", "soon.tltl", "--config", "small.toml", "--out", "plain", "--steps", "64")
-    assert plain.status == 1
+    interrupted("soon.tltl", "--config", "drawn.toml", "--out", "plain")
     rejected = tltlc("train", "--resume", "plain", "--from", "moved.safetensors", "--steps", "128")
     assert "begins with weights that are drawn, not with the policy `moved.safetensors`" in rejected.err
 
 
-def test_the_level_of_the_policy_may_be_missing_if_another_is_named(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
+@pytest.mark.usefixtures("here")
+def test_the_level_of_the_policy_may_be_missing_if_another_is_named(
+    tltlc: TltlcFunction,  # noqa: F811
+    interrupted: TltlcFunction,  # noqa: F811
+) -> None:
     """The level of the spec need not exist either; a resumed training needs only the file of the policy."""
     shutil.copy(level_path("cover_and_hide"), "plan.toml")
     shutil.copytree(level_path("cover_and_hide").parent / "assets", "assets")
     Path("own.tltl").write_text(SOON.replace("level cover_and_hide", "level plan"))
-    spec = ("own.tltl", "--config", "small.toml")
-    assert tltlc("train", *spec, "--out", "first").status == 0
+    assert tltlc("train", "own.tltl", "--config", "drawn.toml", "--out", "first").status == 0
     from_file = ("--from", "first/policy.safetensors")
-    started = tltlc("train", *spec, *from_file, "--out", "second")
-    assert started.status == 0, started.err
     assert "error[TLT0800]: there is no level `plan`" in tltlc("train", *from_file).err
     Path("small.toml").write_text(Path("small.toml").read_text().replace("episodes = 2", "episodes = 100_000"))
-    assert tltlc("train", *spec, "--from", "first", "--out", "third", "--steps", "64").status == 1
-    Path("third/checkpoint.pt").unlink()
+    started = interrupted("own.tltl", *from_file, "--config", "small.toml", "--out", "second")
+    assert "it begins with the weights of first/policy.safetensors" in started.err
     for old, new in (("plan.toml", "moved.toml"), ("first", "elsewhere")):
         shutil.move(old, new)
-    resumed = tltlc("train", "--resume", "third", "--level", "moved.toml", "--from", "elsewhere", "--steps", "128")
+    resumed = tltlc("train", "--resume", "second", "--level", "moved.toml", "--from", "elsewhere", "--steps", "128")
     assert "error" not in resumed.err and "128 steps" in resumed.out, resumed.err
 
 

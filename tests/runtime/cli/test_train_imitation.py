@@ -3,21 +3,24 @@
 from __future__ import annotations
 
 import json
+import shutil
 import signal
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 
 from tests.interfaces.cli.conftest import Outcome, tltlc  # noqa: F401
+from tests.runtime.cli.signals import interrupted  # noqa: F401
 from tests.runtime.cli.test_train import SMALL
 from tests.runtime.training.imitating import SOON, recorded_episode, write_recordings
 from tests.waiting import until
 from tltl_runtime.training.run.checkpoint import read_checkpoint
 from tltl_runtime.training.run.metrics import METRICS, read_metrics
 from tltl_runtime.training.run.settings import read_settings
+from tltl_runtime.training.runner import Iteration, Runner
 
 TltlcFunction = Callable[..., Outcome]
 
@@ -73,19 +76,54 @@ def test_named_demonstrations_are_imitated_and_needed_on_resume(tltlc: TltlcFunc
     assert [line["steps"] for line in read_metrics(here / "run" / METRICS)] == [64, 128, 192]
 
 
-def test_a_killed_training_resumes_from_its_checkpoint(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
-    write_recordings(here / "mine", recorded_episode(1))
-    (here / "small.toml").write_text(f"checkpoint_s = 0.0\n{ENDLESS}")
-    command = [sys.executable, "-m", "tltlc", *TRAIN_IMITATION, "--demonstrations", "mine", "--out", "run"]
+def test_a_killed_training_resumes_from_its_checkpoint(
+    tltlc: TltlcFunction,  # noqa: F811
+    here: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    iterations = Runner.iterations
+
+    def with_a_copy(runner: Runner) -> Iterator[Iteration]:
+        for iteration in iterations(runner):
+            if iteration.number == 3:
+                # The files that a training leaves if it is killed now.
+                shutil.copytree(here / "run", here / "killed")
+            yield iteration
+
+    command = _endless(here)
+    with monkeypatch.context() as patch:
+        patch.setattr(Runner, "iterations", with_a_copy)
+        assert tltlc(*command, "--steps", "192").status == 1
+    shutil.rmtree(here / "run")
+    (here / "killed").rename(here / "run")
+    assert len(read_metrics(here / "run" / METRICS)) == 2
+    _check_resumed(tltlc, here / "run")
+
+
+@pytest.mark.slow
+def test_a_training_whose_process_was_killed_resumes(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
+    command = [sys.executable, "-m", "tltlc", *_endless(here)]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as training:
         until(lambda: training.poll() is None and len(read_metrics(here / "run" / METRICS)) >= 3, "3 iterations", 0.1)
         training.send_signal(signal.SIGKILL)
-    checkpoint = read_checkpoint(here / "run" / "checkpoint.pt")
+    _check_resumed(tltlc, here / "run")
+
+
+def _endless(folder: Path) -> tuple[str, ...]:
+    """Write settings without an end and with a checkpoint after each iteration; return the command."""
+    write_recordings(folder / "mine", recorded_episode(1))
+    (folder / "small.toml").write_text(f"checkpoint_s = 0.0\n{ENDLESS}")
+    return *TRAIN_IMITATION, "--demonstrations", "mine", "--out", "run"
+
+
+def _check_resumed(tltlc: TltlcFunction, run: Path) -> None:  # noqa: F811
+    """Resume a training for two iterations after its checkpoint."""
+    checkpoint = read_checkpoint(run / "checkpoint.pt")
     assert checkpoint is not None
     steps = str(checkpoint.steps + 128)
     resumed = tltlc("train", "--resume", "run", "--steps", steps)
     assert f"ended by the limit of steps after {steps} steps" in resumed.out, resumed.err
-    numbers = [line["iteration"] for line in read_metrics(here / "run" / METRICS)]
+    numbers = [line["iteration"] for line in read_metrics(run / METRICS)]
     assert numbers == list(range(1, len(numbers) + 1))
 
 
@@ -117,13 +155,16 @@ def test_a_spec_that_the_expert_does_not_meet_is_rejected(tltlc: TltlcFunction, 
     assert "error[TLT0920]" in result.err
 
 
-def test_the_method_is_stored_in_the_settings(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
+def test_the_method_is_stored_in_the_settings(
+    tltlc: TltlcFunction,  # noqa: F811
+    interrupted: TltlcFunction,  # noqa: F811
+    here: Path,
+) -> None:
     printed = tltlc("train", "--method", "imitation", "--print-config").out
     (here / "printed.toml").write_text(printed)
     settings = read_settings(here / "printed.toml")
     assert settings.imitates and not settings.searches
     write_recordings(here / "mine", recorded_episode(1))
-    named = ("--demonstrations", "mine", "--steps", "64", "--out", "run")
-    tltlc("train", "soon.tltl", "--config", "small.toml", "--method", "imitation", *named)
+    interrupted(*TRAIN_IMITATION[1:], "--demonstrations", "mine", "--out", "run")
     other = tltlc("train", "--resume", "run", "--method", "automaton", "--steps", "128")
     assert "error[TLT0870]: the training in `run` is by the method `imitation`, not by `automaton`" in other.err

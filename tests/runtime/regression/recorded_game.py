@@ -15,8 +15,12 @@ from tltl_runtime.regression.verdict.suite_run import regress
 
 @pytest.fixture(name="recorded", scope="module")
 def _recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return recorded_game(tmp_path_factory)
+
+
+def recorded_game(temporary: pytest.TempPathFactory) -> Path:
     """A game with its baseline; the folder ``run`` has the results of a first run of its suite."""
-    return made_once(tmp_path_factory, "recorded-game", _record)
+    return made_once(temporary, "recorded-game", _record)
 
 
 def _record(folder: Path) -> None:
