@@ -331,16 +331,27 @@ def test_only_godot_4_uses_built_in_min_and_max() -> None:
     assert "_min(x, (x if x > 0.5 else 0.5))" in str(emit("gdscript3", fspa)[f"{fspa.name}_monitor.gd"])
 
 
-@parses
-def test_scripts_for_godot_4_are_parsed(tmp_path: Path) -> None:
-    """Parse the scripts of the corpus and of hostile automata, and a few of the main programs, which are alike."""
-    fspas = [cover_and_hide(), awkward(), build(spec_from_formula(f.TRUE)), *(make().fspa for make in CASES.values())]
+def check_scripts_for_godot_4(folder: Path, fspas: Sequence[Fspa]) -> None:
+    """Parse the scripts of these automata, and the main programs of the first two, which are alike."""
     for fspa in fspas:
-        write(tmp_path, fspa, "gdscript")
-    scripts = list(tmp_path.glob("*_monitor.gd"))
-    mains = [tmp_path / f"{fspa.name}_monitor_main.gd" for fspa in fspas[:2]]
+        write(folder, fspa, "gdscript")
+    scripts = list(folder.glob("*_monitor.gd"))
+    mains = [folder / f"{fspa.name}_monitor_main.gd" for fspa in fspas[:2]]
     result = subprocess.run([str(GDPARSE), *map(str, [*scripts, *mains])], capture_output=True, text=True)
     assert result.returncode == 0, result.stdout + result.stderr
+
+
+@parses
+def test_scripts_for_godot_4_are_parsed(tmp_path: Path) -> None:
+    """These are hostile automata and every eighth case of the corpus."""
+    cases = [make().fspa for make in [*CASES.values()][::8]]
+    check_scripts_for_godot_4(tmp_path, [cover_and_hide(), awkward(), build(spec_from_formula(f.TRUE)), *cases])
+
+
+@parses
+@pytest.mark.slow
+def test_all_scripts_of_the_corpus_for_godot_4_are_parsed(tmp_path: Path) -> None:
+    check_scripts_for_godot_4(tmp_path, [make().fspa for make in CASES.values()])
 
 
 # --- as a library ---------------------------------------------------------------------------------
