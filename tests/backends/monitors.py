@@ -6,8 +6,10 @@ import csv
 import io
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import TypeVar
 
-from hypothesis import HealthCheck, Phase, settings
+from hypothesis import HealthCheck, Phase, assume, settings
+from hypothesis import strategies as st
 
 from tests.tools.conformance.runner import Outcome, Runner, build_program
 from tltlc.automaton.finite.build import build, spec_from_formula
@@ -22,8 +24,10 @@ HEADER = ["step", "state", "verdict", "accepting", "done", "progress", "reward",
 FAR = {"distance(s1)": 20.0, "distance(s2)": 20.0, "distance(exit)": 20.0, "health": 1.0}
 HEAD = "health,distance(s1),distance(s2),distance(exit)\n"
 
+Drawn = TypeVar("Drawn")
+
 batches = settings(
-    max_examples=2,
+    max_examples=1,
     deadline=None,
     derandomize=True,
     phases=(Phase.generate,),
@@ -31,6 +35,13 @@ batches = settings(
 )
 
 Sample = Mapping[str, float]
+
+
+def different(data: st.DataObject, strategy: st.SearchStrategy[Drawn], count: int) -> list[Drawn]:
+    """Draw values that are not all equal. Otherwise Hypothesis first tries the simplest value for each of them."""
+    values = [data.draw(strategy) for _ in range(count)]
+    assume(any(value != values[0] for value in values))
+    return values
 
 
 class Programs:

@@ -16,7 +16,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tests.backends.monitors import Programs, Sample, batches, expected, one_atom, trace_of
+from tests.backends.monitors import Programs, Sample, batches, different, expected, one_atom, trace_of
 from tests.backends.strategies import HOSTILE, hostile_automata
 from tests.fixtures import cover_and_hide
 from tests.monitor.strategies import PARAMS, SIGNALS, atom_traces, automata, expressions, numbers
@@ -91,7 +91,7 @@ def comparable(text: str) -> str:
 @batches
 @given(data=st.data())
 def test_steps_agree_with_the_monitor_on_random_automata(compiler: str, tmp_path: Path, data: st.DataObject) -> None:
-    fspas = [data.draw(automata()) for _ in range(8)]
+    fspas = different(data, automata(), 8)
     traces = []
     for fspa in fspas:
         names = [atom.name for atom in fspa.atoms]
@@ -107,8 +107,7 @@ def test_values_of_atoms_agree_with_the_monitor(compiler: str, tmp_path: Path, d
     """This includes clamped values with their notices, and failures."""
     fspas, traces = [], []
     whole = build(spec_from_formula(f.eventually(f.and_(f.atom("a"), f.atom("b")))))
-    for _ in range(14):
-        params = data.draw(st.tuples(numbers, numbers))
+    for params in different(data, st.tuples(numbers, numbers), 14):
         fspas.append(
             replace(
                 whole,
@@ -184,7 +183,7 @@ NAMES = (
 @batches
 @given(data=st.data())
 def test_hostile_texts_are_no_code(compiler: str, tmp_path: Path, data: st.DataObject) -> None:
-    fspas = [data.draw(hostile_automata()) for _ in range(6)]
+    fspas = different(data, hostile_automata(), 6)
     programs = programs_of(tmp_path, compiler, fspas)
     # Each trace lacks the first signal of its program.
     assert {status for status, _, _ in programs.run(*((number, "nothing\n1\n") for number in range(6)))} == {1}
@@ -375,8 +374,15 @@ double judged_@(@_monitor *monitor, const @_signals *samples, int count) {
 """
 
 
-@compilers
-@pytest.mark.parametrize("level", ["-O2", "-O3", "-Os"])
+# Each compiler inlines differently, and so at each level. The other pairs are slow tests.
+OPTIMIZED = [("gcc", "-O2"), ("g++", "-O3")]
+SELDOM = [(compiler, level) for compiler in COMPILERS for level in ("-O2", "-O3", "-Os")]
+SELDOM = [pair for pair in SELDOM if pair not in OPTIMIZED]
+
+
+@pytest.mark.parametrize(
+    ("compiler", "level"), [*OPTIMIZED, *(pytest.param(*pair, marks=pytest.mark.slow) for pair in SELDOM)]
+)
 def test_optimizing_compilers_give_no_warnings(compiler: str, level: str, tmp_path: Path) -> None:
     """A result is used only after a step; an optimizer that does not see this warns of uninitialized values."""
     hosts, programs = "", "#define TLTL_MAIN\n"

@@ -5,12 +5,13 @@ import tracemalloc
 from typing import Any
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.backends.strategies import automata, infinite_automata
 from tests.calls import calls
 from tests.fixtures import cover_and_hide
+from tests.fuzzing import times
 from tltlc import compile_text
 from tltlc.artefact import consistency, guards
 from tltlc.artefact.consistency import problems
@@ -34,7 +35,7 @@ def changed(table: str, index: int, **values: Any) -> Fspa:
     return replace(fspa, **{table: tuple(rows)})  # type: ignore[arg-type]
 
 
-@settings(max_examples=100, deadline=None)
+@times(40)
 @given(automata() | infinite_automata())
 def test_compiled_automata_are_consistent(fspa: Fspa) -> None:
     assert messages(fspa) == []
@@ -202,7 +203,7 @@ def all_primes(guard: set[tuple[bool, ...]]) -> set[tuple[tuple[int, bool], ...]
     return {p for p in inside if not any(q != p and set(q) < set(p) for q in inside)}
 
 
-@settings(max_examples=150, deadline=None)
+@times(50)
 @given(st.lists(cubes, min_size=1, max_size=4, unique=True), st.booleans())
 def test_exactly_the_complete_sets_of_primes_pass(terms: list[tuple[tuple[int, bool], ...]], complete: bool) -> None:
     samples = set(itertools.product((False, True), repeat=4))
@@ -220,7 +221,7 @@ def test_exactly_the_complete_sets_of_primes_pass(terms: list[tuple[tuple[int, b
     assert (messages(fspa) == []) == (set(primes) == all_primes(guard))
 
 
-@settings(max_examples=100, deadline=None)
+@times(40)
 @given(automata(), st.data())
 def test_a_guard_that_covers_too_little_or_too_much_is_reported(fspa: Fspa, data: st.DataObject) -> None:
     index = data.draw(st.integers(0, len(fspa.edges) - 1))

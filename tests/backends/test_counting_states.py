@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from tests.backends.strategies import automata, hostile_automata, infinite_automata
 from tests.backends.test_folding import automaton, chains, counting, endless
 from tests.fixtures import cover_and_hide
+from tests.fuzzing import times
 from tltlc.automaton.fspa import Edge, Fspa, Guard
 from tltlc.backends.drawing.counting_states import fold_ladders
 from tltlc.backends.drawing.folding import LEAST_FOLDED, fold_runs, whole_drawing
@@ -62,6 +63,7 @@ def ladders(draw: st.DrawFn) -> Fspa:
 ANY = in_step() | ladders() | counting() | endless() | chains() | automata() | infinite_automata() | hostile_automata()
 
 
+@times(40)
 @given(ANY)
 def test_every_edge_is_drawn_or_lies_along_a_run(fspa: Fspa) -> None:
     drawing = fold_ladders(fspa)
@@ -92,6 +94,7 @@ def test_every_edge_is_drawn_or_lies_along_a_run(fspa: Fspa) -> None:
             raise AssertionError(edge)
 
 
+@times(40)
 @given(ANY)
 def test_folded_states_agree(fspa: Fspa) -> None:
     drawing = fold_ladders(fspa)
@@ -109,11 +112,13 @@ def test_some_random_ladder_is_folded() -> None:
     assert fold_ladders(find(ladders(), lambda fspa: len(fold_ladders(fspa).folded) == 3))
 
 
+@times(40)
 @given(counting() | in_step())
 def test_folding_ladders_draws_no_more_states_than_folding_runs(fspa: Fspa) -> None:
     assert len(fold_ladders(fspa).states) <= len(fold_runs(fspa).states)
 
 
+@times(40)
 @given(ANY)
 def test_pictures_use_the_drawing_with_fewer_states_and_count_the_folded_ones(fspa: Fspa) -> None:
     drawing = folded_drawing(fspa)

@@ -9,11 +9,12 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.backends.strategies import automata, hostile_automata, infinite_automata
 from tests.backends.test_schema import DOCUMENT, DOCUMENTS, PLACES
+from tests.fuzzing import times
 from tltlc import backends
 from tltlc.artefact.decode import decode, read
 from tltlc.automaton.fspa import Fspa
@@ -36,14 +37,14 @@ def errors(document: object) -> tuple[Diagnostic, ...]:
     return caught.value.diagnostics
 
 
-@settings(max_examples=60, deadline=None)
+@times(25)
 @given(automata() | infinite_automata() | hostile_automata())
 def test_the_document_of_an_automaton_is_decoded_unchanged(fspa: Fspa) -> None:
     (text,) = backends.emit("json", fspa).values()
     assert decode(json.loads(str(text)), "bot/artefact") == fspa
 
 
-@settings(max_examples=200, deadline=None)
+@times(60)
 @given(st.sampled_from(PLACES), st.sampled_from(WRONG))
 def test_a_damaged_document_has_the_errors_of_its_text(place: tuple[int, tuple[str | int, ...]], value: Any) -> None:
     index, path = place

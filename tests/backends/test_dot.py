@@ -9,6 +9,7 @@ from hypothesis import given, settings
 
 from tests.backends.strategies import automata, hostile_automata, infinite_automata
 from tests.fixtures import cover_and_hide
+from tests.fuzzing import times
 from tltlc import backends, compile_text
 from tltlc.automaton.fspa import Fspa, Guard, Notation, Pair, Text
 from tltlc.automaton.text import guard_text, label_text
@@ -89,7 +90,7 @@ def test_every_state_and_guard_is_drawn_once(fspa: Fspa) -> None:
     }
 
 
-@settings(max_examples=80, deadline=None)
+@times(30)
 @given(hostile_automata())
 def test_hostile_texts_stay_texts(fspa: Fspa) -> None:
     drawn = parse_dot(dot_text(fspa))

@@ -3,11 +3,12 @@ from __future__ import annotations
 from itertools import pairwise
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.backends.strategies import automata, hostile_automata, infinite_automata
 from tests.fixtures import cover_and_hide
+from tests.fuzzing import times
 from tltlc import compile_text
 from tltlc.automaton.fspa import Edge, Fspa, Guard
 from tltlc.backends import Options
@@ -113,7 +114,7 @@ def common(full: Drawing, run: list[int]) -> set[tuple[EdgeLabel, int]]:
     return set.intersection(*(edges_of(full, state) for state in run))
 
 
-@settings(max_examples=60, deadline=None)
+@times(25)
 @given(counting() | endless() | automata() | infinite_automata())
 def test_only_runs_are_folded(fspa: Fspa) -> None:
     for run in check(fspa).folded.values():
@@ -122,13 +123,13 @@ def test_only_runs_are_folded(fspa: Fspa) -> None:
         assert steps == {None} or steps <= {0, 1}
 
 
-@settings(max_examples=300, deadline=None)
+@times(80)
 @given(chains() | hostile_automata())
 def test_any_artefact_is_folded_by_the_same_rule(fspa: Fspa) -> None:
     check(fspa)
 
 
-@settings(max_examples=200, deadline=None)
+@times(60)
 @given(chains() | counting())
 def test_every_run_is_folded(fspa: Fspa) -> None:
     """Every path of five states that can be folded is folded."""

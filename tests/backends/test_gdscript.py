@@ -23,7 +23,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tests.backends.monitors import Programs, Sample, batches, expected, one_atom, trace_of
+from tests.backends.monitors import Programs, Sample, batches, different, expected, one_atom, trace_of
 from tests.backends.strategies import HOSTILE, hostile_automata
 from tests.fixtures import cover_and_hide
 from tests.monitor.strategies import PARAMS, SIGNALS, atom_traces, automata, expressions, numbers
@@ -101,8 +101,7 @@ def check(folder: Path, *cases: tuple[Fspa, Sequence[Sample]]) -> None:
 @given(data=st.data())
 def test_steps_agree_with_the_monitor_on_random_automata(tmp_path: Path, data: st.DataObject) -> None:
     cases = []
-    for _ in range(6):
-        fspa = data.draw(automata())
+    for fspa in different(data, automata(), 6):
         names = [atom.name for atom in fspa.atoms]
         rows = data.draw(atom_traces(fspa, max_size=12))
         cases.append((fspa, [dict(zip(names, row, strict=True)) for row in rows]))
@@ -116,8 +115,7 @@ def test_values_of_atoms_agree_with_the_monitor(tmp_path: Path, data: st.DataObj
     """This includes clamped values with their notices, and failures."""
     cases = []
     whole = build(spec_from_formula(f.eventually(f.and_(f.atom("a"), f.atom("b")))))
-    for _ in range(14):
-        params = data.draw(st.tuples(numbers, numbers))
+    for params in different(data, st.tuples(numbers, numbers), 14):
         fspa = replace(
             whole,
             signals=(spec.Signal(SIGNALS[0], "number", None, 2.0), spec.Signal(SIGNALS[1], "number", -3.0, None)),
@@ -276,7 +274,7 @@ def test_hostile_names_stay_distinct(tmp_path: Path) -> None:
 @batches
 @given(data=st.data())
 def test_hostile_texts_are_no_code(tmp_path: Path, data: st.DataObject) -> None:
-    fspas = [data.draw(hostile_automata()) for _ in range(5)]
+    fspas = different(data, hostile_automata(), 5)
     programs = Programs(*RUNNERS, tmp_path, fspas)
     assert {status for status, _, _ in programs.run(*((number, "nothing\n1\n") for number in range(5)))} == {1}
     names = [fspa.signals[0].name for fspa in fspas]
@@ -333,16 +331,27 @@ def test_only_godot_4_uses_built_in_min_and_max() -> None:
     assert "_min(x, (x if x > 0.5 else 0.5))" in str(emit("gdscript3", fspa)[f"{fspa.name}_monitor.gd"])
 
 
-@parses
-def test_scripts_for_godot_4_are_parsed(tmp_path: Path) -> None:
-    """Parse the scripts of the corpus and of hostile automata, and a few of the main programs, which are alike."""
-    fspas = [cover_and_hide(), awkward(), build(spec_from_formula(f.TRUE)), *(make().fspa for make in CASES.values())]
+def check_scripts_for_godot_4(folder: Path, fspas: Sequence[Fspa]) -> None:
+    """Parse the scripts of these automata, and the main programs of the first two, which are alike."""
     for fspa in fspas:
-        write(tmp_path, fspa, "gdscript")
-    scripts = list(tmp_path.glob("*_monitor.gd"))
-    mains = [tmp_path / f"{fspa.name}_monitor_main.gd" for fspa in fspas[:2]]
+        write(folder, fspa, "gdscript")
+    scripts = list(folder.glob("*_monitor.gd"))
+    mains = [folder / f"{fspa.name}_monitor_main.gd" for fspa in fspas[:2]]
     result = subprocess.run([str(GDPARSE), *map(str, [*scripts, *mains])], capture_output=True, text=True)
     assert result.returncode == 0, result.stdout + result.stderr
+
+
+@parses
+def test_scripts_for_godot_4_are_parsed(tmp_path: Path) -> None:
+    """These are hostile automata and every eighth case of the corpus."""
+    cases = [make().fspa for make in [*CASES.values()][::8]]
+    check_scripts_for_godot_4(tmp_path, [cover_and_hide(), awkward(), build(spec_from_formula(f.TRUE)), *cases])
+
+
+@parses
+@pytest.mark.slow
+def test_all_scripts_of_the_corpus_for_godot_4_are_parsed(tmp_path: Path) -> None:
+    check_scripts_for_godot_4(tmp_path, [make().fspa for make in CASES.values()])
 
 
 # --- as a library ---------------------------------------------------------------------------------

@@ -10,6 +10,7 @@ from tests.automaton.letters import Letter, holds, letters, named
 from tests.backends.hoa_reader import Hoa, read
 from tests.backends.strategies import EXCLUSIVE, automata, hostile_automata, hostile_texts
 from tests.fixtures import cover_and_hide
+from tests.fuzzing import times
 from tests.logic.strategies import formulas
 from tltlc import __version__, backends, compile_text
 from tltlc.automaton.finite.build import build, spec_from_formula
@@ -140,7 +141,7 @@ def test_an_automaton_over_finite_traces_has_marks_on_states() -> None:
     check(cover_and_hide())
 
 
-@settings(max_examples=60, deadline=None)
+@times(25)
 @given(specs("infinite", 5), st.data())
 def test_over_infinite_traces_the_file_accepts_the_lassos_of_the_formula(spec: Spec, data: st.DataObject) -> None:
     fspa = build_infinite(spec)
@@ -151,7 +152,7 @@ def test_over_infinite_traces_the_file_accepts_the_lassos_of_the_formula(spec: S
         assert parsed.accepts_lasso(prefix, cycle) == expected
 
 
-@settings(max_examples=60, deadline=None)
+@times(25)
 @given(specs("finite", 6), st.data())
 def test_over_finite_traces_the_last_state_accepts_the_traces_of_the_formula(spec: Spec, data: st.DataObject) -> None:
     fspa = build(spec)
@@ -218,7 +219,7 @@ def test_an_edge_that_no_letter_takes_has_a_false_label() -> None:
     assert "[f] 0\n[t] 2\n" in hoa_text(replace(fspa, edges=edges, exclusive=()))
 
 
-@settings(max_examples=120, deadline=None)
+@times(40)
 @given(hostile_automata(), hostile_texts, st.booleans())
 def test_hostile_texts_stay_texts(fspa: Fspa, doc: str, infinite: bool) -> None:
     if infinite:

@@ -6,11 +6,12 @@ import unicodedata
 from collections.abc import Callable
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.backends.strategies import automata, expressions, finite, hostile_automata, infinite_automata
 from tests.fixtures import cover_and_hide
+from tests.fuzzing import times
 from tltlc import backends
 from tltlc.artefact import size as sizes
 from tltlc.artefact.decode import read
@@ -36,13 +37,13 @@ def test_cover_and_hide_is_read_back() -> None:
     assert read(json_text(cover_and_hide()), "x.fspa.json") == cover_and_hide()
 
 
-@settings(max_examples=60, deadline=None)
+@times(25)
 @given(automata() | infinite_automata())
 def test_automata_are_read_back_unchanged(fspa: Fspa) -> None:
     assert read(json_text(fspa), "x.fspa.json") == fspa
 
 
-@settings(max_examples=60, deadline=None)
+@times(25)
 @given(hostile_automata())
 def test_hostile_texts_are_read_back_unchanged(fspa: Fspa) -> None:
     text = json_text(fspa)
@@ -69,7 +70,7 @@ def test_invisible_characters_are_escaped() -> None:
     assert all(f"\\u{ord(character):04x}" in text for character in unseen if "\x7f" < character <= "\uffff")
 
 
-@settings(max_examples=60, deadline=None)
+@times(25)
 @given(expressions())
 def test_expressions_are_read_back_unchanged(expression: Expression) -> None:
     fspa = cover_and_hide()
@@ -147,7 +148,7 @@ def test_an_error_points_at_the_value() -> None:
     assert label.source.slice(label.span) == '"2"'
 
 
-@settings(max_examples=200, deadline=None)
+@times(60)
 @given(st.data())
 def test_damaged_texts_raise_only_errors_of_artefacts(data: st.DataObject) -> None:
     text = json_text(cover_and_hide())
@@ -200,7 +201,7 @@ def test_an_artefact_with_very_many_edges_is_rejected_before_it_is_encoded(monke
     assert [diagnostic.code for diagnostic in caught.value.diagnostics] == ["TLT0004"]
 
 
-@settings(max_examples=60, deadline=None)
+@times(25)
 @given(automata() | infinite_automata())
 def test_the_estimated_size_is_a_lower_bound(fspa: Fspa) -> None:
     text = json_text(fspa)

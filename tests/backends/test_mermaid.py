@@ -7,6 +7,7 @@ from hypothesis import given, settings
 
 from tests.backends.strategies import automata, hostile_automata, infinite_automata
 from tests.fixtures import cover_and_hide
+from tests.fuzzing import times
 from tltlc import backends, compile_text
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends.drawing.picture_content import folded_drawing
@@ -94,7 +95,7 @@ def test_every_line_of_a_diagram_is_valid(fspa: Fspa) -> None:
     check(fspa)
 
 
-@settings(max_examples=80, deadline=None)
+@times(30)
 @given(hostile_automata())
 def test_hostile_texts_stay_texts(fspa: Fspa) -> None:
     check(fspa)

@@ -13,7 +13,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tests.backends.monitors import Programs, batches, expected, one_atom, trace_of
+from tests.backends.monitors import Programs, batches, different, expected, one_atom, trace_of
 from tests.backends.strategies import hostile_automata
 from tests.backends.test_c import NAMES
 from tests.fixtures import cover_and_hide
@@ -59,7 +59,7 @@ def run_program(program: Path, *words: str, stdin: bytes = b"") -> Outcome:
 @batches
 @given(data=st.data())
 def test_hostile_texts_are_no_code(tmp_path: Path, data: st.DataObject) -> None:
-    programs = Programs(*RUNNERS, tmp_path, [data.draw(hostile_automata()) for _ in range(6)])
+    programs = Programs(*RUNNERS, tmp_path, different(data, hostile_automata(), 6))
     assert {status for status, _, _ in programs.run(*((number, "nothing\n1\n") for number in range(6)))} == {1}
     for number, fspa in enumerate(programs.fspas):
         name = fspa.signals[0].name

@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 
 from tests.backends.strategies import automata, infinite_automata
 from tests.fixtures import cover_and_hide
+from tests.fuzzing import times
 from tltlc import compile_text
 from tltlc.artefact.encode import encode
 from tltlc.artefact.errors import JsonSchemaValueException
@@ -64,7 +65,7 @@ DOCUMENTS = (DOCUMENT, json.loads(json.dumps(encode(INFINITE))))
 PLACES = tuple((index, path) for index, document in enumerate(DOCUMENTS) for path in tuple(places(document))[1:])
 
 
-@settings(max_examples=400, deadline=None)
+@times(100)
 @given(st.sampled_from(PLACES), st.sampled_from(("remove", "add", *range(len(WRONG)))))
 def test_both_validators_agree_on_damaged_artefacts(
     place: tuple[int, tuple[str | int, ...]], damage: str | int
@@ -147,7 +148,7 @@ def test_errors_are_in_plain_words(path: tuple[str | int, ...], value: object, t
     assert schema_error_title(caught.value) == title
 
 
-@settings(max_examples=200, deadline=None)
+@times(60)
 @given(st.sampled_from(PLACES), st.sampled_from(WRONG))
 def test_every_error_is_in_plain_words(place: tuple[int, tuple[str | int, ...]], wrong: object) -> None:
     index, path = place

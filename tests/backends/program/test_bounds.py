@@ -6,12 +6,13 @@ import math
 from pathlib import Path
 
 import pytest
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from tests.backends.program.interpreter import NoValueError, Scope
 from tests.backends.strategies import expressions
 from tests.calls import calls
+from tests.fuzzing import times
 from tltlc import compile_file
 from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.finite.build import build, spec_from_formula
@@ -67,7 +68,7 @@ way = When(
 )
 
 
-@settings(max_examples=600, deadline=None)
+@times(150)
 @given(expressions() | st.builds(quotient, expressions(), expressions()), distances, shares, sizes)
 @example(way, math.nextafter(2.0, 0.0), 0.0, 2.0)
 @example(way, 1.0, 0.0, 3.0)

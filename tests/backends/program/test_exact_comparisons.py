@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from fractions import Fraction
 
-from hypothesis import given, settings
+from hypothesis import given
 
 from tests.backends.program.interpreter import Scope
+from tests.fuzzing import times
 from tests.resolve.test_comparison_signs import FINITE, THREE, nearby_numbers, signal_quantity
 from tltlc.program.arithmetic import ExpressionTranslator, with_declaration
 from tltlc.program.bounds import prove_ranges, range_between
@@ -16,7 +17,7 @@ from tltlc.resolve.margins import robustness
 from tltlc.resolve.values import constant
 
 
-@settings(max_examples=1000, deadline=None)
+@times(250)
 @given(THREE, FINITE)
 def test_a_threshold_agrees_with_the_exact_comparison(ends: Sequence[float], x: float) -> None:
     low, threshold, high = ends

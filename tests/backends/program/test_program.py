@@ -4,12 +4,13 @@ import math
 from collections.abc import Iterable
 from typing import Literal
 
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.automaton.letters import letters
 from tests.backends.program.interpreter import NoValueError, Scope, step
 from tests.backends.strategies import automata, expressions, infinite_automata
+from tests.fuzzing import times
 from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
@@ -56,7 +57,7 @@ def same(x: float | str, y: float | str) -> bool:
 values = st.floats(-4, 4) | st.sampled_from([0.0, -0.0, 1.0, -1.0, 1e300])
 
 
-@settings(max_examples=300, deadline=None)
+@times(80)
 @given(expressions(), values, values, values)
 def test_expressions_have_the_value_of_the_evaluator(
     expression: Expression, s1: float, health: float, size: float
@@ -97,7 +98,7 @@ def test_deep_expressions_are_split() -> None:
     assert 10 < depth < 40
 
 
-@settings(max_examples=60, deadline=None)
+@times(25)
 @given(automata() | infinite_automata(), st.data())
 def test_steps_agree_with_the_monitor(fspa: Fspa, data: st.DataObject) -> None:
     limit = data.draw(st.none() | st.integers(1, 5))
@@ -146,7 +147,7 @@ def test_temporaries_avoid_the_names_of_a_specification() -> None:
     assert len({*compiled.signals, *compiled.atoms, *declared}) == 7
 
 
-@settings(max_examples=60, deadline=None)
+@times(25)
 @given(automata() | infinite_automata(), st.sampled_from(("goal", "limit")))
 def test_every_declared_variable_is_read(fspa: Fspa, judge: spec.Judge) -> None:
     for statements in program(replace(fspa, judge=judge), ()).states:

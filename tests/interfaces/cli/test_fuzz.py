@@ -67,40 +67,48 @@ def test_mutated_examples_end_with_a_status(text: str, tmp_path: Path) -> None:
     check(text.encode("utf-8", "surrogatepass"), tmp_path)
 
 
-DEEP = 100_000
-
-
-@pytest.mark.parametrize(
-    "text",
-    [
-        "spec x = " + "(" * DEEP,
-        "spec x = " + "(" * DEEP + "true" + ")" * DEEP,
-        "signal a: bool spec x = " + "!" * DEEP + "a",
+def hostile_texts(deep: int) -> list[str]:
+    """Texts that nest ``deep`` brackets or signs, or have some multiple of it in characters."""
+    return [
+        "spec x = " + "(" * deep,
+        "spec x = " + "(" * deep + "true" + ")" * deep,
+        "signal a: bool spec x = " + "!" * deep + "a",
         "signal a: bool spec x = " + "X " * 10_000 + "a",
         "signal a: bool spec x = " + " & ".join(["a"] * 10_000),
         "signal a: bool spec x = " + " U ".join(["a"] * 10_000),
         "signal a: bool spec x = " + " -> ".join(["a"] * 10_000),
         "signal a: bool spec x = F[0,1000000000] a",
         "signal a: bool spec x = " + "F[0,100] " * 6 + "a",
-        "signal v in [0, 1] spec x = F v > " + "-" * DEEP + "1",
+        "signal v in [0, 1] spec x = F v > " + "-" * deep + "1",
         "predicate p in [0, 1] = " + " + ".join(["1"] * 10_000) + " spec x = F p",
         "predicate p in [0, 1] = 2" + "^9" * 50 + " spec x = F p",
         "let f = f spec x = f",
         "let f(x) = g(x) let g(x) = f(x) signal a: bool spec x = f(a)",
-        "{" * DEEP,
-        "[" * DEEP,
+        "{" * deep,
+        "[" * deep,
         "spec x {" * 10_000,
-        "\n" * 1_000_000,
-        "a" * 1_000_000,
+        "\n" * (10 * deep),
+        "a" * (10 * deep),
         "spec x = 1" + "0" * 5000 + " > 0",
         '"' * 1000,
-        "///\n" * 100_000,
-    ],
-    ids=lambda text: text[:30],
-)
-def test_hostile_texts_are_checked_in_linear_time(text: str, tmp_path: Path) -> None:
+        "///\n" * deep,
+    ]
+
+
+def check_in_linear_time(text: str, folder: Path) -> None:
     # The measured value is 38 calls for each character of a long text, plus some thousands.
-    assert calls(lambda: check(text.encode(), tmp_path)) < 100_000 + 200 * len(text)
+    assert calls(lambda: check(text.encode(), folder)) < 100_000 + 200 * len(text)
+
+
+@pytest.mark.parametrize("text", hostile_texts(15_000), ids=lambda text: text[:30])
+def test_hostile_texts_are_checked_in_linear_time(text: str, tmp_path: Path) -> None:
+    check_in_linear_time(text, tmp_path)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("text", hostile_texts(100_000), ids=lambda text: text[:30])
+def test_longer_hostile_texts_are_checked_in_linear_time(text: str, tmp_path: Path) -> None:
+    check_in_linear_time(text, tmp_path)
 
 
 def test_a_file_may_import_itself(tmp_path: Path) -> None:

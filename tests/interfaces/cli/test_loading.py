@@ -40,6 +40,14 @@ def loaded_modules(*arguments: str | Path, folder: Path) -> set[str]:
     return set(completed.stdout.decode().rpartition("\nMODULES ")[2].split())
 
 
+@pytest.fixture(scope="module")
+def checked(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder whose cache holds the checks of the example's predicates."""
+    folder = tmp_path_factory.mktemp("checked")
+    loaded_modules("check", EXAMPLE, folder=folder)
+    return folder
+
+
 @pytest.mark.parametrize(
     "arguments",
     [
@@ -55,11 +63,10 @@ def loaded_modules(*arguments: str | Path, folder: Path) -> set[str]:
     ],
     ids=lambda arguments: arguments[0],
 )
-def test_no_heavy_module_is_imported(arguments: tuple[str | Path, ...], tmp_path: Path) -> None:
-    loaded_modules("check", EXAMPLE, folder=tmp_path)
+def test_no_heavy_module_is_imported(arguments: tuple[str | Path, ...], checked: Path) -> None:
     # The target `dot` is a default target, and it uses graphviz.
     written = {"graphviz"} if arguments[0] == "compile" else set()
-    assert not loaded_modules(*arguments, folder=tmp_path) & HEAVY - written
+    assert not loaded_modules(*arguments, folder=checked) & HEAVY - written
 
 
 def test_only_infinite_specs_load_the_modules_for_them(tmp_path: Path) -> None:

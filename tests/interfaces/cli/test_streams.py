@@ -7,7 +7,7 @@ import shutil
 import signal
 import subprocess
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
@@ -18,6 +18,7 @@ import pytest
 from tests.interfaces.cli.conftest import ROOT
 from tests.waiting import HANG_S
 from tltlc.interfaces.cli.command_line import BUILT_IN, RUNTIME_COMMANDS, cli
+from tltlc.interfaces.cli.main import main
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="needs descriptors that a shell closes")
 
@@ -39,7 +40,7 @@ QUICK: Final[dict[str, list[tuple[str, ...]]]] = {
     "check": [("hide.tltl",), ("--format", "json", "hide.tltl"), ("-",), ("--help",)],
     "compile": [("hide.tltl", "-o", "out", "-t", "json,dot,python,hoa")],
     "completion": [("bash",)],
-    "conformance": [("-o", "hide.tltl/out")],
+    "conformance": [("-o", "before")],
     "diff": [("hide.tltl", "hide.tltl")],
     "explain": [("hide.tltl",), ("TLT0001",)],
     "fmt": [("hide.tltl",), ("--diff", "wide.tltl"), ("-",)],
@@ -61,14 +62,21 @@ OF_GAMES: Final[dict[str, list[tuple[str, ...]]]] = {
     "baseline": [NOWHERE],
     "demonstrate": [NOWHERE],
     "evaluate": [("--level", *NOWHERE)],
-    "inspect": [("cover_and_hide",)],
+    "inspect": [("nowhere", "-o", "out.txt")],
     "play": [NOWHERE],
     "record": [NOWHERE],
     "regress": [NOWHERE],
     "replay": [(RECORDING,), (RECORDING, "-o", "trace_of_episode.csv")],
     "table1": [("-o", "hide.tltl/table")],
+    "train": [("--resume", "demo", "--out", "out")],
+}
+
+IMPORTING: Final[dict[str, list[tuple[str, ...]]]] = {
+    "conformance": [("-o", "hide.tltl/out")],
+    "inspect": [("cover_and_hide",)],
     "train": [("--level", "cover_and_hide", "--print-config")],
 }
+"""Commands that compute or import for seconds before they print or fail."""
 
 SLOW: Final[dict[str, list[tuple[str, ...]]]] = {
     "conformance": [("-o", "out")],
@@ -85,6 +93,9 @@ def _cases(table: dict[str, list[tuple[str, ...]]]) -> list[tuple[str, ...]]:
     return [(command, *arguments) if command else arguments for command, rows in table.items() for arguments in rows]
 
 
+FIRST: Final = _cases({command: rows[:1] for command, rows in QUICK.items()})
+
+
 def test_the_tables_list_every_command() -> None:
     known = cli.commands.keys() | set(BUILT_IN) | set(RUNTIME_COMMANDS)
     assert known == {*QUICK, *OF_GAMES, *LASTING} - {""}
@@ -96,6 +107,9 @@ class Run:
     out: bytes
     err: bytes
     files: dict[str, bytes]
+
+
+Runner = Callable[[Path, tuple[str, ...], str], Run]
 
 
 @pytest.fixture(name="inputs", scope="module")
@@ -137,26 +151,49 @@ def _run(folder: Path, arguments: tuple[str, ...], closed: str) -> Run:
         env={**os.environ, "PYTHONPATH": str(ROOT), "TLTLC_CACHE_DIR": "", "SDL_VIDEODRIVER": "dummy"},
         check=False,
     )
-    paths = [path for path in folder.rglob("*") if path.is_file()]
-    return Run(
-        completed.returncode,
-        completed.stdout,
-        completed.stderr,
-        {str(path.relative_to(folder)): path.read_bytes() for path in paths},
-    )
+    return Run(completed.returncode, completed.stdout, completed.stderr, _files(folder))
+
+
+def _files(folder: Path) -> dict[str, bytes]:
+    return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+@pytest.fixture(name="run_here")
+def _run_here(capfdbinary: pytest.CaptureFixture[bytes], monkeypatch: pytest.MonkeyPatch) -> Runner:
+    """A function that runs a command line with open streams, in this process, which needs no start of Python."""
+
+    def run(folder: Path, arguments: tuple[str, ...], _: str) -> Run:
+        capfdbinary.readouterr()
+        with monkeypatch.context() as patch, Path(os.devnull).open(encoding="utf-8") as nothing:
+            patch.chdir(folder)
+            patch.setenv("TLTLC_CACHE_DIR", "")
+            patch.setattr(sys, "stdin", nothing)
+            with pytest.raises(SystemExit) as exit_:
+                main(list(arguments))
+        assert isinstance(exit_.value.code, int)
+        out, err = capfdbinary.readouterr()
+        return Run(exit_.value.code, out, err, _files(folder))
+
+    return run
 
 
 def _check(
-    inputs: Path, arguments: tuple[str, ...], folder: Path, streams: Sequence[str], *, same_bytes: bool = True
+    inputs: Path,
+    arguments: tuple[str, ...],
+    folder: Path,
+    streams: Sequence[str],
+    *,
+    same_bytes: bool = True,
+    run_open: Runner = _run,
 ) -> None:
     """Compare a run with open streams to runs with closed streams."""
 
-    def run_copy(closed: str) -> Run:
+    def run_copy(closed: str, run: Runner = _run) -> Run:
         shutil.rmtree(folder, ignore_errors=True)
         shutil.copytree(inputs, folder)
-        return _run(folder, arguments, closed)
+        return run(folder, arguments, closed)
 
-    open_run = run_copy("")
+    open_run = run_copy("", run_open)
     assert open_run.status != 70 and b"Traceback" not in open_run.err
     reads = "-" in arguments
     for closed in streams:
@@ -180,10 +217,17 @@ def _check(
 
 
 @pytest.mark.parametrize("arguments", _cases(QUICK), ids=" ".join)
-def test_closed_streams_lose_no_result(arguments: tuple[str, ...], inputs: Path, tmp_path: Path) -> None:
+def test_closed_streams_lose_no_result(
+    arguments: tuple[str, ...], inputs: Path, tmp_path: Path, run_here: Runner
+) -> None:
+    run_open = run_here
     if arguments[:1] == ("lsp",):
         pytest.importorskip("pygls")
-    _check(inputs, arguments, tmp_path / "inputs", OFTEN)
+        # The server reads from the descriptor of standard input.
+        run_open = _run
+    # The first arguments of each command are run with standard error closed, too.
+    streams = OFTEN if arguments in FIRST else OFTEN[:1]
+    _check(inputs, arguments, tmp_path / "inputs", streams, run_open=run_open)
 
 
 @pytest.mark.parametrize("arguments", _cases(OF_GAMES), ids=" ".join)
@@ -194,9 +238,9 @@ def test_closed_streams_of_game_commands_lose_no_result(
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("arguments", _cases(QUICK) + _cases(OF_GAMES), ids=" ".join)
+@pytest.mark.parametrize("arguments", _cases(QUICK) + _cases(OF_GAMES) + _cases(IMPORTING), ids=" ".join)
 def test_other_closed_streams_lose_no_result(arguments: tuple[str, ...], recorded: Path, tmp_path: Path) -> None:
-    _check(recorded, arguments, tmp_path / "inputs", OFTEN[:-1] + SELDOM)
+    _check(recorded, arguments, tmp_path / "inputs", OFTEN + SELDOM)
 
 
 @pytest.mark.slow

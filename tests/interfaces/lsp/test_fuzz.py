@@ -46,7 +46,7 @@ NOTHING = DocumentAnalysis((), (), (SpecFigures("branching", 6, 4, 1, 0),))
 def test_random_edits_keep_all_answers_consistent(path: Path) -> None:
     generator = random.Random(path.stem)
     whole = path.read_text(encoding="utf-8")
-    for _ in range(8):
+    for _ in range(4):
         document, _, workspace = open_text(whole, path.parent)
         uri, text = uri_of(document.source.name), whole
         for version in range(2, 2 + generator.randint(1, 5)):

@@ -8,10 +8,11 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from tests import pipes
+from tests.fuzzing import times
 from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.interfaces.lsp.workspace import Workspace
@@ -54,7 +55,7 @@ def diagnostics_of(workspace: Workspace, uri: str) -> tuple[Diagnostics, Diagnos
 
 
 @given(st.integers(0, 2), st.lists(STEPS, min_size=1, max_size=12))
-@settings(max_examples=200)
+@times(60)
 def test_every_history_gives_the_results_of_a_new_workspace(main: int, steps: list[tuple[str, str, int]]) -> None:
     times = count(1)
     with TemporaryDirectory() as place:

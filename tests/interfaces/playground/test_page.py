@@ -591,17 +591,22 @@ def test_the_site_compiles_in_the_browser(browser: Browser, tmp_path: Path) -> N
         Thread(target=server.serve_forever, daemon=True).start()
         wrong: list[str] = []
         for page in open_page(browser, f"http://127.0.0.1:{server.server_address[1]}/", wrong):
+            # The test moves the clock of the page, so that no worker computes until the time is over.
+            page.clock.install()
             write(page, BROKEN)
             summary(page, "^1 error")
             # A compilation that takes too long is abandoned for the next text.
             write(page, SLOW)
             summary(page, "^Compiling…$")
             write(page, FIXED)
+            page.clock.run_for(4_000)
             summary(page, "^It compiles$")
             page.get_by_role("button", name="Show a success").click()
             expect(page.locator("#steps .verdict")).to_have_text(["pending", "holding"])
             assert wrong == []
             write(page, SLOW)
+            summary(page, "^Compiling…$")
+            page.clock.run_for(10_000)
             summary(page, "^1 error; what is shown is of an earlier text$")
             expect(page.locator("#messages li")).to_contain_text("was given up")
             write(page, FIXED)

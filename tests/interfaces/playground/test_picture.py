@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 
 import tltlc
 from tests.backends.strategies import automata, hostile_automata, infinite_automata
+from tests.fuzzing import times
 from tltlc.automaton.fspa import Fspa, Notation
 from tltlc.backends.drawing.folding import fold_runs
 from tltlc.diagnostics.formats.text import columns
@@ -226,6 +227,7 @@ def graphs(draw: st.DrawFn) -> tuple[int, list[Ends]]:
     return size, draw(st.lists(st.tuples(state, state), max_size=20, unique=True))
 
 
+@times(40)
 @given(graphs(), st.lists(st.tuples(st.floats(1, 200), st.floats(1, 90)), min_size=20, max_size=20))
 def test_edges_cross_no_state_and_no_text(graph: tuple[int, list[Ends]], sizes: list[Size]) -> None:
     size, edges = graph

@@ -3,7 +3,7 @@ every trace."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -20,6 +20,7 @@ from tests.tools.conformance.runner import (
     runners,
     write,
 )
+from tests.tools.conformance.runners.c import OPTIMIZED
 from tltlc.tools.conformance.case import ConformanceCase
 from tltlc.tools.conformance.corpus import CASES, is_exact
 from tltlc.tools.conformance.expected import ExpectedOutput, expected_output
@@ -28,6 +29,9 @@ ALONE = ("by_zero", "exclusive_many", "names_of_code")
 """Cases whose programs are built one by one and started once per trace, as a user does;
 ``test_programs`` has one more."""
 
+EVERY = {"c++": 4, "rust": 3}
+"""Compilers that take long for all cases: every fourth or third one is built, and all of them as a slow test."""
+
 
 @cache
 def case_and_expected(name: str) -> tuple[ConformanceCase, tuple[ExpectedOutput, ...]]:
@@ -35,10 +39,10 @@ def case_and_expected(name: str) -> tuple[ConformanceCase, tuple[ExpectedOutput,
     return case, tuple(expected_output(case.fspa, trace) for trace in case.traces)
 
 
-def _usable() -> Iterator[Any]:
+def _usable(among: Iterable[Runner]) -> Iterator[Any]:
     """Yield each runner as a parameter; a runner that cannot be used here is skipped, with the
     reason."""
-    for runner in runners():
+    for runner in among:
         reason = runner.missing()
         marks = [pytest.mark.skip(reason=reason)] if reason else []
         yield pytest.param(runner, id=runner.name, marks=marks)
@@ -54,19 +58,32 @@ def _differences(runner: Runner, name: str, outcomes: list[Outcome]) -> Iterator
             yield f"{runner.name}, {name}.{number}.csv\n" + "\n".join(differences[:10])
 
 
-@pytest.mark.parametrize("runner", list(_usable()))
-def test_all_cases_built_as_one_program_match_the_expected_rows(runner: Runner, tmp_path: Path) -> None:
-    cases = {name: case_and_expected(name)[0] for name in CASES}
+def check_together(runner: Runner, names: Iterable[str], folder: Path) -> None:
+    """Build the monitors of these cases as one program, and compare its rows on all their traces."""
+    cases = {name: case_and_expected(name)[0] for name in names}
     runs = [(name, trace) for name, case in cases.items() for trace in case.traces]
-    outcomes = iter(build_program(runner, [case.fspa for case in cases.values()], tmp_path)(runs))
+    outcomes = iter(build_program(runner, [case.fspa for case in cases.values()], folder)(runs))
     differences: list[str] = []
     for name, case in cases.items():
         differences += _differences(runner, name, [next(outcomes) for _ in case.traces])
     assert not differences, f"{len(differences)} of {len(runs)} traces differ\n" + "\n".join(differences)
 
 
+@pytest.mark.parametrize("runner", list(_usable(runners())))
+def test_cases_built_as_one_program_match_the_expected_rows(runner: Runner, tmp_path: Path) -> None:
+    check_together(runner, list(CASES)[:: EVERY.get(runner.name, 1)], tmp_path)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "runner", list(_usable([OPTIMIZED, *(runner for runner in runners() if runner.name in EVERY)]))
+)
+def test_all_cases_of_slow_compilers_match_the_expected_rows(runner: Runner, tmp_path: Path) -> None:
+    check_together(runner, CASES, tmp_path)
+
+
 @pytest.mark.parametrize("name", ALONE)
-@pytest.mark.parametrize("runner", list(_usable()))
+@pytest.mark.parametrize("runner", list(_usable(runners())))
 def test_single_programs_match_the_expected_rows(runner: Runner, name: str, tmp_path: Path) -> None:
     case, _ = case_and_expected(name)
     write(runner, case.fspa, tmp_path)

@@ -15,6 +15,7 @@ from typing import get_args
 
 import pytest
 
+from tests.calls import calls
 from tests.interfaces.cli.conftest import ROOT
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import emit
@@ -28,6 +29,7 @@ from tltlc.tools.conformance import borders
 from tltlc.tools.conformance.corpus import CASES, files
 from tltlc.tools.conformance.draw import Draw
 from tltlc.tools.conformance.expected import COLUMNS, Kind
+from tltlc.tools.conformance.traces import random_trace
 
 FLAGS = ("true", "false")
 
@@ -51,18 +53,26 @@ def rows() -> list[dict[str, str]]:
 
 
 def test_the_command_writes_the_same_bytes_in_every_process(tmp_path: Path) -> None:
+    """The second process writes over the files of the first, one of which was changed."""
     for seed in ("1", "2"):
-        command = [sys.executable, "-m", "tltlc", "conformance", "-o", str(tmp_path / seed)]
+        command = [sys.executable, "-m", "tltlc", "conformance", "-o", str(tmp_path / "corpus")]
         environment = {"PYTHONHASHSEED": seed, "PYTHONPATH": str(ROOT), "HOME": str(tmp_path)}
         process = subprocess.run(command, capture_output=True, text=True, env=environment)
         assert process.returncode == 0, process.stderr
         assert f"wrote {len(CASES)} cases" in process.stderr
         written = {
-            path.relative_to(tmp_path / seed).as_posix(): path.read_bytes()
-            for path in (tmp_path / seed).rglob("*")
+            path.relative_to(tmp_path / "corpus").as_posix(): path.read_bytes()
+            for path in (tmp_path / "corpus").rglob("*")
             if path.is_file()
         }
         assert written == corpus()
+        (tmp_path / "corpus" / "check.py").write_text("changed")
+
+
+def test_predicates_are_compiled_once_for_a_random_trace() -> None:
+    # The measured value is 150 calls for each sample; compiling the predicates takes 1300.
+    fspa = CASES["cover_and_hide"]().fspa
+    assert calls(lambda: random_trace(fspa, Draw(1), 400)) < 400 * 400
 
 
 def test_a_folder_holds_a_case_and_the_index_lists_all_files() -> None:
@@ -84,7 +94,7 @@ def test_a_folder_holds_a_case_and_the_index_lists_all_files() -> None:
 def test_the_corpus_checks_monitors_by_itself(tmp_path: Path) -> None:
     """Run the check as its README says, with a correct and with a broken monitor."""
     write_files(tmp_path / "corpus", corpus())
-    names = ("cells", "functions", "ranges", "trace_lines")
+    names = ("functions", "ranges", "trace_lines")
     for name in names:
         fspa = CASES[name]().fspa
         write_files(tmp_path / "build", emit("python", fspa))
@@ -94,7 +104,7 @@ def test_the_corpus_checks_monitors_by_itself(tmp_path: Path) -> None:
     assert (process.returncode, process.stdout) == (0, f"{count} traces, 0 of them not as expected\n"), process.stderr
     monitor = tmp_path / "build" / "ranges_monitor.py"
     monitor.write_text(monitor.read_text().replace("reward", "rewards"))
-    command[3], count = "ranges,cells", sum(len(CASES[name]().traces) for name in ("ranges", "cells"))
+    command[3], count = "ranges,functions", sum(len(CASES[name]().traces) for name in ("ranges", "functions"))
     process = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
     assert process.returncode == 1
     assert process.stdout.endswith(f"{count} traces, 1 of them not as expected\n")

@@ -15,9 +15,10 @@ from pathlib import Path
 
 import jsonschema
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 
 from tests.calls import calls
+from tests.fuzzing import times
 from tests.interfaces.cli.conftest import ROOT, Outcome, inside, tltlc  # noqa: F401
 from tests.logic.strategies import formulas
 from tltlc import TltlError, compile_text
@@ -96,7 +97,7 @@ def test_printed_tests_pass(case: Path, copy, tltlc: Run) -> None:  # type: igno
         assert tltlc("test", pasted).out.splitlines()[-1] == "1 passed, 0 failed"
 
 
-@settings(max_examples=100, deadline=None)
+@times(40)
 @given(SMALL, SMALL)
 def test_a_printed_test_passes_for_one_spec_and_fails_for_the_other(first: Formula, second: Formula) -> None:
     texts = [f"signal a: bool  signal b: bool  spec s = {write(formula, ASCII)}\n" for formula in (first, second)]
@@ -123,7 +124,7 @@ def test_a_printed_test_passes_for_one_spec_and_fails_for_the_other(first: Formu
             assert results == [True, False]
 
 
-@settings(max_examples=50, deadline=None)
+@times(25)
 @given(SMALL, SMALL)
 def test_every_document_fits_the_schema(first: Formula, second: Formula) -> None:
     for clause in ("", "semantics infinite "):

@@ -5,9 +5,10 @@ from __future__ import annotations
 from itertools import product
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 
 from tests.automaton.infinite.runs import compiled
+from tests.fuzzing import times
 from tests.logic.strategies import formulas
 from tltlc import compile_text
 from tltlc.automaton.compare import Letter, Trace, is_included
@@ -52,7 +53,7 @@ def relation_of(only_a: bool, only_b: bool) -> Relation:
     return "looser" if only_b else "equivalent"
 
 
-@settings(max_examples=150, deadline=None)
+@times(50)
 @given(SMALL, SMALL)
 def test_finite_relations_match_the_formulas(first: Formula, second: Formula) -> None:
     a, b = finite(first), finite(second)
@@ -72,7 +73,7 @@ def test_finite_relations_match_the_formulas(first: Formula, second: Formula) ->
         assert len(trace.prefix) <= min(map(len, witnesses), default=len(trace.prefix))
 
 
-@settings(max_examples=80, deadline=None)
+@times(30)
 @given(SMALL, SMALL)
 def test_exclusive_atoms_restrict_the_traces(first: Formula, second: Formula) -> None:
     never = always(not_(and_(atom("a"), atom("b"))))
@@ -84,7 +85,7 @@ def test_exclusive_atoms_restrict_the_traces(first: Formula, second: Formula) ->
         assert trace is None or {"a", "b"} not in trace.prefix
 
 
-@settings(max_examples=80, deadline=None)
+@times(30)
 @given(SMALL, SMALL)
 def test_infinite_relations_match_the_formulas(first: Formula, second: Formula) -> None:
     comparison = compare(compiled(first), compiled(second))
@@ -99,7 +100,7 @@ def test_infinite_relations_match_the_formulas(first: Formula, second: Formula) 
                 assert not holds_on_lasso(accepts, prefix, cycle) or holds_on_lasso(rejects, prefix, cycle)
 
 
-@settings(max_examples=100, deadline=None)
+@times(40)
 @given(SMALL, SMALL)
 def test_swapping_the_specs_swaps_the_relation(first: Formula, second: Formula) -> None:
     a, b = finite(first), finite(second)
@@ -111,7 +112,7 @@ def test_swapping_the_specs_swaps_the_relation(first: Formula, second: Formula) 
     assert lengths[:2] == lengths[2:]
 
 
-@settings(max_examples=50, deadline=None)
+@times(25)
 @given(SMALL)
 def test_a_spec_does_not_differ_from_itself(formula: Formula) -> None:
     assert diff(finite(formula), finite(formula)).is_same
@@ -125,7 +126,7 @@ def test_finite_and_infinite_specs_have_no_relation() -> None:
     assert comparison.beginnings is not None and comparison.beginnings.relation == "equivalent"
 
 
-@settings(max_examples=80, deadline=None)
+@times(30)
 @given(SMALL, SMALL)
 def test_beginnings_of_finite_and_infinite_specs_are_compared(first: Formula, second: Formula) -> None:
     a, b = finite(first), compiled(second)
@@ -191,7 +192,7 @@ FEASIBLE = [
 """The letters over these atoms that values of the one signal can produce: four of eight."""
 
 
-@settings(max_examples=80, deadline=None)
+@times(30)
 @given(formulas(atoms=tuple(THRESHOLDS), max_leaves=4), formulas(atoms=tuple(THRESHOLDS), max_leaves=4))
 def test_only_letters_that_samples_can_produce_count(first: Formula, second: Formula) -> None:
     lets = "".join(f"let {name} = {atom}\n" for name, atom in THRESHOLDS.items())

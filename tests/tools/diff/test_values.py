@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from tests.fuzzing import times
 from tltlc import compile_text
 from tltlc.automaton.fspa import Fspa
 from tltlc.monitor import Monitor
@@ -24,7 +25,7 @@ def difference_of(one: Fspa, other: Fspa) -> ValueDifference | None:
     return value_difference(meaning(one, 0), meaning(other, 0))
 
 
-@settings(max_examples=60, deadline=None)
+@times(25)
 @given(TENTHS, TENTHS)
 def test_a_sample_is_found_for_a_moved_threshold(first: float, second: float) -> None:
     assume(first != second)

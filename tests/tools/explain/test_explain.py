@@ -9,10 +9,11 @@ from pathlib import Path
 
 import jsonschema
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 
 import tltlc as compiler
 from tests.calls import calls
+from tests.fuzzing import times
 from tests.interfaces.cli.conftest import EXAMPLE, Outcome, inside, tltlc
 from tests.logic.strategies import formulas
 from tltlc.automaton.compare import Letter
@@ -79,7 +80,7 @@ def test_an_artefact_keeps_the_formula_if_names_contain_each_other() -> None:
     assert set(fspa.formula.atoms()) == {atom.name for atom in fspa.atoms}
 
 
-@settings(max_examples=100, deadline=None)
+@times(40)
 @given(FORMULAS)
 def test_formulas_of_guards_are_true_where_the_guards_are(formula: Formula) -> None:
     fspa = build(spec_from_formula(formula))
@@ -93,7 +94,7 @@ def test_formulas_of_guards_are_true_where_the_guards_are(formula: Formula) -> N
             assert is_true == holds(edge.guard, [truth[name] for name in names])
 
 
-@settings(max_examples=100, deadline=None)
+@times(40)
 @given(FORMULAS)
 def test_states_edges_and_traces_of_an_explanation_match_the_automaton(formula: Formula) -> None:
     fspa = build(spec_from_formula(formula))

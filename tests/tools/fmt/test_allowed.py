@@ -7,10 +7,11 @@ from itertools import pairwise
 from random import Random
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.calls import calls
+from tests.fuzzing import times
 from tests.tools.fmt.laws import check
 from tests.tools.fmt.random_texts import join
 from tltlc.core.source import SourceFile
@@ -50,7 +51,7 @@ def _reported(text: str) -> list[tuple[str, int]]:
     return [(code, sum(span.start <= start for span in spans)) for code, start in reported]
 
 
-@settings(max_examples=60, deadline=None)
+@times(25)
 @given(st.randoms(use_true_random=False), st.sampled_from([*STYLES]))
 def test_lint_reports_the_same_after_formatting(random: Random, style: str) -> None:
     tokens = [token for text in _declarations(random) for token in tokenize(text).tokens if token.text]

@@ -8,9 +8,10 @@ from pathlib import Path
 from random import Random
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.fuzzing import times
 from tests.golden.cases import sources
 from tests.tools.fmt import random_texts
 from tests.tools.fmt.laws import check
@@ -51,19 +52,19 @@ def test_the_laws_hold_for_all_files_of_the_repository(style: str) -> None:
             raise AssertionError(name) from error
 
 
-@settings(max_examples=400, deadline=None)
+@times(100)
 @given(st.randoms(use_true_random=False), st.sampled_from([*STYLES]))
 def test_the_laws_hold_for_random_modules(random: Random, style: str) -> None:
     check(random_texts.module(random), style)
 
 
-@settings(max_examples=400, deadline=None)
+@times(100)
 @given(st.randoms(use_true_random=False), st.sampled_from([*STYLES]))
 def test_the_laws_hold_for_random_modules_with_allow_comments(random: Random, style: str) -> None:
     check(random_texts.module(random, random_texts.GAPS_WITH_ALLOW), style)
 
 
-@settings(max_examples=200, deadline=None)
+@times(60)
 @given(st.randoms(use_true_random=False), st.sampled_from([*STYLES]))
 def test_the_laws_hold_with_comments_between_any_two_words(random: Random, style: str) -> None:
     # A number must stay next to its unit.

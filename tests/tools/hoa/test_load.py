@@ -9,10 +9,11 @@ from pathlib import Path
 from random import Random
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 
 import tltlc
 from tests.backends.strategies import automata, infinite_automata
+from tests.fuzzing import times
 from tests.tools.hoa.files import Automaton, Condition, Shape, hoa_text, random_automaton
 from tltlc import backends
 from tltlc.automaton.compare import are_equivalent
@@ -54,7 +55,7 @@ def reimport(fspa: Fspa) -> Fspa:
     )
 
 
-@settings(max_examples=80, deadline=None)
+@times(30)
 @given(automata())
 def test_a_finite_automaton_survives_export_and_import(fspa: Fspa) -> None:
     reimported = reimport(fspa)
@@ -69,7 +70,7 @@ def test_a_finite_automaton_survives_export_and_import(fspa: Fspa) -> None:
     assert (reimported.spec_size, reimported.judge) == (fspa.spec_size, fspa.judge)
 
 
-@settings(max_examples=80, deadline=None)
+@times(30)
 @given(infinite_automata())
 def test_an_infinite_automaton_survives_export_and_import(fspa: Fspa) -> None:
     reimported = reimport(fspa)

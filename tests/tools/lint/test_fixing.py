@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 import tltlc
 from tests.calls import calls
+from tests.fuzzing import times
 from tests.tools.lint.helpers import apply_fixes, codes, findings_in
 from tltlc.core.source import SourceFile
 from tltlc.grammar.parser import parse
@@ -159,7 +160,7 @@ def reported_findings(text: str) -> set[tuple[str, str, str]]:
     }
 
 
-@settings(deadline=None, max_examples=25)
+@times(20)
 @given(commented_files())
 def test_fixes_reveal_no_silenced_finding(text: str) -> None:
     """A finding that was silenced before the fixes is silenced after them."""
@@ -168,7 +169,7 @@ def test_fixes_reveal_no_silenced_finding(text: str) -> None:
     assert not silenced & after
 
 
-@settings(deadline=None)
+@times(40)
 @given(modules())
 def test_fixes_keep_all_automata_and_leave_nothing_to_fix(text: str) -> None:
     fixed = apply_fixes(text)

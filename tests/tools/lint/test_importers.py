@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.fuzzing import times
 from tests.time_limit import run_with_time_limit
 from tests.tools.lint.helpers import codes
 from tltlc.core.source import SourceFile
@@ -40,6 +41,7 @@ def test_a_text_without_an_import_statement_imports_nothing(text: str) -> None:
     assert "game" not in importer_names("x.tltl", text).imports
 
 
+@times(40)
 @given(st.lists(NAMES, max_size=6), NAMES)
 def test_every_suffix_of_a_name_counts_as_used(names: list[str], queried: str) -> None:
     used = names_used_elsewhere("game.tltl", [importer_names("x.tltl", f"import game\n{' '.join(names)}")])

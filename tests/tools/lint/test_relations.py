@@ -5,11 +5,13 @@ from __future__ import annotations
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from tests.fuzzing import times
 from tests.tools.lint.helpers import RANGES, labelled_texts_in_block
 
 ENDS = st.integers(1, 9)
 
 
+@times(40)
 @given(ENDS, ENDS, st.sampled_from("<>"), st.sampled_from("<>"), st.sampled_from(["and", "or"]))
 def test_a_relation_is_reported_if_and_only_if_it_holds_for_all_numbers(
     one: int, two: int, first: str, second: str, op: str

@@ -48,7 +48,8 @@ def test_an_error_is_kept_beside_a_more_specific_warning() -> None:
 @pytest.mark.parametrize(
     "formula",
     [
-        " -> ".join(["a"] * 900),
+        " -> ".join(["a"] * 300),
+        pytest.param(" -> ".join(["a"] * 900), marks=pytest.mark.slow, id="a -> a, longer"),
         " U ".join(["a"] * 900),
         "F " * 990 + "a",
         "X " * 900 + "a",

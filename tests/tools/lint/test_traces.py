@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from hypothesis import given
 
+from tests.fuzzing import times
 from tests.logic.strategies import formulas, traces
 from tests.tools.lint.traces import LONGEST, Traces, subsets
 from tltlc.logic.formula import Formula
@@ -12,6 +13,7 @@ from tltlc.logic.oracle import holds
 LETTERS = subsets(["a", "b"])
 
 
+@times(40)
 @given(formulas(["a", "b"]), traces(["a", "b"], max_length=LONGEST))
 def test_sets_of_traces_agree_with_the_oracle_on_single_traces(
     formula: Formula, trace: tuple[frozenset[str], ...]

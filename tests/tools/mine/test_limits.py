@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from functools import cache
 from itertools import combinations
 from pathlib import Path
 from random import Random
@@ -55,11 +56,22 @@ def random_evidence(columns: int) -> Evidence:
     return Evidence((good,), (bad,))
 
 
+@cache
+def searched(columns: int) -> tuple[SpecSearch, int]:
+    """A finished search over two random traces, and the most candidates that it tried between two points where it
+    can stop."""
+    search = SpecSearch(random_evidence(columns), MiningOptions())
+    previous = largest = 0
+    for _ in search.run():
+        largest = max(largest, search.tried_count - previous)
+        previous = search.tried_count
+    return search, largest
+
+
 def test_the_work_does_not_grow_with_the_columns() -> None:
     work = []
     for columns in (1_000, 2_000):
-        search = SpecSearch(random_evidence(columns), MiningOptions())
-        list(search.run())
+        search, _ = searched(columns)
         work.append(search.tried_count - 2 * columns)
         assert search.ranking()
     pairs = MOST_EVENTS**2
@@ -70,18 +82,14 @@ def test_the_work_does_not_grow_with_the_columns() -> None:
 def test_the_search_can_be_stopped_every_few_candidates() -> None:
     """Between two points at which the search can stop, it tries few candidates, so ``--time`` is
     precise."""
-    search = SpecSearch(random_evidence(1_000), MiningOptions())
-    previous = largest = 0
-    for _ in search.run():
-        largest = max(largest, search.tried_count - previous)
-        previous = search.tried_count
+    _, largest = searched(1_000)
     assert largest <= 20_000
 
 
 def test_the_events_that_separate_best_are_combined() -> None:
     planted = ("key", "door")
-    good = [LabelledTrace(f"g{seed}", random_trace(300, 10, seed, planted)) for seed in range(20)]
-    bad = [LabelledTrace(f"b{seed}", random_trace(300, 10, 100 + seed, planted[::-1])) for seed in range(20)]
+    good = [LabelledTrace(f"g{seed}", random_trace(300, 10, seed, planted)) for seed in range(10)]
+    bad = [LabelledTrace(f"b{seed}", random_trace(300, 10, 100 + seed, planted[::-1])) for seed in range(10)]
     given_evidence = Evidence(tuple(good), tuple(bad))
     assert set(planted) <= set(best_events(given_evidence, given_evidence.atoms()))
     search = SpecSearch(given_evidence, MiningOptions())
@@ -135,7 +143,7 @@ def test_the_best_candidates_are_kept_if_there_are_too_many(monkeypatch: pytest.
 
 def test_many_columns_are_mined_with_a_warning(tltlc: Run, inside: Path) -> None:
     for name, seed in (("good.csv", 1), ("bad.csv", 2)):
-        (inside / name).write_text(csv(random_trace(1_000, 10, seed), 1_000))
+        (inside / name).write_text(csv(random_trace(300, 10, seed), 300))
     outcome = tltlc("mine", "good.csv", "--against", "bad.csv", "--json")
     assert outcome.status == 0
     document = json.loads(outcome.out)

@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from benchmarks.mine_traces import ATOMS, PlantedSpec, evidence, paper_specs, random_spec
+from tests.fuzzing import times
 from tests.tools.mine.conftest import evidences, vocabulary
 from tltlc.automaton.compare import are_equivalent
 from tltlc.core.source import SourceFile
@@ -85,7 +86,7 @@ def test_a_support_of_one_means_that_all_traces_are_accepted(given_evidence: Evi
         assert all(judge(proposal.fspa, trace).accepted for trace in given_evidence.traces)
 
 
-@settings(max_examples=15, deadline=None)
+@times(8)
 @given(st.integers(1, 8), st.integers(0, 10_000))
 def test_a_planted_sequence_of_any_length_is_recovered(length: int, seed: int) -> None:
     steps = Random(seed).sample(ATOMS, length)

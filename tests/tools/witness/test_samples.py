@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 import tltlc
+from tests.fuzzing import times
 from tltlc.monitor import Monitor
 from tltlc.tools.witness.samples import MissingSample, SampleFinder, UnsatisfiedLiterals, csv_text, samples
 
@@ -39,7 +40,7 @@ def test_each_atom_is_made_true_and_false(declarations: str, formula: str) -> No
             assert (atom.name in finder.letter_of(sample)) == holds
 
 
-@settings(max_examples=150, deadline=None)
+@times(50)
 @given(st.lists(st.integers(1, 99), min_size=1, max_size=4, unique=True), st.data())
 def test_values_between_thresholds_are_found(thresholds: list[int], data: st.DataObject) -> None:
     formula = " & ".join(f"F x > {threshold / 100}" for threshold in thresholds)

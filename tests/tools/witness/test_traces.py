@@ -7,10 +7,11 @@ from itertools import product
 from pathlib import Path
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 import tltlc
+from tests.fuzzing import times
 from tests.logic.strategies import formulas
 from tltlc.automaton.compare import Letter
 from tltlc.automaton.fspa import Fspa
@@ -43,7 +44,7 @@ def finite(formula: Formula) -> Fspa:
     return fspa
 
 
-@settings(max_examples=200, deadline=None)
+@times(60)
 @given(SMALL)
 def test_an_accepting_trace_is_accepted_and_shortest(formula: Formula) -> None:
     witness = accepting_trace(Moves(finite(formula)))
@@ -56,7 +57,7 @@ def test_an_accepting_trace_is_accepted_and_shortest(formula: Formula) -> None:
     assert accepted or len(witness.letters) > LONGEST
 
 
-@settings(max_examples=100, deadline=None)
+@times(40)
 @given(SMALL)
 def test_a_rejecting_trace_is_shortest_and_no_suffix_is_accepted(formula: Formula) -> None:
     fspa = finite(formula)
@@ -81,7 +82,7 @@ def run(fspa: Fspa, letters: tuple[Letter, ...]) -> str:
     return [monitor.step_atoms(blocks.letter_values(fspa, letter)).verdict for letter in letters][-1]
 
 
-@settings(max_examples=100, deadline=None)
+@times(40)
 @given(SMALL)
 def test_an_infinite_witness_is_accepted_or_rejected_by_the_formula(formula: Formula) -> None:
     text = f"{SIGNALS}spec s {{ semantics infinite  require {ascii_text(formula)} }}"
@@ -99,14 +100,14 @@ def test_an_infinite_witness_is_accepted_or_rejected_by_the_formula(formula: For
                 assert holds_on_lasso(formula, trace[:before], trace[before:]) != is_accepted
 
 
-@settings(max_examples=100, deadline=None)
+@times(40)
 @given(SMALL)
 def test_a_cover_takes_every_edge(formula: Formula) -> None:
     fspa = finite(formula)
     check_cover(fspa, cover(Moves(fspa)))
 
 
-@settings(max_examples=120, deadline=None)
+@times(40)
 @given(
     formulas(atoms=("a", "b", "c"), max_leaves=4),
     st.sampled_from(["", "exclusive a, b\n", "exclusive a, b, c\n"]),
@@ -189,7 +190,7 @@ def check_csv(fspa: Fspa, trace: Witness) -> None:
     assert not by_signals.notices
 
 
-@settings(max_examples=200, deadline=None)
+@times(60)
 @given(
     formulas(atoms=("a", "b", "c"), max_leaves=6),
     st.sampled_from(["", "exclusive a, b\n"]),
@@ -289,7 +290,7 @@ FEASIBLE = {
 }
 
 
-@settings(max_examples=100, deadline=None)
+@times(40)
 @given(formulas(atoms=tuple(THRESHOLDS), max_leaves=5))
 def test_a_cover_takes_exactly_the_edges_that_samples_take(formula: Formula) -> None:
     text = "".join(f"let {name} = {atom}\n" for name, atom in THRESHOLDS.items())

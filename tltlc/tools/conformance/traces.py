@@ -38,9 +38,11 @@ def random_trace(fspa: Fspa, draw: Draw, length: int, pools: Pools = EMPTY, *, r
 
     If ``refused``, add a last sample that the automaton rejects, if one is found.
     """
-    samples = [_sample(fspa, draw, pools, accepted=True) for _ in range(length)]
+    # The predicates are compiled once here, not for each sample.
+    atoms = Samples(fspa, None, [])
+    samples = [_sample(fspa, atoms, draw, pools, accepted=True) for _ in range(length)]
     if refused:
-        samples.append(_sample(fspa, draw, pools, accepted=False))
+        samples.append(_sample(fspa, atoms, draw, pools, accepted=False))
     rows = [[_text(draw, signal, sample[signal.name]) for signal in fspa.signals] for sample in samples]
     return table([signal.name for signal in fspa.signals], rows)
 
@@ -63,22 +65,22 @@ def _liveliness(fspa: Fspa, trace: bytes) -> tuple[int, int]:
     return len({step.state for step in steps}), open_
 
 
-def _sample(fspa: Fspa, draw: Draw, pools: Pools, accepted: bool) -> dict[str, float]:
+def _sample(fspa: Fspa, atoms: Samples, draw: Draw, pools: Pools, accepted: bool) -> dict[str, float]:
     """Draw samples until one is accepted, or rejected if ``accepted`` is false.
 
     After ``_ATTEMPTS`` samples, return the last one anyway.
     """
     for _ in range(_ATTEMPTS):
         sample = {signal.name: _value(draw, signal, pools.get(signal.name, ())) for signal in fspa.signals}
-        if _is_accepted(fspa, sample) == accepted:
+        if _is_accepted(fspa, atoms, sample) == accepted:
             break
     return sample
 
 
-def _is_accepted(fspa: Fspa, sample: Mapping[str, float]) -> bool:
+def _is_accepted(fspa: Fspa, atoms: Samples, sample: Mapping[str, float]) -> bool:
     """Whether each atom has a value in the sample, and no two exclusive atoms hold."""
     try:
-        check_exclusive(fspa, Samples(fspa, None, []).atom_values(sample, 1), 1)
+        check_exclusive(fspa, atoms.atom_values(sample, 1), 1)
     except MonitorError:
         return False
     return True

@@ -1,7 +1,8 @@
 """C99 and C++17, compiled by GNU's compilers with every warning an error.
 
-The program of a single monitor is built with ``-O1`` and sanitizers. The program of all monitors
-together is built with ``-O1`` in C, and with sanitizers in C++.
+The program of a single monitor is built with ``-O1`` and sanitizers. The program of many monitors
+is built with sanitizers in C++; in C it is built without, and by :data:`OPTIMIZED` with ``-O1``, which takes four
+times as long.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ from functools import partial
 from pathlib import Path
 
 from tests.tools.conformance.runner import Runner, execute
+from tltlc.core.record import replace
 
 STRICT = ("-Wall", "-Wextra", "-Wpedantic", "-Werror")
 SANITIZED = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all")
@@ -66,7 +68,7 @@ RUNNERS = (
         target="c",
         build=(*C, "-O1", *STRICT, *SANITIZED, *_SOURCE),
         run=("./{name}_c",),
-        build_all=partial(link, (*C, "-O1", *STRICT)),
+        build_all=partial(link, (*C, *STRICT)),
         run_all=("./monitors",),
         tools=("gcc",),
     ),
@@ -81,3 +83,5 @@ RUNNERS = (
         tools=("g++",),
     ),
 )
+
+OPTIMIZED = replace(RUNNERS[0], name="c -O1", build_all=partial(link, (*C, "-O1", *STRICT)))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 from hypothesis import given
 
+from tests.fuzzing import times
 from tests.tools.lint.helpers import RANGES, labelled_texts_in_block, spec_and_remarks
 from tests.tools.lint.strategies import RANGED, World, specs
 from tltlc.tools.lint.rules import apart_by_ranges
@@ -30,6 +31,7 @@ def test_clauses_that_contradict_each_other_by_ranges_are_reported(
     assert labelled_texts_in_block("TLT0431", *clauses, before=RANGES) == expected
 
 
+@times(40)
 @given(specs("keep {}", "avoid {}", "reach {}", "require {}", worlds=[RANGED]))
 def test_no_trace_of_values_satisfies_a_reported_spec(drawn: tuple[World, str]) -> None:
     world, text = drawn

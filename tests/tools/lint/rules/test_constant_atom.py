@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 from hypothesis import given
 
+from tests.fuzzing import times
 from tests.tools.lint.helpers import block, codes, findings_in, spec_and_remarks
 from tests.tools.lint.predicates import PREDICATES, Predicate
 from tltlc.tools.lint.rules import constant_atom
@@ -42,6 +43,7 @@ def test_an_atom_is_reported_once_per_file() -> None:
     assert codes(before + "spec one = F p\nspec two = G !p\n") == ["TLT0416"]
 
 
+@times(40)
 @given(PREDICATES)
 def test_reported_atoms_are_constant_on_all_values(predicate: Predicate) -> None:
     _, reported = spec_and_remarks(constant_atom.check, block("reach p", before=predicate.declaration))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 from hypothesis import given
 
+from tests.fuzzing import times
 from tests.tools.lint.helpers import APART, PLACES, labelled_texts_in_block, spec_and_remarks
 from tests.tools.lint.strategies import EXCLUSIVE, World, specs
 from tltlc.tools.lint.file_view import without_brackets
@@ -35,6 +36,7 @@ def test_the_warning_of_the_compiler_stays_if_it_has_another_reason() -> None:
     assert labelled_texts_in_block("TLT0410", "reach at(x) and at(y)", "reach at(z)", "avoid at(z)", before=APART) != []
 
 
+@times(40)
 @given(specs("reach {} and {}", "reach {} then ({} and {})", "require F ({} & {})", worlds=[EXCLUSIVE], most=1))
 def test_no_step_meets_a_reported_goal(drawn: tuple[World, str]) -> None:
     world, text = drawn

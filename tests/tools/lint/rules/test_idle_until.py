@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 from hypothesis import given
 
+from tests.fuzzing import times
 from tests.tools.lint.helpers import SIGNALS, codes, spec_and_remarks
 from tests.tools.lint.strategies import FREE, World, specs
 from tltlc.automaton.compare import are_equivalent
@@ -54,6 +55,7 @@ def spec(clause: str) -> str:
     return f"{SIGNALS}spec s {{\n    limit 300 steps\n    {clause}\n}}\n"
 
 
+@times(40)
 @given(specs("reach {} until {}", "avoid {} until {}", "reach {} then ({} until {})", worlds=[FREE], most=1))
 def test_the_simplified_clause_is_equivalent(drawn: tuple[World, str]) -> None:
     world, text = drawn

@@ -9,6 +9,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 import tltlc
+from tests.fuzzing import times
 from tests.tools.lint.helpers import (
     RANGES,
     SIGNALS,
@@ -30,6 +31,7 @@ def automaton(formulas: list[Formula]) -> tltlc.Fspa:
     return build(spec_from_formula(and_(*formulas)))
 
 
+@times(40)
 @given(st.lists(SMALL, min_size=2, max_size=4))
 def test_implied_clauses_can_be_removed(clauses: list[str]) -> None:
     text = block(*(f"require ({clause})" for clause in clauses))
@@ -86,6 +88,7 @@ def test_an_exclusive_atom_may_imply_an_avoid() -> None:
     assert labelled_texts_in_block("TLT0413", "keep a", "avoid b") == []
 
 
+@times(40)
 @given(specs("keep {}", "avoid {}", "reach {}", "require {}"))
 def test_no_trace_meets_the_reasons_and_breaks_the_implied_clause(drawn: tuple[World, str]) -> None:
     world, text = drawn

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 from hypothesis import given
 
+from tests.fuzzing import times
 from tests.tools.lint.helpers import codes, labelled_texts, spec_and_remarks
 from tests.tools.lint.strategies import FREE, World, specs
 from tltlc.monitor.monitor import Monitor
@@ -70,6 +71,7 @@ def test_a_next_beside_the_goal_makes_it_take_the_whole_time() -> None:
 LASTING = "(always for 3 steps {} and {})"
 
 
+@times(40)
 @given(specs(f"reach {LASTING}", f"reach {LASTING} and {{}}", f"require F ({LASTING} | {{}})", worlds=[FREE], most=1))
 def test_some_trace_of_one_step_meets_a_reported_goal(drawn: tuple[World, str]) -> None:
     world, text = drawn

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 from hypothesis import given
 
+from tests.fuzzing import times
 from tests.tools.lint.helpers import (
     RANGES,
     block,
@@ -104,6 +105,7 @@ def test_the_formula_that_the_paper_prints_is_reported() -> None:
     assert len(codes(text)) == 1
 
 
+@times(40)
 @given(specs("reach {}", "reach {} implies {}", "reach {} then ({} or {})", "keep {}", "avoid {}"))
 def test_some_trace_meets_a_reported_goal_while_the_atoms_are_false(drawn: tuple[World, str]) -> None:
     world, text = drawn

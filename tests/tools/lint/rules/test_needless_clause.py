@@ -7,6 +7,7 @@ from hypothesis import given
 
 import tltlc
 from tests.calls import calls
+from tests.fuzzing import times
 from tests.tools.lint.helpers import (
     APART,
     PLACES,
@@ -57,6 +58,7 @@ def test_a_clause_that_exclusive_atoms_satisfy_is_reported() -> None:
     assert labelled_texts_in_block("TLT0430", "reach at(z)", "avoid at(x) and at(y)", before=PLACES) == []
 
 
+@times(40)
 @given(specs("keep {}", "avoid {}", "reach {}", "require {}"))
 def test_no_trace_breaks_a_reported_clause(drawn: tuple[World, str]) -> None:
     world, text = drawn

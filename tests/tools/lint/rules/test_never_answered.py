@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 from hypothesis import given
 
+from tests.fuzzing import times
 from tests.tools.lint.helpers import APART, block, codes, labelled_texts_in_block, spec_and_remarks
 from tests.tools.lint.strategies import World, specs
 from tltlc.logic.formula import and_
@@ -45,6 +46,7 @@ def test_a_clause_that_is_impossible_is_reported_as_a_contradiction_only() -> No
     ]
 
 
+@times(40)
 @given(specs("keep {} implies {}", "require G ({} -> {})", "require {} implies {}", most=1))
 def test_the_two_sides_of_a_reported_implication_never_hold_together(drawn: tuple[World, str]) -> None:
     world, text = drawn

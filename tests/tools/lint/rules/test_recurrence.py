@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 import tltlc
+from tests.fuzzing import times
 from tests.tools.lint.helpers import (
     PLACES,
     SIGNALS,
@@ -75,7 +76,7 @@ def test_a_clause_about_the_last_step_implies_no_other_clause() -> None:
     assert codes(block("reach a", "require b until a", before=before)) == ["TLT0413"]
 
 
-@settings(deadline=None)
+@times(40)
 @given(st.sampled_from(["keep", "avoid", "reach", "require G", "require F"]), SMALL)
 def test_a_reported_clause_depends_on_the_last_step_only(clause: str, formula: str) -> None:
     """If the rule reports a whole clause, its automaton depends on the last sample of a trace only."""
@@ -122,6 +123,7 @@ def test_lets_are_checked_if_all_specs_are_finite() -> None:
     assert codes("signal a: bool let often = G F a") == []
 
 
+@times(40)
 @given(specs(*CLAUSES, worlds=[FREE], most=1))
 def test_a_reported_part_depends_on_the_last_step_only(drawn: tuple[World, str]) -> None:
     """Replacing the part by its condition on the last step gives an equivalent spec."""

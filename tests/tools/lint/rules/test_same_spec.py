@@ -7,6 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import tltlc
+from tests.fuzzing import times
 from tests.tools.lint.helpers import SIGNALS, codes
 from tests.tools.lint.strategies import EXCLUSIVE, SMALL, World, specs
 from tltlc.automaton.compare import are_equivalent
@@ -30,6 +31,7 @@ def test_equivalent_specs_are_reported(one: str, other: str, is_reported: bool) 
     assert ("TLT0426" in codes(f"{SIGNALS}spec s = {one}\nspec t = {other}")) == is_reported
 
 
+@times(40)
 @given(SMALL, SMALL)
 def test_specs_are_reported_if_and_only_if_their_automata_are_equivalent(one: str, other: str) -> None:
     original = tltlc.compile_text(f"{SIGNALS}spec s = {one}")[0]
@@ -60,6 +62,7 @@ def test_specs_with_different_limits_differ() -> None:
     assert codes(text) == []
 
 
+@times(40)
 @given(st.lists(specs("keep {}", "avoid {}", "reach {}", worlds=[EXCLUSIVE], most=1), min_size=2, max_size=2))
 def test_the_same_traces_satisfy_reported_specs(drawn: list[tuple[World, str]]) -> None:
     (world, one), (_, other) = drawn

@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.fuzzing import times
 from tests.tools.lint.helpers import SIGNALS, codes, spec_and_remarks
 from tests.tools.lint.strategies import World, specs
 from tltlc.tools.lint.rules import short_limit
@@ -24,6 +25,7 @@ def test_limits_that_are_too_short_are_reported(clauses: str, is_reported: bool)
     assert ("TLT0428" in codes(f"{SIGNALS}spec s {{ {clauses} }}")) == is_reported
 
 
+@times(40)
 @given(st.integers(1, 4), specs("reach {} then {}", "require X {}", "require {} U ({} then {})"))
 def test_no_trace_within_the_limit_satisfies_a_reported_spec(limit: int, drawn: tuple[World, str]) -> None:
     world, text = drawn

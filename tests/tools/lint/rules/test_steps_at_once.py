@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given
 
 import tltlc
+from tests.fuzzing import times
 from tests.tools.lint.helpers import APART, PLACES, block, findings_in, labelled_texts_in_block, spec_and_remarks
 from tests.tools.lint.strategies import World, specs
 from tests.tools.lint.traces import Traces
@@ -98,6 +99,7 @@ def test_exclusive_atoms_add_a_step_of_progress() -> None:
 NEAR = World("entity x, y, z\nsignal at(e): bool\nsignal b: bool\n", ("at(x)", "at(y)", "at(z)", "b"), Traces(()))
 
 
+@times(40)
 @given(specs("reach {}", "reach at(x)", "reach at(y) then {}", "require {}", "keep {}", worlds=[NEAR]))
 def test_the_suggested_exclusive_lengthens_the_spec_and_keeps_it_possible(drawn: tuple[World, str]) -> None:
     _, text = drawn
