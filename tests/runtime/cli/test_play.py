@@ -68,6 +68,14 @@ def displacement(episode: Episode) -> np.ndarray:
 
 
 @needs_screen
+def test_the_screen_does_not_start_anew_when_its_last_client_leaves(display: dict[str, str]) -> None:
+    keys(display, "mousemove", "11", "12")
+    command = ["xdotool", "getmouselocation"]
+    place = subprocess.run(command, env=display, check=True, timeout=HANG_S, capture_output=True, text=True).stdout
+    assert place.startswith("x:11 y:12 ")
+
+
+@needs_screen
 def test_keys_move_the_player_and_escape_records(display: dict[str, str], tmp_path: Path) -> None:
     player = started(display, tmp_path, "play", "branching", "--seed", "3", "-o", "mine.episode.npz")
     keys(display, "keydown", "d")

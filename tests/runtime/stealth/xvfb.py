@@ -19,8 +19,10 @@ MISSING += [name for name in ("pygame",) if find_spec(name) is None]
 def screen() -> Iterator[dict[str, str]]:
     """Yield environment variables for processes, with the DISPLAY of an X server that ends with the block."""
     reading, writing = os.pipe()
+    # With -noreset: otherwise the server starts anew when its last client leaves, and a client that connects meanwhile
+    # fails.
     server = subprocess.Popen(
-        ["Xvfb", "-displayfd", str(writing), "-screen", "0", "1400x700x24", "-nolisten", "tcp"],
+        ["Xvfb", "-displayfd", str(writing), "-screen", "0", "1400x700x24", "-nolisten", "tcp", "-noreset"],
         pass_fds=(writing,),
         stderr=subprocess.DEVNULL,
     )
