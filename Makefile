@@ -54,7 +54,7 @@ test: $(VENV)/.installed-dev
 tests: $(VENV)/.installed-dev
 	@$(if $(ORDERED),echo "The order is random; the same one again: make test ORDER=random SEED=$(SEED)")
 	@# Without MAKEFLAGS, because compilers that tests start would look for the job server of `make -j`.
-	env -u MAKEFLAGS $(BIN)/python -m pytest -q -rs -n 2 -m "not slow" $(ORDERED)
+	env -u MAKEFLAGS -u MFLAGS $(BIN)/python -m pytest -q -rs -n 2 -m "not slow" $(ORDERED)
 
 # Check that the tests depend neither on their order nor on how busy the machine is: N runs in random orders, beside BUSY
 # busy processes, with a line for each. ARGS are further arguments of pytest, such as `-n 4` or a folder.

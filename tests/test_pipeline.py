@@ -43,7 +43,7 @@ def test_each_stage_runs_once(monkeypatch: pytest.MonkeyPatch) -> None:
 
         monkeypatch.setattr(pipeline, name, run)
 
-    for name in ("parse", "resolution", "build"):
+    for name in ("parse", "resolve", "build"):
         counted(name)
     session = session_of(TWO_SPECS)
     assert runs == []
@@ -53,7 +53,7 @@ def test_each_stage_runs_once(monkeypatch: pytest.MonkeyPatch) -> None:
         assert [spec.name for spec in session.specs] == ["first", "second"]
         assert [fspa.name for fspa in session.automata] == ["first", "second"]
         assert session.compiled().automata == session.automata
-    assert runs == ["parse", "resolution", "build", "build"]
+    assert runs == ["parse", "resolve", "build", "build"]
 
 
 def test_a_session_compiles_like_compile_source() -> None:
@@ -76,7 +76,7 @@ def test_names_are_resolved_in_a_text_with_a_syntax_error() -> None:
 
 
 def test_a_text_with_a_syntax_error_is_not_resolved_for_automata(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.delattr(pipeline, "resolution")
+    monkeypatch.delattr(pipeline, "resolve")
     session = session_of("signal a: bool\nspec s = F a &\n")
     for use in (lambda: session.program, lambda: session.diagnostics, lambda: session.automata, session.compiled):
         assert raised(use) == codes(session.syntax_errors)

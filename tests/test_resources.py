@@ -80,7 +80,7 @@ def test_invalid_limits_are_rejected(option: str, value: str) -> None:
 
 def test_the_help_shows_the_limits() -> None:
     out = " ".join(_run("--help").stdout.split())
-    assert "--max-cpu SECONDS End the work on files after so much processor time" in out
+    assert "--max-cpu SECONDS Stop a command after this much processor time" in out
     assert f"[default: {COMMAND.work_s}" in out
     assert "--max-memory GIB" in out
 

@@ -71,9 +71,9 @@ def test_the_index_lists_every_decision() -> None:
 @pytest.mark.parametrize(
     "claim, file, remark",
     [
-        ("Truth decides", "progress_and_reward.py", "by truth"),
-        ("The paper evaluates the formula as it is written", "guards.py", "the guard as written"),
-        ("r is capped at 0", "progress_and_reward.py", "capped at 0"),
+        ("Truth decides", "progress_and_reward.py", "whose guard is true"),
+        ("The paper evaluates the formula as it is written", "guards.py", "from the guard's formula"),
+        ("r is capped at 0", "progress_and_reward.py", "is at most 0"),
         ("Where S is 0", "tables.py", "the paper divides"),
         ("A trap has none", "progress_and_reward.py", "A trap has no progress"),
         ("Judging at the limit", "progress_and_reward.py", "judged at its limit"),

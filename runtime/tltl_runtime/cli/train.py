@@ -96,7 +96,7 @@ Watching, from another terminal:
 @click.option(
     "--steps",
     metavar="N",
-    type=cli.WholeRange(min=1),
+    type=cli.WholeRange(),
     callback=_setting("stop", "steps"),
     help="Stop after this many steps, counted over all environments.",
 )

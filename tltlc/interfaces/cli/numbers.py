@@ -27,6 +27,10 @@ class WholeRange(click.IntRange):
             self._fail(text, param, ctx)
         return number
 
+    def _describe_range(self) -> str:
+        # Without bounds, click would show `x<=None` in the help text.
+        return "" if self.min is None and self.max is None else super()._describe_range()
+
     def _fail(self, text: str, param: click.Parameter | None, ctx: click.Context | None) -> NoReturn:
         self.fail(f"`{text}` is out of range: whole numbers go from -{LARGEST:,} to {LARGEST:,}", param, ctx)
 
