@@ -235,7 +235,8 @@ def test_the_level_in_the_reference_loads_and_every_key_is_documented(folder: Pa
     write("overlays/changes.toml", overlay)
     assert load_level("vault.toml", "v2").enemies[0].kind.branches == ("check_gaps",)
     assert load_level("vault.toml", "v1").spec.endswith("vault.tltl:unseen")
-    sources = [LEVELS.parent / "stealth" / "levels" / f"{name}.py" for name in ("parts", "file", "default_spec", "regions")]
+    modules = ("parts", "file", "default_spec", "regions")
+    sources = [LEVELS.parent / "stealth" / "levels" / f"{name}.py" for name in modules]
     keys = {
         key
         for source in sources
