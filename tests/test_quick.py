@@ -47,7 +47,7 @@ def test_a_test_that_starts_a_process_is_skipped_and_a_thread_cannot_start_one(t
     process = subprocess.run(
         [*command, "test_it.py"],
         cwd=tmp_path,
-        env={**os.environ, "PYTHONPATH": str(quick.TESTS.parent)},
+        env={**os.environ, "PYTHONPATH": str(quick.TESTS.parent), "PYTEST_ADDOPTS": ""},
         capture_output=True,
         text=True,
     )
