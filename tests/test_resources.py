@@ -21,7 +21,7 @@ GOALS = "".join(f"signal a{i}: bool\n" for i in range(11)) + f"spec s = {' & '.j
 
 
 def many(specs: int) -> str:
-    """Return a source with so many specs; 6,000 take 80 MiB of memory."""
+    """Return a source with this number of specs; 6,000 take 80 MiB of memory."""
     return "".join(f"signal s{i}: bool\nspec q{i} = F (s{i} & X s{i // 2})\n" for i in range(specs))
 
 

@@ -25,14 +25,9 @@ def diagnostic(text: str, marked: str, message: str = "", **fields: object) -> D
 
 
 def test_text_shows_title_place_line_caret_and_help() -> None:
-    output = render([diagnostic("\nkeep a", "a", "a remark", help="one way out\nand another")])
+    output = render([diagnostic("\nkeep a", "a", "a remark", help="one fix\nand another")])
     assert output == (
-        "error[TLT0101]: a title\n"
-        "  a.tltl:2:6\n"
-        "2 | keep a\n"
-        "  |      ^ a remark\n"
-        "  help: one way out\n"
-        "        and another\n"
+        "error[TLT0101]: a title\n  a.tltl:2:6\n2 | keep a\n  |      ^ a remark\n  help: one fix\n        and another\n"
     )
 
 

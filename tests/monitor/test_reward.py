@@ -152,7 +152,7 @@ def test_the_discounted_terminal_penalty_sums_discounted_steps() -> None:
     gamma = 0.9
     options = RewardOptions(terminal_penalty="discounted", gamma=gamma)
     last = episode(Monitor(fspa, reward=options), trace)[-1]
-    # The discounted cost of the seven remaining steps, as of the step of the violation.
+    # The cost of the seven remaining steps, discounted to the step of the violation.
     assert last.reward == pytest.approx(-1 / 10 - sum(gamma**step / 10 for step in range(7)))
     same = episode(Monitor(fspa, reward=replace(options, gamma=1.0)), trace)[-1]
     assert same.reward == episode(Monitor(fspa), trace)[-1].reward

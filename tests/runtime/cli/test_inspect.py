@@ -108,7 +108,7 @@ def test_unknown_training_records_are_not_shown(tltlc, policy: Policy, tmp_path:
 
 
 @pytest.mark.parametrize(
-    ("training", "said"),
+    ("training", "messages"),
     [
         ({"end": "minutes", "search": {"lengths": []}}, ["by the limit of minutes", "no way to meet the spec"]),
         ({"end": "steps", "search": {"lengths": [7]}}, ["the limit of steps", "1 way to meet the spec, the shortest"]),
@@ -118,9 +118,9 @@ def test_unknown_training_records_are_not_shown(tltlc, policy: Policy, tmp_path:
         ),
     ],
 )
-def test_the_end_of_a_training_is_shown(policy: Policy, training: dict[str, object], said: list[str]) -> None:
+def test_the_end_of_a_training_is_shown(policy: Policy, training: dict[str, object], messages: list[str]) -> None:
     text = summary_text(summary(Policy(replace(policy.card, training=training), policy.weights())))
-    assert all(part in text for part in said)
+    assert all(part in text for part in messages)
 
 
 def test_an_unfinished_training_is_shown(tltlc, policy: Policy, tmp_path: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
@@ -201,17 +201,17 @@ def test_a_process_that_exports_prints_no_warnings(file: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("arguments", "said"),
+    ("arguments", "message"),
     [
         (("a.safetensors", "-o", "a.pt"), "-o writes a .onnx, not `a.pt`"),
         (("a.safetensors", "b.safetensors", "-o", "a.onnx"), "-o takes one POLICY"),
         ((), "POLICY"),
     ],
 )
-def test_invalid_options_are_rejected(tltlc, arguments: tuple[str, ...], said: str) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+def test_invalid_options_are_rejected(tltlc, arguments: tuple[str, ...], message: str) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     result: Outcome = tltlc("inspect", *arguments)
     assert result.status == 2
-    assert said in result.err
+    assert message in result.err
 
 
 def test_a_missing_policy_is_reported(tltlc, tmp_path: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811

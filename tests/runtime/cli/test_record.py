@@ -108,7 +108,7 @@ def test_a_damaged_recording_does_not_count_and_stays(tltlc: TltlcFunction, here
 
 
 @pytest.mark.parametrize(
-    ("arguments", "status", "said"),
+    ("arguments", "status", "message"),
     [
         ([], 2, "say what to play: a level, or a --spec that names one"),
         (["--spec", "nameless.tltl"], 2, "`soon` does not say which level it is about: name one as LEVEL"),
@@ -123,12 +123,12 @@ def test_invalid_options_are_rejected(
     here: Path,
     arguments: list[str],
     status: int,
-    said: str,
+    message: str,
 ) -> None:
     (here / "nameless.tltl").write_text(SOON.replace("level cover_and_hide", ""))
     result = tltlc("record", *arguments)
     assert (result.status, result.out) == (status, "")
-    assert said in result.err
+    assert message in result.err
     assert not (here / "demonstrations").exists()
 
 

@@ -241,7 +241,7 @@ def test_the_exported_trace_gives_the_same_judgement(tltlc, recorded: Path, epis
 
 
 @pytest.mark.parametrize(
-    ("arguments", "said"),
+    ("arguments", "message"),
     [
         (("-o", "run.avi"), "the ending of `run.avi` says no kind of output: use one of .png, .gif, .mp4, .csv"),
         (("-o", "run.gif", FILE), "-o takes one FILE"),
@@ -260,9 +260,9 @@ def test_the_exported_trace_gives_the_same_judgement(tltlc, recorded: Path, epis
         ((), ""),
     ],
 )
-def test_invalid_options_are_rejected(tltlc, recorded: Path, arguments: tuple[str, ...], said: str) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+def test_invalid_options_are_rejected(tltlc, recorded: Path, arguments: tuple[str, ...], message: str) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     result: Outcome = tltlc("replay", FILE, *arguments) if arguments else tltlc("replay")
-    assert result.status == 2 and said in result.err
+    assert result.status == 2 and message in result.err
     assert [path.name for path in recorded.iterdir()] == [FILE]
 
 

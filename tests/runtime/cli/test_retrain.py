@@ -211,16 +211,16 @@ def test_a_policy_in_the_folder_of_its_training_is_reported_before_any_play(tltl
 
 
 @pytest.mark.parametrize(
-    ("words", "said"),
+    ("words", "message"),
     [
         (("--minutes", "5"), "--minutes are those of --retrain"),
         (("--retrain", "--minutes", "0"), "0 is not in the range"),
     ],
 )
-def test_invalid_options_are_rejected(tltlc: Run, game: Path, words: tuple[str, ...], said: str) -> None:  # noqa: F811
+def test_invalid_options_are_rejected(tltlc: Run, game: Path, words: tuple[str, ...], message: str) -> None:  # noqa: F811
     result = tltlc("regress", "game.toml", *words, *ONE)
     assert (result.status, result.out) == (2, "")
-    assert said in re.sub(r"\s+", " ", result.err)
+    assert message in re.sub(r"\s+", " ", result.err)
 
 
 @pytest.mark.slow

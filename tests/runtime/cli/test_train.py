@@ -316,7 +316,7 @@ def test_a_folder_with_other_files_is_rejected(
 
 
 @pytest.mark.parametrize(
-    ("arguments", "status", "said"),
+    ("arguments", "status", "message"),
     [
         ([], 2, "say what to train for: a spec, a level, or both"),
         (["hide.tltl"], 2, "`hide` does not say which level it is about: name one with --level"),
@@ -353,7 +353,7 @@ def test_invalid_options_are_rejected(
     here: Path,
     arguments: list[str],
     status: int,
-    said: str,
+    message: str,
 ) -> None:
     (here / "large.toml").write_text("[network]\nhidden = [8192, 4096]\n")
     (here / "hide.tltl").write_text("signal mood: bool\nspec hide { limit 9 steps\n keep mood }\n")
@@ -361,7 +361,7 @@ def test_invalid_options_are_rejected(
     (here / "endless.tltl").write_text("import stealth\nspec endless { level navigation\n reach seen }\n")
     result = tltlc("train", *arguments)
     assert (result.status, result.out) == (status, ""), result.err
-    assert said in result.err
+    assert message in result.err
     assert not (here / "training").exists()
 
 

@@ -80,7 +80,7 @@ def test_a_shipped_policy_is_named_by_its_level(tltlc: TltlcFunction, interrupte
 
 
 @pytest.mark.parametrize(
-    ("arguments", "status", "said"),
+    ("arguments", "status", "message"),
     [
         (["other.tltl"], 1, "TLT0843"),
         (["--level", "navigation"], 1, "TLT0843"),
@@ -96,12 +96,12 @@ def test_unfit_policies_and_options_are_rejected(
     here: Path,
     arguments: list[str],
     status: int,
-    said: str,
+    message: str,
 ) -> None:
     Path("wide.toml").write_text("[network]\nhidden = [7]\n")
     result = tltlc(*TRAIN_FROM, *arguments)
     assert (result.status, result.out) == (status, ""), result.err
-    assert said in result.err
+    assert message in result.err
     assert not Path("training").exists()
 
 

@@ -128,7 +128,7 @@ def _check_resumed(tltlc: TltlcFunction, run: Path) -> None:  # noqa: F811
 
 
 @pytest.mark.parametrize(
-    ("arguments", "status", "said"),
+    ("arguments", "status", "message"),
     [
         (["soon.tltl", "--demonstrations", "mine"], 2, "--demonstrations are for --method imitation"),
         ([*TRAIN_IMITATION[1:], "--demonstrations", "nowhere"], 1, "TLT0921"),
@@ -140,11 +140,11 @@ def test_invalid_options_are_rejected(
     here: Path,
     arguments: list[str],
     status: int,
-    said: str,
+    message: str,
 ) -> None:
     result = tltlc("train", *arguments)
     assert (result.status, result.out) == (status, "")
-    assert said in result.err
+    assert message in result.err
     assert not (here / "training").exists()
 
 

@@ -144,17 +144,17 @@ def test_levels_with_the_same_name_are_told_apart() -> None:
     references = tuple(
         reference(some_episodes(count), place=f"{place}/room.toml") for count, place in ((1, "old"), (2, "new"))
     )
-    for each in references:
-        assert reference_of(references, replace(PLAYED, place=each.played.place), SUITE) == each
-    # A shipped level has no place, and is told apart from user levels, too.
+    for user_reference in references:
+        assert reference_of(references, replace(PLAYED, place=user_reference.played.place), SUITE) == user_reference
+    # A shipped level has no place. It is not confused with user levels either.
     shipped = reference(some_episodes(3), place="")
-    for each in ((shipped, *references), (*references, shipped)):
-        assert [reference_of(each, replace(PLAYED, place=place), SUITE) for place in ("old/room.toml", "")] == [
+    for ordered in ((shipped, *references), (*references, shipped)):
+        assert [reference_of(ordered, replace(PLAYED, place=place), SUITE) for place in ("old/room.toml", "")] == [
             references[0],
             shipped,
         ]
         with pytest.raises(TltlError, match="no figures of `other/room"):
-            reference_of(each, replace(PLAYED, place="other/room.toml"), SUITE)
+            reference_of(ordered, replace(PLAYED, place="other/room.toml"), SUITE)
     with pytest.raises(TltlError, match="no figures of `other/room"):
         reference_of(references, replace(PLAYED, place="other/room.toml"), SUITE)
 

@@ -66,7 +66,7 @@ def _other_seed(run: TrainingRun) -> TrainingRun:
 
 
 def _other_settings(run: TrainingRun) -> TrainingRun:
-    """Write a checkpoint with another hash of the settings, as of another version."""
+    """Write a checkpoint with another hash of the settings, as another version writes it."""
     content = torch.load(run.folder / CHECKPOINT, weights_only=True)
     torch.save({**content, "run": {**content["run"], "settings": "0" * 64}}, run.folder / CHECKPOINT)
     return run
@@ -86,7 +86,7 @@ def _partial(run: TrainingRun) -> TrainingRun:
 
 
 def _wider(run: TrainingRun) -> TrainingRun:
-    """Write a checkpoint with weights of another shape, as of another network."""
+    """Write a checkpoint with weights of another shape, as another network has them."""
     content = torch.load(run.folder / CHECKPOINT, weights_only=True)
     weights = content["algorithm"]["actor_state_dict"]
     weights |= {name: torch.zeros(3, 5) for name in list(weights)[:1]}

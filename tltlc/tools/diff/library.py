@@ -27,8 +27,8 @@ class OfferedName:
 
     ``is_own`` is true if the library itself declares the name, and false if it imports the name.
     ``value`` is set for a signal or param. ``meanings`` is set for a predicate of the library
-    itself. It maps each possible number of arguments to the meaning of the predicate with so many
-    arguments; the other parameters have their defaults. In a meaning, a signal with the name of the
+    itself. It maps each possible number of arguments to the meaning of the predicate with this
+    number of arguments; the other parameters have their defaults. In a meaning, a signal with the name of the
     parameter takes the place of each argument, unless the argument is an entity.
     """
 
