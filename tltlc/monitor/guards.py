@@ -16,7 +16,14 @@ def holds(guard: Guard, values: Sequence[float]) -> bool:
 
     An atom is true if its value is above 0.
     """
-    return any(all((values[atom] > 0.0) == polarity for atom, polarity in prime) for prime in guard.primes)
+    # Plain loops take half the time of `any` and `all` with generators, and each step asks this of several guards.
+    for prime in guard.primes:
+        for atom, polarity in prime:
+            if (values[atom] > 0.0) != polarity:
+                break
+        else:
+            return True
+    return False
 
 
 def robustness(guard: Guard, values: Sequence[float]) -> float:

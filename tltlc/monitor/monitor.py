@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple, SupportsFloat
 
-from tltlc.automaton.fspa import Fspa, State, Verdict
+from tltlc.automaton.fspa import Fspa, Verdict
 from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.monitor.arguments import automaton_argument, reward_options_argument
 from tltlc.monitor.guards import bounding_atom, holds, robustness
@@ -115,6 +115,9 @@ class Monitor:
         )
         reward = 0.0 if self.done else self._reward(source, target.id, values, outcome)
         improving = self._tables.improving[source] if source == target.id else ()
+        label = self._labels.get(target.id)
+        if label is None:
+            label = self._labels[target.id] = str(target.label)
 
         self.state, self.steps, self.values = target.id, self.steps + 1, tuple(values)
         self.progress = outcome.progress
@@ -122,7 +125,7 @@ class Monitor:
             self.done, self.success = outcome.done, outcome.success
         return Step(
             state=target.id,
-            label=self._label(target),
+            label=label,
             verdict=target.verdict,
             accepting=target.accepting,
             done=self.done,
@@ -132,13 +135,6 @@ class Monitor:
             robustness=robustness(edge_taken.guard, values) + 0.0,
             limiting=self._names[bounding_atom([edge.guard for edge in improving], values)] if improving else None,
         )
-
-    def _label(self, state: State) -> str:
-        """Return the label of a state in ASCII notation."""
-        label = self._labels.get(state.id)
-        if label is None:
-            label = self._labels[state.id] = str(state.label)
-        return label
 
     def _reward(self, source: int, target: int, values: Sequence[float], outcome: RewardStep) -> float:
         if self._options.mode == "progress":

@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Final, Literal, get_args
 
-from tltlc.automaton.fspa import Fspa
 from tltlc.core.record import record
 from tltlc.monitor.guards import robustness
 from tltlc.monitor.tables import MonitorTables
@@ -106,7 +105,8 @@ def reward_step(
     """
     options = options or RewardOptions()
     limit = tables.fspa.limit_steps
-    done, success = _end(tables, state, target, step, options)
+    done = ends_episode(tables, state, target, options) or (limit is not None and step >= limit)
+    success = done and tables.fspa.states[target].accepting
     progress = max(best, step_progress(tables, state, target, values, step, options))
     if last and not done:
         done, success = True, _succeeds_early(tables, target, options)
@@ -156,20 +156,7 @@ def ends_episode(tables: MonitorTables, state: int, target: int, options: Reward
     if options.termination == "paper":
         # Lines 12 to 21: the episode ends if the state did not change and no edge leads nearer to a goal.
         return state == target and not tables.improving[target]
-    return ends_on_entry(tables.fspa, target)
-
-
-def ends_on_entry(fspa: Fspa, state: int) -> bool:
-    """Whether an episode ends when it enters a state, with ``termination="entry"``."""
-    entered = fspa.states[state]
-    return entered.verdict in ("satisfied", "violated") or (fspa.judge == "goal" and entered.accepting)
-
-
-def _end(tables: MonitorTables, state: int, target: int, step: int, options: RewardOptions) -> tuple[bool, bool]:
-    """Return whether the episode ends, and whether it ends in success."""
-    limit = tables.fspa.limit_steps
-    done = ends_episode(tables, state, target, options) or (limit is not None and step >= limit)
-    return done, done and tables.fspa.states[target].accepting
+    return tables.ends_on_entry[target]
 
 
 def _succeeds_early(tables: MonitorTables, target: int, options: RewardOptions) -> bool:

@@ -49,25 +49,28 @@ class Samples:
         missing = [name for name in self._names if name not in signals]
         if missing:
             raise _error("TLT0611", when, f"no value for {name_list(missing)}")
-        sample = [self._signal_value(signal, signals[signal.name], when) for signal in self._fspa.signals]
+        sample = [
+            self._signal_value(signal, name, signals[name], when)
+            for signal, name in zip(self._fspa.signals, self._names, strict=True)
+        ]
         values = [self._atom_value(index, sample, when) for index in range(len(self._atoms))]
         return tuple(self._clamped_atom_value(index, value, when) for index, value in enumerate(values))
 
-    def _signal_value(self, signal: Signal, given: SupportsFloat, when: int | str) -> float:
+    def _signal_value(self, signal: Signal, name: str, given: SupportsFloat, when: int | str) -> float:
         """Return the value of a signal as a number, clamped to its range.
 
-        Adds a notice if it was outside.
+        Adds a notice if it was outside. ``name`` is the full name of the signal.
         """
         value = finite_signal_value(signal, given, when)
         low, high = signal.low, signal.high
         if signal.type == "bool":
             if value not in (0.0, 1.0):
-                raise _error("TLT0612", when, f"the signal `{signal.name}` is {number_text(value)}, not true or false")
+                raise _error("TLT0612", when, f"the signal `{name}` is {number_text(value)}, not true or false")
             return value
         nearest = low if low is not None and value < low else high if high is not None and value > high else value
-        if nearest != value:
-            text = f"the signal `{signal.name}` is {number_text(value)}, outside {range_text(low, high)}"
-            self._notice("TLT0615", signal.name, when, f"{text}: it counts as {number_text(nearest)}")
+        if nearest != value and ("TLT0615", name) not in self._noticed:
+            text = f"the signal `{name}` is {number_text(value)}, outside {range_text(low, high)}"
+            self._notice("TLT0615", name, when, f"{text}: it counts as {number_text(nearest)}")
         return nearest
 
     def _atom_value(self, index: int, sample: Sequence[float], when: int | str) -> float:

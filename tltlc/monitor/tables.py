@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tltlc.automaton.fspa import Edge, Fspa
+from tltlc.automaton.fspa import Edge, Fspa, State
 from tltlc.core.record import record
 
 
@@ -12,12 +12,15 @@ class MonitorTables:
 
     ``edges`` has the edges that leave the state, and ``improving`` those of them whose target has a
     smaller distance. ``base_progress`` is the share of the distance that is done, in [0, 1].
+    ``ends_on_entry`` says whether an episode ends when it enters the state, with
+    ``termination="entry"``.
     """
 
     fspa: Fspa
     edges: tuple[tuple[Edge, ...], ...]
     improving: tuple[tuple[Edge, ...], ...]
     base_progress: tuple[float, ...]
+    ends_on_entry: tuple[bool, ...]
 
 
 def tables(fspa: Fspa) -> MonitorTables:
@@ -31,7 +34,13 @@ def tables(fspa: Fspa) -> MonitorTables:
         tuple(map(tuple, edges)),
         tuple(map(tuple, improving)),
         tuple(_base_progress(state.distance, fspa.spec_size) for state in fspa.states),
+        tuple(ends_on_entry(fspa, state) for state in fspa.states),
     )
+
+
+def ends_on_entry(fspa: Fspa, entered: State) -> bool:
+    """Whether an episode ends when it enters a state, with ``termination="entry"``."""
+    return entered.verdict in ("satisfied", "violated") or (fspa.judge == "goal" and entered.accepting)
 
 
 def _improves(fspa: Fspa, edge: Edge) -> bool:

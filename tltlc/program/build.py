@@ -7,8 +7,7 @@ from collections.abc import Iterable, Sequence
 from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.fspa import Fspa
 from tltlc.core.record import record
-from tltlc.monitor.progress_and_reward import ends_on_entry
-from tltlc.monitor.tables import tables
+from tltlc.monitor.tables import ends_on_entry, tables
 from tltlc.program import reward_step, states
 from tltlc.program.arithmetic import ExpressionTranslator
 from tltlc.program.bounds import Range, prove_ranges, range_between
@@ -152,7 +151,7 @@ def _program(fspa: Fspa, names: VariableNames) -> Program:
         exclusive=exclusive,
         states=transitions,
         reward_statements=reward_step.statements(fspa),
-        ends=tuple(ends_on_entry(fspa, state.id) for state in fspa.states),
+        ends=tuple(ends_on_entry(fspa, state) for state in fspa.states),
     )
 
 
