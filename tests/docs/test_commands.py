@@ -71,3 +71,14 @@ def test_the_program_of_the_playground_guide_prints_the_shown_output(capsys: pyt
     place, program = next((place, block) for place, block in enumerate(page_blocks) if block.kind == "python")
     exec(program.text, {})
     assert capsys.readouterr().out == page_blocks[place + 1].text
+
+
+@pytest.mark.parametrize("name", sorted(NAMES))
+def test_every_option_has_a_help_text(name: str) -> None:
+    try:
+        command = cli.get_command(CONTEXT, name)
+    except TltlError:
+        pytest.skip(f"the extra for `{name}` is not installed")
+    assert command is not None
+    without = [option.opts for option in command.params if isinstance(option, click.Option) and not option.help]
+    assert not without

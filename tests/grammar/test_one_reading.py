@@ -551,7 +551,7 @@ def _negated_clause(word: str, left: Here, right: Here, clause: str) -> Whole:
     return clause_meaning(clause, negation(word_meaning(word, left, right, "avoid")))
 
 
-def test_many_random_clauses_are_clear_and_many_are_not() -> None:
+def test_the_random_clauses_include_clear_and_unclear_ones() -> None:
     # The random clauses must contain both kinds, or the test of their edits would prove nothing.
     results = [(bool(edited_specs(text(parts))), reading(*parts) is not None) for parts in random_parts(400)]
     assert sum(fixed and clear for fixed, clear in results) > 40

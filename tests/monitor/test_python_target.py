@@ -141,7 +141,7 @@ def test_values_of_atoms_agree_with_the_monitor(
         [{"distance(s1)": 0.0, "distance(s2)": 0.0}, {"distance(s1)": 0.0, "distance(exit)": 0.0}, {}],
     ],
 )
-def test_invalid_samples_agree_with_the_monitor(changes: list[dict[str, Any]]) -> None:
+def test_the_generated_monitor_treats_invalid_samples_as_the_monitor_does(changes: list[dict[str, Any]]) -> None:
     generated, monitor = module_of(cover_and_hide()).Monitor(), Monitor(cover_and_hide())
     for change in changes:
         assert outcome(generated.step, {**FAR, **change}) == outcome(monitor.step, {**FAR, **change})

@@ -144,7 +144,7 @@ def test_the_import_loads_no_heavy_modules() -> None:
 
 
 @pytest.mark.parametrize("spec", [(), [], {}, b"plan.tltl", 3, None, "", " "])
-def test_other_values_are_not_read_as_a_path(spec: Any) -> None:
+def test_a_value_that_is_no_spec_is_a_type_error(spec: Any) -> None:
     with pytest.raises(TypeError, match="a spec is a path, a text or an automaton, not"):
         load_task(spec)
 

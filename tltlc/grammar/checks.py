@@ -65,7 +65,7 @@ def _expression_errors(source: SourceFile, formula: Expr, in_reach: bool) -> Ite
 
 
 def _check_bound(source: SourceFile, formula: tree.Unary, bound: tree.TemporalInterval) -> Iterator[Diagnostic]:
-    # The span may contain a comment after the word.
+    # Compare only the beginning, because the span may contain a comment after the word.
     word = next(word for word in _BOUND_OPERATORS if source.slice(bound.span).startswith(word))
     if formula.op in _BOUND_OPERATORS[word]:
         return

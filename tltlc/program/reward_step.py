@@ -1,6 +1,6 @@
 """The statements that compute the progress and the reward of one step, and whether the episode ends.
 
-They follow Algorithm 1 (:mod:`tltlc.monitor.reward`), with the undiscounted terminal penalty.
+They follow Algorithm 1 (:mod:`tltlc.monitor.progress_and_reward`), with the undiscounted terminal penalty.
 """
 
 from __future__ import annotations

@@ -29,7 +29,14 @@ Examples:
 )
 @click.argument("level", metavar="LEVEL[:VARIANT]")
 @click.option("--spec", metavar="SPEC[:NAME]", help="The spec that judges the player (default: the spec of the level).")
-@click.option("--episodes", metavar="N", type=cli.WholeRange(min=1), default=1, show_default=True)
+@click.option(
+    "--episodes",
+    metavar="N",
+    type=cli.WholeRange(min=1),
+    default=1,
+    show_default=True,
+    help="How many episodes the expert plays.",
+)
 @seed_option("The seed of the first episode. Each following episode adds 1.")
 @output_folder("The folder for recordings and plans. It is created if it is missing.", default=Path("demonstrations"))
 @click.option("--film", type=click.Choice([ending[1:] for ending in FILMS]), help="Write a film of each episode, too.")

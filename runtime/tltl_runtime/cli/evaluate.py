@@ -44,7 +44,14 @@ Examples:
 @click.option(
     "--level", metavar="LEVEL[:VARIANT]", help="The level to play (default: the level of the training; VARIANT: v0)."
 )
-@click.option("--episodes", metavar="N", type=cli.WholeRange(1, 10**6), default=100, show_default=True)
+@click.option(
+    "--episodes",
+    metavar="N",
+    type=cli.WholeRange(1, 10**6),
+    default=100,
+    show_default=True,
+    help="How many episodes the policy plays.",
+)
 @seed_option("The seed of the evaluation. Equal seeds give equal episodes.")
 @click.option(
     "--first",

@@ -152,7 +152,7 @@ async def test_a_failed_analysis_does_not_stop_the_next(controlled: ControlledQu
 
 
 @on_a_controlled_queue(AT_ONCE)
-async def test_no_analysis_gives_way_to_a_closed_document(controlled: ControlledQueue) -> None:
+async def test_an_analysis_does_not_give_way_to_a_closed_document(controlled: ControlledQueue) -> None:
     server = create()
     server.queue = controlled.queue
     server.protocol.set_writer(io.BytesIO())

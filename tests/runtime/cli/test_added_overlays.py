@@ -35,6 +35,9 @@ def test_check_accepts_overlays(tltlc: Run) -> None:  # noqa: F811
     result = tltlc("check", "--level", LEVEL)
     assert result.status == 0, result.err
     assert f"{LEVEL} supplies" in result.err
+
+
+def test_check_suggests_an_overlay_for_a_misspelt_one(tltlc: Run) -> None:  # noqa: F811
     missing = tltlc("check", "--level", "cover_and_hide:v0+edits/wider.toml")
     assert missing.status == 3 and "did you mean `edits/wide.toml`?" in missing.err
 

@@ -74,7 +74,8 @@ def compile_options(command: Function) -> Function:
                 "--state-budget",
                 metavar="N",
                 type=WholeRange(min=1),
-                help="Report an error if an automaton needs more states than this, or too much work (default: 50000).",
+                help="Stop with an error if an automaton needs more than N states. The limit on work grows with N "
+                "(default: 50000).",
             ),
         )
     ):

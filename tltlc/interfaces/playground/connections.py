@@ -93,7 +93,7 @@ class OpenConnections:
         return True
 
     def make_room(self) -> bool:
-        """Close the least important connection: of those in the lowest :class:`State`, the oldest.
+        """Close the oldest of the connections in the lowest :class:`ConnectionState`.
 
         Return whether a connection could be closed. Connections that wait for an answer, or send a
         body after a valid head, stay open. If a client has stopped sending, it may have hung up, so

@@ -93,7 +93,7 @@ def _first_line(line: bytes) -> tuple[str, str, bool]:
     if match[3] != b"1":
         raise RefusedError(HTTPStatus.HTTP_VERSION_NOT_SUPPORTED)
     target = match[2].decode("ascii").partition("?")[0]
-    # The other forms of a target are for proxies.
+    # A target that is neither a path nor `*` is for a proxy.
     if not target.startswith("/") and target != "*":
         raise RefusedError(HTTPStatus.BAD_REQUEST)
     return match[1].decode("ascii"), _unescape(target), match[4] == b"0"

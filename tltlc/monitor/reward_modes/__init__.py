@@ -3,7 +3,7 @@
 A module defines a pure function ``reward(tables, transition, options, memory) -> (reward,
 memory)``. ``memory`` is what the mode remembers from step to step; it is None at the start of an
 episode. These modes have no penalties for steps or failures. To add a mode, add its name to
-:data:`tltlc.monitor.reward.Mode`, a module of this name here, and another one in
+:data:`tltlc.monitor.progress_and_reward.Mode`, a module of this name here, and another one in
 ``tltl_runtime.spec.batch.reward_modes`` for many environments.
 """
 

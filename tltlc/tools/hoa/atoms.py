@@ -34,7 +34,7 @@ def vocabulary_of(
     sources = [
         SourceFile(f"--atom {atom.text}", predicates[atom.text])
         if atom.text in predicates
-        # This name differs for each position. With the name of the file, equal messages would be merged.
+        # Each atom has a source name of its own: with the name of the file, equal messages would be merged.
         else SourceFile(f"{hoa.source.name}:{atom.span.start}", hoa.source.slice(atom.span))
         for atom in hoa.atoms
     ]

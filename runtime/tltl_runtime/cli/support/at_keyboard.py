@@ -32,7 +32,13 @@ def keyboard_options(function: Function) -> Function:
         show_default=True,
         help="Whether the key C must be held to crouch, or toggles it.",
     )
-    view = click.option("--view", type=click.Choice(VIEWS), default="third_person", show_default=True)
+    view = click.option(
+        "--view",
+        type=click.Choice(VIEWS),
+        default="third_person",
+        show_default=True,
+        help="Where the camera is when the window opens.",
+    )
     return view(crouch(function))
 
 

@@ -1,6 +1,6 @@
 """Algorithm 1 for N environments (semantics, section 4).
 
-The order of operations is the same as in :mod:`tltlc.monitor.reward`, which lists the deviations
+The order of operations is the same as in :mod:`tltlc.monitor.progress_and_reward`, which lists the deviations
 from the paper. Lookup tables by edge store what depends only on states.
 """
 

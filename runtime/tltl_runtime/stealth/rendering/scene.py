@@ -120,8 +120,6 @@ class Scene:
                 self._active[index] = active
                 self._colour(self._switches[index], ACTIVE_SWITCH if active else SHUT_SWITCH)
 
-    # Bodies
-
     def _obstacle(self, box: Box, colour: Colour) -> Obstacle:
         return Obstacle(self._box(box, colour), box, colour)
 

@@ -46,12 +46,12 @@ Examples:
     help="The predicate for an atomic proposition with another name, e.g. `p0=near(exit)` (repeatable).",
 )
 @click.option("--name", metavar="NAME", callback=_name, help="The name of the spec (default: the name in the file).")
-@click.option("--level", metavar="LEVEL", help="The level of the spec.")
+@click.option("--level", metavar="LEVEL", help="The name of the level that the spec is for.")
 @click.option("--limit", metavar="STEPS", type=WholeRange(min=1), help="End each episode after this many steps.")
 @click.option(
     "--judge",
     type=click.Choice(("goal", "limit")),
-    help="What ends an episode: the goal or the limit (default: chosen by the automaton).",
+    help="What ends an episode: the goal or the limit (default: the limit if the first state accepts, else the goal).",
 )
 @output_option
 @target_option

@@ -21,8 +21,8 @@ Examples:
   tltlc serve --static site        files for any web server, which need no tltlc there
 
 \b
-The page asks this machine and nobody else, and only the address that is printed can ask.  A spec may import what lies
-in the current folder and below, and the libraries of tltlc.
+The page sends requests only to this machine. The server answers only the page at the address that it prints. A spec
+may import files from the current folder and its subfolders, and the libraries of tltlc.
 """
 )
 @click.option(
@@ -44,7 +44,7 @@ in the current folder and below, and the libraries of tltlc.
     help="The folder of the npm package Pyodide for --static (default: node_modules/pyodide).",
 )
 def command(port: int, open_browser: bool, folder: Path | None, pyodide: Path) -> int:
-    """Serve a page for trying out specs: errors as you type, the automaton, traces that you click together.
+    """Serve a page for trying out specs: errors as you type, the automaton, traces that you build by clicking.
 
     The server runs until you press Ctrl-C. Only this machine can reach it.
     """

@@ -50,7 +50,7 @@ class RewardMode(Protocol):
 def reward_mode(fspa: Fspa, options: RewardOptions, device: torch.device, dtype: torch.dtype) -> RewardMode:
     """Return the mode that the options name.
 
-    There is none for ``progress``: :class:`~tltl_runtime.spec.batch.rewards.Outcomes` computes it.
+    There is none for ``progress``: :class:`~tltl_runtime.spec.batch.progress_and_reward.Outcomes` computes it.
     """
     mode: RewardMode = importlib.import_module(f"{__name__}.{options.mode}").Reward(fspa, options, device, dtype)
     return mode
