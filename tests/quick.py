@@ -41,10 +41,13 @@ LARGE = (
     "interfaces/lsp/test_references.py",
     "logic/test_english.py",
     "resolve/test_checks.py",
+    "resolve/test_deep_arithmetic.py",
     "resolve/test_formulas.py",
     "tools/fmt/test_command.py",
+    "tools/lint/rules/test_lasting_goal.py",
     "tools/lint/test_offers.py",
     "tools/lint/test_run.py",
+    "tools/mine/test_command.py",
     "tools/mine/test_limits.py",
 )
 """Files without quick tests, because they compute for seconds: large formulas, whole corpora."""
