@@ -139,7 +139,7 @@ def _gather_inlined(kind: Any, values: dict[str, object]) -> list[str]:
     for name, keys in _inlined(kind).items():
         inner = {key: values.pop(key) for key in keys if key in values}
         missing_keys = [key for key in keys if key not in inner]
-        values[name] = None if missing_keys else get_type_hints(kind)[name](**inner)
+        values[name] = None if missing_keys else _hints(kind)[name](**inner)
         missing += missing_keys
     return missing
 
@@ -151,12 +151,18 @@ def _object(data: object, where: str) -> dict[str, object]:
 
 
 @cache
+def _hints(kind: Any) -> Mapping[str, Any]:
+    """Return the types of a record's fields."""
+    return get_type_hints(kind)
+
+
+@cache
 def _fields(kind: Any) -> Mapping[str, Any]:
     """Return the types of a record's keys in JSON, in order."""
-    hints, inlined = get_type_hints(kind), _inlined(kind)
+    hints, inlined = _hints(kind), _inlined(kind)
     fields: dict[str, Any] = {}
     for name in kind.__match_args__:
-        inner = get_type_hints(hints[name]) if name in inlined else hints
+        inner = _hints(hints[name]) if name in inlined else hints
         fields |= {key: inner[key] for key in inlined.get(name, (name,))}
     return fields
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Mapping
+from functools import lru_cache
 from io import BytesIO
 from pathlib import Path
 from typing import Any, Final, Literal
@@ -21,7 +22,7 @@ from tltl_runtime.stealth.recordings.numpy_archive import ArchiveError, read_arr
 from tltl_runtime.stealth.snapshot import BRANCHES
 from tltl_runtime.support.load_errors import LoadErrors
 from tltl_runtime.support.record_json import RecordJsonError, from_json, to_json
-from tltlc.api import Fspa, RewardOptions, SourceFile, compiler, fileio, record, replace
+from tltlc.api import Fspa, RewardOptions, SourceFile, TltlError, compiler, fileio, record, replace
 
 FORMAT: Final = "tltl-episode"
 VERSION: Final = 1
@@ -94,8 +95,7 @@ def read_episode(path: str | os.PathLike[str]) -> Episode:
 def to_bytes(episode: Episode) -> bytes:
     """Return the bytes that :func:`write_episode` writes."""
     meta = json.dumps(to_json(_meta(episode)), ensure_ascii=False, allow_nan=False)
-    (artefact,) = compiler.emit("json", episode.fspa).values()
-    texts = {"meta": meta, "artefact": str(artefact)}
+    texts = {"meta": meta, "artefact": _artefact_text(episode.fspa)}
     arrays: dict[str, Any] = {name: np.frombuffer(text.encode(), dtype=np.uint8) for name, text in texts.items()}
     arrays |= to_arrays(episode, _modes(episode))
     archive = BytesIO()
@@ -110,7 +110,7 @@ def from_bytes(data: bytes, name: str) -> Episode:
     """
     members = _read_archive(data, name)
     meta = _read_meta(members, name)
-    fspa = compiler.read_artefact(SourceFile(f"{name}/artefact", _read_text(members, "artefact", name)))
+    fspa = _read_automaton(_read_text(members, "artefact", name), name)
     arrays = _read_arrays(members, meta.level, fspa, name)
     _check_indices(arrays, meta, fspa, name)
     return Episode(
@@ -132,6 +132,19 @@ def from_bytes(data: bytes, name: str) -> Episode:
         reward=meta.reward,
         versions=meta.versions,
     )
+
+
+@lru_cache(maxsize=8)
+def _artefact_text(fspa: Fspa) -> str:
+    """Return the artefact of an automaton. It is cached, because the episodes of a spec share it."""
+    (artefact,) = compiler.emit("json", fspa).values()
+    return str(artefact)
+
+
+@lru_cache(maxsize=8)
+def _automaton(artefact: str) -> Fspa:
+    """Return the automaton of an artefact. It is cached, because the episodes of a spec share it."""
+    return compiler.read_artefact(SourceFile("artefact", artefact))
 
 
 def _meta(episode: Episode) -> Meta:
@@ -195,6 +208,13 @@ def _read_meta(members: Mapping[str, bytes], name: str) -> Meta:
     if wrong := fault(meta.level):
         raise _ERRORS.broken_error(name, f"its level is unfit: {wrong}")
     return meta
+
+
+def _read_automaton(text: str, name: str) -> Fspa:
+    try:
+        return _automaton(text)
+    except TltlError:
+        return compiler.read_artefact(SourceFile(f"{name}/artefact", text))  # raises the error that names the file
 
 
 def _read_text(members: Mapping[str, bytes], array: str, name: str) -> str:
