@@ -73,9 +73,9 @@ def are_equivalent(one: Fspa, other: Fspa, work: int = DEFAULT_WORK) -> bool:
 def state_inclusion(fspa: Fspa, work: int = DEFAULT_WORK) -> Callable[[int, int], bool]:
     """Return a function that compares two states of an automaton over finite traces.
 
-    Its arguments are the ids of the two states.  It returns whether every continuation of a trace
-    that is accepted from the first state is accepted from the second.  It raises OutOfWork when all
-    calls together take more than ``work`` steps.
+    Its arguments are the ids of the two states. It returns whether every trace that is accepted
+    from the first state is also accepted from the second. It raises OutOfWork when all calls
+    together take more than ``work`` steps.
     """
     product = _Product(fspa, fspa, Work(work))
 
@@ -87,7 +87,10 @@ def state_inclusion(fspa: Fspa, work: int = DEFAULT_WORK) -> Callable[[int, int]
 
 
 class _Product:
-    """The product of two automata that read the same trace: its states are pairs of their states."""
+    """The product of two automata that read the same trace.
+
+    Each of its states is a pair: a state of the first automaton and a state of the second.
+    """
 
     def __init__(self, one: Fspa, other: Fspa, work: Work, impossible: Iterable[Literals] = ()) -> None:
         self._pair, self._work = (one, other), work
@@ -135,11 +138,12 @@ class _Product:
         return None if part is None else self._lasso_through(part, accepting, rejecting)
 
     def _lasso_through(self, part: Edges, accepting: Sequence[MarkClause], rejecting: Sequence[MarkClause]) -> Trace:
-        """Return a lasso (a prefix and a cycle) whose cycle stays in ``part``, a part of the product.
+        """Return a lasso (a prefix and a cycle) whose cycle takes only edges of ``part``.
 
-        A clause of ``accepting`` accepts the part, and no clause of ``rejecting`` does.  The same
-        must be true of the cycle.  So the cycle takes every ``inf`` mark of the clause that
-        accepts, and every ``fin`` mark of a rejecting clause that occurs in the part.
+        ``part`` is a strongly connected set of edges of the product. A clause of ``accepting``
+        accepts its marks, and no clause of ``rejecting`` does. The same must be true of the cycle.
+        So it takes every ``inf`` mark of the clause that accepts, and each ``fin`` mark of the
+        clauses in ``rejecting`` that occurs in ``part``.
         """
         marks_in_part = marks_of(part)
         clause = next(clause for clause in accepting if clause.accepts(marks_in_part))
@@ -178,7 +182,10 @@ class _Product:
         return next(letter for target, marks, letter in self._step(edge[0]) if (target, marks) == edge[1:])
 
     def _step(self, both: StatePair) -> list[tuple[StatePair, Marks, Letter]]:
-        """Return the successors of a pair of states, each with the marks of its edges and a letter that leads to it."""
+        """Return the successors of a pair of states.
+
+        Each comes with the marks of both edges and a letter that leads to it.
+        """
         successors = self._known.get(both)
         if successors is None:
             left, right = (self._edges_by_letter(which, state) for which, state in enumerate(both))
@@ -197,7 +204,7 @@ class _Product:
         return (one.edges[left].target, other.edges[right].target), marks
 
     def _edges_by_letter(self, which: int, state: int) -> int:
-        """Return the index of the edge taken from a state, as a function of the letter.
+        """Return a diagram that maps each letter to the index of the edge taken from a state.
 
         ``which`` is 0 for a state of the first automaton, 1 for the second.
         """
@@ -213,7 +220,8 @@ class _Product:
         return edge_taken
 
     def _edge_function(self, index: int, primes: Iterable[Implicant], place: Sequence[int]) -> int:
-        """Return a function of the letter: ``index`` where a prime implicant is true, ``_NO_EDGE`` elsewhere.
+        """Return a diagram that is ``index`` where a prime implicant is true, ``_NO_EDGE``
+        elsewhere.
 
         ``place`` maps each atom of the automaton to its number in the product.
         """
@@ -222,10 +230,10 @@ class _Product:
         )
 
     def _maximum(self, steps: list[int]) -> int:
-        """Return the function whose value on each letter is the greatest value of the given functions.
+        """Return the function whose value on each letter is the greatest value of ``steps`` there.
 
-        Combines the functions pairwise, then the results, and so on, so that most steps work on
-        small diagrams.
+        Combines the functions in pairs, then the results in pairs, and so on, so that most steps
+        work on small diagrams.
         """
         level = steps or [self._letters.leaf(_NO_EDGE)]
         while len(level) > 1:
@@ -243,9 +251,10 @@ class _Product:
         return cube
 
     def _values_with_letters(self, step: int) -> dict[Any, list[str]]:
-        """Map each value of a function of the letter to the atoms that hold in one letter with this value.
+        """Map each value of a function of the letter to a letter with this value, as the atoms that
+        hold.
 
-        Atoms that do not matter for the value do not hold in this letter.
+        Atoms that do not matter for the value do not hold in the letter.
         """
         letters = self._letters
         letter_of: dict[Any, list[str]] = {}
@@ -301,7 +310,10 @@ def _shortest_path(
     is_goal: Callable[[Node], bool],
     at_least: int = 0,
 ) -> tuple[Letter, ...] | None:
-    """Return the letters of a shortest path to a goal that has at least ``at_least`` (0 or 1) steps, or None."""
+    """Return the letters of a shortest path from ``starts`` to a goal, or None if no path exists.
+
+    The path has at least ``at_least`` steps, which is 0 or 1.
+    """
     before: dict[tuple[Node, int], tuple[tuple[Node, int], Letter] | None] = {(start, 0): None for start in starts}
     queue = list(before)
     for place in queue:

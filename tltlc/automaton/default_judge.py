@@ -11,7 +11,7 @@ from tltlc.resolve.spec import Conjunct, Judge
 
 
 def judge_of(parts: Iterable[Conjunct]) -> Judge:
-    """Return when a spec over finite traces with these clauses, and no ``judge`` clause, is judged."""
+    """Return the judge of a spec over finite traces with these clauses and no ``judge`` clause."""
     return default_judge(and_(*(part.unbounded or part.formula for part in parts)))
 
 

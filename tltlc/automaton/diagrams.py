@@ -4,14 +4,15 @@ A function maps each assignment of the variables to a value.  Its diagram is a d
 graph: an inner node tests a variable, a leaf holds a value.  A node is an int.  Equal functions are
 the same node, so ``==`` compares functions.
 
-The constructions over finite and over infinite traces store different functions in this type:
+The constructions over finite and over infinite traces store these functions as diagrams:
 
-- *obligations* (:class:`~tltlc.automaton.transitions.ObligationDiagrams`): Boolean functions over temporal
-  subformulas;
-- *transitions* (:class:`~tltlc.automaton.transitions.TransitionDiagrams`) and guards: from a letter, the
-  atoms that hold at a sample, to what remains and whether the trace may end;
-- *steps* of automata over infinite traces: from a letter to any hashable value, such as the next state
-  and the marks of the edge.
+- *obligations* (:class:`~tltlc.automaton.transitions.ObligationDiagrams`): Boolean functions over
+  temporal subformulas;
+- *transitions* (:class:`~tltlc.automaton.transitions.TransitionDiagrams`) and guards: functions
+  from a letter (the atoms that hold at a sample) to what remains to be done and whether the trace
+  may end here;
+- *steps* of automata over infinite traces: functions from a letter to any hashable value, such as
+  the next state and the marks of the edge.
 
 No operation enumerates letters, of which there are 2^n for n atoms.  All operations cache their
 results.
@@ -123,7 +124,7 @@ class Diagrams(Generic[Leaf]):
         return len(self.variable) - 1
 
     # --- operations ---------------------------------------------------------------------------
-    # Most are closures over the tables: attribute look-ups would cost a third of the run time.
+    # Most operations are closures over the tables: attribute look-ups would cost a third of the run time.
 
     def _node_maker(self) -> Callable[[int, int, int], int]:
         nodes, inner = self._nodes, self._add_inner
@@ -149,10 +150,10 @@ class Diagrams(Generic[Leaf]):
     ) -> Callable[[int, int], int]:
         """Return an operation that combines two functions by applying ``combine`` to their values.
 
-        ``combine`` must be commutative and idempotent.  ``absorbing`` and ``neutral`` are the
-        leaves of its absorbing and its neutral value.  ``undefined`` is a leaf: combined with any
-        function except ``absorbing``, the result is ``undefined``.  The operation raises
-        :class:`OutOfSteps` after ``limit.steps`` steps in total.
+        ``combine`` must be commutative and idempotent. ``absorbing`` and ``neutral`` are the leaves
+        of its absorbing and its neutral value. The leaf ``undefined``, combined with any function
+        except ``absorbing``, gives ``undefined``. The operation raises :class:`OutOfSteps` after
+        ``limit.steps`` steps in total.
         """
         variable, low, high, value = self.variable, self.low, self.high, self.value
         nodes, inner, leaf = self._nodes, self._add_inner, self.leaf
@@ -197,7 +198,7 @@ class Diagrams(Generic[Leaf]):
         return operate
 
     def apply(self, combine: Callable[[Any, Any], Leaf], x: int, y: int, memo: dict[tuple[int, int], int]) -> int:
-        """Return the function whose value is ``combine`` of the values of x and y.
+        """Return the function whose value is ``combine`` applied to the values of ``x`` and ``y``.
 
         ``combine`` may be any function of two values.  ``memo`` caches results; pass the same dict
         only to calls with the same ``combine``.  Raises :class:`~tltlc.automaton.work.OutOfWork`.
@@ -240,7 +241,9 @@ class Diagrams(Generic[Leaf]):
     # --- reading ------------------------------------------------------------------------------
 
     def leaves(self, *functions: int) -> list[int]:
-        """Return the distinct leaves of the functions, those where the first variable is false before the others."""
+        """Return the distinct leaves of the functions, in an order that depends only on the
+        functions.
+        """
         variable, low, high = self.variable, self.low, self.high
         leaves: list[int] = []
         stack = list(dict.fromkeys(reversed(functions)))
@@ -298,8 +301,8 @@ def at_most_one(
 ) -> int:
     """Return the function that is ``yes`` where at most one variable of each group is true, ``no`` elsewhere.
 
-    ``conjoin`` may be given to use an existing conjunction of functions with the values ``yes`` and
-    ``no``, whose results are cached.
+    ``conjoin`` returns the conjunction of two functions with the values ``yes`` and ``no``. Pass an
+    operation of ``diagrams`` to use its cache. By default, this function makes its own.
     """
 
     def conjunction(x: int, y: int) -> int:

@@ -1,7 +1,7 @@
-"""The finite state predicate automaton (FSPA) that tltlc compiles to: frozen, complete, self-contained.
+"""The finite state predicate automaton (FSPA), the result of a compilation.
 
-It has the fields of an artefact and no others, so that reading an automaton from JSON returns the
-automaton that was written.
+It has exactly the fields of an artefact, the JSON file of a compiled automaton. So an automaton
+that is written to JSON and read again stays the same.
 """
 
 from __future__ import annotations
@@ -61,11 +61,11 @@ class State:
 class Guard:
     """The condition under which an edge is taken.
 
-    ``formula`` states the condition as a short formula.  In an automaton of another tool,
-    ``formula`` may be a :class:`Text`.  ``primes`` are all prime implicants of the guard; a guard
-    that is always true has ``((),)``.  If atoms are declared ``exclusive``, let D be the condition
-    that no two of these atoms hold together.  Then ``primes`` are the prime implicants of ``guard
-    or not D`` that some letter with D satisfies (semantics, section 3).
+    ``formula`` states the condition as a short formula. In an automaton of another tool,
+    ``formula`` may be a :class:`Text`. ``primes`` are all prime implicants of the guard; a guard
+    that is always true has ``((),)``. If atoms are declared ``exclusive``, let D be the condition
+    that no two of these atoms hold together. Then ``primes`` are the prime implicants of ``guard or
+    not D``, without those that contradict D (semantics, section 3).
     """
 
     formula: Formula | Text
@@ -79,7 +79,9 @@ class Guard:
 
 @record
 class Edge:
-    """An edge.  On each letter, exactly one of the edges that leave a state has a true guard.
+    """An edge of the automaton.
+
+    On each letter, exactly one of the edges that leave a state has a true guard.
 
     No two edges have the same source, the same target and the same marks (:meth:`Fspa.marks`).
     """
@@ -136,9 +138,11 @@ class Fspa:
         return tuple(edge for edge in self.edges if edge.source == state)
 
     def marks(self) -> tuple[tuple[Mark, ...], ...]:
-        """Return, for each edge, the sets of the Rabin pairs that contain the edge, in the order of ``acceptance``.
+        """Return the marks of each edge: the sets of Rabin pairs that contain it.
 
-        Over finite traces no edge has marks.
+        They have the order of ``acceptance``.
+
+        Over finite traces, no edge has marks.
         """
         marks: list[list[Mark]] = [[] for _ in self.edges]
         for number, pair in enumerate(self.acceptance):

@@ -1,8 +1,8 @@
 """Guards: Boolean functions of the atoms, as their prime implicants and as a short formula.
 
-A guard is a transition whose leaves are ``ACCEPT`` and ``REJECT``
-(:mod:`tltlc.automaton.transitions`).  A literal is an int: ``2 * i + 1`` if atom ``i`` is true,
-``2 * i`` if it is false.  A cube is a conjunction of literals, as an ascending tuple.
+A guard is stored as a decision diagram with the leaves ``ACCEPT`` (true) and ``REJECT`` (false) of
+:mod:`tltlc.automaton.transitions`. A literal is an int: ``2 * i + 1`` if atom ``i`` is true,
+``2 * i`` if it is false. A cube is a conjunction of literals, as an ascending tuple.
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ from tltlc.logic.formula import Formula
 Cube = tuple[int, ...]
 
 PRIME_LIMIT = 10_000
-"""The most prime implicants of one guard, and the most products of its short formula."""
+"""The most prime implicants of one guard, and the most conjunctions in its short formula."""
 TOTAL_PRIME_LIMIT = 1_500_000
 """The most prime implicants of all guards of an automaton together; a million takes up a gigabyte of memory."""
 
 _MOST_REMEMBERED = 200_000
-"""The most results of subfunctions (covers and prime implicants) that are cached for the next guards."""
+"""The caches of covers and prime implicants are emptied when they have more entries than this."""
 _MOST_PRODUCTS_REMEMBERED = 1_000_000
-"""The most products in all cached results together."""
+"""The caches are also emptied when their entries have more cubes than this in all."""
 
 _PRIMES_OF_CONSTANTS: dict[int, tuple[Cube, ...]] = {REJECT: (), ACCEPT: ((),)}
 
@@ -34,10 +34,11 @@ _PRIMES_OF_CONSTANTS: dict[int, tuple[Cube, ...]] = {REJECT: (), ACCEPT: ((),)}
 class TooManyPrimes(Exception):
     """Raised when the guards of an automaton are too large.
 
-    ``subject`` has more than ``limit`` things of the kind ``unit``: a guard has too many prime
-    implicants or products (:data:`PRIME_LIMIT`), all guards together have too many prime implicants
-    (:data:`TOTAL_PRIME_LIMIT`), or a count exceeds the row "edges" or "partial products" of
-    :data:`~tltlc.io.limits.WORK`.
+    ``subject`` has more than ``limit`` of the things that ``unit`` names. The limits are:
+
+    - :data:`PRIME_LIMIT`, for the prime implicants or conjunctions of one guard;
+    - :data:`TOTAL_PRIME_LIMIT`, for the prime implicants of all guards;
+    - the rows "edges" and "partial products" of :data:`~tltlc.io.limits.WORK`.
     """
 
     def __init__(self, subject: str = "a guard", limit: int = PRIME_LIMIT, unit: str = "prime implicants") -> None:
@@ -53,8 +54,8 @@ class TooManyPrimes(Exception):
 class Guards:
     """Computes prime implicants and formulas of guards in one table of diagrams.
 
-    ``names`` are the names of the atoms.  ``allowed`` is a guard that is true on the letters that
-    ``exclusive`` declarations allow.
+    ``names`` are the names of the atoms. ``allowed`` is the guard of the letters that ``exclusive``
+    declarations allow.
     """
 
     __slots__ = (
@@ -110,8 +111,9 @@ class Guards:
     def primes(self, guard: int) -> tuple[Implicant, ...]:
         """Return all prime implicants of a guard, sorted by length, then by atom (semantics, section 3).
 
-        If ``exclusive`` declarations allow only the letters D, these are the prime implicants of
-        ``guard or not D`` that some letter in D satisfies.  Raises :class:`TooManyPrimes`.
+        If ``exclusive`` declarations allow only the letters D, returns the prime implicants of
+        ``guard or not D``, without those that no letter in D satisfies. Raises
+        :class:`TooManyPrimes`.
         """
         if self._allowed == ACCEPT:
             cubes = self._all_primes(guard)
@@ -150,9 +152,11 @@ class Guards:
         return build.or_(*[build.and_(*[literals[literal] for literal in cube]) for cube in sorted(products)])
 
     def _negated_sums(self, guard: int) -> tuple[Cube, ...]:
-        """Return the guard as a conjunction of disjunctions, each as the cube of its negated literals.
+        """Return the guard as a conjunction of disjunctions, and each disjunction as the cube of
+        its negation.
 
-        Returns an empty tuple if there are too many.
+        For example, ``(a | b) & c`` has the cubes ``!a & !b`` and ``!c``. Returns an empty tuple if
+        the conjunction is too large (:class:`TooManyPrimes`).
         """
         try:
             return self._cover(self._negation(self._upper(guard)), self._negation(guard))
@@ -162,7 +166,10 @@ class Guards:
     # --- Boolean functions --------------------------------------------------------------------
 
     def _cover(self, lower: int, upper: int) -> tuple[Cube, ...]:
-        """Return an irredundant disjunction of cubes that ``lower`` implies and that implies ``upper``."""
+        """Return cubes, none of them redundant.
+
+        ``lower`` implies their disjunction, and the disjunction implies ``upper``.
+        """
         if lower == upper:
             primes = self._all_primes(lower)
             literals = {literal for cube in primes for literal in cube}
@@ -209,8 +216,9 @@ class Guards:
     def _all_primes(self, function: int) -> tuple[Cube, ...]:
         """Return every prime implicant of a function.
 
-        Splits by the first atom: the result has the prime implicants of "low and high", and the
-        other ones of ``low`` and of ``high``, each with the literal of the atom added.
+        Splits by the first atom: ``low`` is the function where the atom is false, ``high`` where it
+        is true. A prime implicant of "low and high" is one of the function. Every other prime
+        implicant of ``low`` or of ``high`` becomes one when the literal of the atom is added.
         """
         known = self._primes.get(function)
         if known is None:
@@ -240,7 +248,8 @@ class Guards:
             atom = min(diagrams.variable[lower], diagrams.variable[upper])
             lower0, lower1 = _cofactors(diagrams, lower, atom)
             upper0, upper1 = _cofactors(diagrams, upper, atom)
-            # First cover the letters that need a cube with a literal of the atom, then the rest without one.
+            # First cover the letters that need a cube with a literal of the atom, then the other letters with cubes
+            # without it.
             without, covered0 = self._irredundant(conjoin(lower0, negation(upper1)), upper0)
             with_, covered1 = self._irredundant(conjoin(lower1, negation(upper0)), upper1)
             rest = disjoin(conjoin(lower0, negation(covered0)), conjoin(lower1, negation(covered1)))
@@ -258,7 +267,7 @@ class Guards:
     def _count(self, products: int) -> None:
         """Add a number of products to the total.
 
-        Raises :class:`TooManyPrimes` if it or the total is too large.
+        Raises :class:`TooManyPrimes` if the number or the total is too large.
         """
         self._products += products
         if products > PRIME_LIMIT:

@@ -15,11 +15,11 @@ def to_networkx(fspa: Fspa) -> networkx.DiGraph:
     """Return a directed graph with a node for each state id and an edge for each source and target.
 
     Nodes have the attributes ``label`` (ASCII), ``accepting``, ``verdict`` and ``distance`` (None
-    for traps).  Edges have ``guard`` (ASCII), ``primes`` (the prime implicants of the guard) and
-    ``indices`` into ``fspa.edges``.  The graph has ``name``, ``initial`` and ``spec_size``.  Over
-    infinite traces, several edges of the automaton may join the same two states.  The graph then
-    has one edge with all their indices, whose ``guard`` and ``primes`` are the disjunction of their
-    guards.
+    for traps). Edges have ``guard`` (ASCII), ``primes`` (the prime implicants of the guard) and
+    ``indices`` into ``fspa.edges``. The graph has ``name``, ``initial`` and ``spec_size``. Over
+    infinite traces, several edges of the automaton may join the same two states. The graph then has
+    one edge for all of them: ``indices`` lists them, and ``guard`` and ``primes`` are the
+    disjunction of their guards.
 
     >>> import networkx, tltlc
     >>> (fspa,) = tltlc.compile_text("signal a: bool signal b: bool spec s { reach a then b }")

@@ -22,9 +22,10 @@ def formula_text(fspa: Fspa, notation: Notation = "english") -> str:
 def label_text(fspa: Fspa, state: int, notation: Notation = "english") -> str:
     """Return the label of a state in a notation: what remains to be satisfied.
 
-    ``state`` is the state's id.  If acceptance depends only on whether the trace ends in the state,
-    the English sentence says so.  This concerns rejecting states with label ``true``, which ``X``
-    leads to, and accepting states with label ``false``, which ``N`` leads to.
+    ``state`` is the state's id. Over finite traces, two kinds of states have an English sentence of
+    their own: a rejecting state with the label ``true``, as after ``X true``, says that the trace
+    must go on; an accepting state with the label ``false``, as after ``N false``, says that it must
+    end.
     """
     label, accepting, endless = fspa.states[state].label, fspa.states[state].accepting, fspa.semantics == "infinite"
     if notation == "english" and not endless:

@@ -33,8 +33,9 @@ _NO_OBLIGATION: Final = -1
 class ObligationDiagrams(Diagrams[bool]):
     """A table of obligations.  Each variable is the number of an atom or of a temporal subformula.
 
-    ``both`` returns the conjunction of two obligations, ``either`` the disjunction.  Each of the
-    two raises :class:`~tltlc.automaton.diagrams.OutOfSteps` after ``limit.steps`` steps in total.
+    ``both`` returns the conjunction of two obligations, ``either`` the disjunction. Each of these
+    two operations raises :class:`~tltlc.automaton.diagrams.OutOfSteps` after ``limit.steps`` steps
+    in total.
     """
 
     __slots__ = ("both", "either", "limit")
@@ -89,7 +90,9 @@ class TransitionDiagrams(Diagrams[tuple[int, int]]):
         return at_most_one(self, exclusive, (TRUE, 1), (FALSE, 0), self.conjoin)
 
     def constrain(self, transition: int, allowed: int) -> int:
-        """Return the transition on letters where the guard ``allowed`` holds, ``IMPOSSIBLE`` on the others."""
+        """Return the transition, with ``IMPOSSIBLE`` on all letters that make the guard ``allowed``
+        false.
+        """
         variable, low, high, node = self.variable, self.low, self.high, self.node
         memo: dict[tuple[int, int], int] = {}
 

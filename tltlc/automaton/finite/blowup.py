@@ -1,4 +1,4 @@
-"""Find the clause of a spec that makes its automaton larger than the budget allows."""
+"""Find the clauses of a spec that make its automaton larger than the budget allows."""
 
 from __future__ import annotations
 
@@ -66,7 +66,11 @@ def budget_error(spec: Spec, reason: Exception, state_budget: int) -> TltlError:
 
 
 def failure_text(reason: Exception) -> str:
-    """Return in words why the automaton could not be built, for reasons other than a budget of states or work."""
+    """Return in words why the automaton could not be built.
+
+    Handles labels that are too long and formulas that are too deep. Any other reason is reported as
+    too much memory.
+    """
     if isinstance(reason, LabelsTooLong):
         return f"needs labels of more than {WORK['label nodes']} operators and atoms"
     return "needs formulas that nest too deeply" if isinstance(reason, RecursionError) else "needs too much memory"
@@ -75,11 +79,11 @@ def failure_text(reason: Exception) -> str:
 def error_with_clauses(
     spec: Spec, reason: Exception, too_large: str, size: Callable[[Conjunct, Spec], Size | None], advice: str = ADVICE
 ) -> TltlError:
-    """Return the error, with labels on the clauses of the spec whose own automata are largest.
+    """Return the error, with labels on the clauses that make the automaton large, three at most.
 
     ``too_large`` says why the automaton could not be built; it is not used if ``reason`` is
-    TooManyPrimes.  ``size`` returns the size of a clause's own automaton, or None if it is too
-    large.
+    TooManyPrimes. ``size`` returns the size of the automaton of one clause alone, or None if it is
+    too large to build. ``advice`` is the suggestion of the message.
     """
     sizes: dict[Conjunct, Size | None] = {}
     alone: list[Conjunct] = []
@@ -131,9 +135,10 @@ def _cause_label(part: Conjunct) -> Label:
 
 
 def _size(part: Conjunct, spec: Spec) -> Size | None:
-    """Return the number of states of a clause's own automaton; None if it is too large to build.
+    """Return the number of states of the automaton of one clause; None if it is too large to build.
 
-    Too large are :data:`_PART_BUDGET` states or more, or diagrams of too many steps.
+    It is too large if it has :data:`_PART_BUDGET` states or more, or if its diagrams take too many
+    steps or are too deep.
     """
     normal = negation_normal_form(part.formula)
     successors = Successors([atom.name for atom in spec.atoms], TransitionDiagrams(steps=100_000))

@@ -34,9 +34,10 @@ DEFAULT_STATE_BUDGET = 50_000
 def build(spec: Spec, *, state_budget: int = DEFAULT_STATE_BUDGET) -> Fspa:
     """Return the minimal complete automaton of a spec over finite traces (semantics, section 3).
 
-    Raises :class:`~tltlc.diagnostics.diagnostic.TltlError`: TLT0501 if the construction needs more
-    than ``state_budget`` states or the labels get too long, TLT0502 if there are too many edges or
-    prime implicants.  Both point at the clauses that make the automaton large.
+    Raises :class:`~tltlc.diagnostics.diagnostic.TltlError`: TLT0502 if there are too many edges or
+    prime implicants, and TLT0501 if anything else becomes too large, such as the number of states
+    (``state_budget``) or the labels. Both errors point at the clauses that make the automaton
+    large.
     """
     with recursion_room():
         try:
@@ -52,10 +53,10 @@ def minimal_machine(
     exclusive: Iterable[Sequence[int]] = (),
     diagrams: TransitionDiagrams | None = None,
 ) -> tuple[Successors, Machine, int]:
-    """Return the minimal machine of a formula, and what is needed to use it.
+    """Return three things: the :class:`Successors` of a formula, its minimal machine, and a guard.
 
-    Returns the :class:`Successors` with the machine's obligations and transitions, the machine, and
-    a guard that is true on the letters that ``exclusive`` allows.
+    The :class:`Successors` has the obligations and transitions of the machine. The guard is true on
+    the letters that ``exclusive`` allows.
     """
     normal = negation_normal_form(formula)
     diagrams = TransitionDiagrams() if diagrams is None else diagrams
@@ -66,9 +67,9 @@ def minimal_machine(
 
 
 def _build(spec: Spec, state_budget: int) -> Fspa:
-    """Build the automaton, with its atoms in another order if the given order makes the diagrams large.
+    """Build the automaton, with its atoms in another order if their own order takes too many steps.
 
-    The result has its atoms in the given order in any case.
+    The atoms of the result have their own order again.
     """
     order = better_order(spec.formula, [atom.name for atom in spec.atoms])
     if order is None:
@@ -80,7 +81,7 @@ def _build(spec: Spec, state_budget: int) -> Fspa:
 
 
 def _build_in_order(spec: Spec, state_budget: int, steps: int | None = None) -> Fspa:
-    """Build the automaton in the given order of atoms.
+    """Build the automaton with the atoms in the order of the spec.
 
     Raises :class:`OutOfSteps` if the machine or the guards take more than ``steps`` steps (None:
     the default limit).
@@ -139,8 +140,8 @@ def _build_in_order(spec: Spec, state_budget: int, steps: int | None = None) -> 
 def state_leaves(minimal: Machine, diagrams: TransitionDiagrams) -> list[int]:
     """Return the states of the automaton, the initial one first.
 
-    No trace is empty, so it does not matter whether the initial state accepts.  It is accepting if
-    transitions reach its obligation only with an accepting leaf: the two are then one state.
+    No trace is empty, so it does not matter whether the initial state accepts. It is accepting if
+    transitions lead back to its obligation and all of them accept: then no second state is needed.
     Otherwise it is rejecting.
     """
     reached = diagrams.leaves(*minimal.transitions.values())
@@ -184,7 +185,10 @@ def distances(targets: Mapping[int, list[int]], accepting: Callable[[int], bool]
 
 
 def breadth_first(initial: int, targets: Mapping[int, list[int]], distance: Mapping[int, int | None]) -> list[int]:
-    """Return the states in breadth-first order, with the successors of each state sorted by distance, traps last."""
+    """Return the states in breadth-first order.
+
+    The successors of a state come in the order of their distance, with traps last.
+    """
     position = {state: index for index, state in enumerate(targets)}
 
     def rank(state: int) -> tuple[bool, int, int]:
@@ -264,8 +268,9 @@ def _labels(
 def _arrow_forms(source: Formula, labels: Labels) -> dict[Formula, Formula]:
     """Map the negation normal form of each ``->`` and ``<->`` in the source to the formula as written.
 
-    Leaves out subformulas that are too long to read.  If the others together have more operators
-    and atoms than the row "arrow nodes" of ``WORK`` allows, the largest of them are left out too.
+    Leaves out subformulas of more than :data:`~tltlc.automaton.finite.labels.LONGEST_SIMPLIFIED`
+    operators and atoms. Leaves out the largest of the rest too if they have more operators and
+    atoms than the row "arrow nodes" of ``WORK`` allows.
     """
     parts = [part for part in source.walk() if part.op in ("implies", "iff")]
     remaining = WORK["arrow nodes"]
@@ -279,10 +284,9 @@ def _arrow_forms(source: Formula, labels: Labels) -> dict[Formula, Formula]:
 
 
 def _restore_arrows(formula: Formula, restored: dict[Formula, Formula]) -> Formula:
-    """Return the formula with each subformula that the source writes with ``->`` or ``<->`` as in the source.
+    """Return the formula with ``->`` and ``<->`` wherever the source has them.
 
-    ``restored`` is the result of :func:`_arrow_forms`.  The results of this function are added to
-    it.
+    ``restored`` is the result of :func:`_arrow_forms`. This function adds its own results to it.
     """
     for node in formula.bottom_up(known=restored):
         restored[node] = rebuild(node, tuple(restored[argument] for argument in node.args))
@@ -296,7 +300,7 @@ def spec_from_formula(formula: Formula, name: str = "spec", exclusive: Iterable[
     """Return a spec over finite traces with this formula.
 
     Each atom is a signal of the same name with range [-1, 1]; the value of the signal is the value
-    of the atom.
+    of the atom. ``exclusive`` has groups of names of atoms that never hold together.
     """
     groups = [tuple(group) for group in exclusive]
     names = tuple(dict.fromkeys((*formula.atoms(), *(atom for group in groups for atom in group))))

@@ -26,10 +26,11 @@ Decision = Callable[[Sequence[Conjunct], Spec], bool]
 
 
 def contradiction(spec: Spec, decision: Decision | None = None) -> tuple[Conjunct, ...]:
-    """Return clauses of an unsatisfiable spec that contradict each other, without any that are not needed for this.
+    """Return clauses of an unsatisfiable spec that contradict each other, and no more than needed.
 
-    ``decision`` decides whether clauses contradict each other, by default over finite traces.  If a
-    decision takes too much work, some of the returned clauses may not be needed.
+    ``decision`` decides whether clauses contradict each other, by default over finite traces. Some
+    of the returned clauses may not be needed if a decision takes too much work. If the spec has
+    more than :data:`_MOST_PARTS` clauses, returns all of them.
     """
     decision = decision or unsatisfiable
     needed = list(spec.parts)

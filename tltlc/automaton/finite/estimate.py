@@ -25,7 +25,10 @@ from tltlc.automaton.transitions import IMPOSSIBLE, TransitionDiagrams
 _NONE: Final = -1
 """The letter in which no atom holds; any other letter is the index of the one atom that holds."""
 _FEW: Final = 500
-"""How many states are counted before the count may give up, if less than half of them have distinct answers."""
+"""How many states are counted at least.
+
+After that, the count gives up when it has fewer different answers than half its states.
+"""
 
 Word = list[int]
 _Table = dict[int, dict[int, tuple[int, int]]]
@@ -48,10 +51,11 @@ class Estimate:
         self._leaf_without_atoms: dict[int, int] = {}
 
     def exceeds(self, machines: Sequence[Machine], conjunction: bool, budget: int) -> bool:
-        """Whether the minimal machine of the conjunction or disjunction has more than ``budget`` states for certain.
+        """Return True if the product of the machines certainly needs more than ``budget`` states.
 
-        False may also mean that this is unknown, because no steps are left, or because too few
-        states have different answers.
+        The product is the minimal machine of their conjunction, or of their disjunction if
+        ``conjunction`` is False. False may also mean that the answer is unknown, because no steps
+        are left or too few states have different answers.
         """
         if prod(len(machine.transitions) for machine in machines) <= budget:
             return False
@@ -125,7 +129,10 @@ class Estimate:
         return leaf
 
     def _reachable_states(self, initial: Sequence[int], tables: Sequence[_Table]) -> Iterator[tuple[int, ...]]:
-        """Yield the reachable states of the product, which have one state of each machine, breadth-first."""
+        """Yield the reachable states of the product, breadth-first.
+
+        Each is a tuple with a state of each machine.
+        """
         letters = sorted({letter for table in tables for letter in table} - {_NONE})
         # For each letter: the machines for which it differs from the letter without atoms, with their next states.
         seeing = {
@@ -156,7 +163,7 @@ class Estimate:
 def _settling_word(machine: Machine, table: _Table, accepting: bool) -> Word | None:
     """Return a shortest word that a machine accepts (if ``accepting``) or rejects (if not).
 
-    Returns None if the letters of the table have no such word.
+    Returns None if no word with the letters of ``table`` is one.
     """
     queue: list[tuple[int, Word]] = [(machine.initial, [])]
     seen = {machine.initial}

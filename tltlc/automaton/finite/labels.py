@@ -21,12 +21,12 @@ from tltlc.logic.formula import Formula
 from tltlc.logic.rewrite import simplify
 
 _MEMBERS = 6
-"""Several obligations can have the language of one state.
+"""How many obligations of one state are written as formulas, the smallest ones.
 
-At most this many, the smallest, are written as formulas.
+Several obligations can have the language of one state.
 """
 _CANDIDATES = 3
-"""How many of these formulas, the smallest ones, are shortened."""
+"""How many formulas of one state are shortened, the smallest ones."""
 
 LONGEST_SIMPLIFIED = 200
 """Labels with more operators and atoms are not simplified: they are too long to read."""

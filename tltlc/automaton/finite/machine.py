@@ -1,4 +1,6 @@
-"""Build the minimal machine of an obligation: find all reachable obligations, then merge those of equal language.
+"""Build the minimal machine of an obligation: find all reachable obligations and merge equal ones.
+
+Obligations are equal if they have the same language.
 
 A machine is a deterministic automaton whose transitions, not states, decide acceptance.  Its states
 are obligations (what remains after the samples so far).  A letter leads to a leaf, which has the
@@ -24,9 +26,10 @@ class OutOfStates(Exception):
 class Machine:
     """The minimal machine of an obligation.
 
-    Of all reachable obligations with the same language, one is the state.  ``transitions`` maps
-    each state to its transition, whose leaves have states; the first key is ``initial``, the
-    initial state.  ``representative`` maps every reachable obligation to its state.
+    Its states are obligations: of all reachable obligations with the same language, one is a state.
+    ``representative`` maps every reachable obligation to its state. ``transitions`` maps each state
+    to its transition. The leaves of a transition have states as obligations. The first key is
+    ``initial``, the initial state.
     """
 
     initial: int
@@ -80,7 +83,7 @@ def explore(successors: Successors, initial: int, state_budget: int, allowed: in
 
 
 def minimise(successors: Successors, transitions: dict[int, int]) -> Machine:
-    """Merge the obligations of equal language.
+    """Merge the obligations with the same language.
 
     ``transitions`` is the result of :func:`explore`.  The method is partition refinement: start
     with all obligations in one block, and split a block while its members have transitions to
@@ -154,7 +157,9 @@ def _ancestors(nodes: list[int], parents: dict[int, list[int]]) -> set[int]:
 
 
 def _links(diagrams: TransitionDiagrams, roots: Iterable[int]) -> tuple[dict[int, list[int]], dict[int, list[int]]]:
-    """Map every node below ``roots`` to its parents, and every state to the leaves that have it as the next one."""
+    """Map every node below ``roots`` to its parents, and every state to the leaves that lead to
+    it.
+    """
     atom, low, high, value = diagrams.variable, diagrams.low, diagrams.high, diagrams.value
     parents: dict[int, list[int]] = {root: [] for root in roots}
     leaves_of: dict[int, list[int]] = {}
@@ -212,11 +217,11 @@ def matches_state(
 ) -> bool:
     """Whether an obligation has the same language as a state of a minimal machine.
 
-    ``known`` maps obligations to the states with the same language, as far as these are known.  If
-    the result is True, the obligations that were compared are added to it.  The comparison follows
-    all letters from the obligation and from the state together.  States of a minimal machine have
-    different languages, so each obligation must meet only one state.  Raises :class:`OutOfSteps`
-    after ``pair_limit`` obligations.
+    ``known`` maps some obligations to the states with the same language. If the result is True,
+    this function adds the obligations that it compared. The comparison follows all letters from the
+    obligation and from the state together. States of a minimal machine have different languages, so
+    each obligation must meet only one state. Raises :class:`OutOfSteps` after ``pair_limit``
+    obligations.
     """
     diagrams = successors.diagrams
     atom, low, high, value = diagrams.variable, diagrams.low, diagrams.high, diagrams.value

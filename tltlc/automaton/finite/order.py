@@ -26,7 +26,7 @@ _Group = frozenset[int]
 
 
 def better_order(formula: Formula, names: Sequence[str]) -> list[int] | None:
-    """Return the indices of the atoms in an order in which the sum of all widths is at most half of the present sum.
+    """Return the indices of the atoms in an order that at least halves the sum of all widths.
 
     Returns None if the heuristic finds no such order.
     """

@@ -17,7 +17,10 @@ A longer one is written as nested ``a & … | …`` instead.
 """
 
 _MOST_FACTORED = 40
-"""In obligations with more variables, only the first variable is tried as a common factor."""
+"""The most variables of an obligation that are all tried as common factors.
+
+In larger obligations, only the first variable is tried.
+"""
 
 _Term = frozenset[tuple[int, bool]]
 _Positioned = tuple[int, Formula]
@@ -42,10 +45,10 @@ class ObligationWriter:
         return self._with_position(obligation)[1]
 
     def long_bound(self, obligation: int) -> Formula | None:
-        """Return the bounded operator of the source with this obligation, None if there is none or it is short.
+        """Return the operator of the source with a long bound that has this obligation, or None.
 
-        A bound of more than :data:`_MOST_FACTORED` samples is long.  A search for a shorter formula
-        would find none, and would take n² steps for the n states that count the bound down.
+        A bound of more than :data:`_MOST_FACTORED` samples is long. Callers do not search for a
+        shorter formula for it: there is none, and the search takes n² steps for n samples.
         """
         return self._long_bounds.get(obligation)
 
@@ -88,8 +91,8 @@ class ObligationWriter:
     def without_shorter_bounds(self, obligation: int) -> int:
         """Return the obligation without the variables of bounds that a longer bound makes redundant.
 
-        The obligation of ``F[0,n] p`` also has the variables of ``F[0,n-1] p`` and so on.  Without
-        this method, labels would need a proof for each of these variables that it can be removed.
+        The obligation of ``F[0,n] p`` also has the variables of ``F[0,n-1] p`` and so on. This
+        method saves the labels a proof for each of these variables.
         """
         known = self._without_shorter.get(obligation)
         if known is None:

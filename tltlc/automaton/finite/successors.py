@@ -1,4 +1,4 @@
-"""Compute the transition of a formula or an obligation: what remains of it after one letter.
+"""Compute the transition of a formula or an obligation: what remains to be done after one letter.
 
 Each temporal operator has an expansion law on finite traces (semantics, section 2):
 ``F p = p | X F p``, ``G p = p & N G p``, ``p U q = q | p & X(p U q)``,
@@ -18,10 +18,11 @@ from tltlc.logic.formula import Formula
 class Successors:
     """Computes transitions of obligations, and of formulas in negation normal form, in one table of diagrams.
 
-    Obligations are Boolean functions of variables.  ``formulas[v]`` is the formula of variable
-    ``v``: an atom, or a formula whose outermost operator is temporal. A variable can also be a
-    state of a smaller automaton that was built for a part of the formula (:meth:`new_state`).  Then
-    ``formulas[v]`` is None, and ``stands_for[v]`` is the obligation that remains in this state.
+    Obligations are Boolean functions of variables, and a variable is an int. ``formulas[v]`` is the
+    formula of variable ``v``: an atom, or a formula whose outermost operator is temporal. A
+    variable can also be a state of a smaller automaton that was built for a part of the formula
+    (:meth:`new_state`). Then ``formulas[v]`` is None, and ``stands_for[v]`` is the obligation that
+    remains in this state.
     """
 
     __slots__ = (

@@ -30,12 +30,12 @@ _TEMPORAL: Final = ("U", "W", "X")
 
 
 class ObligationAutomaton:
-    """Computes obligations over ``atoms``, and the successors of an obligation as a function of the letter.
+    """Computes obligations over ``atoms``, and functions from the letter to what remains after it.
 
-    These functions are in the table ``letters``.  ``formulas[v]`` is the formula of variable ``v``
+    These functions are in the table ``letters``. ``formulas[v]`` is the formula of variable ``v``
     of the obligations: an atom, a formula with the outermost operator ``X``, ``U`` or ``W``, or a
-    rigid formula.  Methods that build obligations raise
-    :class:`~tltlc.automaton.diagrams.OutOfSteps` if one becomes too large.  Methods that build
+    rigid formula. Methods that build obligations raise
+    :class:`~tltlc.automaton.diagrams.OutOfSteps` if one becomes too large. Methods that build
     functions of letters raise :class:`~tltlc.automaton.work.OutOfWork`.
     """
 
@@ -101,7 +101,7 @@ class ObligationAutomaton:
         return number
 
     def after(self, obligation: int) -> int:
-        """Return the obligation that remains after each letter, as a function of the letter."""
+        """Return a function of the letter: what remains of an obligation after the letter."""
         known = self._of_obligation
         if obligation in known:
             return known[obligation]
@@ -120,10 +120,11 @@ class ObligationAutomaton:
         return known[obligation]
 
     def _by_variable(self, obligation: int, absent: int, present: int) -> int:
-        """Return what remains of an obligation, as a function of the letter, given the same for its two cofactors.
+        """Return the function of :meth:`after` for an obligation, from the functions of its
+        cofactors.
 
-        ``absent`` is the function of the obligation with its first variable false, ``present`` with
-        it true.
+        ``absent`` is the function of the cofactor in which the first variable is false, ``present``
+        of the one in which it is true.
         """
         formula, letters = self.formulas[self.obligations.variable[obligation]], self.letters
         if formula.op == "atom":
@@ -143,7 +144,9 @@ class ObligationAutomaton:
         return self.letters.apply(self._with_counter(self.obligations.either), x, y, self._either)
 
     def _with_counter(self, combine: Callable[[int, int], int]) -> Callable[[int, int], int]:
-        """Return ``combine`` as a function that raises OutOfWork after too many different results."""
+        """Return ``combine`` as a function that raises OutOfWork when it has had too many different
+        results.
+        """
         reached: set[int] = set()
         most = self._most_reached
 
@@ -157,7 +160,9 @@ class ObligationAutomaton:
         return counted
 
     def of_formula(self, formula: Formula) -> int:
-        """Return the obligation that remains of a formula, as a function of the letter."""
+        """Return a function of the letter: what remains of a formula after the letter, as an
+        obligation.
+        """
         step = self._of_formula.get(formula)
         if step is None:
             step = self._of_formula[formula] = self._expand(formula)

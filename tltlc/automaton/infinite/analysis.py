@@ -28,7 +28,8 @@ def analysis_of_rabin(automaton: Rabin, work: Work) -> Analysis:
 def analysis_of_fspa(fspa: Fspa, work: Work) -> Analysis:
     """Return the analysis of an FSPA.
 
-    Uses only the number of its states, its edges and its Rabin pairs, whose indices must be valid.
+    Uses only the number of its states, its edges, and its Rabin pairs. The indices in the pairs
+    must be valid.
     """
     edges = [
         (edge.source, edge.target, pair_marks(marks)) for edge, marks in zip(fspa.edges, fspa.marks(), strict=True)
@@ -37,7 +38,7 @@ def analysis_of_fspa(fspa: Fspa, work: Work) -> Analysis:
 
 
 class Analysis:
-    """What the cycles of an automaton say about its states (semantics, section 5).
+    """Goals, traps and verdicts of an automaton, from its cycles (semantics, section 5).
 
     ``targets`` maps each state to its successors.  ``goals`` is the set of the states on an
     accepted cycle.  State 0 is initial. The marks of ``edges`` are numbered as by

@@ -24,9 +24,9 @@ def join_components(
 ) -> tuple[Rabin, dict[Place, int]]:
     """Return the automaton of all reachable states, and the number of each reachable state in it.
 
-    ``initial`` becomes state 0.  ``entry`` maps each label to the state that an exit to this label
-    leads to.  States keep the labels of the components.  A state whose label is in ``apart`` is
-    not merged with a state whose label is not.
+    ``initial`` becomes state 0. An exit is an edge of a component to a label of another component;
+    ``entry`` maps this label to the state that the edge leads to. States keep the labels of the
+    components. A state whose label is in ``apart`` is not merged with a state whose label is not.
     """
     steps = _steps(letters, components, entry)
     reached = _reachable(letters, steps, initial)
@@ -44,7 +44,7 @@ def join_components(
 def _steps(
     letters: Diagrams[Any], components: Sequence[RabinComponent], entry: Mapping[int, Place]
 ) -> dict[Place, int]:
-    """Return the steps of all components, with each exit replaced by the state of another component it leads to."""
+    """Return the steps of all components, with each exit replaced by the state in ``entry``."""
     steps: dict[Place, int] = {}
     for number, component in enumerate(components):
 

@@ -49,10 +49,9 @@ def assemble(
 ) -> AssembledParts:
     """Return states, edges and Rabin pairs, with the states in breadth-first order, as artefacts have them.
 
-    ``atoms`` are the names of the atoms, ``exclusive`` groups of their indices.  ``label`` returns
-    the label of a state, given its number in ``automaton``.  Successors of a state are sorted by
-    distance; those with equal distance have the order of ``first``, if it is given, which lists all
-    states.
+    ``atoms`` are the names of the atoms, ``exclusive`` groups of their indices. ``label`` returns
+    the label of a state, given its number in ``automaton``. Successors of a state are sorted by
+    distance. ``first`` may list all states; successors with equal distance then have its order.
 
     Raises :class:`~tltlc.automaton.guards.TooManyPrimes` and
     :class:`~tltlc.automaton.diagrams.OutOfSteps`.
@@ -78,7 +77,7 @@ def _edges(
 ) -> tuple[tuple[Edge, ...], tuple[Pair, ...]]:
     """Return the edges, sorted by source, target and marks, and the Rabin pairs.
 
-    Letters with the same source and target but different marks get different edges.
+    Two edges may have the same source and target if they have different marks.
     """
     diagrams, leaves = TransitionDiagrams(), _Leaves()
     guards = Guards(diagrams, atoms, diagrams.allowed_letters(exclusive))
@@ -105,7 +104,8 @@ def _edges(
 class _Leaves:
     """Converts steps of a Rabin automaton to transitions of another table of diagrams.
 
-    The leaves of these transitions have an index into ``values``, the list of targets with marks.
+    A leaf of such a transition stores an index into ``values``. An entry of ``values`` is a target
+    and its marks.
     """
 
     def __init__(self) -> None:
@@ -114,7 +114,7 @@ class _Leaves:
         self._known: dict[int, int] = {}
 
     def transition(self, letters: Diagrams[Any], step: int, diagrams: TransitionDiagrams) -> int:
-        """Return a step as a transition."""
+        """Return the transition of a step, in the table ``diagrams``."""
         node = self._known.get(step)
         if node is None:
             if letters.variable[step] != LEAF:

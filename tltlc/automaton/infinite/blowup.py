@@ -1,4 +1,4 @@
-"""Find the part of a spec over infinite traces that makes its automaton too expensive."""
+"""Find the clauses of a spec over infinite traces that make its automaton too expensive."""
 
 from __future__ import annotations
 

@@ -1,8 +1,7 @@
 """Convert a strongly connected component of the after-automaton to an automaton with an acceptance condition.
 
-The states of the after-automaton are labels (obligations).  A state of the new automaton is a
-label, and for each part of the formula the state of a small automaton that observes this part (its
-memory).
+The states of the after-automaton are labels (obligations). A state of the new automaton has a label
+and, for each part of the formula, a memory: the state of a small automaton that observes the part.
 """
 
 from __future__ import annotations
@@ -50,9 +49,10 @@ def parts_of(
 ) -> tuple[Skeleton, list[LeafAutomaton]]:
     """Return the Boolean structure of a normalised formula over its parts, and an automaton for each part.
 
-    If ``in_turn``, the operands ``G F p`` of a conjunction, and ``F G p`` of a disjunction, share
-    one automaton, a :class:`~tltlc.automaton.infinite.leaf_automata.RoundRobin`.  ``keep`` is the
-    parameter of :class:`~tltlc.automaton.infinite.leaf_automata.Recurrence`.
+    A part is a largest subformula that is no ``and`` or ``or``. If ``in_turn``, the operands
+    ``G F p`` of a conjunction, and ``F G p`` of a disjunction, share one automaton, a
+    :class:`~tltlc.automaton.infinite.leaf_automata.RoundRobin`. ``keep`` is the parameter of
+    :class:`~tltlc.automaton.infinite.leaf_automata.Recurrence`.
     """
     index_of: dict[Formula | tuple[Formula, ...], int] = {}
     parts: list[LeafAutomaton] = []
@@ -105,10 +105,10 @@ def bottom_component(
 ) -> ComponentAutomaton:
     """Return an automaton with an acceptance condition for the component of the labels ``inside``.
 
-    It is a part of the product of the labels with the automata ``parts``, which starts at the label
-    ``first`` with the initial memories.  Of the strongly connected parts that no edge leaves,
-    except to labels outside ``inside``, it is the smallest.  ``step_of`` returns the label after a
-    given label, as a function of the letter.
+    It is a part of the product of the labels with the automata ``parts``. The product starts at the
+    label ``first`` with the initial memories. The part is its smallest strongly connected component
+    that no edge leaves, except to labels outside ``inside``. ``step_of`` returns, for a label, a
+    function from the letter to the next label.
     """
     initial: State = (first, *(part.initial for part in parts))
     steps, best = explore(letters, initial, lambda state: _step(letters, step_of, inside, state, parts))
@@ -125,10 +125,10 @@ def bottom_component(
 def explore(
     letters: Diagrams[Any], initial: State, step_of: Callable[[State], int]
 ) -> tuple[dict[State, int], list[State]]:
-    """Return the steps of all reachable states in breadth-first order, and the states of a part of them.
+    """Return the steps of all reachable states, breadth-first, and the states of a component.
 
-    Of the strongly connected parts that no edge leaves, except to targets ``("exit", label)``, it
-    is the smallest.
+    The component is the smallest strongly connected one that no edge leaves, except to targets
+    ``("exit", label)``.
     """
     steps: dict[State, int] = {}
     targets: dict[State, list[State]] = {}
@@ -147,8 +147,8 @@ def explore(
 def merge_equal_states(letters: Diagrams[Any], component: ComponentAutomaton) -> ComponentAutomaton:
     """Return the component with equal states merged.
 
-    States are equal if they have the same label and, on each letter, the same marks used by clauses
-    and equal successors.
+    States are equal if they have the same label and, on each letter, equal successors and the same
+    marks. Marks that no clause uses do not count.
     """
     labels, steps, accepts = component.labels, component.steps, component.accepts
     used = frozenset().union(*(clause.fins | clause.infs for clause in accepts))
@@ -187,7 +187,7 @@ def _step(
     state: State,
     parts: Sequence[LeafAutomaton],
 ) -> int:
-    """Return the :data:`Leaf` after a state of the product, as a function of the letter."""
+    """Return a function of the letter: the :data:`Leaf` after ``state``, a state of the product."""
 
     def start(label: int) -> Leaf:
         return ((label,), _NONE) if label in inside else (("exit", label), _NONE)

@@ -44,7 +44,7 @@ _FOR_AN_ATTEMPT: Final = 400_000
 _FOR_LANGUAGES: Final = 1_000_000
 """Steps of work for finding states of equal language and the second construction.
 
-If they take more, the result of the first construction stays.
+If they take more, the automaton of the first construction is the result.
 """
 _FOR_SHRINKING: Final = 400_000
 """Steps of work for removing states of a component.
@@ -107,8 +107,9 @@ class _Construction:
     def _equal_labels(self, automaton: Rabin, state_of: Labels, depth: Labels) -> Labels:
         """Map each label to the label that represents its language.
 
-        Of the labels with the same language, this is one in the component that comes first in
-        ``depth``, and there the shortest.
+        Of the labels with the same language, it is one with the lowest ``depth`` (the position of
+        its component), and of these the shortest. ``state_of`` maps labels to states of
+        ``automaton``.
         """
         same = equal_states(automaton, len(self.after.atoms), self._exclusive, self.work)
         representatives: Labels = {}
@@ -162,9 +163,9 @@ class _Construction:
     # --- letters ----------------------------------------------------------------------------------
 
     def _step(self, label: int) -> int:
-        """Return the next label as a function of the letter.
+        """Return a function from the letter to the next label.
 
-        Its value is ``IMPOSSIBLE`` for letters that are not allowed.
+        Its value is ``IMPOSSIBLE`` for letters that ``exclusive`` rules out.
         """
         step = self.after.after(label)
         if not self._exclusive:

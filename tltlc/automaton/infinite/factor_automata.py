@@ -4,11 +4,15 @@ A state of a component is a label and the memories of the formula's parts.  A *f
 component merges all states with the same key, such as the label and one of the memories.  So an
 edge of the factor replaces several edges of the component.
 
-The factor must accept the same runs.  For this, its edges get ranks.  An edge gets rank 0 if none
-of the edges that it replaces lies on a rejected cycle.  Among the edges without a rank, an edge
-gets rank 1 if none of its edges lies on an accepted cycle, then rank 2 for rejected cycles, and so
-on.  If every edge gets a rank, a run is accepted if the least rank that it takes infinitely often
-is even.
+The factor must accept the same runs as the component. For this, its edges get ranks, in rounds:
+
+- Round 0: an edge gets rank 0 if none of the edges that it replaces lies on a rejected cycle.
+- Round 1, for edges without a rank: an edge gets rank 1 if none of the edges that it replaces lies
+  on an accepted cycle.
+- Later even rounds are like round 0, later odd rounds like round 1, for the edges that are left.
+
+If every edge gets a rank, a run is accepted if the least rank that it takes infinitely often is
+even.
 """
 
 from __future__ import annotations

@@ -2,7 +2,8 @@
 
 The labels of states are often longer than necessary, because they are made from decision diagrams.
 This module rewrites a label in two forms: a disjunction of prime implicants, and a conjunction of
-prime implicates.  ``b & !d | d`` becomes ``b | d``, and ``F b & G F c | F b & G F d`` becomes
+prime implicates. (A prime implicate is a disjunction of literals that the label implies, none of
+which can be left out.) ``b & !d | d`` becomes ``b | d``, and ``F b & G F c | F b & G F d`` becomes
 ``F b & (G F c | G F d)``.
 """
 
@@ -22,13 +23,15 @@ from tltlc.logic.formula import Formula, not_
 _MOST_TERMS: Final = 48
 """The most prime implicants, or prime implicates, of a formula that is rewritten in this form."""
 _MOST_STEPS: Final = 20_000
-"""The most steps of the diagrams for one form of a formula; if it takes more, it is left out."""
+"""The most steps of the diagrams for one form of a formula. A form that takes more is left out."""
 
 _Term = frozenset[int]
 """A set of literals.  The literal of variable ``v`` is ``2 * v``, its negation ``2 * v + 1``."""
 
 _Op = Literal["or", "and"]
-"""The operator that joins terms: ``or`` for implicants, which are conjunctions, ``and`` for implicates."""
+"""The operator that joins terms: ``or`` for implicants (conjunctions), ``and`` for implicates
+(disjunctions).
+"""
 
 
 class _TooManyTerms(Exception):
@@ -36,7 +39,10 @@ class _TooManyTerms(Exception):
 
 
 class Factoring:
-    """Rewrites formulas in normal form over ``atoms`` to equivalent ones over infinite traces."""
+    """Rewrites formulas in normal form over ``atoms``.
+
+    The results are equivalent on infinite traces.
+    """
 
     def __init__(self, atoms: Sequence[str]) -> None:
         self._after = ObligationAutomaton(atoms, Diagrams(Work(0)))
@@ -104,7 +110,10 @@ class Factoring:
         return term
 
     def _redundant_beside(self, literal: int, op: _Op) -> _Term:
-        """Return the literals that are redundant in the same term: in an ``and``, ``F b`` beside ``F(a & X F b)``."""
+        """Return the literals that are redundant in a term with ``literal``.
+
+        For example, ``F b`` is redundant in an ``and`` with ``F(a & X F b)``.
+        """
         redundant = self._redundant.get((op, literal))
         if redundant is None:
             redundant = frozenset()
@@ -132,9 +141,11 @@ class Factoring:
     def _factor(self, terms: Sequence[_Term], op: _Op) -> Formula:
         """Return the terms as a formula, with the literals that all terms share in front.
 
-        If the terms share no literal, the literal of the most terms is factored out.  What is left
-        of these terms are the rests.  Other factors that occur with every rest are factored out as
-        well.  The remaining terms are factored separately.
+        If the terms share no literal, the literal that most terms have is factored out. The rests
+        are what is left of these terms. A factor that occurs with every rest is factored out too.
+        The terms that are left are factored separately. For example,
+        ``a & c | a & d | b & c | b & d | e`` becomes ``(a | b) & (c | d) | e``: ``a`` leaves the
+        rests ``c`` and ``d``, and ``b`` occurs with both.
         """
         if len(terms) < 2:
             return self._join(terms, op)

@@ -35,22 +35,25 @@ class LeafAutomaton(Protocol):
     initial: Memory
 
     def step(self, memory: Memory) -> int:
-        """Return the next memory and whether the letter is marked, as a function of the letter."""
+        """Return a function of the letter: the next memory, and whether the letter is marked."""
 
     def final_value(self, memory: Memory) -> bool | None:
-        """Return True if the part holds whatever letters follow, False if it then fails, None if it is open."""
+        """Return True if the part holds whatever letters follow, False if it fails, None otherwise."""
 
 
 class Breakpoint:
     """A breakpoint automaton for a Pi-2 formula (``inf``) or a Sigma-2 formula (``fin``).
 
-    The memory is two obligations: what remains of the formula, and a second one.  For a Pi-2
-    formula, the second obligation starts as what remains with each outermost ``W`` replaced by
-    true.  When it becomes true, the letter is marked, and the second obligation starts again in the
-    same way from what remains at that letter.  The formula holds if infinitely many letters are
-    marked and what remains never becomes false.  For a Sigma-2 formula, each outermost ``U`` is
-    replaced by false, the letter is marked when the second obligation becomes false, and the
-    formula holds if only finitely many letters are marked.
+    The memory is two obligations: what remains of the formula, and a second one. They have these
+    rules:
+
+    - Pi-2: the second obligation starts as what remains, with each outermost ``W`` replaced by
+      true. When it becomes true, the letter is marked, and the second obligation starts again from
+      what remains at that letter. The formula holds if infinitely many letters are marked and what
+      remains never becomes false.
+    - Sigma-2: the second obligation starts as what remains, with each outermost ``U`` replaced by
+      false. When it becomes false, the letter is marked, and the second obligation starts again.
+      The formula holds if only finitely many letters are marked.
     """
 
     def __init__(self, after: ObligationAutomaton, formula: Formula, kind: Kind) -> None:
@@ -71,7 +74,7 @@ class Breakpoint:
         return self._after.obligation(_replace_outermost(formula, "W" if self.kind == "inf" else "U"))
 
     def step(self, memory: Memory) -> int:
-        """Return the next memory and whether the letter is marked, as a function of the letter."""
+        """Return a function of the letter: the next memory, and whether the letter is marked."""
         step = self._steps.get(memory)
         if step is None:
             letters = self._after.letters
@@ -124,7 +127,7 @@ class Recurrence:
         self._last: dict[int, int] = {}
 
     def step(self, memory: Memory) -> int:
-        """Return the next memory and whether the letter is marked, as a function of the letter."""
+        """Return a function of the letter: the next memory, and whether the letter is marked."""
         step = self._steps.get(memory)
         if step is None:
             letters = self._after.letters
@@ -158,10 +161,10 @@ class Recurrence:
 class RoundRobin:
     """An automaton for a conjunction of ``G F p``, or a disjunction of ``F G p``, that observes one operand at a time.
 
-    The memory is the index of the current operand and the memory of its :class:`Recurrence`.  On a
-    letter that the current operand marks, the automaton moves on to the next operand.  It marks the
-    letter if all operands have had their turn.  The automaton then has as many memories as the
-    operands together; automata side by side would have the product of their numbers.
+    The memory is the index of the current operand and the memory of its :class:`Recurrence`. On a
+    letter that the current operand marks, the automaton moves on to the next operand. It marks the
+    letter if all operands have had their turn. So it has as many memories as the operands have
+    together. An automaton for each operand would give the product of their numbers.
     """
 
     def __init__(self, after: ObligationAutomaton, parts: Sequence[Recurrence]) -> None:
@@ -172,7 +175,7 @@ class RoundRobin:
         self._steps: dict[Memory, int] = {}
 
     def step(self, memory: Memory) -> int:
-        """Return the next memory and whether the letter is marked, as a function of the letter."""
+        """Return a function of the letter: the next memory, and whether the letter is marked."""
         step = self._steps.get(memory)
         if step is None:
             letters, count = self._letters, len(self._parts)

@@ -54,7 +54,7 @@ def pair_clauses(pairs: int, first: int = 0) -> list[MarkClause]:
 def clauses(
     skeleton: Skeleton, kinds: Sequence[Kind], values: Sequence[bool | None], work: Work
 ) -> list[MarkClause] | bool:
-    """Return clauses, one of which a run must meet so that the formula of a skeleton holds.
+    """Return the clauses of a skeleton: its formula holds on a run if the run meets one of them.
 
     The mark of each part is its index in ``kinds``.  ``values`` has True or False for a part whose
     value is known, None for the others.  Returns True or False if the formula is constant.  Raises
@@ -87,7 +87,7 @@ def _clauses(skeleton: Skeleton, kinds: Sequence[Kind], values: Sequence[bool | 
 
 
 def _drop_covered(disjuncts: list[MarkClause], work: Work) -> list[MarkClause]:
-    """Return the clauses without duplicates and without those that are met only if another one is met."""
+    """Return the clauses without duplicates and without each clause that implies another one."""
     distinct = list(dict.fromkeys(disjuncts))
     work.spend(len(distinct) ** 2 // 16)
     return [

@@ -186,9 +186,10 @@ def weak_until(left: Formula, right: Formula) -> Formula:
 
 
 def _splits(formula: Formula, op: str) -> bool:
-    """Whether an operand has this outermost operator.
+    """Whether an operand of the formula has the outermost operator ``op``.
 
-    An ``F`` around a ``W``, or a ``G`` around a ``U``, can be rewritten with a rigid formula.
+    Callers then split the formula, since ``F`` of a ``W`` and ``G`` of a ``U`` can be written with
+    a rigid formula.
     """
     return any(operand.op == op for operand in formula.args)
 

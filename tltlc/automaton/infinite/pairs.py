@@ -1,11 +1,12 @@
 """Convert the acceptance condition of a component from clauses to Rabin pairs.
 
-The conversion uses the alternating cycle decomposition (:mod:`tltlc.automaton.infinite.cycles`).
-The new states also store a position in its tree.  At an accepted node, the position is in one child
-at a time.  It stays there while the run takes only edges of that child.  Otherwise it moves on to
-the next child, and the edge gets an ``inf`` mark.  A run with infinitely many of these marks stays
-in no rejected child, so it is accepted.  At a rejected node, the position is in all accepted
-children at once, each with its own pair.  Nodes that have no state in common may share a pair.
+The conversion uses the alternating cycle decomposition (:mod:`tltlc.automaton.infinite.cycles`). A
+new state also stores a position in the tree of the decomposition. At an accepted node, the position
+is in one child at a time. It stays there while the run takes only edges of that child. When the run
+takes another edge, the position moves on to the next child, and this edge gets an ``inf`` mark. A
+run with infinitely many of these marks stays in no rejected child, so it is accepted. At a rejected
+node, the position is in all accepted children at once, each with its own pair. Nodes that have no
+state in common may share a pair.
 """
 
 from __future__ import annotations
@@ -21,7 +22,10 @@ from tltlc.automaton.work import OutOfWork, Work
 from tltlc.core.record import record
 
 _FOR_FEWER_PAIRS: Final = 100_000
-"""Steps of work for a decomposition that is not needed: the clauses are Rabin pairs already, perhaps too many."""
+"""Steps of work for a decomposition when the clauses are Rabin pairs already.
+
+The decomposition may need fewer pairs than there are clauses.
+"""
 
 Walk = tuple[Any, ...]
 """The position of a run below a node of the tree.
@@ -135,7 +139,7 @@ def _edges(letters: Diagrams[Any], component: ComponentAutomaton) -> list[Edge]:
 
 
 class _Walks:
-    """Computes the positions of runs in a tree.
+    """Computes the positions of runs in the tree of a decomposition.
 
     If ``one_at_a_time``, the position is in only one child of a rejected node too.
     """
@@ -180,9 +184,9 @@ class _Walks:
     def step(self, node: Node, walk: Walk, edge: Edge, active: set[int], marked: set[int]) -> Walk:
         """Return the position below a node after an edge of the node.
 
-        Adds the indices of two kinds of accepted nodes to sets: those at the position that contain
-        the edge to ``active``, and those where the position moves on to the next child to
-        ``marked``.
+        ``walk`` is the position before. This method adds the indices of accepted nodes at the
+        position to two sets: to ``active`` if the node contains the edge, to ``marked`` if the
+        position moves on to the node's next child.
         """
         source, target, _ = edge
         if node.accepted:

@@ -37,9 +37,9 @@ def product_leaves(
 ) -> Callable[[int, int], list[Leaf]]:
     """Return a function that maps the steps of two states to the successors of the two states in the product.
 
-    A step is a function from the letter to a target and marks.  Each automaton has ``pairs`` Rabin
-    pairs.  ``is_over`` returns whether a value of a step has no target.  The product has no
-    successor on such letters, which must be the same in both automata.
+    A step is a function from the letter to a target and marks. Each automaton has ``pairs`` Rabin
+    pairs. ``is_over`` returns True for a value of a step without a target. On letters with such a
+    value, the product has no successor. These letters must be the same in both automata.
     """
     memo: dict[tuple[int, int], int] = {}
 
@@ -81,7 +81,10 @@ def separating_component(
 def _separating_part(
     edges: Sequence[Edge], accepting: Sequence[MarkClause], rejecting: Sequence[MarkClause], work: Work
 ) -> Edges | None:
-    """Return a strongly connected subset that a clause of ``accepting`` accepts and none of ``rejecting``, or None."""
+    """Return a strongly connected subset of ``edges``, None if there is none.
+
+    A clause of ``accepting`` accepts it, and no clause of ``rejecting`` does.
+    """
     for clause in accepting:
         # Removing edges is cheap; `parts` counts its own work.
         work.spend(1 + len(edges) // 128)
