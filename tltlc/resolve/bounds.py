@@ -12,11 +12,14 @@ from tltlc.resolve.values import Env
 
 
 def expand_bound(expr: Unary, operand: Formula, env: Env) -> Formula:
-    """Apply the bounded operator of ``expr`` to an operand; raise ResolutionError for a bad bound.
+    """Return the formula of the bounded operator of ``expr``, applied to ``operand``.
 
-    ``F[a,b] p`` is false past the end of the trace (strong next). ``G[a,b] p`` requires nothing
-    there (weak next). ``within n`` is ``[0,n]``, ``for n`` is ``[0,n-1]``, and ``next after n`` is
-    n nexts.
+    Past the end of the trace, ``F[a,b] p`` is false (strong next), and ``G[a,b] p`` requires
+    nothing (weak next). ``within n`` means ``[0,n]``, ``for n`` means ``[0,n-1]``, and
+    ``next after n`` means n times ``next``.
+
+    Raises ResolutionError: TLT0312 for a bound that makes no sense, TLT0313 for a bound in seconds
+    without a clock, TLT0315 if the formula becomes too large.
     """
     bound = expr.bound
     assert bound is not None
@@ -49,7 +52,10 @@ def expand_bound(expr: Unary, operand: Formula, env: Env) -> Formula:
 
 
 def _drop_bound(op: str, steps: int, operand: Formula) -> Formula:
-    """Apply ``F`` or ``G`` without its bound, or ``X`` or ``N`` with its bound, ``steps`` times."""
+    """Apply ``F`` or ``G`` once, without its bound.
+
+    Apply ``X`` or ``N`` as often as ``steps`` says.
+    """
     if op in ("F", "G"):
         return eventually(operand) if op == "F" else always(operand)
     for _ in range(steps):

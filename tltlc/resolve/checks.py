@@ -28,11 +28,11 @@ def check_predicates(context: Context) -> None:
     """Check the range and continuity of every predicate in use, each once, and log the findings.
 
     A range must hold for all values of the params. A jump is reported only if it occurs with the
-    current values of the params: `near(exit, close = 3 m)` would jump in a level of 2 m, but the
-    level has another size.
+    current values of the params: ``near(exit, close = 3 m)`` jumps in a level of 2 m, which does
+    not matter if the level has 20 m.
 
-    All checks together have a limited number of steps. One warning (TLT0503) names the predicates
-    that were not checked.
+    All checks together have a limited number of steps. If it is used up, one warning (TLT0503)
+    names the first predicate that was not checked and counts the others.
     """
     from tltlc.resolve.range_proof.work import step_limit
 
@@ -62,7 +62,7 @@ def _check(instance: Instance, context: Context) -> None:
 def _holds_without_negatives(instance: Instance, context: Context) -> bool:
     """Whether the range is wrong only because a signal may be negative.
 
-    This concerns lengths, times and speeds that have no declared range.
+    Such a signal is a length, a time or a speed without a declared lower end.
     """
     from tltlc.resolve.range_proof import check_predicate
 
@@ -88,7 +88,10 @@ def _jumps_at_param_values(instance: Instance, context: Context) -> bool:
 
 
 def _variables_read(instance: Instance, kind: type[N]) -> list[N]:
-    """Return the nodes of a predicate that read signals, or params, as ``kind`` says."""
+    """Return the nodes of a predicate that read signals, or those that read params.
+
+    ``kind`` is the class of these nodes.
+    """
     return [node for node in nodes(instance.expression) if isinstance(node, kind)]
 
 

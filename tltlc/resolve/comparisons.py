@@ -26,9 +26,10 @@ def comparison(expr: BinaryExpr, env: Env) -> Formula:
 
     ``x >= c`` is ``not (x < c)``, and ``x <= c`` is ``not (x > c)``.
 
-    With x in [low, high], ``x > c`` has the robustness (x - c), scaled to 1 at high and to -1 at
-    low, each side separately. ``x < c`` is mirrored. If both sides vary, their difference is
-    compared with 0. The robustness is above 0 exactly where the comparison is true.
+    With x in [low, high], the robustness of ``x > c`` is x - c, divided by high - c where it is
+    positive, and by c - low where it is negative: so it is 1 at high and -1 at low. ``x < c`` is
+    the same with the signs turned round. If both sides vary, their difference is compared with 0.
+    The robustness is above 0 exactly where the comparison is true.
 
     Raises ResolutionError if the comparison is constant over the range (TLT0310), if a side that is
     needed for scaling is unbounded (TLT0311), or if the arithmetic of a side may overflow
@@ -69,7 +70,11 @@ def _check_size(side: Quantity, expr: BinaryExpr, env: Env) -> None:
 
 
 def _check_truth(left: Quantity, op: str, right: Quantity, negated: bool, expr: BinaryExpr, env: Env) -> None:
-    """Raise ResolutionError if a comparison is constant (TLT0310) or a bound to scale it is missing (TLT0311)."""
+    """Raise ResolutionError if a comparison is always or never true, or cannot be scaled.
+
+    The codes are TLT0310 for a constant comparison, and TLT0311 if the range that scales it is
+    open.
+    """
     source = env.scope.source
     x, c = left, right.low
     if not right.is_constant:

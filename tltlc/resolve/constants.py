@@ -23,7 +23,8 @@ MOST_SAMPLES = 10**9
 def number(expr: Expr, dimension: Dimension, env: Env, subject: str) -> float:
     """Return the value of a constant expression in SI units.
 
-    Raises ResolutionError if it is not constant.
+    Raises ResolutionError if the expression is not constant or not of this dimension. ``subject``
+    names the value in the message.
     """
     value = quantity(expr, replace(env, constant=True, local={}))
     if value.dimension not in (None, dimension):
@@ -98,7 +99,7 @@ _OVERRIDE = re.compile(r"([-+]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]
 def parse_override(text: str) -> tuple[float, Dimension | None] | None:
     """Return the value of an option ``--param NAME=25 m`` in SI units, and its dimension.
 
-    The dimension is None without a unit. The result is None if the text is not a value.
+    The dimension is None if the text has no unit. Returns None if the text is not a finite value.
     """
     matched = _OVERRIDE.fullmatch(text.strip())
     if matched is None:

@@ -56,18 +56,25 @@ class Instance:
     source: SourceFile
     span: Span
     use: Label | None = None
-    """The place that passes numbers to the predicate, on which the findings depend, or None."""
+    """The place that passes numbers to the predicate, or None.
+
+    The findings depend on these numbers.
+    """
 
 
 class Context:
     """The tables that fill up while a program is resolved.
 
-    ``signals`` holds the signals in use, by full name. ``instances`` (predicates to be checked) and
-    ``values`` (of signals and predicates, expansions of lets, calls and comparisons) are keyed by
-    the identity of the declaration or expression and by the values of its parameters or local
-    names. ``expanding`` maps the identity of each let and predicate that is being expanded to its
-    name, outermost first. ``broken`` holds the declarations whose error has been reported.
-    ``bounds`` holds the bounds expanded so far.
+    - ``signals`` has the signals in use, by full name.
+    - ``instances`` has the predicates to be checked.
+    - ``values`` has the values found so far of signals, predicates, lets, calls and comparisons.
+    - ``expanding`` has the name of each let or predicate that is being expanded, outermost first,
+      by the identity of its declaration.
+    - ``broken`` has the identities of the declarations whose error has been reported.
+    - ``bounds`` has the bounds expanded so far.
+
+    A key of ``instances`` or ``values`` has the identity of a declaration or expression, and the
+    values of its parameters or local names.
     """
 
     __slots__ = (
@@ -143,8 +150,8 @@ class Context:
     def count_arithmetic(self, expression: Expression, source: SourceFile, span: Span, counted_before: int = 0) -> int:
         """Return the number of nodes of an expression.
 
-        Raises ResolutionError (TLT0315) if the limit is exceeded together with the ``counted_before``
-        nodes.
+        Raises ResolutionError (TLT0315) if they and ``counted_before`` (the nodes of earlier atoms)
+        are more than the limit for all atoms.
         """
         left = WORK["arithmetic of all atoms"] - counted_before
         size = sum(1 for _ in islice(nodes(expression), left + 1))
@@ -204,7 +211,10 @@ class Context:
     def check_size(
         self, formula: Formula, subject: str, source: SourceFile, span: Span, *, is_bound: bool = False
     ) -> Formula:
-        """Return the formula unchanged; raise ResolutionError if expansion made it too large."""
+        """Return the formula unchanged; raise ResolutionError (TLT0315) if it became too large.
+
+        ``subject`` and ``is_bound`` are as in :func:`expansion_error`.
+        """
         if self.tree_size(formula) > LARGEST_EXPANSION:
             raise expansion_error(subject, source, span, is_bound=is_bound)
         return formula
@@ -217,7 +227,8 @@ _FEWER_USES: Final = "it multiplies with each use inside another: say the same w
 def expansion_error(subject: str, source: SourceFile, span: Span, *, is_bound: bool = False) -> ResolutionError:
     """Return the error for a formula that is too large after expansion.
 
-    ``subject`` names the bound, let, quantifier or parameter.
+    ``subject`` names the bound, let, quantifier or parameter that expands. ``is_bound`` is True for
+    a bound, which gets an advice of its own.
     """
     return problem(
         "TLT0315",

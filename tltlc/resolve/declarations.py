@@ -20,7 +20,7 @@ from tltlc.resolve.values import Env, range_text
 
 
 def declare(scopes: Iterable[Scope], options: ResolveOptions, context: Context) -> None:
-    """Fill the context's tables of signals, params and the clock; problems go to its log."""
+    """Fill the tables of signals, params and the clock in ``context``; log problems there."""
     places: dict[str, Label] = {}
     ranged: set[str] = set()
     clock: Label | None = None

@@ -24,7 +24,7 @@ from tltlc.resolve.values import Env, Quantity
 def same_dimension(left: Quantity, right: Quantity, at: Expr, env: Env) -> Dimension | None:
     """Return the dimension of two quantities that are added or compared.
 
-    Raises ResolutionError (TLT0305) if they differ.
+    None fits any dimension. Raises ResolutionError (TLT0305) at ``at`` if the dimensions differ.
     """
     if left.dimension is None or right.dimension is None or left.dimension == right.dimension:
         return left.dimension if left.dimension is not None else right.dimension
@@ -63,7 +63,7 @@ def _has_other_units(dimension: Dimension, unit: str, env: Env) -> bool:
 
 
 def _has_dimension(dimension: Dimension, declaration: Declaration) -> bool:
-    """Whether a declaration is a signal or param of this dimension, or has such a parameter."""
+    """Whether a declaration is a signal or param of this dimension, or has a parameter of it."""
     if isinstance(declaration, (SignalDecl, ParamDecl)):
         return units.TYPES.get(declaration.type or "") == dimension
     if isinstance(declaration, (LetDecl, PredicateDecl)):
@@ -72,7 +72,10 @@ def _has_dimension(dimension: Dimension, declaration: Declaration) -> bool:
 
 
 def mismatch(expected: Dimension, actual: Dimension, at: Expr, env: Env, why: str) -> ResolutionError:
-    """Return the error for the expression ``at``, which has the wrong dimension."""
+    """Return the error for the expression ``at``, which has the wrong dimension.
+
+    ``why`` says in the message where the expected dimension comes from.
+    """
     while isinstance(at, GroupExpr):
         at = at.inner
     unit = units.si_unit(expected)

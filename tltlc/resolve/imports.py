@@ -68,7 +68,7 @@ def load(module: Module, options: ResolveOptions, log: Log) -> tuple[LoadedModul
 def standard_library() -> Path:
     """Return the folder of the standard library.
 
-    It is inside the package if that is installed, and next to the package in a checkout.
+    It is inside the package if tltlc is installed, and next to the package in a checkout.
     """
     package = Path(__file__).parent.parent
     installed = package / "stdlib"
@@ -141,7 +141,10 @@ def _folder(source: SourceFile) -> Path:
 
 
 def _find(declaration: Import, source: SourceFile, options: ResolveOptions) -> tuple[Path, str]:
-    """Return the absolute path of an imported file and the name to show for it."""
+    """Return the absolute path of an imported file and the name to show for it.
+
+    Raises ResolutionError: TLT0010 if there is no file, TLT0777 if it may not be read.
+    """
     target = declaration.target
     here = _folder(source)
     folders = tuple(
@@ -185,7 +188,10 @@ def _find(declaration: Import, source: SourceFile, options: ResolveOptions) -> t
 
 
 def _is_in_deleted_folder(path: Path) -> bool:
-    """Whether a path is relative to a current folder that has been deleted, so that nothing can be read through it."""
+    """Whether a path is relative and the current folder has been deleted.
+
+    Nothing can be read through such a path.
+    """
     if path.is_absolute():
         return False
     try:
@@ -196,7 +202,7 @@ def _is_in_deleted_folder(path: Path) -> bool:
 
 
 def _check_inside(path: Path, declaration: Import, source: SourceFile) -> None:
-    """Raise TLT0777 for a path that may not be read, whether or not the file exists.
+    """Raise ResolutionError (TLT0777) for a path that may not be read, even if there is no file.
 
     The error does not reveal whether there is a file. A path with a NUL byte is accepted here: it
     names no file on any system, so it cannot leave a folder.
@@ -210,7 +216,7 @@ def _similar_help(suggestion: str | None) -> str | None:
 
 
 def _quoted_library(target: str, folders: tuple[Path, ...]) -> str | None:
-    """Return the name of the library that was written like a path, in quotes, or None."""
+    """Return the name of the library that the user wrote like a path, in quotes, or None."""
     name = target.removesuffix(".tltl")
     return name if any(is_file(folder / f"{name}.tltl") for folder in folders) and "/" not in name else None
 
@@ -237,7 +243,7 @@ def _normalise(path: Path) -> str:
 def _display_name(path: Path) -> str:
     """Return the path to show for a file.
 
-    Library files have the same path wherever the package is installed.
+    The path of a file of the standard library does not depend on where the package is installed.
     """
     try:
         inside = Path(_normalise(path.absolute())).relative_to(standard_library().absolute())

@@ -19,7 +19,7 @@ from tltlc.resolve.values import Entity, Env, Quantity, Unknown
 _FORMULA_OPERATORS = ("and", "or", "implies", "iff", "U", "W", "R", "M", "then", "<", "<=", ">", ">=")
 
 _MOST_LETTERS = 4
-"""The most operator letters that may stand directly in front of a name."""
+"""The most operator letters that may stand directly in front of a name, as in ``FGgoal``."""
 _MOST_NAMES = 5
 """The most entities that a message lists."""
 _MOST_HINTS = 50
@@ -29,14 +29,15 @@ _DECLARATIONS = {
     "signal or param": "signal {name} in [0, 100]",
     "entity": "entity {name}",
 }
-"""By kind of name, the declaration to suggest for a name that resembles no known one."""
+"""The declaration to suggest for an unknown name that resembles no known name, by ``noun``."""
 
 
 def lookup(use: NameExpr | CallExpr, env: Env, kinds: tuple[Kind, ...], noun: str) -> Binding:
     """Return the binding of a name: its declaration and scope.
 
-    Raises ResolutionError (TLT0201) with a suggestion if the name is unknown. The error
-    has no diagnostic if a failed import may have declared the name.
+    Raises ResolutionError (TLT0201) if the name is unknown. The error suggests a name of one of
+    ``kinds``, and calls what is missing ``noun``. It has no diagnostic if a failed import may have
+    declared the name.
     """
     binding = env.scope.names.get(use.name)
     if binding is not None:

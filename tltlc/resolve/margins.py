@@ -1,9 +1,10 @@
-"""The robustness of a comparison: its margin scaled to [-1, 1], with the sign of its truth.
+"""The robustness of a comparison: its margin, scaled to [-1, 1].
 
-The margin is ``left - right``. Subtraction of doubles keeps the sign: the margin is above 0 exactly
-where the left side is greater. Scaling can lose the sign: a small margin over a large width rounds
-to 0, and the width of a large range overflows. Two measures prevent this. Where the quotient might
-round to 0, the robustness of a margin above 0 is at least the smaller of the margin and
+The margin is ``left - right``. Scaling divides it by the width of its range. The sign must be
+right: the robustness is above 0 exactly where the left side is greater. Subtraction of doubles
+keeps the sign. Division can lose it: a small margin over a large width rounds to 0, and the width
+of a large range overflows. Two measures prevent this. Where the quotient might round to 0, the
+robustness of a margin above 0 is at least the smaller of the margin and
 :data:`tltlc.expression.tree.LEAST`. If the width overflows, both sides are halved before they are
 subtracted.
 """
@@ -44,7 +45,7 @@ def robustness(left: Quantity, right: Quantity) -> Expression:
 
 @record
 class _MarginRange:
-    """The margins above 0, or below 0, by their size: from 0 to ``width``."""
+    """The range of the margins above 0, or of those below 0. Their sizes go from 0 to ``width``."""
 
     most: float
     least: float
@@ -61,7 +62,7 @@ class _MarginRange:
 
     @property
     def order(self) -> tuple[float, float]:
-        """The key by which two ranges are compared."""
+        """The key that sorts ranges by width, even if widths overflow."""
         return self.width, self.half_width
 
 
@@ -87,7 +88,7 @@ def _margin(left: Quantity, right: Quantity) -> Expression:
 
 
 def _gap(left: Quantity, right: Quantity) -> float:
-    """Return a lower bound for the difference of two unequal values of the sides; may be 0."""
+    """Return a lower bound for the size of a margin that is not 0. The bound may be 0."""
     return max(_spacing(left), _spacing(right))
 
 

@@ -1,4 +1,7 @@
-"""The one exception of resolution: it ends the current clause or declaration, never the whole run."""
+"""The exception of resolution, and the log of its diagnostics.
+
+The exception ends the current clause or declaration, never the whole run.
+"""
 
 from __future__ import annotations
 
@@ -79,7 +82,10 @@ class Log:
         self._diagnostics.setdefault((diagnostic.code, place), diagnostic)
 
     def diagnostics(self) -> tuple[Diagnostic, ...]:
-        """Return every diagnostic, by file in order of first report, and within a file by position."""
+        """Return all diagnostics, sorted by file and then by position.
+
+        The file whose problem was reported first comes first.
+        """
         files: dict[str, int] = {}
 
         def place(diagnostic: Diagnostic) -> tuple[int, int]:

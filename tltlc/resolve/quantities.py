@@ -31,7 +31,8 @@ _COMPARISONS = ("<", "<=", ">", ">=")
 def quantity(expr: Expr, env: Env, depth: int = 0) -> Quantity:
     """Resolve an arithmetic expression to a quantity.
 
-    Raises ResolutionError if it is not a number or its units do not fit.
+    ``depth`` is the number of operators around the expression. Raises ResolutionError if the
+    expression is not a number, its units do not fit, or it is too deep or too wide.
     """
     while isinstance(expr, GroupExpr):
         expr = expr.inner
@@ -46,7 +47,7 @@ def quantity(expr: Expr, env: Env, depth: int = 0) -> Quantity:
 def condition(expr: Expr, env: Env, depth: int = 0) -> tuple[Condition, str]:
     """Resolve the condition of a ``when``; return it and its text.
 
-    Raises ResolutionError if the expression is no condition.
+    ``depth`` is as in :func:`quantity`. Raises ResolutionError if the expression is no condition.
     """
     while isinstance(expr, GroupExpr):
         expr = expr.inner

@@ -20,7 +20,7 @@ EVERYTHING: Range = (-inf, inf)
 
 
 def range_of(op: str, args: tuple[Range, ...]) -> Range:
-    """Return the range of the operator ``op`` (see :class:`tltlc.expression.tree.Op`).
+    """Return the range of the results of the operator ``op`` (:class:`tltlc.expression.tree.Op`).
 
     Returns ``EVERYTHING`` if the result may be unbounded or undefined.
     """
@@ -32,7 +32,7 @@ def range_of(op: str, args: tuple[Range, ...]) -> Range:
 
 
 def overflows(op: str, args: tuple[Range, ...]) -> bool:
-    """Whether ``op`` is defined everywhere in the ranges, which are finite, but may overflow."""
+    """Whether the ranges are finite, and ``op`` is defined everywhere in them but may overflow."""
     if not all(isfinite(end) for arg in args for end in arg) or not _is_defined(op, args):
         return False
     return not all(isfinite(end) for end in range_of(op, args))

@@ -43,7 +43,7 @@ class Resolution:
 
 
 def resolve(module: Module, options: ResolveOptions | None = None) -> Resolution:
-    """Return the specs and tests of a module that resolve, all diagnostics, the names and the modules.
+    """Return what a module resolves to: its specs and tests, names, modules and diagnostics.
 
     Reads the files that the module imports. Never raises on bad input: everything in error is
     reported and left out.
@@ -73,10 +73,13 @@ def resolve_atoms(
 ) -> tuple[Vocabulary | None, FormulaOf, tuple[Diagnostic, ...]]:
     """Resolve texts from outside a module, such as an imported automaton, to atoms of the module.
 
-    Each of the ``texts`` is a formula that is an atom, or the name of an atom of the module's own
-    specs, written without units. Returns the vocabulary, a function that resolves further formulas
-    without reporting anything, and the diagnostics that no ``allow`` comment silences. The vocabulary
-    is None if the module or a text is in error, or if two texts name the same atom.
+    Each of the ``texts`` is a formula of one atom, or the name of an atom of the module's own
+    specs. (Such a name has no units.) Returns three things:
+
+    - the vocabulary of the atoms, None if the module or a text is in error, or if two texts name
+      the same atom;
+    - a function that resolves further formulas without reporting anything;
+    - the diagnostics that no ``allow`` comment silences.
     """
     env, groups, modules = _declare_names(module, options or ResolveOptions())
     context = env.context

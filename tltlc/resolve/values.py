@@ -121,7 +121,7 @@ _INFIX = {
 
 
 def apply(op: str, args: tuple[Quantity, ...], dimension: Dimension | None) -> Quantity | None:
-    """Apply ``op`` to quantities.
+    """Apply ``op`` to quantities; ``dimension`` is that of the result.
 
     Constants give a constant, or None if the value is not finite (``1 / 0``).
     """

@@ -1,4 +1,7 @@
-"""Check the range and continuity of predicates. The result is proved, wrong at a point, or unproved."""
+"""Check the range and continuity of predicates.
+
+Begin with :mod:`tltlc.resolve.range_proof.check`.
+"""
 
 from tltlc.resolve.range_proof.check import RangeProblem, check_predicate
 

@@ -78,7 +78,10 @@ def agreement_goal(meeting: Meeting) -> ProofGoal:
 
 
 def _closed_constraint(constraint: Constraint, bools: frozenset[Variable]) -> Constraint:
-    """Return the constraint on the border: ``>=`` if a signal can come arbitrarily close to it."""
+    """Return the constraint with ``>`` read as ``>=`` if it reads a signal that is not a bool.
+
+    Such a signal can come arbitrarily close to the border.
+    """
     if any(isinstance(v, SignalValue) and v not in bools for v in variables(constraint.difference)):
         return Constraint(constraint.difference, False)
     return constraint

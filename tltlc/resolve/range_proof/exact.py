@@ -1,7 +1,7 @@
 """Prove bounds with sympy, by turning expressions into quotients of polynomials.
 
-Each term with another function, such as ``sqrt``, becomes a variable of its own, with the range
-that interval arithmetic finds for it.
+A term with a function that is no polynomial, such as ``sqrt``, becomes a variable of its own. Its
+range is the one that interval arithmetic finds for the term.
 """
 
 from __future__ import annotations
@@ -70,7 +70,10 @@ def proves_within_exactly(
 
 
 class _Translation:
-    """Translates expressions to sympy terms, with one symbol per variable and per other function."""
+    """Translates expressions to sympy terms.
+
+    Each variable gets a symbol, and so does each term that is no quotient of polynomials.
+    """
 
     def __init__(self, region: ConstrainedBox) -> None:
         self.region = region

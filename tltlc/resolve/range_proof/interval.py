@@ -45,7 +45,7 @@ def multiply(a: Interval, b: Interval) -> Interval:
 def divide(a: Interval, b: Interval, *, nonzero: bool = False) -> Interval:
     """Return the quotient; raise UndefinedError if the divisor may be 0.
 
-    ``nonzero`` states that the divisor is not 0 although its interval may end there.
+    ``nonzero`` states that the divisor is not 0, although its interval may end at 0.
     """
     if b[0] < 0 < b[1] or b == (0.0, 0.0) or (0.0 in b and not nonzero):
         raise UndefinedError("divides by zero")
@@ -187,9 +187,11 @@ def _signed_ends(b: Interval) -> Interval:
 
 
 def _round_outwards(x: float, towards: float, negative: bool | None = None) -> float:
-    """Return the second float after ``x`` towards ``towards``; library functions may err by one.
+    """Return the second float after ``x`` towards ``towards``.
 
-    Returns 0 instead of a value of the wrong sign, if ``negative`` gives the sign.
+    One float would not be enough, since library functions may err by one. ``negative`` says whether
+    the exact value is negative, if this is known. The result is then 0 in place of a float of the
+    wrong sign.
     """
     value = nextafter(nextafter(x, towards), towards)
     if negative is not None and (value > 0) == negative:

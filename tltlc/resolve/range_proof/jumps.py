@@ -1,4 +1,7 @@
-"""Search for points on the border of two cases where the value jumps; deterministic, bounded work."""
+"""Search for points on the border of two cases where the value jumps.
+
+The search is deterministic, and its work is bounded.
+"""
 
 from __future__ import annotations
 
@@ -70,7 +73,10 @@ def _case_at(all_cases: Sequence[ConstrainedValue], point: Point) -> Constrained
 
 
 def _points_along(start: Point, variable: Variable, box: Box, expression: Expression) -> Iterator[Point]:
-    """Yield other points on the line through ``start`` along one axis."""
+    """Yield points that differ from ``start`` only in ``variable``.
+
+    They are the candidates of :func:`points`, a dozen at most.
+    """
     seen = {start[variable]}
     for candidate in points(expression, {variable: box[variable]}, frozenset()):
         if candidate[variable] not in seen:
@@ -83,7 +89,7 @@ def _points_along(start: Point, variable: Variable, box: Box, expression: Expres
 def _jump_between(
     all_cases: Sequence[ConstrainedValue], expression: Expression, start: Point, end: Point, variable: Variable
 ) -> Jump | None:
-    """Bisect between points of different cases down to the border; return the jump there, if any."""
+    """Bisect between points of two cases down to the border; return the jump there, or None."""
     low, high = start[variable], end[variable]
     left, right = _case_at(all_cases, start), _case_at(all_cases, end)
     while abs(high - low) > _BORDER_WIDTH * max(1.0, abs(low)):

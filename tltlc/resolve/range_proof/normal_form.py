@@ -84,7 +84,8 @@ def constant(value: Fraction | int) -> Polynomial:
 def polynomial_bound(polynomial: Polynomial, region: ConstrainedBox) -> Interval:
     """Return an interval that contains the polynomial's values on a region.
 
-    Raises UndefinedError like its factors, and TooLargeError for a coefficient that is not a float.
+    Raises UndefinedError if a factor may be undefined there, and TooLargeError if a coefficient
+    does not fit into a float.
     """
     total = _sum_of_terms(polynomial, region)
     for expression, known in region.known.items():

@@ -105,7 +105,7 @@ def _ratios(value: Expression) -> Iterator[Op]:
 
 
 def _proves_by_sign(value: Expression, region: ConstrainedBox, low: float, high: float) -> bool:
-    """Whether the value is provably in bounds by its sign.
+    """Whether signs prove that the value is in bounds.
 
     For ``n/d`` with d of one sign, the signs of ``n - low * d`` and ``n - high * d`` decide.
     """

@@ -1,4 +1,4 @@
-"""Cache the answers that need sympy, so that each question imports it at most once.
+"""Cache the answers that need sympy, so that sympy is imported at most once for each question.
 
 Answers are stored in ``$TLTLC_CACHE_DIR`` (nowhere if it is set but empty) or in the system's cache
 folder. A file that cannot be read or written is ignored.

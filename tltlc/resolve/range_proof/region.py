@@ -23,8 +23,8 @@ _FAR_AWAY = 1e6
 class ConstrainedBox:
     """The points of a box where some expressions lie within known bounds.
 
-    ``nonzero`` expressions are not 0 anywhere. A region may be empty without being recognised as
-    empty.
+    The expressions in ``nonzero`` are 0 nowhere in it. A region may be empty without being
+    recognised as empty.
     """
 
     box: Box
@@ -130,8 +130,8 @@ def _bound(expression: Expression, region: ConstrainedBox) -> Interval:
 def _combine(expression: Op, args: list[Interval], nonzero: bool) -> Interval:
     """Return the bounds of an operation from the bounds of its arguments.
 
-    ``nonzero`` states that its divisor is not 0. Raises UndefinedError if the operation may be
-    undefined.
+    ``nonzero`` states that the divisor of the operation is not 0. Raises UndefinedError if the
+    operation may be undefined.
     """
     if expression.op == "/":
         quotient = interval.divide(args[0], args[1], nonzero=nonzero)

@@ -1,4 +1,7 @@
-"""Search for points where a range is wrong; deterministic and of bounded work."""
+"""Search for points where a range is wrong.
+
+The search is deterministic, and its work is bounded.
+"""
 
 from __future__ import annotations
 
@@ -170,7 +173,10 @@ def _climb(
     box: Box,
     bools: frozenset[Variable],
 ) -> SamplePoint:
-    """Return a local maximum of the excess, by shrinking steps along the axes."""
+    """Return a point where the excess has a local maximum, found from ``start``.
+
+    The search takes smaller and smaller steps along the axes.
+    """
     best = start
     steps = {v: (high - low) / 8 if isfinite(high - low) else 1.0 for v, (low, high) in box.items() if v not in bools}
     for _ in range(_CLIMBING_ROUNDS):
