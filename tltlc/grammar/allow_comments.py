@@ -1,9 +1,13 @@
 """Comments that silence warnings and notes, such as ``// tltlc: allow TLT0421``.
 
-A reason may follow the codes. A comment at the end of a line applies to that line. A comment on a
-line of its own applies to the next line with a clause or declaration. It silences diagnostics of
-every clause and declaration that has a part on the line; of a block, only the head and the closing
-brace count. A comment before the first declaration applies to the whole file.
+A reason may follow the codes. The place of a comment says what it applies to:
+
+- at the end of a line, to this line;
+- on a line of its own, to the next line with a clause or declaration;
+- before the first declaration, to the whole file.
+
+A comment that applies to a line silences diagnostics of every clause and declaration that has a
+part on the line. Of a block, only the head and the closing brace count as parts.
 """
 
 from __future__ import annotations
@@ -104,7 +108,9 @@ def _statements_by_line(module: Module) -> dict[int, dict[Span, None]]:
 
 
 def _statement_parts(module: Module) -> Iterator[tuple[Span, Span]]:
-    """Yield pairs of spans: a statement, and a part of it to whose lines comments apply.
+    """Yield pairs of spans: a statement, and a part of it.
+
+    A comment applies to the statement if it applies to a line of the part.
 
     A statement is a clause or a declaration. A block has two parts, its head and its closing brace.
     In a list of entities, the first name is the part of the whole declaration, and each further

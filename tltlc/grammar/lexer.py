@@ -46,8 +46,8 @@ class Tokens(NamedTuple):
 def tokenize(text: str) -> Tokens:
     """Split a text into tokens; unreadable parts become ``BAD`` tokens.
 
-    Stops after :data:`MAX_TOKENS` tokens and then adds ``$END``, so that a caller can tell that the
-    text is too long.
+    Stops after :data:`MAX_TOKENS` tokens and then adds ``$END``. So a result with more than
+    :data:`MAX_TOKENS` tokens means that the text is too long.
     """
     tables = load()
     words, signs = tables.words, tables.signs

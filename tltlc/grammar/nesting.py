@@ -41,7 +41,7 @@ def bracket_depth_error(source: SourceFile, tokens: Sequence[Token]) -> Diagnost
 
 
 def expression_depth_error(source: SourceFile, expression: Expr) -> Diagnostic | None:
-    """Return an error if an expression nests too deep, else None. Does not recurse itself."""
+    """Return an error if an expression nests too deep, else None; does not recurse."""
     level: list[Expr] = [expression]
     for _ in range(MAX_DEPTH):
         level = [child for parent in level for child in children(parent)]

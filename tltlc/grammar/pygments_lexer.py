@@ -50,7 +50,7 @@ _HEADS: Final = frozenset({"SIGNAL", "PARAM", "PREDICATE", "LET"})
 _CHOOSING: Final = frozenset({"EXPECT", "SEMANTICS", "AT"})
 """Keywords after which a name is one of a fixed set: a verdict, `infinite`, `goal`."""
 
-# An unreserved word is a keyword after, or before, one of these terminals.
+# An unreserved word is a keyword after the terminals of the first table, and before those of the second.
 _KEYWORD_AFTER: Final = {"AT": {"JUDGE"}, "FOR": {"STRING"}, "TIMES": {"NUMBER"}, "AS": {"NAME", "STRING"}}
 _KEYWORD_BEFORE: Final = {"FOR": {"NUMBER"}, "WITHIN": {"NUMBER"}, "AFTER": {"NUMBER"}, "IN": {"LPAR", "LSQB"}}
 

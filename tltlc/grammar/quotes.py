@@ -6,8 +6,8 @@ from __future__ import annotations
 def quote(text: str) -> str | None:
     """Return a text as a string of the language, in quotes, or None if it cannot be written as one.
 
-    A text cannot be written if it contains a quote, a line break or NUL, or if it is not Unicode, as
-    file names can be.
+    A text cannot be written if it contains a quote, a line break or NUL. It also cannot be written
+    if it is not valid Unicode: some file names are not.
     """
     if any(character in text for character in '"\n\r\0'):
         return None

@@ -30,7 +30,8 @@ class GrammarRule:
     It pops ``size`` values and passes those in ``keep`` to the builder's method ``make_`` +
     ``action``. An entry of ``keep`` is the position of a popped value, ``-1`` for an absent
     optional part, or ``-2 - i`` for a list at position i, whose items are passed one by one.
-    ``action`` is empty if the only kept value is the result, ``*`` if the list of kept values is.
+    ``action`` is empty if the rule returns its only kept value, and ``*`` if it returns the list of
+    its kept values.
     """
 
     origin: str

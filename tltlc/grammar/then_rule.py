@@ -68,7 +68,10 @@ def _check_operand(source: SourceFile, sequence: list[Expr], position: int, leni
 
 
 def _leading_operator(operand: Expr) -> tree.Unary | None:
-    """Return the temporal operator that begins an operand, or None; none in brackets counts."""
+    """Return the temporal operator that begins an operand, or None.
+
+    An operator in brackets does not count.
+    """
     while isinstance(operand, tree.BinaryExpr):
         operand = operand.left
     while isinstance(operand, tree.Unary) and operand.op == "not":
@@ -111,8 +114,9 @@ def _readings_help(source: SourceFile, operand: Expr, neighbour: Expr, last: boo
 def _fixes(source: SourceFile, sequence: list[Expr], position: int, lenient: bool) -> tuple[Fix, ...]:
     """Return fixes: brackets around the operand, or around ``then`` and the two formulas beside it.
 
-    For ``F a then b``, these are ``(F a) then b`` and ``F (a then b)``. Return no fix if brackets
-    around the operand are the only one and would lose the order of the operands.
+    For ``F a then b``, these are ``(F a) then b`` and ``F (a then b)``. Return no fix in two cases:
+    an operand after ``then`` says by itself at which step it holds, or brackets around the operand
+    are the only fix and would lose the order of the operands.
     """
     operand = sequence[position]
     bare = [element for element in sequence if _lacks_brackets(element, lenient)]

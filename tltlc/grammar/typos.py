@@ -12,7 +12,11 @@ from collections.abc import Iterable
 from typing import Final
 
 _SHORT: Final = 3
-"""The greatest length of a short word. Most are one letter away from other words, so only two kinds of typos count."""
+"""The greatest length of a short word.
+
+Most short words are one letter away from another word. So only two exchanged neighbours, or a
+doubled letter, count as a typo.
+"""
 _LONG: Final = 7
 """The fewest letters of a word that may have two typos."""
 _MOST_COMPARED: Final = 2_000
@@ -25,9 +29,12 @@ _NEGATING: Final = ("no", "nt")
 def likely_name(name: str, known: Iterable[str]) -> str | None:
     """Return the known name that ``name`` equals or most likely misspells, or None.
 
-    The first choice is a known name that differs only in capital letters and underscores, the
-    second one that ends with a dot and ``name``. The third is the name with the fewest typos, if no
-    other has as few; with more than 2,000 known names, typos are not looked for.
+    The choices, in this order, are:
+
+    - the first known name that differs only in capital letters and underscores;
+    - the first known name that ends with a dot and ``name``;
+    - the known name with the fewest typos, if no other name has as few. With more than 2,000 known
+      names, this choice is left out.
     """
     names = tuple(dict.fromkeys(known))
     matches = [candidate for candidate in names if _plain(candidate) == _plain(name)]

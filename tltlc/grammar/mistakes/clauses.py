@@ -158,7 +158,7 @@ def synonym_inside_formula(failure: ParseFailure) -> Diagnostic | None:
 
 
 def _clause_keyword(failure: ParseFailure) -> str:
-    """Return the keyword of the broken clause, or "" if it is no clause that is broken."""
+    """Return the keyword of the broken clause, or "" if the broken piece is no clause."""
     return failure.tokens[0].text if failure.start == "clause" else ""
 
 
@@ -168,8 +168,9 @@ def _is_next_goal(failure: ParseFailure, word: str) -> bool:
 
 
 def _is_clear_operator(failure: ParseFailure, start: int, at: int, word: str) -> bool:
-    """Whether a keyword at index ``at`` of a formula can only mean the operator of the same
-    meaning.
+    """Whether a keyword inside a formula can only mean the operator of the same meaning.
+
+    ``word`` is the keyword, ``at`` its index, and ``start`` the index where the formula begins.
     """
     before, clause = failure.tokens[at - 1].type, _clause_keyword(failure)
     if before in ("IMPLIES", "IFF", "NOT") and word != "reach":

@@ -35,7 +35,8 @@ _FILLERS: Final = frozenset(("the", "an", "to", "be", "being", "either", "both",
 _JOINED: Final[dict[str, Collection[str]]] = {"either": {"OR"}, "both": {"AND"}, "first": {"THEN"}, "to": (), "be": ()}
 """Fillers that mean something after another word, as in `next to` and `not either`.
 
-The values are the terminals of operators beside which the word means nothing, as `either` and `or`.
+The values are the terminals of operators beside which the word means nothing: `either` means
+nothing beside `or`.
 """
 _COMPARISONS: Final = {
     ("at", "least"): ">=",
@@ -212,7 +213,7 @@ def condition_line(failure: ParseFailure) -> Diagnostic | None:
 def _without_error(failure: ParseFailure) -> Diagnostic:
     """Report ``reach a without b``.
 
-    The fix writes `avoid` in its place.
+    The fix writes `avoid` in place of `without`.
     """
     help_ = "`avoid`, which begins a clause of its own and speaks of every step"
     at = failure.stop.index
@@ -365,7 +366,7 @@ class _Parts:
     time: _Time | None = None
 
     def fill(self, form: str) -> str:
-        """Return the form with the parts filled in, or "" if it lacks a time in steps."""
+        """Return the form with the parts filled in, or "" if it needs a time in steps and has none."""
         if self.time is None or self.time.steps is None:
             return "" if "{less}" in form else form.format(a=self.a, b=self.b, c=self.c, end=self.b)
         less = f"{self.time.steps - 1} steps"
@@ -492,7 +493,10 @@ def _is_zero(time: _Time) -> bool:
 
 
 def _clause_keyword(failure: ParseFailure) -> str:
-    """Return the keyword of the clause whose formula is broken; empty inside brackets."""
+    """Return the keyword of the clause whose formula is broken, or "".
+
+    It is "" inside brackets, and if the broken piece is no clause.
+    """
     return failure.tokens[0].text if failure.start == "clause" and not failure.open_brackets else ""
 
 

@@ -68,9 +68,9 @@ def lines(source: SourceFile, tokens: Sequence[Token], keywords: dict[str, str])
 
 
 def block_kind(piece: Sequence[Token]) -> str | None:
-    """Return ``spec`` or ``test`` if the piece is one in braces, even if its keyword is misspelt.
+    """Return ``spec`` or ``test`` if the piece is a spec or a test in braces, or None.
 
-    Return None for any other piece, such as ``spec NAME = …``.
+    The keyword may be misspelt. A piece such as ``spec NAME = …`` has no braces.
     """
     head = next((token.type for token in piece if token.type in ("LBRACE", "EQUAL")), None)
     return closest_word(piece[0].text, ("spec", "test")) if head == "LBRACE" and piece[0].text not in _OTHERS else None
@@ -84,7 +84,11 @@ def is_first_on_line(source: SourceFile, tokens: Sequence[Token], index: int) ->
 def _begins_piece(
     source: SourceFile, tokens: Sequence[Token], index: int, keywords: dict[str, str], within_lines: bool
 ) -> bool:
-    """Whether a piece begins at this token, which is not the first token."""
+    """Whether a piece begins at the token with this index, which is not 0.
+
+    ``keywords`` are the words that begin a piece. Unless ``within_lines``, they do so only at the
+    start of a line.
+    """
     token, before = tokens[index], tokens[index - 1]
     first = is_first_on_line(source, tokens, index)
     if token.text in keywords and (token.type != "NAME" or keywords is TEST_ITEMS):

@@ -184,7 +184,7 @@ def doubled_operator(failure: ParseFailure) -> Diagnostic | None:
 
 
 def prefix_between_formulas(failure: ParseFailure) -> Diagnostic | None:
-    """Report an operator of one formula between two: ``reach a next b``, ``keep a not b``."""
+    """Report an operator for one formula that stands between two: ``reach a next b``."""
     token, keyword, following = failure.token, failure.tokens[0].text, failure.stop.index + 1
     is_last = following + 1 >= len(failure.tokens) or is_first_on_line(failure.source, failure.tokens, following)
     if is_last and (keyword, token.type) in (("keep", "ALWAYS"), ("reach", "EVENTUALLY")):

@@ -29,7 +29,10 @@ _NEGATED: Final = {
 }
 """By clause, the words for which `not a WORD b` means the same whether `not` applies to `a` or to all of it."""
 _AS_WRITTEN: Final = ("but", "xor", "xnor")
-"""More words like those of ``_NEGATED``, for all clauses."""
+"""Words for which `not a WORD b` means the same in both readings, in all clauses.
+
+In one reading, `not` applies to `a`, in the other one to all of it.
+"""
 _IN_RULES: Final = frozenset(("AND", "OR", "IMPLIES", *QUANTIFIERS))
 
 
@@ -141,10 +144,9 @@ def _has_variable_of(failure: ParseFailure, left: tuple[int, int], right: tuple[
 
 
 def _surroundings_are(failure: ParseFailure, kinds: Collection[str]) -> bool:
-    """Whether all operators around the open brackets have one of ``kinds`` or are harmless.
+    """Whether only certain operators stand around the open brackets.
 
-    Those before a bracket must have one of ``kinds``; after the brackets, there may be only `and`
-    and `or`.
+    Those before a bracket must be of ``kinds``. Those after the brackets must be `and` or `or`.
     """
     operators = INFIX | BEFORE_ONE | QUANTIFIERS
     start, stop = _piece_formula_start(failure), formula_stop(failure)
