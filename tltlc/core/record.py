@@ -14,7 +14,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 EMPTY: Final[Mapping[Any, Any]] = MappingProxyType({})
-"""The default of a field that is a mapping."""
+"""An empty mapping that cannot change: the default of fields that are mappings."""
 
 T = TypeVar("T")
 R = TypeVar("R")

@@ -16,7 +16,7 @@ ArithmeticOp = Literal["+", "-", "*", "/", "^", "neg", "min", "max", "abs", "cla
 ConditionOp = Literal["<", "<=", ">", ">=", "and", "or", "not"]
 
 LEAST: Final = 1e-30
-"""The least value of a comparison that is true by a greater margin than this number.
+"""The least value of a comparison that is true by at least this margin.
 
 It is tiny, but does not become 0 when it is converted to a 32-bit float.
 """

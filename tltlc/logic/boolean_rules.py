@@ -38,7 +38,10 @@ def drop_repeated(node: Formula) -> Formula:
 
 
 def decide_complementary(node: Formula) -> Formula:
-    """Replace an ``and`` that contains an operand and its negation by ``false``, and such an ``or`` by ``true``."""
+    """Replace an ``and`` that has an operand and its negation by ``false``.
+
+    Replace an ``or`` that has an operand and its negation by ``true``.
+    """
     operands = set(node.args)
     if any(complement(part) in operands for part in node.args):
         return FALSE if node.op == "and" else TRUE

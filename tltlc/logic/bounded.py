@@ -49,9 +49,10 @@ def bounded_operator(node: Formula) -> Bounded | None:
 def count_down(node: Formula) -> Formula | None:
     """Return ``node`` with a bound that is one step shorter, or None.
 
-    For ``X(p | X(p | X p))`` the result is ``X(p | X p)``. It is None unless ``node`` is an ``X``
-    or ``N`` of such a form with at least two steps. Over ``or``, the shorter formula implies the
-    longer one; over ``and``, the longer one implies the shorter.
+    For ``X(p | X(p | X p))`` the result is ``X(p | X p)``, and for ``X(p | X p)`` it is ``X p``.
+    The formula may have ``N`` in place of ``X``, and ``and`` in place of ``or``. For all other
+    formulas the result is None. Over ``or``, the shorter formula implies the longer one; over
+    ``and``, the longer one implies the shorter.
     """
     chain: list[Formula] = []
     inner: Formula | None = node
@@ -65,7 +66,7 @@ def count_down(node: Formula) -> Formula | None:
 
 
 def count_down_from(node: Formula, known: Container[Formula]) -> Iterator[Formula]:
-    """Apply :func:`count_down` repeatedly and yield the results until one is ``known`` or None."""
+    """Yield the results of repeated :func:`count_down`, until one is None or in ``known``."""
     shorter = count_down(node)
     while shorter is not None and shorter not in known:
         yield shorter
@@ -73,9 +74,10 @@ def count_down_from(node: Formula, known: Container[Formula]) -> Iterator[Formul
 
 
 def _last_step(node: Formula) -> Formula | None:
-    """Return the last operand of the ``or`` or ``and`` below an ``X``, if that is an ``X`` too, else None.
+    """Return ``X q`` for ``X(p | … | X q)`` and ``X(p & … & X q)``, and the same with ``N`` for
+    ``X``.
 
-    Likewise for ``N``.
+    Returns None for any other formula.
     """
     if node.op not in ("X", "N") or node.args[0].op not in ("or", "and"):
         return None

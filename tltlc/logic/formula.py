@@ -18,7 +18,8 @@ BINARY_TEMPORAL: Final = ("U", "W", "R", "M")
 
 
 class Formula:
-    """A node: ``op``, its ``args`` (formulas), and for an atom its ``name``.
+    """A formula: its outermost operator ``op``, its operands ``args``, and its ``name`` if it is an
+    atom.
 
     Do not construct it directly; use the functions of this module. ``and`` and ``or`` have two or
     more operands, none of which has the same operator again.
@@ -76,7 +77,8 @@ class Formula:
     def bottom_up(self, known: Container[Formula] = ()) -> Iterator[Formula]:
         """Yield every distinct subformula after its operands, the formula itself last, without recursion.
 
-        Skips the subformulas in ``known``, and those that occur only inside one in ``known``.
+        Skips the subformulas in ``known``, and those that occur only inside a subformula in
+        ``known``.
         """
         seen: set[Formula] = set()
         stack = [(self, False)]
@@ -169,12 +171,12 @@ def weak_next(operand: Formula) -> Formula:
 
 
 def eventually(operand: Formula) -> Formula:
-    """Return ``F operand``: it holds now or at some later sample of the trace."""
+    """Return ``F operand``: the operand holds now or at some later sample of the trace."""
     return _intern("F", (operand,))
 
 
 def always(operand: Formula) -> Formula:
-    """Return ``G operand``: it holds now and at every later sample of the trace."""
+    """Return ``G operand``: the operand holds now and at every later sample of the trace."""
     return _intern("G", (operand,))
 
 
@@ -248,7 +250,9 @@ def temporal(op: Op, operands: tuple[Formula, ...]) -> Formula:
 
 
 def rebuild(formula: Formula, args: tuple[Formula, ...]) -> Formula:
-    """Return the same operator over other operands; ``and`` and ``or`` are flattened again."""
+    """Return the operator of ``formula`` over the operands ``args``; ``and`` and ``or`` are
+    flattened.
+    """
     if formula.op == "and":
         return and_(*args)
     if formula.op == "or":

@@ -106,7 +106,10 @@ def _implies(p: Formula, q: Formula, known: dict[tuple[Formula, Formula], bool],
 
 
 def _prove(p: Formula, q: Formula, known: dict[tuple[Formula, Formula], bool], depth: int) -> bool:
-    """Whether one law of finite traces shows that ``p`` implies ``q``. Each line is a law."""
+    """Whether one law of finite traces shows that ``p`` implies ``q``.
+
+    Each line of the code is a law.
+    """
 
     def shows(premise: Formula, conclusion: Formula) -> bool:
         return _implies(premise, conclusion, known, depth)
@@ -130,7 +133,7 @@ def _prove(p: Formula, q: Formula, known: dict[tuple[Formula, Formula], bool], d
 
 
 def _weaken_premise(p: Formula, q: Formula, shows: _Prover) -> bool:
-    """Whether the conclusion follows from a formula that the temporal premise implies.
+    """Whether ``q`` follows from a formula that the temporal formula ``p`` implies.
 
     ``G a`` implies ``a``, ``a U b`` implies ``a | b``, …
     """
@@ -149,7 +152,7 @@ def _weaken_premise(p: Formula, q: Formula, shows: _Prover) -> bool:
 
 
 def _strengthen_conclusion(p: Formula, q: Formula, shows: _Prover) -> bool:
-    """Whether the premise implies a formula that implies the temporal conclusion.
+    """Whether ``p`` implies a formula from which the temporal formula ``q`` follows.
 
     ``a`` implies ``F a``, ``b`` implies ``a U b``, …
     """
@@ -168,7 +171,7 @@ def _strengthen_conclusion(p: Formula, q: Formula, shows: _Prover) -> bool:
 
 
 def _compare_operands(p: Formula, q: Formula, shows: _Prover) -> bool:
-    """Whether the operator of ``p`` implies that of ``q``, and the operands of ``p`` imply those of ``q`` in order.
+    """Whether the operator of ``p`` implies that of ``q``, and each operand of ``p`` that of ``q``.
 
     ``F G`` and ``G F`` count as one operator: ``F G a`` and ``G F a`` both mean ``a`` at the last sample.
     """

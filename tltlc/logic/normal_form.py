@@ -1,4 +1,4 @@
-"""Negation normal form: ``not`` only before atoms, and else only ``and or X N F G U W R M``."""
+"""Negation normal form: only the operators ``and or X N F G U W R M``, and ``not`` before atoms."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ _Signed = tuple[Formula, bool]
 def negation_normal_form(formula: Formula) -> Formula:
     """Return an equivalent formula over literals, ``and``, ``or`` and temporal operators.
 
-    The two are equal on every finite trace. ``a -> b`` becomes ``!a | b``, and ``a <-> b`` becomes
-    ``a & b | !a & !b``. Negation turns each operator into its dual (``!X a`` is ``N !a``). Operands
-    keep source order, and repeated operands of one ``and`` or ``or`` are dropped. Each subformula
-    is visited once per sign and without recursion, so shared subformulas stay shared.
+    The two formulas are equal on every finite trace. ``a -> b`` becomes ``!a | b``, and ``a <-> b``
+    becomes ``a & b | !a & !b``. Negation turns each operator into its dual (``!X a`` is ``N !a``).
+    Operands keep source order, and repeated operands of one ``and`` or ``or`` are dropped. Each
+    subformula is visited once per sign and without recursion, so shared subformulas stay shared.
     """
     if all(map(_is_normal, formula.walk())):
         return formula

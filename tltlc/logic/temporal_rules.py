@@ -62,7 +62,11 @@ def simplify_nested(node: Formula) -> Formula:
 
 
 def simplify_until(node: Formula) -> Formula:
-    """Simplify ``U W`` with constants, or where one operand implies the other or its negation."""
+    """Simplify ``a U b`` and ``a W b``.
+
+    They are simplified if an operand is a constant, if ``a`` or its negation implies ``b``, and if
+    an operand repeats the operator, as in ``a U (a U b)`` and ``a U F b``.
+    """
     left, right = node.args
     strong = node.op == "U"
     if syntactically_implies(left, right) or right is TRUE:
@@ -79,7 +83,12 @@ def simplify_until(node: Formula) -> Formula:
 
 
 def simplify_release(node: Formula) -> Formula:
-    """Simplify ``R M`` with constants, or where one operand implies the other or its negation."""
+    """Simplify ``a R b`` and ``a M b``.
+
+    They are simplified if an operand is a constant, if ``b`` implies ``a``, if ``a`` implies the
+    negation of ``b``, and if an operand repeats the operator, as in ``a R (a R b)`` and
+    ``a R G b``.
+    """
     left, right = node.args
     weak = node.op == "R"
     if syntactically_implies(right, left) or right is FALSE:
@@ -98,7 +107,8 @@ def simplify_release(node: Formula) -> Formula:
 def distribute(node: Formula) -> Formula:
     """Merge operands that begin with the same temporal operator.
 
-    ``X a & N b`` becomes an ``X``, and ``X a | N b`` an ``N``.
+    ``G a & G b`` becomes ``G(a & b)``, and ``F a | F b`` becomes ``F(a | b)``. ``X a & N b``
+    becomes ``X(a & b)``, and ``X a | N b`` becomes ``N(a | b)``.
     """
     distributes: Op
     decides: Op
@@ -152,7 +162,7 @@ _EXPANDED = {("or", "X"): "U", ("or", "N"): "W", ("and", "X"): "M", ("and", "N")
 def _expansion(op: str, part: Formula) -> tuple[Formula, Formula | None]:
     """Return ``a U b`` and ``b`` for ``a & X(a U b)`` in an ``or``, and likewise for W, M and R.
 
-    The second formula is None if the part is not such an expansion.
+    The second formula is None if ``part`` is no expansion of this kind.
     """
     for index, step in enumerate(part.args):
         if step.op in ("X", "N") and step.args[0].op == _EXPANDED[op, step.op]:
@@ -163,7 +173,13 @@ def _expansion(op: str, part: Formula) -> tuple[Formula, Formula | None]:
 
 
 def merge_weak_and_strong(node: Formula) -> Formula:
-    """Merge ``a U b | G a`` and related pairs into one operator."""
+    """Merge two operands into one operator.
+
+    - ``a U b | G a`` becomes ``a W b``.
+    - ``a M b | G b`` becomes ``a R b``.
+    - ``a W b & F b`` becomes ``a U b``.
+    - ``a R b & F a`` becomes ``a M b``.
+    """
     weak = node.op == "or"
     pairs: dict[str, tuple[str, int, Callable[[Formula, Formula], Formula]]] = (
         {"U": ("G", 0, build.weak_until), "M": ("G", 1, build.release)}
@@ -182,7 +198,7 @@ def merge_weak_and_strong(node: Formula) -> Formula:
 def _positions(node: Formula, part: Formula) -> list[int] | None:
     """Return the positions of ``part``, or of each of its operands, among the operands of ``node``.
 
-    Returns None if any is missing.
+    Returns None if ``part``, or one of its operands, is missing.
     """
     if part in node.args:
         return [node.args.index(part)]
@@ -192,7 +208,10 @@ def _positions(node: Formula, part: Formula) -> list[int] | None:
 
 
 def _replace(node: Formula, positions: Collection[int], new: Formula) -> Formula:
-    """Return the node with ``new`` at the first of the positions and the others removed."""
+    """Return the node with ``new`` in place of the operand at the first of the positions.
+
+    The operands at the other positions are removed.
+    """
     first = min(positions)
     parts = (new if i == first else part for i, part in enumerate(node.args) if i == first or i not in positions)
     return join(node.op, parts)

@@ -48,7 +48,7 @@ def english_text(formula: Formula, *, endless: bool = False) -> str:
     formula that has a constant elsewhere than in ``X true`` and ``N false`` is simplified first.
 
     ``endless`` says that the sentence is about traces that never end. The formula must then be a
-    constant, or contain none.
+    constant, or contain no constant.
     """
     formula = formula if endless else without_constants(formula)
     if formula is TRUE:
@@ -94,7 +94,7 @@ def goal_texts(reach: Formula, *, endless: bool = False) -> tuple[tuple[str, str
 def without_constants(formula: Formula) -> Formula:
     """Return an equivalent formula without constants, except in ``X true`` and ``N false``.
 
-    The formula itself may be a constant.
+    The result may itself be a constant.
     """
     has_constants = any(
         (TRUE in node.args or FALSE in node.args) and not _is_about_end(node) for node in formula.walk()
@@ -103,7 +103,9 @@ def without_constants(formula: Formula) -> Formula:
 
 
 def _clause(node: Formula, when: str, context: _SentenceContext) -> _Clause:
-    """Return the instruction to make ``node`` hold at a moment, which ``when`` names: ``now``."""
+    """Return the instruction to make ``node`` hold at the moment that ``when`` names, such as
+    ``now``.
+    """
     if is_state(node):
         return f"{imperative(node, 'have', 'avoid')} {when}", _rank_of_state(node)
     if context.depth == 0:
@@ -208,7 +210,7 @@ def _next_goal(body: Formula) -> tuple[str, Formula | None]:
 def _goal(body: Formula, context: _SentenceContext) -> str:
     """Return the last goal of a sequence.
 
-    It is a choice, or a condition together with what must hold from that step on.
+    It is a condition, a choice of goals, or a condition with what must hold from that step on.
     """
     if is_state(body):
         return phrase(body)
@@ -267,9 +269,10 @@ def _parts_throughout(body: Formula) -> list[Formula]:
 
 
 def _implication(body: Formula) -> tuple[Formula | None, Formula | None]:
-    """Return the condition, which has no temporal operator, and the consequence that ``body`` states.
+    """Return the condition and the consequence of ``body``, an implication.
 
-    Both are None if ``body`` has neither the form ``a -> p`` nor the form ``!a | p``.
+    The condition has no temporal operator. Both are None if ``body`` has neither the form
+    ``a -> p`` nor the form ``!a | p``.
     """
     if body.op == "implies" and is_state(body.args[0]):
         return body.args[0], body.args[1]
@@ -356,7 +359,7 @@ def _rank_of_state(state: Formula) -> int:
 
 
 def _without_negation(node: Formula) -> Formula:
-    """Return a temporal formula without its leading ``not``."""
+    """Return an equivalent of a temporal formula, without a leading ``not``."""
     negations = 0
     while node.op == "not":
         node, negations = node.args[0], negations + 1

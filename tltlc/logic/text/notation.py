@@ -9,9 +9,9 @@ from tltlc.logic.bounded import LEAST, Bounded, bounded_operator, operands_with_
 from tltlc.logic.formula import Formula, Op
 
 OPERAND: Final = 6
-"""The strength of unary operators.
+"""The strength of unary operators, as in ``STRENGTH``.
 
-A weaker operator needs brackets behind them (see ``STRENGTH``).
+An operand of a unary operator needs brackets if its own operator is weaker.
 """
 
 STRENGTH: Final[Mapping[Op, int]] = {
@@ -27,7 +27,7 @@ STRENGTH: Final[Mapping[Op, int]] = {
 
 
 class Spelling(NamedTuple):
-    """A notation: how operators are spelt before an operand (``prefix``) and between two
+    """A notation: the spellings of operators before an operand (``prefix``) and between two
     (``infix``).
 
     ``space_before_bracket`` keeps the space between a prefix and an opening bracket.
@@ -120,7 +120,7 @@ def write(formula: Formula, spelling: Spelling, least: int = 0) -> str:
 
 
 def _bound(node: Formula) -> Bounded | None:
-    """Return the bounded operator that is printed for ``node``, its expansion, or None."""
+    """Return the bounded operator that is printed in place of its expansion ``node``, or None."""
     operator = bounded_operator(node) if node.op in ("or", "and") else None
     return operator if operator is not None and operator.steps >= LEAST else None
 

@@ -41,7 +41,7 @@ def outline(formula: Formula, *, endless: bool = False) -> Outline:
     """Return the outline of a formula.
 
     ``endless`` says that the formula is about traces that never end. It must then be a constant, or
-    contain none.
+    contain no constant.
     """
     formula = formula if endless else without_constants(formula)
     goals: list[tuple[Goal, ...]] = []
