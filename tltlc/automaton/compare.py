@@ -117,7 +117,8 @@ class _Product:
     def trace(self, start: StatePair = (0, 0)) -> Trace | None:
         """Return a shortest finite trace that the first automaton accepts and the second one rejects, or None.
 
-        ``start`` has the state at which the first automaton starts, and that of the second.
+        ``start`` is a pair: the state where the first automaton starts, and the state where the
+        second one starts.
         """
         one, other = self._pair
 
@@ -230,7 +231,7 @@ class _Product:
         )
 
     def _maximum(self, steps: list[int]) -> int:
-        """Return the function whose value on each letter is the greatest value of ``steps`` there.
+        """Return the pointwise maximum of functions of the letter.
 
         Combines the functions in pairs, then the results in pairs, and so on, so that most steps
         work on small diagrams.
@@ -251,10 +252,10 @@ class _Product:
         return cube
 
     def _values_with_letters(self, step: int) -> dict[Any, list[str]]:
-        """Map each value of a function of the letter to a letter with this value, as the atoms that
-        hold.
+        """Map each value of a function of the letter to one letter that has this value.
 
-        Atoms that do not matter for the value do not hold in the letter.
+        The letter is given by the atoms that hold. Atoms that do not matter for the value do not
+        hold.
         """
         letters = self._letters
         letter_of: dict[Any, list[str]] = {}
@@ -274,9 +275,10 @@ class _Product:
 
 
 def _group_related(names: Iterable[str], impossible: Iterable[Literals]) -> tuple[str, ...]:
-    """Return the names without duplicates, with atoms of the same ``impossible`` conjunction side by side.
+    """Return the names without duplicates, with the atoms of each ``impossible`` conjunction
+    together.
 
-    If these atoms were far apart, diagrams would become very large.
+    If the atoms of a conjunction were far apart, diagrams would become very large.
     """
     partners: dict[str, dict[str, None]] = {}
     for literals in impossible:

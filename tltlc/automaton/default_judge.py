@@ -1,4 +1,7 @@
-"""Decide when a spec without a ``judge`` clause is judged (semantics, section 4; docs/adr/0009)."""
+"""Decide whether a spec without a ``judge`` clause is judged at its goal or at its limit.
+
+The rule is in docs/semantics.md, section 4; the reasons are in docs/adr/0009.
+"""
 
 from __future__ import annotations
 

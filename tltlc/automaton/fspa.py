@@ -81,9 +81,8 @@ class Guard:
 class Edge:
     """An edge of the automaton.
 
-    On each letter, exactly one of the edges that leave a state has a true guard.
-
-    No two edges have the same source, the same target and the same marks (:meth:`Fspa.marks`).
+    On each letter, exactly one of the edges that leave a state has a true guard. No two edges have
+    the same source, the same target and the same marks (:meth:`Fspa.marks`).
     """
 
     source: int
@@ -140,9 +139,8 @@ class Fspa:
     def marks(self) -> tuple[tuple[Mark, ...], ...]:
         """Return the marks of each edge: the sets of Rabin pairs that contain it.
 
-        They have the order of ``acceptance``.
-
-        Over finite traces, no edge has marks.
+        The marks of an edge have the order of ``acceptance``. Over finite traces, no edge has
+        marks.
         """
         marks: list[list[Mark]] = [[] for _ in self.edges]
         for number, pair in enumerate(self.acceptance):

@@ -265,7 +265,7 @@ class Guards:
         return cover
 
     def _count(self, products: int) -> None:
-        """Add a number of products to the total.
+        """Add a number of cubes to the total of all cubes that were computed.
 
         Raises :class:`TooManyPrimes` if the number or the total is too large.
         """

@@ -21,9 +21,9 @@ from tltlc.io.limits import WORK
 from tltlc.logic.formula import Formula
 
 WHOLE_STEPS = 5_000
-"""Steps for exploring a formula as a whole, a few milliseconds.
+"""The most steps for exploring a formula as a whole; they take a few milliseconds.
 
-A formula that takes more is built part by part.
+A formula that takes more steps is built part by part.
 """
 
 

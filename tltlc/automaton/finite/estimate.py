@@ -163,7 +163,7 @@ class Estimate:
 def _settling_word(machine: Machine, table: _Table, accepting: bool) -> Word | None:
     """Return a shortest word that a machine accepts (if ``accepting``) or rejects (if not).
 
-    Returns None if no word with the letters of ``table`` is one.
+    Returns None if there is no such word over the letters of ``table``.
     """
     queue: list[tuple[int, Word]] = [(machine.initial, [])]
     seen = {machine.initial}

@@ -21,12 +21,12 @@ from tltlc.logic.formula import Formula
 from tltlc.logic.rewrite import simplify
 
 _MEMBERS = 6
-"""How many obligations of one state are written as formulas, the smallest ones.
+"""The most obligations of one state that are written as formulas.
 
-Several obligations can have the language of one state.
+Several obligations can have the language of one state. The smallest ones are written.
 """
 _CANDIDATES = 3
-"""How many formulas of one state are shortened, the smallest ones."""
+"""The most formulas of one state that are shortened. The smallest ones are chosen."""
 
 LONGEST_SIMPLIFIED = 200
 """Labels with more operators and atoms are not simplified: they are too long to read."""

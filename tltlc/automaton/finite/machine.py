@@ -26,10 +26,10 @@ class OutOfStates(Exception):
 class Machine:
     """The minimal machine of an obligation.
 
-    Its states are obligations: of all reachable obligations with the same language, one is a state.
-    ``representative`` maps every reachable obligation to its state. ``transitions`` maps each state
-    to its transition. The leaves of a transition have states as obligations. The first key is
-    ``initial``, the initial state.
+    Its states are obligations. Of all reachable obligations with the same language, one is the
+    state, and ``representative`` maps all of them to it. ``transitions`` maps each state to its
+    transition, whose leaves contain only obligations that are states. Its first key is ``initial``,
+    the initial state.
     """
 
     initial: int

@@ -13,7 +13,7 @@ from tltlc.logic.formula import Formula
 _TERM_LIMIT = 64
 """The most terms of a disjunction of conjunctions.
 
-A longer one is written as nested ``a & … | …`` instead.
+A longer disjunction is written as nested ``a & … | …`` instead.
 """
 
 _MOST_FACTORED = 40

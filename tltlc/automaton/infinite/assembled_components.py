@@ -1,4 +1,7 @@
-"""Join components into one automaton, and merge states that accept the same runs with the same marks."""
+"""Join the automata of all components into one automaton, and merge equal states.
+
+States are equal if they accept the same runs with the same marks.
+"""
 
 from __future__ import annotations
 

@@ -198,9 +198,10 @@ class _Construction:
         return shrink(self.letters, best, self.work, _FOR_SHRINKING) if len(best.steps) > len(group) else best
 
     def _attempts(self, step_of: Callable[[int], int], inside: frozenset[int], first: int) -> Iterator[RabinComponent]:
-        """Yield automata for the component with the labels ``inside``, built in different ways.
+        """Yield automata for the component with the labels ``inside``, each built in another way.
 
-        Each starts at the label ``first``.  Attempts that take too much work yield nothing.
+        Each automaton starts at the label ``first``. An attempt that takes too much work yields
+        nothing.
         """
         formula = self.after.formula(first)
         forms = []
@@ -232,5 +233,7 @@ class _Construction:
 
 
 def _key_function(chosen: Sequence[int]) -> Callable[[State], State]:
-    """Return the function that maps a state to its label and the memories with these indices."""
+    """Return the function that maps a state to its label and its entries at the indices
+    ``chosen``.
+    """
     return lambda state: (state[0], *(state[index] for index in chosen))

@@ -44,8 +44,8 @@ class LeafAutomaton(Protocol):
 class Breakpoint:
     """A breakpoint automaton for a Pi-2 formula (``inf``) or a Sigma-2 formula (``fin``).
 
-    The memory is two obligations: what remains of the formula, and a second one. They have these
-    rules:
+    :mod:`tltlc.automaton.infinite.delta2` explains these two kinds of formulas. The memory is two
+    obligations: what remains of the formula, and a second one. They have these rules:
 
     - Pi-2: the second obligation starts as what remains, with each outermost ``W`` replaced by
       true. When it becomes true, the letter is marked, and the second obligation starts again from
@@ -109,7 +109,8 @@ def _replace_outermost(formula: Formula, op: str) -> Formula:
 
 
 class Recurrence:
-    """An automaton for ``G F p`` with p in Sigma-1 (``inf``), or ``F G p`` with p in Pi-1 (``fin``).
+    """An automaton for ``G F p`` if p has no ``W`` (``inf``), or for ``F G p`` if p has no ``U``
+    (``fin``).
 
     At each letter, an attempt to satisfy p starts.  The memory has what remains of p for each
     attempt that has not succeeded or failed yet.  A letter is marked if an attempt succeeds (for
