@@ -54,8 +54,8 @@ def interval(declared: Interval, dimension: Dimension, env: Env) -> tuple[float 
 def samples(value: NumberExpr, env: Env) -> int:
     """Convert a bound or a limit, in steps or as a time, to a number of samples; round a time up.
 
-    A number without a unit counts samples. A time needs a clock. Raises ResolutionError (TLT0312,
-    TLT0313 without a clock).
+    A number without a unit counts samples. Raises ResolutionError: TLT0313 for a time if there is
+    no clock, TLT0312 for any other value that cannot be converted.
     """
     source = env.scope.source
     if value.unit in (None, "step", "steps"):

@@ -29,12 +29,15 @@ class Entity:
 class Quantity:
     """A number that depends on signals and params.
 
-    A ``dimension`` of None fits any dimension, as for 0 and inf. ``low`` and ``high`` bound the
-    value, in SI units. ``text`` is its unique spelling in the names of atoms, and ``binding`` says
-    how tightly the outermost operator of the spelling binds. ``depth`` is the depth of the
-    expression. ``is_bool`` marks a value that is 0 or 1 by type. ``overflows`` marks a value whose
-    arithmetic may overflow although all its inputs have finite ranges. ``call`` is the base and the
-    arguments of a signal or a predicate, or None.
+    - ``dimension`` is None if it fits any dimension, as for 0 and inf.
+    - ``low`` and ``high`` bound the value, in SI units.
+    - ``text`` is the unique spelling of the quantity in the names of atoms.
+    - ``binding`` says how tightly the outermost operator of ``text`` binds.
+    - ``depth`` is the depth of the expression.
+    - ``is_bool`` marks a value that is 0 or 1 by type.
+    - ``overflows`` marks a value whose arithmetic may overflow although all its inputs have finite
+      ranges.
+    - ``call`` is the base and the arguments of a signal or a predicate, None for other quantities.
     """
 
     expression: Expression

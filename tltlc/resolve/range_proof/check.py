@@ -2,9 +2,12 @@
 continuously?
 
 There are four answers: proved (no finding), wrong at a concrete point, unproved, and unchecked (the
-check would exceed its step limit). The methods, cheapest first, are interval arithmetic, a search
-for a wrong point, exact signs and subdivision, cached answers, and sympy. Only the last one imports
-sympy.
+check would exceed its step limit). These methods are tried in turn:
+
+- proofs by interval arithmetic and by exact signs of polynomials;
+- a search for a wrong point;
+- an answer in the cache;
+- a proof by sympy. Only this method imports sympy.
 """
 
 from __future__ import annotations

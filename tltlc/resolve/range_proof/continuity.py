@@ -78,7 +78,8 @@ def agreement_goal(meeting: Meeting) -> ProofGoal:
 
 
 def _closed_constraint(constraint: Constraint, bools: frozenset[Variable]) -> Constraint:
-    """Return the constraint with ``>`` read as ``>=`` if it reads a signal that is not a bool.
+    """Return the constraint with ``>=`` in place of ``>`` if it contains a signal that is not a
+    bool.
 
     Such a signal can come arbitrarily close to the border.
     """
@@ -90,7 +91,8 @@ def _closed_constraint(constraint: Constraint, bools: frozenset[Variable]) -> Co
 def _same_after_substitution(difference: Expression, region: ConstrainedBox) -> bool:
     """Whether the difference is zero after substitution.
 
-    Each equation that holds on the region is solved for a factor, which is then replaced.
+    Each equation that holds on the region is solved for a factor. The solution then replaces the
+    factor.
     """
     from tltlc.resolve.range_proof import normal_form as nf
 

@@ -2,10 +2,10 @@
 another.
 
 On a closed region, for fixed other variables, the minimum of a continuous ``f`` over one variable
-lies where ``df = 0``, at a root of a constraint, at an end of its range, or in the limit at an open
-end. Substituting each of these candidates gives functions of the other variables, which must not be
-negative either. Steps are counted: an answer comes within a bounded number of steps on terms of
-bounded size.
+lies where the derivative is 0, at a root of a constraint, at an end of its range, or in the limit
+at an open end. Substituting each of these candidates gives functions of the other variables, which
+must not be negative either. Steps are counted: an answer comes within a bounded number of steps on
+terms of bounded size.
 """
 
 from __future__ import annotations

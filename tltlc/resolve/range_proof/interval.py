@@ -1,9 +1,9 @@
 """Interval arithmetic on the real line, rounded outwards.
 
 An interval is a pair ``(low, high)`` with ``low <= high``. An infinite end means that there is no
-bound on that side; the values themselves are finite. Every function returns an interval that
-contains each value of the operation on members of its arguments. Zeros stay exact, so signs survive
-rounding.
+bound on that side; the values themselves are finite. The functions that are named for an operation
+take and return intervals. The result contains every value of the operation on numbers from the
+arguments. Zeros stay exact, so signs survive rounding.
 """
 
 from __future__ import annotations

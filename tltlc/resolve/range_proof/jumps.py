@@ -75,7 +75,7 @@ def _case_at(all_cases: Sequence[ConstrainedValue], point: Point) -> Constrained
 def _points_along(start: Point, variable: Variable, box: Box, expression: Expression) -> Iterator[Point]:
     """Yield points that differ from ``start`` only in ``variable``.
 
-    They are the candidates of :func:`points`, a dozen at most.
+    The values of ``variable`` are those that :func:`points` tries, a dozen at most.
     """
     seen = {start[variable]}
     for candidate in points(expression, {variable: box[variable]}, frozenset()):

@@ -1,8 +1,10 @@
 """Prove that an expression stays within bounds on a region, without sympy.
 
-There are three methods, cheapest first: interval arithmetic on the whole region, the sign of the
-exact difference to a bound (of the whole expression and of each ratio in it), and interval
-arithmetic on smaller and smaller parts of the region.
+There are three methods, cheapest first:
+
+- interval arithmetic on the whole region;
+- the exact sign of the difference between the expression, or a ratio in it, and a bound;
+- interval arithmetic on smaller and smaller parts of the region.
 """
 
 from __future__ import annotations

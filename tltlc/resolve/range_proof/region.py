@@ -87,7 +87,7 @@ class ConstrainedBox:
 def _with_chains(constraints: Iterable[Constraint]) -> list[Constraint]:
     """Return the constraints, plus a constraint on ``a - c`` where ``a - b`` and ``b - c`` have one.
 
-    Interval arithmetic does not find the third one from the two.
+    Interval arithmetic does not find the third constraint from the other two.
     """
     chained = list(constraints)
     differences = [c for c in chained if isinstance(c.difference, Op) and c.difference.op == "-"]

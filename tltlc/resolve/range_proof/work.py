@@ -45,7 +45,7 @@ def spend(steps: int = 1) -> None:
 
 @contextmanager
 def step_limit(steps: int, *, counts_outside: bool = True) -> Iterator[ProofBudget]:
-    """Limit the ``with`` block to ``steps``.
+    """Limit the ``with`` block to this many steps.
 
     If ``counts_outside``, the steps also count against the enclosing limit, and the block gets no
     more than that limit has left.
