@@ -113,8 +113,8 @@ def _statement_parts(module: Module) -> Iterator[tuple[Span, Span]]:
     A comment applies to the statement if it applies to a line of the part.
 
     A statement is a clause or a declaration. A block has two parts, its head and its closing brace.
-    In a list of entities, the first name is the part of the whole declaration, and each further
-    name is a statement of its own.
+    A declaration of several entities has its first name as its part; each further name is a
+    statement of its own.
     """
     for declaration in module.declarations:
         span = declaration.span

@@ -45,7 +45,9 @@ class AllowIndex:
         return file.allowances if file else ()
 
     def silences(self, diagnostic: Diagnostic) -> bool:
-        """Return whether a comment silences a diagnostic, and mark all comments that do as used."""
+        """Return whether a comment silences a diagnostic; mark all comments that silence it as
+        used.
+        """
         label = diagnostic.labels[0] if diagnostic.labels else None
         file = self._files.get(label.source) if label else None
         return label is not None and file is not None and file.silences(diagnostic.code, label.span.start)
@@ -75,7 +77,9 @@ class _FileAllowances:
         self._statements = _StatementSpans(statement for statement in self._by_statement if statement is not None)
 
     def silences(self, code: str, offset: int) -> bool:
-        """Return whether comments allow a code at an offset; mark all comments that do as used."""
+        """Return whether comments allow a code at an offset; mark all comments that allow it as
+        used.
+        """
         # The end of a statement is inclusive: an offset right after its last character belongs to it, too.
         statements = {None, *self._statements.spans_at(offset), *self._statements.spans_at(offset - 1)}
         # A list, not a generator: `any` must not stop before all comments are marked.
@@ -83,7 +87,7 @@ class _FileAllowances:
         return any(is_allowed)
 
     def _allow(self, code: str, statement: Span | None) -> bool:
-        """Return whether comments allow a code in a statement; mark all comments that do as used.
+        """Return whether comments allow a code in a statement; mark those that allow it as used.
 
         The statement None means the whole file.
         """

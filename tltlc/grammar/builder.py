@@ -39,7 +39,7 @@ OPERATORS = {
     "DIVIDE": "/",
     "POWER": "^",
 }
-"""By terminal of the grammar, the spelling under which the tree stores the operator."""
+"""Maps the terminal of each operator to the spelling under which the tree stores the operator."""
 
 MOST_REPETITIONS = 100_000
 """The most times that a test may repeat a step, as in ``step 3x alive``."""

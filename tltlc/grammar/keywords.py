@@ -83,7 +83,7 @@ SYNONYMS: Final[dict[str, dict[str, str]]] = {
     },
     "test_item": {"assert": "expect"},
 }
-"""By kind of statement, words that people write in place of a keyword, each with that keyword."""
+"""For each kind of statement, maps words that people write in place of a keyword to the keyword."""
 
 UNITS_ELSEWHERE: Final = {
     **dict.fromkeys(("meter", "meters", "metre", "metres"), "m"),

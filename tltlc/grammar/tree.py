@@ -140,7 +140,12 @@ Expr = Union[NumberExpr, Constant, NameExpr, CallExpr, Unary, BinaryExpr, GroupE
 
 @record
 class Import:
-    """``import stealth``, ``import stealth (near, alive)``, ``import stealth as st``, ``import "file.tltl"``."""
+    """An import, such as ``import stealth (near)``, ``import stealth as st``,
+    ``import "file.tltl"``.
+
+    ``target`` is the name or the path that is imported. ``names`` are the names in brackets, None
+    if there are no brackets.
+    """
 
     target: str
     is_path: bool
@@ -256,9 +261,12 @@ class ExclusiveDecl:
 class Clause:
     """A clause of a spec.
 
-    ``kind`` is one of ``reach keep avoid require`` (``value`` is an expression), ``level judge
-    semantics`` (``value`` is a NameExpr), ``limit`` (``value`` is a NumberExpr), ``tag`` (``value``
-    is a tuple of NameExpr).
+    ``kind`` is its keyword, which decides what ``value`` is:
+
+    - ``reach``, ``keep``, ``avoid``, ``require``: an expression;
+    - ``level``, ``judge``, ``semantics``: a NameExpr;
+    - ``limit``: a NumberExpr;
+    - ``tag``: a tuple of NameExpr.
     """
 
     kind: str

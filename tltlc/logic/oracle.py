@@ -30,10 +30,10 @@ def holds(formula: Formula, trace: Sequence[Collection[str]], position: int = 0)
 def robustness_of_state(formula: Formula, values: Mapping[str, float]) -> float:
     """Return the robustness, in [-1, 1], of a formula without temporal operators at one sample.
 
-    ``values`` maps each atom to a value in [-1, 1]. True is 1, an atom is its value, ``not`` is the
-    negative, ``and`` the minimum, and ``or`` the maximum (paper, section III). ``a -> b`` is read
-    as ``!a | b``, and ``a <-> b`` as ``(!a | b) & (a | !b)``. Raises ValueError at a temporal
-    operator.
+    ``values`` maps each atom to a value in [-1, 1]. ``true`` is 1, ``false`` is -1, an atom is its
+    value, ``not`` is the negative, ``and`` the minimum, and ``or`` the maximum (paper, section
+    III). ``a -> b`` is read as ``!a | b``, and ``a <-> b`` as ``(!a | b) & (a | !b)``. Raises
+    ValueError at a temporal operator.
     """
     results: dict[Formula, float] = {}
     for node in formula.bottom_up():

@@ -24,7 +24,7 @@ def push_not(node: Formula) -> Formula:
 
 
 def evaluate_constant(node: Formula) -> Formula:
-    """Evaluate ``X F G N`` of a constant.
+    """Evaluate ``X``, ``F``, ``G`` or ``N`` of a constant.
 
     ``X true`` and ``N false`` stay, because they are about the end of the trace.
     """

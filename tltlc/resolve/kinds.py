@@ -29,7 +29,10 @@ _DECLARATIONS = {
     "signal or param": "signal {name} in [0, 100]",
     "entity": "entity {name}",
 }
-"""The declaration to suggest for an unknown name that resembles no known name, by ``noun``."""
+"""Maps what an unknown name should be to the declaration that a message suggests.
+
+The message suggests it if the name resembles no known name.
+"""
 
 
 def lookup(use: NameExpr | CallExpr, env: Env, kinds: tuple[Kind, ...], noun: str) -> Binding:

@@ -76,7 +76,7 @@ _FORMS: Final[dict[str, Forms]] = {
     "nor": {"": "not ({a} or {b})"},
     "nand": {"": "not ({a} and {b})"},
 }
-"""By WORD, how the English phrase `a WORD b` is written in the language."""
+"""Maps an English WORD to the ways to write `a WORD b` in the language."""
 
 _IN_TIME: Final = {
     "reach": "require eventually within {b} {a}",
@@ -104,17 +104,17 @@ _TIMES: Final[dict[str, Forms]] = {
     "for": _FOR_TIME,
     "after": _AFTER_TIME,
 }
-"""By WORD, how `a WORD TIME` and `WORD TIME a` are written in the language.
+"""Maps an English WORD to the ways to write `a WORD TIME` and `WORD TIME a` in the language.
 
-``{b}`` is the time. The key `then` is for `c then a WORD TIME`: where its text joins ``{c}`` by
-`and`, the time begins at the step that reaches ``c``. ``{end}`` is the time as the end of a bound
-in brackets, ``{less}`` the time less one step.
+``{b}`` is the time, ``{end}`` the time as the end of a bound in brackets, and ``{less}`` the time
+less one step. The key `then` is for `c then a WORD TIME`. If its text joins ``{c}`` by `and`, the
+time begins at the step that reaches ``c``.
 """
 _TIMED: Final = {form for forms in _TIMES.values() for form in forms.values()}
 
 _PREFIX: Final = {"reach": "{b} and {a}", "avoid": "{b} and {a}", "": "{b} implies {a}"}
 _PREFIXES: Final[dict[str, Forms]] = dict.fromkeys(CONDITIONS, _PREFIX)
-"""By WORD, how `WORD b, a` and `WORD b then a` are written in the language."""
+"""Maps an English WORD to the ways to write `WORD b, a` and `WORD b then a` in the language."""
 
 _FROM_THEN_ON: Final = {
     "keep": "`keep b implies a` asks for `a` wherever `b` holds, `keep b implies always a` from then on, too",
@@ -439,7 +439,10 @@ _BEFORE_CONDITIONS: Final[Mapping[str, tuple[str | None, ...]]] = {
     "reach": (None, "AND", "OR", "THEN"),
     "avoid": (None, "AND", "OR"),
 }
-"""By clause, the terminals that may stand before `if`; None means that nothing does."""
+"""Maps a clause keyword to the terminals that may stand before `if`.
+
+None stands for the beginning of the formula.
+"""
 _OF_THE_REST: Final = ("after", "unless", "but")
 """Words that may apply to all goals that follow, or only to the next one."""
 

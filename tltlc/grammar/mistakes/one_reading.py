@@ -27,11 +27,14 @@ _NEGATED: Final = {
     "keep": ("before", "after", "unless", *CONDITIONS, "during"),
     "require": ("if",),
 }
-"""By clause, the words for which `not a WORD b` means the same whether `not` applies to `a` or to all of it."""
-_AS_WRITTEN: Final = ("but", "xor", "xnor")
-"""Words for which `not a WORD b` means the same in both readings, in all clauses.
+"""Maps a clause keyword to words for which `not a WORD b` has one meaning in the clause.
 
-In one reading, `not` applies to `a`, in the other one to all of it.
+The meaning is the same whether `not` applies to `a` or to all of it.
+"""
+_AS_WRITTEN: Final = ("but", "xor", "xnor")
+"""Words for which `not a WORD b` has one meaning in all clauses.
+
+The meaning is the same whether `not` applies to `a` or to all of it.
 """
 _IN_RULES: Final = frozenset(("AND", "OR", "IMPLIES", *QUANTIFIERS))
 

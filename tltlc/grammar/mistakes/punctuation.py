@@ -27,7 +27,10 @@ _COMMA: Final = {
     "reach": ("then", " for the one after the other; `and` asks for both at one step"),
     "avoid": ("or", ""),
 }
-"""By clause, the operator to write for a comma, and the reason; in other clauses, it is `and`."""
+"""Maps a clause keyword to the operator to write for a comma, and the reason.
+
+In other clauses, the operator is `and`.
+"""
 _NUMBER: Final = re.compile(r"[0-9]+\.[0-9]+(?:[eE][+-]?[0-9]+)?")
 _IN_THOUSANDS: Final = re.compile(r"[1-9][0-9]{0,2}(?:,[0-9]{3})+(?:\.[0-9]+)?")
 

@@ -284,7 +284,7 @@ def _implication(body: Formula) -> tuple[Formula | None, Formula | None]:
 
 
 def _until_clause(node: Formula, context: _SentenceContext) -> _Clause:
-    """Return the clause of ``U W R M``."""
+    """Return the clause of ``U``, ``W``, ``R`` or ``M``."""
     left, right = node.args
     if node.op in ("U", "M"):
         goal, held = (right, left) if node.op == "U" else (left, right)
