@@ -1,4 +1,7 @@
-"""Run an automaton on samples: compute atoms, take the transition, and return progress and reward."""
+"""Run an automaton on samples: compute atoms, take the transition, and return progress and reward.
+
+A sample is the signals of a game at one step. Begin with `Monitor`.
+"""
 
 from __future__ import annotations
 

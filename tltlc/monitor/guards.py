@@ -1,7 +1,7 @@
-"""Truth and robustness of guards at the values of the atoms (semantics, sections 1 and 3).
+"""Truth and robustness of guards at a sample (``docs/semantics.md``, sections 1 and 3).
 
-``values`` has the value (robustness) of each atom, in [-1, 1]. The value of a literal is the value
-of its atom, or the negative of it if the literal is negated.
+``values`` has the value (robustness) of each atom at the sample, in [-1, 1]. The value of a literal
+is the value of its atom, multiplied by -1 if the literal is negated.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from tltlc.automaton.fspa import Guard, Implicant
 
 
 def holds(guard: Guard, values: Sequence[float]) -> bool:
-    """Whether at least one prime implicant of a guard is true.
+    """Whether a guard is true: whether at least one of its prime implicants is.
 
     An atom is true if its value is above 0.
     """
@@ -29,8 +29,8 @@ def holds(guard: Guard, values: Sequence[float]) -> bool:
 def robustness(guard: Guard, values: Sequence[float]) -> float:
     """Return the robustness of a guard, in [-1, 1]: the greatest robustness of a prime implicant.
 
-    ▲ The paper computes it from the guard's formula. The prime implicants give the same value
-    for all formulas of the same guard.
+    ▲ The paper computes it from the guard's formula, so equivalent formulas may have different
+    robustness. They have the same prime implicants.
     """
     return max([prime_robustness(prime, values) for prime in guard.primes])
 
@@ -46,15 +46,15 @@ def prime_robustness(prime: Implicant, values: Sequence[float]) -> float:
 
 
 def bounding_atom(guards: Sequence[Guard], values: Sequence[float]) -> int:
-    """Return the index of the atom of :func:`bounding_literal`."""
+    """Return the index of the atom in the literal that :func:`bounding_literal` returns."""
     return bounding_literal(guards, values)[0]
 
 
 def bounding_literal(guards: Sequence[Guard], values: Sequence[float]) -> tuple[int, bool]:
     """Return the literal that determines the robustness of the most robust of the guards.
 
-    It is the literal with the least value in the most robust prime implicant. Of equal ones, the
-    first is returned.
+    It is the literal with the least value in the most robust prime implicant. Of prime implicants
+    or literals with equal values, the first counts.
     """
     primes = (prime for guard in guards for prime in guard.primes)
     best = max(primes, key=lambda prime: prime_robustness(prime, values))

@@ -23,9 +23,9 @@ class Step(NamedTuple):
     - ``progress``: the best progress so far, in [0, 1].
     - ``reward``: the reward of this step; 0 after the end of the episode.
     - ``robustness``: the robustness of the edge taken, in [-1, 1].
-    - ``limiting``: the name of the atom that most kept the automaton from an edge to a state with
-      a smaller distance: the atom that determines the robustness of the most robust such edge. None
-      if the state changed, or if there is no such edge.
+    - ``limiting``: the name of the atom that kept the automaton from a state with a smaller
+      distance. Of the edges to these states, the most robust counts, and this atom determines its
+      robustness. None if the state changed, or if no edge leads to a smaller distance.
     """
 
     state: int
@@ -42,10 +42,11 @@ class Step(NamedTuple):
 class Monitor:
     """Runs an automaton over one trace after another.
 
-    ``params`` maps names of params to values that replace the default ones, in SI units.
-    ``notices`` collects warnings about clamped values, one for each signal or atom. After
-    :meth:`step`, ``values`` has the values of the atoms, in order, and ``success`` is true if the
-    episode has ended in success.
+    ``params`` maps names of params to values that replace the default ones, in SI units. ``reward``
+    says how steps are rewarded and when episodes end. ``notices`` collects warnings about clamped
+    values, one for each signal or atom. After :meth:`step`, ``values`` has the values of the atoms
+    at this sample, in the order of ``fspa.atoms``, and ``success`` is true if the episode has ended
+    in success.
 
     Raises:
         MonitorError: TLT0307 a value of ``params`` is outside its range, TLT0308 there is no such

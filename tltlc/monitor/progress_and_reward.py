@@ -15,9 +15,9 @@ from tltlc.monitor.tables import MonitorTables
 
 Mode = Literal["progress", "sparse", "edge", "potential"]
 MODES: Final[tuple[Mode, ...]] = get_args(Mode)
-"""All reward modes: ``progress`` is Algorithm 1.
+"""All reward modes.
 
-The others are modules of :mod:`tltlc.monitor.reward_modes`.
+``progress`` is Algorithm 1. Each of the others is a module of :mod:`tltlc.monitor.reward_modes`.
 """
 Termination = Literal["entry", "paper"]
 TerminalPenalty = Literal["undiscounted", "discounted"]
@@ -25,19 +25,20 @@ TerminalPenalty = Literal["undiscounted", "discounted"]
 
 @record
 class RewardOptions:
-    """How steps are rewarded and when episodes end (semantics, section 4).
+    """How steps are rewarded and when episodes end (``docs/semantics.md``, section 4).
 
     - ``mode`` is the name of the reward, one of :data:`MODES`.
-    - ``termination`` says when an episode ends: with ``entry`` as soon as it enters an accepting
-      state or a trap. With ``paper`` it ends one step later, as in the printed algorithm, and every
-      spec is judged at its goal.
+    - ``termination`` says when an episode ends. With ``entry``, it ends as soon as it enters a trap
+      or an accepting state; if the spec is judged at its limit, only as soon as the verdict is
+      final. With ``paper``, it ends one step later, as in the printed algorithm, and every spec is
+      judged at its goal.
     - ``terminal_penalty``: a violation costs at once the penalties of all remaining steps, either
       their sum (``undiscounted``) or their sum discounted by ``gamma`` (``discounted``).
     - ``gamma`` in (0, 1] is the discount of mode ``potential`` and of the ``discounted`` terminal
       penalty.
 
     Raises:
-        ValueError: an option has another value.
+        ValueError: an option has a value that is not named here.
     """
 
     mode: Mode = "progress"
@@ -59,7 +60,8 @@ class RewardStep:
     """The outcome of one step.
 
     ``progress`` is the best progress so far, in [0, 1]. ``done`` says whether the episode ends with
-    this step. ``success`` is true if it ends in success, and false if it fails or goes on.
+    this step. ``success`` is true if the episode ends in success, and false if the episode fails or
+    goes on.
     """
 
     reward: float
@@ -83,7 +85,7 @@ def reward_step(
     ``values`` are the atoms' values at the sample of this step (line 8). ``best`` is the best
     progress before this sample (``episode progress``). ``step`` is the number of this sample in the
     episode, from 1. ``last`` ends the episode here whatever the spec says, for example because the
-    game is over early. With ``T`` the spec's limit in steps, the order of operations is::
+    game is over early. With ``T`` the spec's limit in steps, the reward is computed in this order::
 
         reward = max(0, progress - best)          lines 25 to 28
         reward = reward - 1 / T                   line 29, if there is a limit
@@ -97,8 +99,8 @@ def reward_step(
     robustness.
     ▲ lines 12 to 23: the episode ends on entry into an accepting or trap state, not one step later;
     ``termination="paper"`` runs the lines as printed.
-    ▲ line 11: if ``spec_size`` is 0, nothing is divided by it. A trap has no progress, so entering
-    a trap gains none.
+    ▲ line 11: if ``spec_size`` is 0, which the line divides by, the progress in a goal state is 1.
+    The progress in a trap is 0, so nothing is gained by entering it.
     ▲ line 14: the robustness that is added is at most 0.
     ▲ a spec that is judged at its limit ends the episode at T, or earlier if its verdict becomes
     final. Its progress is the share of T that the episode has survived.
@@ -122,7 +124,10 @@ def reward_step(
 def step_progress(
     tables: MonitorTables, state: int, target: int, values: Sequence[float], step: int, options: RewardOptions
 ) -> float:
-    """Return the progress of this step alone (``step progress``, lines 11 to 18), in [0, 1]."""
+    """Return the progress of this step alone (``step progress``, lines 11 to 18), in [0, 1].
+
+    The arguments are those of :func:`reward_step`.
+    """
     if tables.fspa.judge == "limit" and options.termination == "entry":
         return _share_survived(tables, target, step)
     progress = tables.base_progress[target]
@@ -132,7 +137,10 @@ def step_progress(
 
 
 def approach(tables: MonitorTables, state: int, values: Sequence[float]) -> float:
-    """Return what line 14 adds to the progress: how near the next edge towards a goal is, in [0, 1 / spec_size]."""
+    """Return what line 14 adds to the progress, in [0, 1 / spec_size].
+
+    It tells how near the automaton is to taking an edge from ``state`` towards a goal.
+    """
     nearest = max(robustness(edge.guard, values) for edge in tables.improving[state])
     return (1.0 + min(0.0, nearest)) / tables.fspa.spec_size
 
@@ -152,7 +160,7 @@ def _share_survived(tables: MonitorTables, target: int, step: int) -> float:
 
 
 def ends_episode(tables: MonitorTables, state: int, target: int, options: RewardOptions) -> bool:
-    """Whether the step from ``state`` to ``target`` ends an episode, apart from the limit."""
+    """Whether the step from ``state`` to ``target`` ends an episode before its limit."""
     if options.termination == "paper":
         # Lines 12 to 21: the episode ends if the state did not change and no edge leads nearer to a goal.
         return state == target and not tables.improving[target]
@@ -162,7 +170,8 @@ def ends_episode(tables: MonitorTables, state: int, target: int, options: Reward
 def _succeeds_early(tables: MonitorTables, target: int, options: RewardOptions) -> bool:
     """Whether an episode that is cut off in the state ``target`` is a success.
 
-    With a spec that is judged at its limit, it can be one only if the spec has no limit.
+    It is one if the state is accepting. But if the spec is judged at its limit, and has one, no
+    episode that is cut off earlier is a success.
     """
     at_goal = tables.fspa.judge == "goal" or options.termination == "paper"
     return tables.fspa.states[target].accepting and (at_goal or tables.fspa.limit_steps is None)
@@ -171,9 +180,9 @@ def _succeeds_early(tables: MonitorTables, target: int, options: RewardOptions) 
 def terminal_penalty(limit: int, step: int, options: RewardOptions) -> float:
     """Return the penalty for an episode that fails after ``step`` of ``limit`` steps.
 
-    It is the sum of the penalties ``1 / limit`` of all steps that are left,
-    ``(limit - step) / limit``; with the ``discounted`` penalty, each is multiplied by ``gamma`` for
-    each step until then.
+    It is the sum of the penalties ``1 / limit`` of all steps that are left:
+    ``(limit - step) / limit``. With the ``discounted`` penalty, the penalty of the n-th of them
+    (from 0) is multiplied by ``gamma ** n``.
     """
     left, gamma = limit - step, options.gamma
     if options.terminal_penalty == "undiscounted" or gamma == 1.0:

@@ -1,4 +1,4 @@
-"""Run an automaton over a whole trace, row by row."""
+"""Run a monitor over a whole trace, and write its steps as the rows of a table."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def run(monitor: Monitor, trace: Iterable[Mapping[str, SupportsFloat]]) -> Itera
     """Reset the monitor, then read the samples one by one and yield a step for each.
 
     Raises:
-        TltlError: the errors of :meth:`Monitor.step` and of the trace.
+        TltlError: the errors of :meth:`Monitor.step`, and of reading the trace.
     """
     monitor.reset()
     for number, sample in enumerate(trace, start=1):
@@ -52,7 +52,7 @@ def header(fspa: Fspa) -> tuple[str, ...]:
 
 
 def cells(row: RunStep) -> tuple[str, ...]:
-    """Return the texts of a row, one for each column of :func:`header`.
+    """Return the texts of a step, one for each column of :func:`header`.
 
     Numbers have 17 significant digits.
     """
@@ -61,10 +61,10 @@ def cells(row: RunStep) -> tuple[str, ...]:
 
 
 def outcome(rows: Iterable[RunStep]) -> TraceOutcome:
-    """Return the judgement of a trace that ends with the last of the rows.
+    """Return the judgement of a trace, given all its steps.
 
     Raises:
-        ValueError: there are no rows.
+        ValueError: there are no steps.
     """
     total = 0.0
     last: RunStep | None = None

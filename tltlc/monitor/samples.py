@@ -25,7 +25,8 @@ class MonitorError(TltlError):
 class Samples:
     """Computes the values of the atoms of an automaton from samples of its signals.
 
-    A warning about a clamped value is appended to ``notices``, at most one for each signal or atom.
+    ``params`` maps names of params to values that replace the default ones. A warning about a
+    clamped value is appended to ``notices``, at most one for each signal or atom.
     """
 
     def __init__(self, fspa: Fspa, params: Mapping[str, float] | None, notices: list[Diagnostic]) -> None:
@@ -59,7 +60,7 @@ class Samples:
     def _signal_value(self, signal: Signal, name: str, given: SupportsFloat, when: int | str) -> float:
         """Return the value of a signal as a number, clamped to its range.
 
-        Adds a notice if it was outside. ``name`` is the full name of the signal.
+        Adds a notice if the value was outside the range. ``name`` is ``signal.name``.
         """
         value = finite_signal_value(signal, given, when)
         low, high = signal.low, signal.high
@@ -132,7 +133,10 @@ def _param_error(code: str, title: str, advice: str = "give a number in its rang
 
 
 def check_exclusive(fspa: Fspa, values: Sequence[float], step: int) -> None:
-    """Raise MonitorError (TLT0614) if two atoms of an ``exclusive`` declaration hold at once."""
+    """Raise MonitorError (TLT0614) if two atoms of an ``exclusive`` declaration hold at once.
+
+    ``values`` are the values of the atoms, and ``step`` is the number of the sample, from 1.
+    """
     for group in fspa.exclusive:
         holding = [fspa.atoms[atom].name for atom in group if values[atom] > 0.0]
         if len(holding) > 1:
@@ -190,7 +194,7 @@ SUGGESTIONS: Final = {
     "TLT0615": "supply it on the scale that is declared, or declare the range that it has",
     "TLT0616": "write `clamp(…, -1, 1)` in its predicate",
 }
-"""For each code of a diagnostic about a sample, the advice that it gives."""
+"""The advice of each diagnostic about a sample, by its code."""
 
 
 def _error(code: str, when: int | str, text: str) -> MonitorError:

@@ -49,9 +49,9 @@ def run_tests(program: ResolvedFile, automata: Iterable[Fspa]) -> tuple[TestResu
 def run_test(test: Test, fspa: Fspa) -> TestResult:
     """Return the result of one test.
 
-    At each step of the test, the atoms that it names have the value 1, and all others -1. An
-    expectation is about the trace up to the step before it. The failure has the code TLT0640 if an
-    expectation fails, or TLT0614 if exclusive atoms hold at the same step.
+    At each ``step`` of the test, the atoms that the step names have the value 1, and all other
+    atoms -1. An ``expect`` is about the trace up to this place in the test. The failure has the
+    code TLT0640 if an expectation fails, or TLT0614 if exclusive atoms hold at the same step.
     """
     monitor = Monitor(fspa)
     last: Step | None = None
@@ -75,7 +75,10 @@ def run_test(test: Test, fspa: Fspa) -> TestResult:
 
 
 def _failed_expectation(expect: Expect, step: Step | None, fspa: Fspa) -> Diagnostic | None:
-    """Return the diagnostic of an expectation that fails; None if it does not."""
+    """Return a diagnostic if an expectation fails; None if it holds.
+
+    ``step`` is the last step before the expectation; None if there is none.
+    """
     if step is None:
         return _failure(expect, "a trace has at least one sample", "put a `step` before the first `expect`")
     if expect.kind == "verdict":

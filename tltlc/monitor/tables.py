@@ -8,10 +8,10 @@ from tltlc.core.record import record
 
 @record
 class MonitorTables:
-    """What the monitor needs to know about each state, by its number.
+    """What the monitor needs to know about each state. Each tuple has an entry for each state.
 
-    ``edges`` has the edges that leave the state, and ``improving`` those of them whose target has a
-    smaller distance. ``base_progress`` is the share of the distance that is done, in [0, 1].
+    ``edges`` has the edges that leave the state, and ``improving`` only the edges that lead from it
+    to a smaller distance. ``base_progress`` is the share of the distance that is done, in [0, 1].
     ``ends_on_entry`` says whether an episode ends when it enters the state, with
     ``termination="entry"``.
     """
@@ -49,9 +49,10 @@ def _improves(fspa: Fspa, edge: Edge) -> bool:
 
 
 def _base_progress(distance: int | None, spec_size: int) -> float:
-    """Return the progress of line 11 of Algorithm 1: ``(spec_size - distance) / spec_size``, or 0 for a trap.
+    """Return the progress of line 11 of Algorithm 1: ``(spec_size - distance) / spec_size``.
 
-    ▲ If ``spec_size`` is 0, which the paper divides by, returns 1 for a goal state.
+    A trap, whose ``distance`` is None, has the progress 0. ▲ If ``spec_size`` is 0, which the paper
+    divides by, a goal has the progress 1.
     """
     if distance is None:
         return 0.0

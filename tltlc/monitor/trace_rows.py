@@ -103,9 +103,9 @@ class TraceLines:
         return line
 
     def next_of_row(self) -> str | None:
-        """Return the next line as a further line of the current row, without its line feed.
+        """Return the next line, which continues the current row, without its line feed.
 
-        Returns None at the end.
+        Returns None at the end of the stream.
 
         Raises:
             TltlError: TLT0622 the line makes the row too long, is not UTF-8, or contains a NUL.
@@ -179,7 +179,10 @@ def _rows(lines: TraceLines, count: int) -> Iterator[list[str]]:
 
 
 def _cells(line: str, lines: TraceLines) -> list[str]:
-    """Return the cells of a row that begins with this line; a quoted cell may continue on further lines."""
+    """Return the cells of a row that begins with ``line``.
+
+    A quoted cell may continue on further lines, which are read from ``lines``.
+    """
     if '"' not in line:
         line = line.removesuffix("\r")
         _check_returns(line, lines)
@@ -205,10 +208,11 @@ def _check_returns(text: str, lines: TraceLines) -> None:
 
 
 def _quoted_cell(line: str, start: int, lines: TraceLines) -> tuple[str, str, int]:
-    """Return the text of a quoted cell that begins at ``start``, and where it ends.
+    """Return the text of a quoted cell, and where the cell ends.
 
-    The second result is the line in which the cell ends. The third is the position in this line of
-    the comma after the cell, or of the end of the line.
+    ``start`` is the position after the opening quote. The second result is the line in which the
+    cell ends. The third is the position in this line of the comma after the cell, or of the end of
+    the line.
     """
     pieces = []
     while (end := _closing_quote(line, start)) < 0:

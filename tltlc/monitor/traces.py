@@ -20,8 +20,8 @@ def read_trace(stream: Stream, name: str, signals: Sequence[Signal]) -> Iterator
     """Read a trace line by line, and yield for each sample the values of the given signals.
 
     ``stream`` is binary; ``name`` is the trace's name in messages. The format is described in
-    ``docs/traces.md``. Other columns are ignored. A sample from JSON lines may lack values, and
-    numbers may be infinite or NaN: the monitor reports these.
+    ``docs/traces.md``. Columns that belong to none of the signals are ignored. A sample from JSON
+    lines may lack values, and numbers may be infinite or NaN: the monitor reports both.
 
     Raises:
         TltlError: TLT0620 the trace has no sample, TLT0621 it has no column for a signal, TLT0622 a
@@ -62,9 +62,9 @@ def _columns(header: Sequence[str], lines: TraceLines, signals: Sequence[Signal]
 
 
 def _format_advice(line: str) -> str | None:
-    """Return advice for a header that begins a JSON list, or separates columns by semicolons or tabs.
+    """Return advice if the header begins a JSON list, or separates columns by semicolons or tabs.
 
-    Returns None for other headers.
+    Returns None if it does neither.
     """
     if line.lstrip().startswith("["):
         return JSON_LINES_HELP

@@ -3,8 +3,8 @@
 A module defines a pure function ``reward(tables, transition, options, memory) -> (reward,
 memory)``. ``memory`` is what the mode remembers from step to step; it is None at the start of an
 episode. These modes have no penalties for steps or failures. To add a mode, add its name to
-:data:`tltlc.monitor.progress_and_reward.Mode`, a module of this name here, and another one in
-``tltl_runtime.spec.batch.reward_modes`` for many environments.
+:data:`tltlc.monitor.progress_and_reward.Mode`. Then write two modules of this name: one here for
+one environment, and one in ``tltl_runtime.spec.batch.reward_modes`` for many environments.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ from tltlc.monitor.tables import MonitorTables
 class Transition:
     """One step of the automaton, from ``state`` to ``target``.
 
-    ``values`` are the values of the atoms. ``done`` says whether the episode ends with this step,
-    ``success`` whether it ends in success.
+    ``values`` are the values of the atoms at its sample. ``done`` says whether the episode ends
+    with this step, ``success`` whether it ends in success.
     """
 
     state: int

@@ -17,9 +17,12 @@ def reward(
     """Return 1 on success (0 otherwise), plus ``gamma * potential after - potential before``.
 
     The second result is the potential after this step, which is ``memory`` at the next step. The
-    potential at a sample is the base progress of the state, plus how near the next edge towards a
-    goal is (line 14 of Algorithm 1, but also if the state changed). After the end of the episode it
-    is 0. Before the first sample it is the base progress of the initial state.
+    potential is:
+
+    - before the first sample, the base progress of the initial state;
+    - after a sample, the base progress of the state, plus how near the automaton is to an edge
+      towards a goal (line 14 of Algorithm 1, but also if the state changed);
+    - after the end of the episode, 0.
     """
     before = tables.base_progress[0] if memory is None else memory
     after = 0.0 if transition.done else _potential(tables, transition)

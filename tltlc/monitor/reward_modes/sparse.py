@@ -8,10 +8,11 @@ from tltlc.monitor.reward_modes import Transition
 from tltlc.monitor.tables import MonitorTables
 
 Widths = dict[int, float]
-"""For each state that some run of this length reaches, the width of the widest run to the state.
+"""The width of the widest run to each state, after the samples so far.
 
-A run is a path through the automaton, for any samples. Its width is the least robustness of its
-edges at the samples of the trace.
+A run is any path in the automaton with one edge for each sample, also if the samples do not take
+these edges. Its width is the least robustness of its edges at their samples. States that no run
+reaches are left out.
 """
 
 
@@ -22,9 +23,10 @@ def reward(
 
     The robustness of a trace is positive if and only if the trace is accepted. Its absolute value
     is the distance to the nearest trace that is judged in the opposite way: how much the values of
-    the atoms must change at least, at any sample. It is computed from the widest run to a state
-    with the opposite acceptance, since the width of a run tells how much the values must change for
-    the trace to take this run. If there is no such state, the robustness is 1 or -1.
+    the atoms must change at least, at any sample. The distance follows from the widest run to a
+    state with the opposite acceptance, since the width of a run tells how much the values must
+    change for the trace to take it. If no run reaches a state with the opposite acceptance, the
+    robustness is 1 or -1.
 
     ▲ The paper uses the robustness of the formula. Both values agree if no atom's value is 0 and no
     equivalent formula has a robustness nearer to 0.
@@ -39,7 +41,7 @@ def reward(
 
 
 def _widen(tables: MonitorTables, widths: Widths, transition: Transition) -> Widths:
-    """Return the widths after one more sample."""
+    """Return the widths after one more sample, the one of ``transition``."""
     widened: Widths = {}
     for state, width in widths.items():
         for edge in tables.edges[state]:
