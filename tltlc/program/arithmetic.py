@@ -1,15 +1,17 @@
 """Translate the expressions of predicates to statements of a program.
 
-A ``when`` inside an expression becomes an ``if`` before the expression, which assigns the value to
-a temporary variable. Two other subexpressions get temporary variables: those nested too deep for
-the parsers of some languages, and the base of a power that is written as a product.
+Three kinds of subexpressions get temporary variables:
 
-As in Python, later operands of ``and`` and ``or`` are computed only if they are needed. If such an
-operand needs statements of its own, these are inside an ``if``.
+- a ``when``: an ``if`` before the expression assigns its value;
+- what is nested too deep for the parsers of some languages;
+- the base of a power that is written as a product.
+
+As in Python, later operands of ``and`` and ``or`` are computed only if they are needed. If a later
+operand needs statements of its own, they are inside an ``if``.
 
 ``if`` statements are nested at most about :data:`_MOST_BRANCHES` deep, since Python allows 100
-levels of indentation, and Lua 200 levels of blocks. The value of a ``when`` that is nested deeper
-is computed before the others, if all the conditions that lead to it are true, and assigned to a
+levels of indentation, and Lua 200 levels of blocks. A ``when`` that is nested deeper is computed
+before the whole expression, if all the conditions that lead to it are true, and assigned to a
 variable.
 """
 
@@ -50,7 +52,8 @@ C# and GDScript compilers allow hundreds of levels, Lua 200.
 _MOST_BRANCHES: Final = 20
 """The greatest depth of ``if`` statements.
 
-A ``when`` inside a ``when``, and the later cases of a ``when``, are counted separately.
+Nested ``when`` expressions are counted apart from the later cases of one ``when``: either may be
+this deep.
 """
 
 _Node = Union[source.Expression, source.Condition]
@@ -59,8 +62,9 @@ _Path = tuple[source.Condition, ...]
 
 
 def with_declaration(name: str, statements: Sequence[Statement], *, changes: bool = True) -> tuple[Statement, ...]:
-    """Return the statements of :meth:`ExpressionTranslator.assign`, with a declaration of the variable.
+    """Return the statements with a declaration of the variable ``name``.
 
+    ``statements`` come from :meth:`ExpressionTranslator.assign`, which assigns a value to ``name``.
     If the last statement assigns the value, it becomes the declaration. ``changes`` says whether
     the variable is assigned again later, for example when the value of an atom is clamped to [-1,
     1].
@@ -72,7 +76,7 @@ def with_declaration(name: str, statements: Sequence[Statement], *, changes: boo
 
 
 def _is_reassigned(name: str, statements: Sequence[Statement]) -> bool:
-    """Whether the statements may assign a value to the variable and then another one."""
+    """Whether the statements may assign a value to the variable ``name`` more than once."""
     for place, statement in enumerate(statements, start=1):
         if isinstance(statement, Assign) and statement.name == name and place < len(statements):
             return True
@@ -108,8 +112,9 @@ class ExpressionTranslator:
         """Return statements that assign the value of a ``when`` to the variable ``name``.
 
         They are one ``if`` with a case for each case of the ``when``. If a condition needs
-        statements of its own, these and the remaining cases are nested in the ``else``. ``depth``
-        is the number of ``if`` statements that are nested for this reason.
+        statements of its own, they are in the ``else``, followed by an ``if`` for this case and
+        those after it. ``depth`` is the number of ``if`` statements that are nested for this
+        reason, from 1.
         """
         condition, value = node.cases[0]
         before: list[Statement] = []
@@ -128,10 +133,11 @@ class ExpressionTranslator:
     def _sequential_cases(
         self, name: str, first: tuple[tuple[Expression, tuple[Statement, ...]], ...], rest: source.When
     ) -> list[Statement]:
-        """Return cases as ``if`` statements one after another, which need no nesting.
+        """Return statements that assign the value of a ``when`` to ``name``, without nesting its cases.
 
-        The cases of ``first`` come before those of ``rest``. A temporary variable is true until a
-        case is selected.
+        Each case has an ``if`` of its own, which asks a temporary variable whether no case before
+        it was selected. ``first`` are the first cases, as tests with their bodies; ``rest`` has the
+        cases after them.
         """
         lines: list[Statement] = [Assign(name, Real(0.0))]
         open_ = Variable(self._declare("bool", lines, changes=True))
@@ -158,7 +164,8 @@ class ExpressionTranslator:
         """Return the node with every ``when`` at the depth :data:`_MOST_BRANCHES` replaced by a variable.
 
         Appends to ``lines`` the statements that compute these variables; they run only if all
-        conditions in ``path`` are true. ``depth`` is the depth of the node.
+        conditions in ``path`` are true. ``depth`` is the number of ``when`` expressions around the
+        node.
         """
         if isinstance(node, source.When):
             if depth == _MOST_BRANCHES:
@@ -286,9 +293,9 @@ class ExpressionTranslator:
     # --- variables --------------------------------------------------------------------------------
 
     def _as_variable(self, value: Expression, lines: list[Statement]) -> Expression:
-        """Return a variable or number with this value, which can be used several times without computing it again.
+        """Return a variable or a number with this value, to use it several times but compute it once.
 
-        Appends to ``lines`` the declaration of the variable, if a new one is needed.
+        Appends to ``lines`` the declaration of the variable, if it is a new one.
         """
         if isinstance(value, (Variable, Real)):
             return value

@@ -38,7 +38,7 @@ _OPPOSITE: Final[Mapping[str, Literal["<", "<=", ">", ">="]]] = {"<": ">=", "<="
 
 @record
 class Range:
-    """An interval that contains a value which is never NaN.
+    """The interval in which a value lies. The value is never NaN.
 
     Both ends are included and may be infinite.
     """
@@ -54,7 +54,7 @@ class Range:
 def range_between(low: float | None, high: float | None) -> Range:
     """Return the interval of a finite value from ``low`` to ``high``.
 
-    None means that there is no bound.
+    None means that there is no bound on this side.
     """
     return Range(-_MOST if low is None else low, _MOST if high is None else high)
 
@@ -62,11 +62,11 @@ def range_between(low: float | None, high: float | None) -> Range:
 def prove_ranges(
     name: str, statements: Sequence[Statement], known: Mapping[str, Range]
 ) -> tuple[tuple[Statement, ...], Range | None]:
-    """Return the statements with ``/`` instead of ``divide`` where the divisor is never 0, and a range.
+    """Replace ``divide`` by ``/`` where the divisor is never 0, and find the range of a variable.
 
-    The range is the one that the variable ``name`` has after the statements; it is None if the
-    variable may be NaN. ``known`` maps the variables that exist before the statements to their
-    ranges.
+    Returns the new statements, and the range that the variable ``name`` has after them; None if
+    nothing is known about its value, or if it may be NaN. ``known`` maps the variables that exist
+    before the statements to their ranges.
     """
     facts = _Facts({Variable(variable): range_ for variable, range_ in known.items()}, frozenset())
     written = facts.statements(statements)
@@ -76,8 +76,8 @@ def prove_ranges(
 class _Facts:
     """What is known at a point of a program: ranges of expressions, and pairs ``(a, b)`` with ``a <= b``.
 
-    ``assigned_variables`` has the variables that were declared outside the current body and
-    assigned inside it.
+    ``assigned_variables`` has the variables that are assigned in the current body (the statements
+    of a case, or the whole program) but declared outside it.
     """
 
     def __init__(self, ranges: dict[Expression, Range], ordered: frozenset[tuple[Expression, Expression]]) -> None:
@@ -212,7 +212,7 @@ class _Facts:
     def range(self, node: Expression) -> Range | None:
         """Return the range of an expression.
 
-        Returns None if it may be NaN or have no value, or if nothing is known.
+        Returns None if the expression may be NaN or have no value, or if nothing is known about it.
         """
         if node in self._cache:
             return self._cache[node]
@@ -269,7 +269,10 @@ class _Facts:
         return range_
 
     def _at_most(self, left: Expression, right: Expression) -> bool:
-        """Whether two differences are known to satisfy ``left <= right``: ``a - b`` and ``a - c`` with ``c <= b``."""
+        """Whether ``left <= right`` is known.
+
+        It is known if they are ``a - b`` and ``a - c``, and ``c <= b`` is known.
+        """
         match left, right:
             case BinaryNumber("-", minuend, b), BinaryNumber("-", other_minuend, c) if minuend == other_minuend:
                 b_range, c_range = self.range(b), self.range(c)
@@ -278,7 +281,10 @@ class _Facts:
 
 
 def _ends(operation: Callable[[float, float], float], left: Range | None, right: Range | None, op: str) -> Range | None:
-    """Return the range of an operation that is monotonic in each operand; None if it may be NaN."""
+    """Return the range of an operation that is monotonic in each operand; None if its result may be NaN.
+
+    ``left`` and ``right`` are the ranges of the operands, and ``op`` is the operation's sign.
+    """
     if left is None or right is None:
         return None
     if op == "*" and (_is_zero_by_infinity(left, right) or _is_zero_by_infinity(right, left)):

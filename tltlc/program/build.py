@@ -42,8 +42,8 @@ class Program:
       no atom reads the signal, and None if every step reads it.
     - ``remarks`` has, for each atom, the text of a comment: the name of the atom. The first atom of
       a predicate also has the documentation of the predicate.
-    - ``exclusive`` has the groups of at least two exclusive atoms, each after its index in the
-      automaton.
+    - ``exclusive`` has a pair for each group of at least two exclusive atoms: the index of the
+      group in the automaton, and the indices of its atoms.
     - ``states`` has, for each state, the statements that compute a transition from it. They assign
       the variables of :mod:`tltlc.program.states`.
     - ``reward_statements`` compute progress, reward and the end of the episode after a transition.
@@ -68,14 +68,14 @@ class Program:
     def computed_in(self, state: int | None) -> list[int]:
         """Return the indices of the atoms that only this state computes.
 
-        If ``state`` is None, return those that every step computes.
+        If ``state`` is None, return the indices of the atoms that every step computes.
         """
         return [index for index, only in enumerate(self.only_in) if only == state]
 
     def bools_read_in(self, state: int | None) -> list[str]:
         """Return the variables of the bool signals that only this state reads.
 
-        If ``state`` is None, return those that every step reads.
+        If ``state`` is None, return the variables of the bool signals that every step reads.
         """
         signals = zip(self.fspa.signals, self.signals, self.read_in, strict=True)
         return [name for signal, name, only in signals if signal.type == "bool" and only == state]
@@ -160,8 +160,10 @@ def _only_in(
 ) -> tuple[int | None, ...]:
     """Return :attr:`Program.only_in`.
 
-    ``silent`` says, for each atom, whether to compute it can give no error or notice. Every step
-    computes the other atoms, so that all monitors give the same errors and notices.
+    ``silent`` says, for each atom, that its computation never gives an error or a notice. Every
+    step computes the atoms that are not silent, so that all monitors give the same errors and
+    notices. ``atoms`` are the variables of the atoms, and ``transitions`` the statements of each
+    state.
     """
     used = [variables_read(statements) for statements in transitions]
     only_in: list[int | None] = []
@@ -176,7 +178,8 @@ def _read_in(
 ) -> tuple[int | None, ...]:
     """Return :attr:`Program.read_in`.
 
-    A signal that atoms of several states read gets None, like one that every step needs.
+    A signal that atoms of several states read has None, as if every step read it. ``values`` has
+    the statements of each atom.
     """
     places: dict[str, set[int | None]] = {name: set() for name in signals}
     for only, statements in zip(only_in, values, strict=True):
@@ -188,8 +191,8 @@ def _read_in(
 def _remarks(fspa: Fspa, only_in: Sequence[int | None]) -> tuple[str, ...]:
     """Return :attr:`Program.remarks`.
 
-    The first atom of a predicate is the one that a step would compute first: atoms of all steps
-    come first, then those of single states.
+    The documentation of a predicate is in the remark of only one of its atoms, the first in the
+    generated code. There, the atoms that every step computes come before those of single states.
     """
     remarks = [atom.name for atom in fspa.atoms]
     explained = {""}

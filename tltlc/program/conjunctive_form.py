@@ -6,17 +6,18 @@ from collections.abc import Sequence
 from typing import Final, TypeVar
 
 _MOST: Final = 16
-"""The most clauses; if there are more, which can be exponentially many, the conversion gives up."""
+"""The most clauses. There can be exponentially many; the conversion gives up if there are more."""
 
 _Literal = TypeVar("_Literal")
 
 
 def shorter_clauses(terms: Sequence[Sequence[_Literal]]) -> list[list[_Literal]] | None:
-    """Return the clauses that are equivalent to some terms, or None if they do not have fewer literals.
+    """Return the clauses that are equivalent to ``terms``.
 
-    The clauses have the same robustness: the greatest minimum of a term equals the least maximum of
-    a clause, except for the sign of a zero. Literals keep the order of the terms. No term may be
-    empty.
+    Returns None if they do not have fewer literals than the terms, or if there are more clauses
+    than :data:`_MOST`. The clauses have the same robustness as the terms: the greatest minimum of a
+    term equals the least maximum of a clause, except for the sign of a zero. Literals keep the
+    order of the terms. No term may be empty.
     """
     clauses = _clauses(terms)
     return clauses if clauses is not None and sum(map(len, clauses)) < sum(map(len, terms)) else None
@@ -25,8 +26,8 @@ def shorter_clauses(terms: Sequence[Sequence[_Literal]]) -> list[list[_Literal]]
 def _clauses(terms: Sequence[Sequence[_Literal]]) -> list[list[_Literal]] | None:
     """Return the clauses: the minimal sets that have at least one literal of every term.
 
-    Returns None if there are more than :data:`_MOST`. The method is from C. Berge, Hypergraphs,
-    1989.
+    Returns None if there are more clauses than :data:`_MOST`. The method is from C. Berge,
+    Hypergraphs, 1989.
     """
     literals = list(dict.fromkeys(literal for term in terms for literal in term))
     bits = {literal: 1 << index for index, literal in enumerate(literals)}

@@ -21,7 +21,8 @@ class VariableNames:
     def new_name(self, name: str, suffix: str = "") -> str:
         """Return a new name that resembles ``name``.
 
-        If it is taken, ``_`` and ``suffix`` are appended, and if that is taken too, a number.
+        If the name is taken, ``_`` and ``suffix`` are appended. If there is no suffix, or this name
+        is taken too, ``_`` and a number are appended instead.
         """
         spelt = "".join(_WORDS.get(character, character) for character in name)
         base = re.sub(r"[^A-Za-z0-9]+", "_", spelt)[:_LONGEST].strip("_") or "x"
@@ -43,7 +44,7 @@ def printable_line(text: str) -> str:
 
 
 def call_lines(head: str, arguments: Sequence[str], tail: str = "") -> list[str]:
-    """Return the lines of ``head(arguments)tail`` in Python: one, or several if one would be too long."""
+    """Return the Python code ``head(arguments)tail`` as one line, or as several lines if one is too long."""
     line = f"{head}({', '.join(arguments)}){tail}"
     if len(line) <= 110:
         return [line]

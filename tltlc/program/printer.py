@@ -1,6 +1,6 @@
 """Print a program in the syntax of C.
 
-The printers of other languages override what they write differently.
+Each other language has a subclass of :class:`Printer` that overrides what it writes differently.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ _SHORT = 12
 class Printer:
     """Prints statements and expressions as C would write them.
 
-    Each language has a subclass that overrides what differs.
+    Each other language has a subclass that overrides what it writes differently.
     """
 
     INDENT: ClassVar[str] = "    "
@@ -127,8 +127,8 @@ class Printer:
     def items(cls, items: Sequence[str], depth: int = 0) -> str:
         """Return the items of a list as the text between its brackets.
 
-        If they are too long for one line, they are on lines of their own, indented one level deeper
-        than ``depth``.
+        If they are too long for one line, each has a line of its own, indented one level deeper
+        than ``depth``. If all items are short, several of them share a line.
         """
         line = ", ".join(items)
         if len(line) <= _LONGEST_LIST:

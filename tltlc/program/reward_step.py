@@ -1,6 +1,7 @@
 """The statements that compute the progress and the reward of one step, and whether the episode ends.
 
-They follow Algorithm 1 (:mod:`tltlc.monitor.progress_and_reward`), with the undiscounted terminal penalty.
+They follow Algorithm 1 (:mod:`tltlc.monitor.progress_and_reward`), with the undiscounted terminal
+penalty.
 """
 
 from __future__ import annotations
@@ -24,20 +25,21 @@ from tltlc.program.tree import (
 STEPS, STEPS_REAL, BEST, REWARD, DONE, ENDS, VIOLATED, SATISFIED = (
     *("steps", "steps_real", "best", "reward", "done", "ends", "violated", "satisfied"),
 )
-"""The variables of these statements.
+"""The variables of :func:`statements`.
 
-``STEPS`` and ``STEPS_REAL`` are the number of this step, from 1, as an int and as a real number.
-``ENDS`` says whether an episode ends when it enters the new state, ``VIOLATED`` and ``SATISFIED``
-whether the new state has this verdict. The statements only read these five. They read and assign
-``BEST`` (the best progress so far) and ``DONE`` (whether the episode is over), and assign
-``REWARD``.
+- ``STEPS`` and ``STEPS_REAL`` are the number of this step, from 1, as an int and as a real number.
+  ``ENDS`` says whether an episode ends when it enters the new state. ``VIOLATED`` and ``SATISFIED``
+  say whether this is the verdict of the new state. The statements only read these variables.
+- ``BEST`` is the best progress so far, and ``DONE`` says whether the episode is over. The
+  statements read and assign them.
+- ``REWARD`` is the reward of this step. The statements assign it.
 """
 BEFORE = "before"
 """The best progress before this step."""
 
 
 def statements(fspa: Fspa) -> tuple[Statement, ...]:
-    """Return the statements of a spec's automaton, which run after the transition."""
+    """Return the statements of a spec's automaton that run after each transition."""
     limit = fspa.limit_steps
     steps, zero = Variable(STEPS), Real(0.0)
     lines: list[Statement] = [] if fspa.judge == "goal" else _survived(limit)

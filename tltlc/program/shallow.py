@@ -49,7 +49,7 @@ def _split_statements(statements: Sequence[Statement], names: Iterator[str]) -> 
 def _cut(value: Expression, lines: list[Statement], names: Iterator[str]) -> tuple[Expression, int]:
     """Return the expression with its deep parts replaced by variables, and its new depth.
 
-    Appends the declarations of these variables to ``lines``.
+    Appends the declarations of these variables to ``lines``. Takes their names from ``names``.
     """
     if isinstance(value, Negate):
         operand, depth = _cut(value.operand, lines, names)

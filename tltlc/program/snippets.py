@@ -15,7 +15,7 @@ _KINDS = {"ratio": "A ratio in"}
 
 
 def title_comment(fspa: Fspa, comment: Callable[[str], list[str]]) -> str:
-    """Return the first comment: the name of the spec, its documentation and its formula.
+    """Return the comment that begins a file: the name of the spec, its documentation and its formula.
 
     ``comment`` returns a text as the lines of a comment.
     """
@@ -26,10 +26,11 @@ def title_comment(fspa: Fspa, comment: Callable[[str], list[str]]) -> str:
 
 
 def field_comment(name: str, field: Signal | Param, escape: Callable[[str], str] = str) -> str:
-    """Return the comment on a field called ``name``: its documentation and its possible values.
+    """Return the comment on a signal or param: its documentation and its possible values.
 
-    If the spec has another name for the field, the comment begins with this name. ``escape``
-    escapes characters that have a meaning in a comment; it is not applied to the values.
+    ``name`` is its name in the generated file. If its name in the spec is different, the comment
+    begins with the name in the spec. ``escape`` escapes characters that have a meaning in a
+    comment. It is applied to the name and the documentation.
     """
     # A documented bool needs no "True or false."
     values = "" if field.doc and field.type == "bool" else values_sentence(field)
@@ -46,7 +47,11 @@ def values_sentence(field: Signal | Param) -> str:
 
 
 def example_sample(signals: Sequence[Signal], key: Callable[[str], str], equals: str) -> str:
-    """Return an example of a sample in the language's syntax, for a comment: ``{ health: …, seen: true }``."""
+    """Return an example of a sample in the language's syntax, for a comment: ``{ health: …, seen: true }``.
+
+    ``key`` returns the name of a signal as the language writes it, and ``equals`` is the text
+    between the name and its value. If the example is too long, returns ``signals``.
+    """
     shown = [f"{key(signal.name)}{equals}{'true' if signal.type == 'bool' else '…'}" for signal in signals[:2]]
     text = f"{{ {', '.join([*shown, *(['…'] if len(signals) > 2 else [])])} }}" if signals else "{}"
     return printable_line(text) if len(text) <= _LONGEST_EXAMPLE else "signals"
@@ -74,7 +79,7 @@ def boolean_literal(value: bool) -> str:
 
 
 def paragraphs(*parts: Sequence[str]) -> list[str]:
-    """Return the lines of all parts, with an empty line between parts."""
+    """Return the lines of all parts that have any, with an empty line between two parts."""
     return "\n\n".join("\n".join(part) for part in parts if part).split("\n")
 
 

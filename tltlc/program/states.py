@@ -1,4 +1,7 @@
-"""The statements of each state: they find the edge to take from the values of the atoms, and compute its results."""
+"""The statements of each state: they find the edge to take from the values of the atoms, and compute its results.
+
+Begin with `state_statements`.
+"""
 
 from __future__ import annotations
 
@@ -33,8 +36,8 @@ TARGET, ROBUSTNESS, PROGRESS, LIMITING = "target", "robustness", "progress", "li
 """The variables that the statements of a state assign.
 
 They are the next state, the robustness of the edge taken, the progress of this step alone, and the
-index of the limiting atom: the atom that keeps the most robust edge towards a goal from being
-taken, or -1 if there is none.
+index of the limiting atom. This atom determines the robustness of the most robust edge towards a
+goal; the index is -1 if the state changes or no edge leads towards a goal.
 """
 NEAREST, OTHER = "nearest", "other"
 """Two local variables: the robustness of the best prime implicant so far, and of the one compared with it."""
@@ -55,9 +58,10 @@ class _StateCode:
         self._at_goal = tables.fspa.judge == "goal"
 
     def statements(self) -> tuple[Statement, ...]:
-        """Return statements with a case for each edge.
+        """Return an ``if`` with a case for each edge that leaves the state.
 
-        Exactly one guard is true, so the edge with the longest guard needs no test.
+        Exactly one guard is true, so the edge with the longest guard is the ``else``, without a
+        test. If there is only one edge, return its statements without an ``if``.
         """
         edges = sorted(self._tables.edges[self._state], key=lambda edge: (_size(edge.guard), edge.target))
         *tested, last = edges
@@ -104,8 +108,8 @@ class _StateCode:
     def _robustness(self, primes: Sequence[Implicant]) -> Expression:
         """Return the robustness of a guard: the maximum of the robustness of its prime implicants.
 
-        The robustness of a prime implicant is its least literal. The expression is rewritten if
-        that saves literals, which may change the sign of a 0.
+        The robustness of a prime implicant is its least literal. If it saves literals, the
+        expression is a minimum of maxima instead, which may change the sign of a 0.
         """
         shared = _shared(primes)
         rest = [[literal for literal in prime if literal not in shared] for prime in primes]
@@ -172,9 +176,9 @@ def _size(guard: Guard) -> int:
 
 
 def _fold(function: str, terms: Sequence[Expression]) -> Expression:
-    """Return ``min`` or ``max`` of several terms.
+    """Return the ``min`` or ``max`` of the terms, as ``function`` says.
 
-    Returns 1 if there are none, which is the robustness of a true guard.
+    Returns 1 if there are no terms: the robustness of a guard that is always true.
     """
     if not terms:
         return Real(1.0)

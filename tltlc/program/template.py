@@ -27,7 +27,10 @@ def fill_template(file: str, pieces: Mapping[str, str], present: Collection[str]
 
 
 def fill(text: str, pieces: Mapping[str, str], present: Collection[str] = ()) -> str:
-    """Return a text with its placeholders replaced as in :func:`fill_template`, except those inside ``pieces``."""
+    """Return a text with its placeholders replaced as in :func:`fill_template`.
+
+    Placeholders inside ``pieces`` are not replaced.
+    """
     remaining = _BLOCK.sub(lambda block: block[2] if block[1] in present else "", text)
     remaining = _LINE.sub(lambda line: line[0] if pieces[line[1]] else "", remaining)
     return _PLACE.sub(lambda place: pieces[place[1]], remaining)

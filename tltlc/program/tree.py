@@ -119,8 +119,8 @@ Expression = Union[Real, Int, Bool, Variable, Negate, BinaryNumber, NumericCall,
 class Declare:
     """The declaration of a variable.
 
-    If it has no value, each path through the program assigns one later. ``changes`` is true if the
-    variable is then assigned again.
+    If ``value`` is None, each path through the program assigns a value later. ``changes`` is true
+    if the variable gets another value after its first one.
     """
 
     name: str
@@ -139,7 +139,7 @@ class Assign:
 
 @record
 class If:
-    """Runs the body of the first case whose test is true, or ``otherwise`` if no test is.
+    """Runs the body of the first case whose test is true, or ``otherwise`` if no test is true.
 
     A case is a test and its body.
     """

@@ -1,6 +1,7 @@
 """Find the variables and functions that statements use.
 
-The backends declare only these, since some compilers warn about unused ones.
+The backends declare only what is used, since some compilers warn about unused variables and
+functions.
 """
 
 from __future__ import annotations
