@@ -1,1 +1,1 @@
-"""Artefacts as JSON: the schema, the validator generated from it, encoding, decoding and consistency checks."""
+"""Artefacts as JSON: write them, check them and read them. Begin with `encode` and `decode`."""

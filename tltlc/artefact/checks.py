@@ -19,7 +19,7 @@ from tltlc.expression.tree import depth, most_parts
 from tltlc.io.limits import ARITHMETIC
 
 MOST_PROBLEMS: Final = 5
-"""The most inconsistencies of one artefact that are reported."""
+"""The most contradictions of one artefact that are reported."""
 RECOMPILE: Final = "compile the spec again"
 
 
@@ -87,8 +87,8 @@ def check_consistency(fspa: Fspa, origin: Origin) -> None:
     """Check that the parts of an automaton agree with each other.
 
     Raises:
-        TltlError: TLT0604 they do not; the error has the first :data:`MOST_PROBLEMS`
-            inconsistencies.
+        TltlError: TLT0604 the parts contradict each other; the error has at most
+            :data:`MOST_PROBLEMS` contradictions, the first ones.
     """
     first = islice(problems(fspa), MOST_PROBLEMS)
     errors = [origin.error("TLT0604", problem.message, problem.path) for problem in first]

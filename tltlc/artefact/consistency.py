@@ -17,13 +17,13 @@ Declared = Union[spec.Signal, spec.Param, spec.Atom]
 CYCLES_WORK: Final = 1_000_000
 """The most steps of work for the check of goals and verdicts over infinite traces.
 
-If the check takes more, which large automata with many cycles do, it is left out.
+Large automata with many cycles need more. Their goals and verdicts are not checked.
 """
 
 
 @record
 class Problem:
-    """A contradiction: the path of the value that is wrong in the document, and a message."""
+    """A contradiction in an artefact: the path of the wrong value in the document, and a message."""
 
     path: Path
     message: str
@@ -32,10 +32,11 @@ class Problem:
 def problems(fspa: Fspa) -> Iterator[Problem]:
     """Yield the contradictions in an automaton that was read from an artefact.
 
-    Only those of the first check that fails, because later checks need the values that it checks.
-    Two checks stop after a fixed amount of work, so large automata are checked only in part: the
-    check that exactly one guard of a state is true at every sample (:mod:`tltlc.artefact.guards`),
-    and over infinite traces the check of goals and verdicts (:data:`CYCLES_WORK`).
+    Stops after the first check that fails, because later checks need the values that it checks. Two
+    checks have a limit on their work, so large automata are checked only in part:
+
+    - the check of guards (:data:`tltlc.artefact.guards.WORK_LIMIT`);
+    - over infinite traces, the check of goals and verdicts (:data:`CYCLES_WORK`).
     """
     for check in (_names, _values, _indices, _parallel_edges, _numbering, _distances, _guards):
         failed = False
@@ -122,8 +123,8 @@ def _parallel_edges(fspa: Fspa) -> Iterator[Problem]:
 def _numbering(fspa: Fspa) -> Iterator[Problem]:
     """Check that states are numbered breadth-first.
 
-    Call the lowest state with an edge to a state its parent. In breadth-first order, the parent of
-    a state has a lower number than the state, and later states never have a lower parent.
+    The parent of a state is the lowest state with an edge to it. In breadth-first order, the parent
+    of a state has a lower number than the state, and the parents of later states are never lower.
     """
     parents = [len(fspa.states)] * len(fspa.states)
     for edge in fspa.edges:
@@ -139,7 +140,7 @@ def _numbering(fspa: Fspa) -> Iterator[Problem]:
 
 
 def _distances(fspa: Fspa) -> Iterator[Problem]:
-    """Check goals, distances, verdicts and ``spec_size`` against the edges."""
+    """Check that goals, distances, verdicts and ``spec_size`` are those that follow from the edges."""
     goals, verdicts = _by_cycles(fspa) if fspa.semantics == "infinite" else _by_states(fspa)
     to_goal = _steps_to(fspa, goals)
     for state in fspa.states:
@@ -190,7 +191,7 @@ def _by_cycles(fspa: Fspa) -> tuple[Collection[int], list[Verdict]]:
 def _steps_to(fspa: Fspa, goals: Iterable[int]) -> dict[int, int]:
     """Map each state to the least number of transitions to one of ``goals``.
 
-    States that reach none of them are left out.
+    States that reach no goal are left out.
     """
     into: list[list[int]] = [[] for _ in fspa.states]
     for edge in fspa.edges:

@@ -23,8 +23,8 @@ from tltlc.resolve.spec import Atom, Param, Signal
 def decode(document: object, name: str) -> Fspa:
     """Return the automaton of an artefact whose JSON is already parsed.
 
-    ``name`` is the name of the artefact in messages.  Whole numbers may be floats such as ``3.0``,
-    and unknown fields are ignored.  Errors point into the text that :func:`json.dumps` writes for
+    ``name`` is the name of the artefact in messages. Whole numbers may be floats such as ``3.0``,
+    and unknown fields are ignored. Errors point into the text that :func:`json.dumps` writes for
     the document.
 
     Raises:
@@ -44,8 +44,8 @@ def read(text: str, name: str) -> Fspa:
     ``name`` is the name of the artefact in messages.
 
     Raises:
-        TltlError: as :func:`decode`; also TLT0006 the text has too many values, and TLT0601 it is
-            not JSON.
+        TltlError: the errors of :func:`decode`, and also TLT0006 the text has too many values, and
+            TLT0601 the text is not JSON.
     """
     origin = Origin(name, lambda: text)
     return _decode_and_check(_parse(origin.source), origin)
@@ -76,7 +76,7 @@ def _not_finite(name: str, constant: str) -> TltlError:
 
 
 def _remark(message: str) -> str:
-    """Return the message of Python's JSON parser in the form of a label's text."""
+    """Return a message of Python's JSON parser as the text of a label, e.g. "expecting value"."""
     return (message[:1].lower() + message[1:]).removesuffix(" at").removesuffix(" starting")
 
 
@@ -130,13 +130,14 @@ _Reader = Callable[[dict[str, str]], Formula | Text]
 def _formula_reader(atoms: Iterable[dict[str, Any]]) -> _Reader:
     """Return a function that converts the texts of a formula, one for each notation, to a formula.
 
-    If tltlc would not print the formula as this text, the function returns a :class:`Text` instead.
+    If tltlc cannot parse the ASCII text, or would print the formula differently, the function
+    returns the texts as a :class:`Text` instead.
     """
     parser = FormulaParser(atom["name"] for atom in atoms)
 
     def read(text: dict[str, str]) -> Formula | Text:
         formula = parser.formula(text["ascii"])
-        # A text of another tool may mean something else here, since its operators may have other precedences.
+        # A text that another tool wrote may mean something else here, if its operators have other precedences there.
         if formula is not None and ascii_text(formula) == text["ascii"]:
             return formula
         return Text(text["ascii"], text["unicode"], text["english"])

@@ -1,7 +1,7 @@
 """Generate ``validator.py`` from ``fspa.schema.json``: run ``python -m tltlc.artefact.generate``.
 
 The generated module validates artefacts without a schema library: to import one takes longer than
-most compilations.  Generating needs fastjsonschema, which ``pip install tltlc[dev]`` installs.
+most compilations. Generating needs fastjsonschema, which ``pip install tltlc[dev]`` installs.
 """
 
 from __future__ import annotations
@@ -37,9 +37,9 @@ def validator_source() -> str:
 
 
 def _inline(node: Any, definitions: dict[str, Any]) -> Any:
-    """Return the schema with every reference replaced by its definition, except the recursive ones.
+    """Return the schema with every reference replaced by its definition, except recursive references.
 
-    This makes the validator faster.  A reference would become a function call, and each call builds
+    This makes the validator faster. A reference would become a function call, and each call builds
     the text of the value's path.
     """
     if isinstance(node, list):
@@ -53,10 +53,10 @@ def _inline(node: Any, definitions: dict[str, Any]) -> Any:
 
 
 def _shorten_line(line: str) -> str:
-    """Return a line of the generated code in the form that the project needs.
+    """Return a line of the code that fastjsonschema generates, with the changes that the project needs.
 
     Removes the value and the schema from a ``raise``, the class ``Decimal``, and the exception for
-    several errors.  Adds types to the heads of functions, and sorts the keys in messages.
+    several errors. Adds types to the heads of functions, and sorts the keys in messages.
     """
     line = re.sub(r", value=.*?, name=(.*?), definition=.*, rule='(\w+)'\)$", r", \1, '\2')", line)
     line = line.replace("(JsonSchemaValueException, JsonSchemaValuesException)", "JsonSchemaValueException")

@@ -3,8 +3,8 @@
 A guard must be the list of all its prime implicants, and at each sample exactly one guard of each
 state must be true.
 
-A cube is a conjunction of literals.  It is stored as two bit sets: the atoms that must be true, and
-the atoms that must be false.  ``D`` is the set of samples on which no two atoms of an exclusive
+A cube is a conjunction of literals. It is stored as two bit sets: the atoms that must be true, and
+the atoms that must be false. ``D`` is the set of samples on which no two atoms of an exclusive
 group hold together (semantics, section 3).
 """
 
@@ -19,13 +19,13 @@ from tltlc.automaton.fspa import Fspa, Implicant
 Cube = tuple[int, int]
 
 WORK_LIMIT = 200_000
-"""The most operations on cubes, which take about a fifth of a second.
+"""The most operations on cubes in one check, which take about a fifth of a second.
 
-A check that needs more stops there.
+A check that needs more stops without a result.
 """
 
 _BITS_OF_A_STEP = 512
-"""The most atoms of an operation on cubes; with more atoms, an operation counts as several."""
+"""With more atoms than this, an operation on cubes may count as several."""
 
 
 class _TooManyCubesError(Exception):
@@ -50,9 +50,9 @@ class _CubeBudget:
 def guard_problems(fspa: Fspa) -> Iterator[tuple[Path, str]]:
     """Yield the first problem of the guards, as a path in the document and a message.
 
-    Yields nothing if there is none.  A problem is a guard that is not the complete list of its
-    prime implicants, or a state in which not exactly one guard is true at some sample.  Indices
-    must be in range.  The check stops after :data:`WORK_LIMIT` operations.
+    Yields nothing if there is no problem. A problem is a guard that is not the complete list of its
+    prime implicants, or a state in which not exactly one guard is true at some sample. The check
+    stops after :data:`WORK_LIMIT` operations. The indices in ``fspa`` must be in range.
     """
     work = _CubeBudget()
     leaving: list[list[int]] = [[] for _ in fspa.states]
@@ -97,7 +97,7 @@ def _guard_problem(
 ) -> str | None:
     """Return in words why ``cubes`` are not all prime implicants of a guard, or None if they are.
 
-    ``pairs`` has a cube for each two atoms that are exclusive.  A set of cubes has all prime
+    ``pairs`` has a cube for each two atoms that are exclusive. A set of cubes has all prime
     implicants of its disjunction if and only if no cube implies another one, and the consensus of
     every two cubes implies a cube of the set (Quine 1955).
     """

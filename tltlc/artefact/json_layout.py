@@ -9,7 +9,7 @@ from typing import Any, Final
 
 WIDTH: Final = 120
 _PIECES: Final = 10_000
-"""How many small pieces of text are joined to one piece that :func:`layout` yields."""
+"""How many small pieces of text :func:`layout` joins to a piece that it yields."""
 
 Encode = Callable[[Any], str]
 
@@ -24,10 +24,10 @@ _unsafe = re.compile(
 def layout(document: Any) -> Iterator[str]:
     """Yield the JSON text of a document in pieces.
 
-    A value that fits on a line is written on one line.  Keys keep their order.  Characters that are
-    invisible or change the direction of text are escaped.  So is ``<`` in ``</`` and ``<!``, so
-    that the text can be put into a script element of an HTML page.  Numbers have their shortest
-    form.
+    A value that fits on a line is written on one line, except the document itself. Keys keep their
+    order. Characters that are invisible or change the direction of text are escaped. ``<`` is
+    escaped in ``</`` and ``<!``, so that the text can be put into a script element of an HTML page.
+    Numbers have their shortest form.
 
     Raises:
         ValueError: a number is not finite.
@@ -45,7 +45,7 @@ def _pieces(value: Any, indent: int, used: int, encode: Encode) -> Iterator[str]
     """Yield the text of ``value``, on several lines if necessary.
 
     ``indent`` is the indentation of the line in characters, and ``used`` the number of characters
-    that the key of the value takes up.
+    that the key before the value takes up on the line.
     """
     flat = _flat(value, indent, used, encode)
     if flat is not None:
@@ -74,7 +74,7 @@ def _flat(value: Any, indent: int, used: int, encode: Encode) -> str | None:
 
 
 def _is_small(value: Any) -> bool:
-    """Whether a value may fit on a line, by a quick estimate that does not make its text."""
+    """Whether a value may fit on a line: a quick estimate, without writing its text."""
     left, waiting = WIDTH, [value]
     while waiting and left > 0:
         part = waiting.pop()

@@ -16,7 +16,7 @@ _step = re.compile(r"\.(\w+)|\[(\d+)\]")
 
 
 def path_of(place: str) -> Path:
-    """Return a path that is written as text: ``("states", 0, "id")`` for ``data.states[0].id``."""
+    """Convert the text of a path to a path: ``data.states[0].id`` to ``("states", 0, "id")``."""
     return tuple(key or int(index) for key, index in _step.findall(place))
 
 

@@ -49,6 +49,9 @@ def schema_error_title(error: JsonSchemaValueException) -> str:
 
 
 def _list_items(literal: str, last: str) -> str:
-    """Return the items of a Python list, given as its text, in backquotes and with ``last`` before the last one."""
+    """Return the items of a list in backquotes, separated by commas, with ``last`` before the last item.
+
+    ``literal`` is the list as Python writes it.
+    """
     items = [f"`{item}`" for item in ast.literal_eval(literal)]
     return last.join([", ".join(items[:-1]), items[-1]]) if len(items) > 1 else items[0]

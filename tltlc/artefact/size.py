@@ -31,7 +31,7 @@ def check_size(subject: str, size: int, commas: int = 0) -> None:
 def least_size(fspa: Fspa) -> tuple[int, int]:
     """Return lower bounds of the size of an artefact in bytes, and of its number of commas.
 
-    Only its edges are counted, which are most of a large artefact.
+    Only its edges are counted, since they are most of a large artefact.
     """
     literals = sum(len(prime) for edge in fspa.edges for prime in edge.guard.primes)
     size = len(_SHORTEST_EDGE) * len(fspa.edges) + len("[0, true], ") * literals
