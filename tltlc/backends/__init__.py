@@ -28,8 +28,8 @@ class Target:
     """The description of a target.
 
     ``name`` is the name of its module, ``title`` its description in lists. ``endings`` are the
-    endings of its files' names. ``known_as`` are other names that people may use for it, in lower
-    case.
+    endings of its files' names. ``known_as`` are names, in lower case, that people may try instead
+    of ``name``: the error for them suggests this target.
     """
 
     name: str

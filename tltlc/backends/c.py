@@ -59,7 +59,7 @@ _LIBRARY = """
     index rindex size_t ptrdiff_t offsetof tolower toupper isspace errno assert complex imaginary I main
 """.split()
 
-# Macros of the same headers on Linux, Windows and macOS; the last ones are error codes.
+# Macros of the standard headers on Linux, Windows and macOS; the last ones are error codes.
 _CONSTANTS = """
     BIG_ENDIAN LITTLE_ENDIAN PDP_ENDIAN BYTE_ORDER EXIT_FAILURE EXIT_SUCCESS FD_SETSIZE NFDBITS FILENAME_MAX
     FOPEN_MAX TMP_MAX RAND_MAX MB_CUR_MAX MAXFLOAT FP_ILOGB0 FP_ILOGBNAN FP_LLOGB0 FP_LLOGBNAN FP_INT_DOWNWARD
@@ -112,8 +112,8 @@ _RESERVED = (
 )
 """Names that no variable may have.
 
-The last five are variables of the step function; :mod:`tltlc.program.build` adds its other
-variables.
+The last five are variables of the step function. :mod:`tltlc.program.build` adds the remaining
+variables of that function.
 """
 
 

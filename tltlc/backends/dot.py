@@ -26,7 +26,7 @@ LINES: dict[Verdict, str] = {
 }
 """The colour of a state's outline and of its distance mark, for each verdict.
 
-``FILLS`` has pale shades of them.
+``FILLS`` has the colour inside the outline, a pale shade of it.
 """
 
 FILLS: dict[Verdict, str] = {
@@ -129,7 +129,7 @@ def _legend(fspa: Fspa, drawing: Drawing) -> str:
 
 
 def _draw_state(drawn: Digraph, run: tuple[State, ...], text: str, full: bool) -> None:
-    """Draw a state with its ``text``.
+    """Draw a state with its ``text``, or only with its number unless ``full``.
 
     If ``run`` has several states, they are folded: draw them as one state with a dashed outline.
     """
@@ -171,7 +171,7 @@ def _edge_style(source: State, target: State) -> dict[str, str]:
     and may bend.
     """
     if source.id == target.id:
-        # No other edge leaves such a state, so its loop is drawn on the right, where no edge arrives.
+        # Only its loop leaves a satisfied or violated state: draw it on the right, where no edge arrives.
         return {"headport": "e", "tailport": "e"} if source.verdict in ("satisfied", "violated") else {}
     if source.distance is not None and target.distance is None:
         return {"color": "#f87171", "weight": "0"}

@@ -104,8 +104,9 @@ def _body(fspa: Fspa) -> Iterator[str]:
 class _EdgeLabels:
     """Converts guards to labels of the format: expressions over the numbers of atoms.
 
-    A label is built from the prime implicants of the guard, which define the guard; its text is
-    only for readers. With exclusive atoms, a label is false on letters that cannot occur.
+    A label is built from the prime implicants of the guard, since they define the guard; the
+    guard's text is only for readers. With exclusive atoms, a label is false on letters that cannot
+    occur.
     """
 
     def __init__(self, fspa: Fspa) -> None:
@@ -131,7 +132,10 @@ class _EdgeLabels:
         return "@allowed" if text == "t" else f"@allowed & ({text})" if "|" in text else f"@allowed & {text}"
 
     def _short(self, primes: Sequence[Implicant]) -> str:
-        """Return the prime implicants as a short formula, as in the guard's text."""
+        """Return the disjunction of the prime implicants as a short formula over numbers of atoms.
+
+        Raises OutOfSteps or TooManyPrimes if this takes too much work.
+        """
         diagrams, function = self._diagrams, REJECT
         for prime in primes:
             cube = ACCEPT
@@ -163,7 +167,7 @@ def _character(character: str) -> str:
 def _comment(text: str) -> str:
     """Return a comment with the text.
 
-    Blanks split every ``/*`` and ``*/`` in it, since HOA comments nest.
+    Blanks split every ``/*`` and ``*/`` in the text, since HOA comments nest.
     """
     lines = [escape_invisible(line.strip()) for line in text.strip().splitlines()]
     return f"/* {re.sub('(?<=[*])(?=/)|(?<=/)(?=[*])', ' ', chr(10).join(lines))} */"

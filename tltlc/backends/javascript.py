@@ -34,9 +34,9 @@ TARGET = Target(
 _LONGEST = 110
 
 _FEW = 3
-"""The most exclusive atoms that are tested in pairs.
+"""The most atoms of an exclusive group that are tested in pairs.
 
-Of larger groups, the atoms that hold are counted.
+In a larger group, the atoms that hold are counted.
 """
 
 _ENTERED = "entered"
@@ -63,8 +63,9 @@ def emit(fspa: Fspa, options: Options) -> Files:
 class _JavaScript(Printer):
     """Prints a program in JavaScript.
 
-    Functions in ``built_in`` are called as functions of ``Math``, all others as methods of the
-    monitor.
+    ``atoms`` are the names of the atoms in the spec. Functions in ``built_in`` are functions of
+    ``Math``. All others are in the template: as methods of the monitor if they have no value for
+    some arguments, and as functions otherwise.
     """
 
     INDENT = "  "
@@ -209,7 +210,10 @@ class _Source:
         return lines
 
     def _values(self, state: int | None) -> list[str]:
-        """Return the code for the atoms that only this state needs, or if ``state`` is None, those every step needs."""
+        """Return the code that computes the atoms that only this state needs.
+
+        If ``state`` is None, it computes the atoms that every step needs.
+        """
         return [line for index in self._program.computed_in(state) for line in self._value(index)]
 
     def _value(self, index: int) -> list[str]:

@@ -16,8 +16,8 @@ def emit(fspa: Fspa, options: Options) -> Files:
     """Return ``NAME.fspa.json``, checked against the schema.
 
     Raises:
-        TltlError: TLT0004 the file would be larger than :func:`tltlc.artefact.decode.read` accepts;
-            TLT0006 it would have more values.
+        TltlError: TLT0004 the file would be larger than :data:`tltlc.io.limits.ARTEFACT` allows;
+            TLT0006 it would have more values than this limit allows.
         ValueError: the document does not fit the schema, which would be a bug of the compiler.
     """
     subject = f"the artefact of `{fspa.name}`"

@@ -34,9 +34,9 @@ TARGET = Target(
 )
 
 _MOST_LOCALS: Final = 150
-"""The most local variables and arguments for a spec.
+"""The most local variables and arguments for the signals, params and atoms of a spec.
 
-The step function has others, and Lua allows 200 in all.
+The step function has more local variables, and Lua allows 200 in all.
 """
 
 _FEW_STATES: Final = 8
@@ -61,7 +61,7 @@ _OWN = """
     MOVES STATES abs at_step divide entered exp failure huge kept max min param part power problem read result self
     signal signals sqrt tanh together type value
 """.split()
-"""Other names that the step function uses, which no variable of the program may have."""
+"""Names that the step function uses in the template; no variable of the program may have them."""
 
 
 def emit(fspa: Fspa, options: Options) -> Files:
@@ -413,7 +413,10 @@ def _field(name: str, type_: str, doc: str) -> str:
 
 
 def _accepting_cases(signal: Signal, variable: str) -> list[str]:
-    """Return the first cases of the ``if`` that checks a signal: the values that can be used as they are."""
+    """Return the cases of the ``if`` that checks a signal in which the value is valid.
+
+    They convert the value to a float.
+    """
     if signal.type == "bool":
         return [
             f"if {variable} == true then",

@@ -58,7 +58,10 @@ def emit(fspa: Fspa, options: Options) -> Files:
 
 
 def _state(fspa: Fspa, run: tuple[State, ...], options: Options) -> str:
-    """Return the line of a state, or the one line of several states that are folded into one."""
+    """Return the line of a drawn state.
+
+    ``run`` has this state, or all states that are folded into it.
+    """
     ends = run[0], run[-1]
     distance = text_range(*("∞" if state.distance is None else str(state.distance) for state in ends))
     heading = [f"{len(run)} more like these:"] if len(run) > 1 else []

@@ -85,7 +85,7 @@ class _Rust(Printer):
     def call(self, function: str, arguments: Sequence[str]) -> str:
         """Return a call of a function.
 
-        If it has no value for its arguments, the ``?`` after it ends the step.
+        If the function has no value for its arguments, the ``?`` after the call ends the step.
         """
         if function in FAILING:
             return super().call(f"self.{function}", [str(self.atom), *arguments]) + "?"
@@ -143,7 +143,7 @@ class _Source:
         return fill_template("monitor.rs.txt", places, present)
 
     def _title(self) -> list[str]:
-        """Return the first comment: the name of the spec, its documentation and its formula."""
+        """Return the comment that begins the file: the spec's name, documentation and formula."""
         fspa = self._fspa
         title = f"Monitor of the specification `{fspa.name}`, written by tltlc."
         formula = ["```text", *comment_lines(str(fspa.formula).replace("```", "'''")), "```"]

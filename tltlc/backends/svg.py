@@ -10,5 +10,9 @@ TARGET = Target("svg", "a picture that scales", (".svg",))
 
 
 def emit(fspa: Fspa, options: Options) -> Files:
-    """Return ``NAME.svg``, or what :func:`tltlc.backends.drawing.layout.draw` returns for a graph that is too large."""
+    """Return ``NAME.svg``, or ``NAME.dot`` if the picture cannot be drawn in time.
+
+    Raises:
+        TltlError: the errors of :func:`tltlc.backends.drawing.layout.draw`.
+    """
     return draw(fspa, options, "svg")

@@ -135,9 +135,9 @@ class ExpressionTranslator:
     ) -> list[Statement]:
         """Return statements that assign the value of a ``when`` to ``name``, without nesting its cases.
 
-        Each case has an ``if`` of its own, which asks a temporary variable whether no case before
-        it was selected. ``first`` are the first cases, as tests with their bodies; ``rest`` has the
-        cases after them.
+        ``first`` are the first cases, as tests with their bodies, and ``rest`` has the cases after
+        them. The first cases are one ``if``. Each later case has an ``if`` of its own, which asks a
+        temporary variable whether no case before it was selected.
         """
         lines: list[Statement] = [Assign(name, Real(0.0))]
         open_ = Variable(self._declare("bool", lines, changes=True))

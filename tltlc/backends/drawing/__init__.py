@@ -1,1 +1,4 @@
-"""Code that the targets for pictures share: the texts in pictures, and the layout in a child process."""
+"""Code that the targets for pictures share: texts, folded states and the layout.
+
+Begin with `layout.draw`.
+"""

@@ -26,7 +26,7 @@ def make_accessible(svg: bytes, name: str, folded: Mapping[int, Sequence[State]]
     ``name`` is the automaton's name. Each drawn state gets the attribute ``data-states`` with the
     number of its state, or the numbers of all states that are folded into it. Each edge gets
     ``data-source`` and ``data-target`` with the numbers of its states. Texts are centred in their
-    shapes, so that they do not leave them if the reader's font is wider than Graphviz assumed.
+    shapes, so that they stay inside even if the reader's font is wider than Graphviz assumed.
     """
     root = ET.fromstring(svg)
     root.set("role", "group")

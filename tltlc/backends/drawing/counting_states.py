@@ -1,7 +1,8 @@
 """Fold several runs of states that count at the same time, as in `F[0,100] a & F[0,100] b`.
 
-These runs form a ladder. Rung n of the ladder has the n-th state of each run. An edge from a rung
-leads to the next rung, in the same run or in another one, or out of the ladder.
+A run is a path of states that differ only in a count. Several runs form a ladder: its rung n has
+the n-th state of each run. An edge from a rung leads to the next rung, in the same run or in
+another one, or out of the ladder.
 """
 
 from __future__ import annotations
@@ -20,11 +21,15 @@ Steps = Mapping[int, Mapping[EdgeLabel, int]]
 def fold_ladders(fspa: Fspa) -> Drawing:
     """Return the drawing with the inner rungs of each ladder folded into the first of them.
 
-    Two states that follow each other in a run of a ladder have the same verdict, the same
-    acceptance and the same labels of edges. Edges of the two states with the same label lead to the
-    same state, or to two states that follow each other in a run. Only edges from the rung before
-    lead to an inner rung. An edge along a run would lead from the folded rung to itself, so it is
-    drawn to the last rung.
+    In a ladder, this holds for any two states that follow each other in a run:
+
+    - They have the same verdict, the same acceptance and the same labels of edges.
+    - Their edges with the same label lead to one state, or to two states that follow each other in
+      a run.
+    - If the second is in an inner rung, only edges from the rung before lead to it.
+
+    An edge along a run would lead from the folded rung to itself. It is drawn to the last rung
+    instead.
     """
     states, all_edges = fspa.states, whole_drawing(fspa).edges
     ladders = _ladders(states, all_edges)
@@ -40,10 +45,11 @@ def fold_ladders(fspa: Fspa) -> Drawing:
 
 
 def _redirect(edge: DrawnEdge, first: Mapping[int, int], last: Mapping[int, int]) -> DrawnEdge:
-    """Return an edge with a target that is drawn: ``first`` and ``last`` map states of folded runs to others.
+    """Return the edge with a target that is drawn.
 
     An edge to an inner rung leads to the first inner rung, and an edge along a run to the last
-    rung.
+    rung. ``first`` maps each inner state of a run to the first inner state, and ``last`` maps this
+    one to the last state of the run.
     """
     target = first.get(edge.target, edge.target)
     return replace(edge, target=last[target] if target == edge.source and target in last else target)
@@ -70,7 +76,7 @@ def _ladders(states: Sequence[State], edges: Sequence[DrawnEdge]) -> list[list[R
 def _ladders_from(
     rung: Rung, following: Rung, states: Sequence[State], steps: Steps, entering: Sequence[set[int]]
 ) -> list[list[Rung]]:
-    """Return the ladders on the path that begins with two given rungs, in order.
+    """Return the ladders on the path that begins with ``rung`` and ``following``, in order.
 
     The path ends at a rung whose states do not continue the runs. Where the number of runs
     changes, a new ladder begins.

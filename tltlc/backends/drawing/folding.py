@@ -10,7 +10,7 @@ from tltlc.automaton.fspa import Fspa, Guard, Mark, State
 from tltlc.core.record import EMPTY, record, replace
 
 LEAST_FOLDED = 3
-"""The fewest inner states of a run that is folded, that is, without its first and last state."""
+"""The fewest inner states of a run that is folded: all states except its first and its last one."""
 
 _number = re.compile(r"(\d+)")
 _one_step = re.compile(r"\b1 step\b")
@@ -36,8 +36,9 @@ class DrawnEdge:
 class Drawing:
     """The states and edges that are drawn, in the automaton's order.
 
-    Of the inner states of a folded run, only the first is in ``states``; its edge leads to the last
-    state of the run. ``folded`` maps its number to all inner states of the run.
+    Of the inner states of a folded run, only the first is in ``states``, and its edge leads to the
+    last state of the run. ``folded`` maps the number of this inner state to all inner states of the
+    run.
     """
 
     states: tuple[State, ...]
@@ -57,9 +58,12 @@ def whole_drawing(fspa: Fspa) -> Drawing:
 def fold_runs(fspa: Fspa) -> Drawing:
     """Return the drawing with the inner states of each run folded into one.
 
-    A run is a path on which all edges have the same label, and the last state has an edge with this
-    label, too. All states of the path have the same verdict, the same acceptance, and the same
-    labels and targets of their other edges. Only the edge of the path leads to an inner state.
+    A run is a path with these properties:
+
+    - All its edges have the same label, and the last state has an edge with this label, too.
+    - Its states have the same verdict and the same acceptance. Apart from the edges with this
+      label, the edges of its states have the same labels and targets.
+    - Only the edge of the path leads to an inner state.
     """
     states, edges = fspa.states, whole_drawing(fspa).edges
     runs = _inner_runs(states, edges)
@@ -100,9 +104,10 @@ def _inner_runs(states: Sequence[State], edges: Sequence[DrawnEdge]) -> list[lis
 
 
 def _next_edge(edge: DrawnEdge, states: Sequence[State], outgoing: list[list[DrawnEdge]]) -> DrawnEdge | None:
-    """Return the edge that follows this edge in a run.
+    """Return the edge that follows ``edge`` in a run.
 
-    Returns None if its two states do not belong to a run.
+    Returns None if the two states of ``edge`` do not belong to a run. ``outgoing`` has the edges
+    that leave each state.
     """
     source, target = states[edge.source], states[edge.target]
     if (source.verdict, source.accepting) != (target.verdict, target.accepting):

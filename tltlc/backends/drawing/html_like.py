@@ -7,17 +7,20 @@ from collections.abc import Iterable
 from tltlc.backends.drawing.texts import escape_invisible
 
 CENTRED, LEFT, BACKED = "<TD>", '<TD ALIGN="LEFT">', '<TD BGCOLOR="white">'
-"""Table cells; a white background keeps text readable over edges that pass behind it."""
+"""Tags that begin a table cell.
+
+A white background keeps text readable over edges that pass behind it.
+"""
 
 LONGEST_TEXT = 2000
 """The most characters of a plain string: Graphviz reads at most 16 KiB, and a character may take seven bytes."""
 
 
 def table(rows: Iterable[str], cell: str = CENTRED, spacing: int = 0) -> str:
-    """Return a table with one column.
+    """Return a table with one column, and a row for each text.
 
-    A row for each text keeps more distance than lines in a single cell, which would be too close if
-    their fonts differ.
+    Lines in a single cell would be too close to each other if their fonts differ. ``cell`` is the
+    tag that begins each cell.
     """
     inside = "".join(f"<TR>{cell}{row}</TD></TR>" for row in rows)
     return f'<TABLE BORDER="0" CELLBORDER="0" CELLPADDING="0" CELLSPACING="{spacing}">{inside}</TABLE>'
@@ -32,7 +35,7 @@ def escape_html(text: str) -> str:
 def literal_text(text: str) -> str:
     """Return a text that Graphviz shows as it is, even if it looks like escapes or markup.
 
-    A long text is cut.
+    A text with more than :data:`LONGEST_TEXT` characters is cut.
     """
     from graphviz import escape
 

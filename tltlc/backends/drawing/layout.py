@@ -35,20 +35,23 @@ ATTEMPTS: tuple[tuple[Detail, str, float, str], ...] = (
 )
 """The ways to draw a graph, which are tried in this order.
 
-Each has what the drawing shows, the layout engine, the most edges for which it is tried, and the
-words for what is left out in a message.
+Each has the detail of the drawing, the layout engine, the most edges for which it is tried, and the
+words with which a message says what is left out.
 """
 
 
 def draw(fspa: Fspa, options: Options, picture_format: str) -> Files:
     """Return ``NAME.FORMAT``, with the most detail that can be drawn in time.
 
-    Long runs of states that differ only in a count are folded. The first attempt draws everything,
-    with the states in layers. The second leaves out guards, which are then only in the tooltips of
-    an SVG. The third draws only the numbers of the states, with a force-directed layout. An attempt
-    takes at most ``options.layout_limit_s`` seconds, and is skipped if there are too many edges. If
-    no attempt succeeds, the result is ``NAME.dot`` with nothing folded. ``options.report`` is
-    called with a note (TLT0711) if anything was left out.
+    Long runs of states that differ only in a count are folded. There are three attempts:
+
+    1. Draw everything, with the states in layers.
+    2. Leave out guards, which are then only in the tooltips of an SVG.
+    3. Draw only the numbers of the states, with a force-directed layout.
+
+    An attempt takes at most ``options.layout_limit_s`` seconds, and is skipped if there are too
+    many edges. If no attempt succeeds, the result is ``NAME.dot`` with nothing folded.
+    ``options.report`` is called with a note (TLT0711) if anything was left out.
 
     Raises:
         TltlError: TLT0730 pygraphviz is not installed, TLT0712 the layout itself failed.

@@ -8,7 +8,7 @@ from tltlc.backends.drawing.folding import Drawing, fold_runs
 
 
 def folded_drawing(fspa: Fspa) -> Drawing:
-    """Return the drawing with the states folded that differ only in a count.
+    """Return a drawing in which states that differ only in a count are folded.
 
     Folds single runs or ladders of several runs, whichever leaves fewer states.
     """

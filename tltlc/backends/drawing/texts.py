@@ -26,7 +26,7 @@ _tied_end = re.compile(r"\]$|\w\([^()]*,$|\[(?:fin|inf)$")
 
 
 def guards_by_arrow(edges: Iterable[DrawnEdge], notation: Notation) -> Mapping[tuple[int, int], list[str]]:
-    """Map each source and target to the texts of the guards of the edges between them.
+    """Map each pair of a source and a target to the texts of the guards of the edges between them.
 
     Over infinite traces, a guard is followed by the sets of Rabin pairs that contain its edge:
     ``a & b [fin 0] [inf 1]``. Edges that differ only in these sets share an arrow.
@@ -64,7 +64,10 @@ def wrap_text(text: str, width: int, most_lines: int = 8) -> list[str]:
 
 
 def _pieces(words: list[str], longest: int) -> list[str]:
-    """Return the words, with words joined that must be on one line, up to ``longest`` characters."""
+    """Join words that must be on one line to pieces of up to ``longest`` characters.
+
+    A word that must follow an operator on its line is joined to it even beyond ``longest``.
+    """
     pieces = [words[0]]
     for before, word in pairwise(words):
         tied = word in _TIES or before in _TIES or _tied_end.search(pieces[-1]) is not None

@@ -50,7 +50,7 @@ _OWN: Final = """
 """.split()
 """Names of variables in the template that do not begin with ``_``.
 
-No other name can clash with a generated one.
+Generated names do not begin with ``_``, so they cannot clash with the other names in the template.
 """
 
 RESERVED: Final = frozenset((*_WORDS, *_FUNCTIONS, *_OBJECT, *_OWN))
@@ -59,8 +59,8 @@ RESERVED: Final = frozenset((*_WORDS, *_FUNCTIONS, *_OBJECT, *_OWN))
 def snake_case(names: Iterable[str]) -> dict[str, str]:
     """Map each name with a capital letter to a new, unique name in snake_case.
 
-    The other names are left out. A variable with a capital letter could have the name of a class of
-    the engine, such as ``Node``.
+    Names without a capital letter are left out. A variable with a capital letter could have the
+    name of a class of the engine, such as ``Node``.
     """
     all_names = list(names)
     unique_names = VariableNames({*RESERVED, *all_names})

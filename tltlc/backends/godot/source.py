@@ -1,9 +1,9 @@
 """The script of a monitor, and a main script that runs it as a program, for every version of Godot.
 
 They give the same results as :class:`tltlc.monitor.Monitor` with its default reward, to the last
-bit if the engine's ``pow``, ``exp`` and ``tanh`` are those that Python was built with. The engine's
-generic ``min``, ``max`` and ``clamp`` are not used: in Godot 3 they round to single precision, and
-so does parsing a number from a string.
+bit if the engine's ``pow``, ``exp`` and ``tanh`` are those that Python was built with. The scripts
+do not use the engine's generic ``min``, ``max`` and ``clamp``, since these round to single
+precision in Godot 3. Godot 3 also rounds a number that it parses from a string.
 """
 
 from __future__ import annotations
@@ -226,7 +226,10 @@ class _Source:
         return [*lines, *(self._stop() if unsure else [])]
 
     def _values(self, state: int | None) -> list[str]:
-        """Return the code for the atoms that only this state needs, or if ``state`` is None, those every step needs."""
+        """Return the code that computes the atoms that only this state needs.
+
+        If ``state`` is None, it computes the atoms that every step needs.
+        """
         return [line for index in self._program.computed_in(state) for line in self._value(index)]
 
     def _value(self, index: int) -> list[str]:
