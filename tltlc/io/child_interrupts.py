@@ -16,9 +16,10 @@ _BY_STATUS: Final = {
     143: signal.SIGTERM,
     0xC000013A: signal.SIGINT,
 }
-"""Maps exit statuses to signals: those of :mod:`subprocess`, those of shells, and that of Windows.
+"""Maps exit statuses to signals.
 
-129, a shell's status for SIGHUP, is left out, because git uses 129 for errors.
+The negative statuses are those of :mod:`subprocess`, 130 and 143 those of shells, and the last one
+that of Windows. 129, a shell's status for SIGHUP, is left out, because git uses 129 for errors.
 """
 
 

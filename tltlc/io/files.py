@@ -22,7 +22,7 @@ _BYTE_ORDER_MARK: Final = b"\xef\xbb\xbf"
 Stamp = Union[tuple[int, ...], None]
 """What to compare to see whether a file has changed: its time of change, size and inode number.
 
-For a folder or a device it is only the kind. It is None if nothing is there.
+For a folder, a device or a pipe, only its kind. None if nothing is at the path.
 """
 
 
@@ -145,9 +145,9 @@ def log_stream_read(stream: BinaryIO) -> None:
 def was_read(path: str | os.PathLike[str]) -> bool:
     """Whether the file at a path was read, by this or another name, since the innermost :func:`access_log` began.
 
-    Files that only earlier logs have do not count. A command that watches files begins a new log in
-    each round, because an editor may replace a source file, and the system may then give the inode
-    number of the old file to an output.
+    A command that watches files begins a new log in each round. Otherwise an output could count as
+    read: an editor may replace a source file, and the system may then give the inode number of the
+    old file to the output.
     """
     # Devices and pipes do not count, because writing to them replaces nothing.
     return bool(_active_logs) and _identity(path) in _active_logs[-1].read
@@ -193,7 +193,7 @@ def exists(path: str | os.PathLike[str]) -> bool:
     if not may_read(path):
         return False
     log_lookup(path)
-    # pathlib's method raises an exception in those cases before Python 3.14.
+    # pathlib's method raises an exception, before Python 3.14, if the system rejects the name or denies access.
     return os.path.exists(path)  # noqa: PTH110
 
 
@@ -272,9 +272,10 @@ def read_source(
 def read_bytes(path: str | os.PathLike[str], name: str, max_bytes: int) -> bytes:
     """Return at most ``max_bytes`` + 1 bytes of a file.
 
-    If there is an extra byte, the file is too large. ``name`` is the name of the file in messages.
+    If the result has the extra byte, the file is too large. ``name`` is the name of the file in
+    messages.
 
-    Errors (:class:`TltlError`): TLT0001 if the system cannot read it, TLT0777 if
+    Errors (:class:`TltlError`): TLT0001 if the system cannot read the file, TLT0777 if
     :func:`confine_reads` forbids it.
     """
     if not may_read(path):

@@ -1,4 +1,4 @@
-"""Read JSON within the limits of :mod:`tltlc.io.limits`, without integers of more than 64 bits."""
+"""Read JSON within the limits of :mod:`tltlc.io.limits`."""
 
 from __future__ import annotations
 
@@ -12,19 +12,18 @@ from tltlc.io.limits import Limit
 
 _WHOLE_NUMBERS: Final = range(-(2**63), 2**63)
 _MOST_DIGITS: Final = 20
-"""The most characters of an integer in that range, including its sign."""
+"""The most characters of an integer of 64 bits, including its sign."""
 
 
 class JsonLimitError(ValueError):
-    """The JSON exceeds a limit of its reader; the message names the limit."""
+    """Raised if the JSON exceeds a limit of its reader; the message names the limit."""
 
 
 def loads(text: str | bytes, limit: Limit, parse_constant: Callable[[str], Any] | None = None) -> Any:
     """Return the value of a JSON text; ``parse_constant`` is as in :func:`json.loads`.
 
-    An integer of more than 64 bits becomes a float, as in most readers of JSON. As a Python
-    integer, a larger number could cause an error later, and one of thousands of digits could not be
-    read.
+    An integer of more than 64 bits becomes a float, as in most readers of JSON. A larger Python
+    integer could cause an error later, and Python refuses to read one of thousands of digits.
 
     Raises:
         JsonLimitError: the text nests deeper, or has more values, than ``limit`` allows.

@@ -21,8 +21,9 @@ class Limit:
     """The limits of one kind of input.
 
     ``size`` is in bytes, as stored on disk. ``depth`` is the number of levels of nesting.
-    ``values`` is the number of values, keys and separators, or of what the entry says. ``unpacked``
-    is in bytes, after decompression. None means that there is no limit of this kind.
+    ``values`` is the number of values, keys and separators, unless the description of the limit
+    says what it counts. ``unpacked`` is in bytes, after decompression. None means that there is no
+    limit of this kind.
     """
 
     size: int
@@ -61,8 +62,8 @@ class ArithmeticLimit:
     """The limits of an expression.
 
     ``depth`` is the greatest depth of nested operators, functions, conditions and ``when``.
-    ``compared`` is the greatest depth of an atom that compares two such expressions. ``parts`` is
-    the most cases of a ``when``, and the most arguments of a function.
+    ``compared`` is the greatest depth of an atom that compares two expressions. ``parts`` is the
+    most cases of a ``when``, and the most arguments of a function.
     """
 
     depth: int
@@ -73,7 +74,7 @@ class ArithmeticLimit:
 ARITHMETIC: Final = ArithmeticLimit(depth=100, compared=110, parts=500)
 """The expression of an atom.
 
-Recursive functions over expressions, and Python's compiler, can handle this depth.
+Python's compiler, and recursive functions over expressions, can handle this depth.
 """
 
 SOURCE: Final = Limit(size=1 << 20)
@@ -87,10 +88,10 @@ twice counts twice.
 """
 
 TOML: Final = Limit(size=1 << 20, depth=32, values=50_000)
-"""A level, an asset, an overlay, a suite, settings, ``tltl.toml``."""
+"""A TOML file: a level, an asset, an overlay, a suite, settings, or ``tltl.toml``."""
 
 LEVEL: Final = Limit(size=1 << 20, values=4_000)
-"""A level; ``values`` counts the things in it, steps of stairs, and points of paths and routes."""
+"""A level; ``values`` counts its entities, steps of stairs, and points of paths and routes."""
 
 SUITE: Final = Limit(size=1 << 20, values=2_000)
 """A suite; ``values`` counts cases. Each case names files to read."""
@@ -169,7 +170,7 @@ UNPACKED_PATH: Final = Limit(size=4096, depth=100)
 """A path in a git revision or another archive that is unpacked; ``depth`` counts its parts."""
 
 UNPACKED_NAME: Final = Limit(size=255)
-"""A part of such a path; common file systems allow no longer names."""
+"""A part of a path that :data:`UNPACKED_PATH` limits; common file systems allow no longer names."""
 
 PLAYGROUND: Final = Connections(most=64, idle_s=15.0, request_s=20.0, write_s=30.0, linger_s=2.0)
 """The connections to the playground's server."""
@@ -206,13 +207,13 @@ WORK: Final[Mapping[str, int]] = {
     "mined sequences": 800_000,
     "mined candidates": 50_000,
 }
-"""The most steps of computations, by what they count."""
+"""The most steps of computations that could take very long, by what a step is."""
 
 
 def too_deep_error(source: SourceFile, limit: Limit, span: Span | None = None) -> TltlError:
     """Return the error TLT0006 for a text that nests too deep.
 
-    ``span`` is where, if that is known.
+    ``span`` is the place, if it is known.
     """
     return _structure_error(source, f"nests deeper than {limit.depth} levels", "flatten it", span)
 
@@ -220,7 +221,7 @@ def too_deep_error(source: SourceFile, limit: Limit, span: Span | None = None) -
 def too_many_values_error(source: SourceFile, limit: Limit, span: Span | None = None) -> TltlError:
     """Return the error TLT0006 for a text with too many values.
 
-    ``span`` is where, if that is known.
+    ``span`` is the place, if it is known.
     """
     problem = f"holds more than {limit.values:,} values"
     return _structure_error(source, problem, "split it, or leave out what nothing reads", span)

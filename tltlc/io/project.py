@@ -1,14 +1,17 @@
 """Read the optional project file ``tltl.toml``, in the folder of a source file or in a folder above it.
 
-libraries = ["predicates"]            # folders, relative to the project file
-targets = ["json", "dot", "python"]   # what `tltlc compile` writes without -t
+All its keys are optional::
 
-[style] notation = "unicode"                  # of formulas in pictures: unicode, ascii or english
-formatting = "words"                  # of what `tltlc fmt` writes: words, letters, symbols or
-unicode
+    libraries = ["predicates"]           # folders, relative to the project file
+    targets = ["json", "dot", "python"]  # what `tltlc compile` writes without -t
 
-[lint] allow = ["TLT0419"]                   # codes that are not reported; note, warning and error
-change a severity
+    [style]
+    notation = "unicode"  # of formulas in pictures: unicode, ascii or english
+    formatting = "words"  # of what `tltlc fmt` writes: words, letters, symbols or unicode
+
+    [lint]
+    allow = ["TLT0419"]  # codes that are not reported
+    note = ["TLT0421"]   # codes with another severity; also `warning` and `error`
 """
 
 from __future__ import annotations
@@ -41,9 +44,10 @@ _STYLE_KEYS: Final = ("notation", "formatting")
 class Project:
     """The settings of a project file.
 
-    ``targets`` is empty if the file does not set them. ``lint`` maps codes of diagnostics to
-    :data:`LINT_LEVELS`. ``notation`` is that of formulas in pictures, and ``formatting`` the style
-    of ``tltlc fmt``.
+    ``libraries`` are the folders in which imports are searched. ``targets`` is empty if the file
+    does not set them. ``lint`` maps each code of a diagnostic to one of the :data:`LINT_LEVELS`.
+    ``notation`` is the notation of formulas in pictures, and ``formatting`` the style of
+    ``tltlc fmt``.
     """
 
     libraries: tuple[Path, ...] = ()
@@ -53,7 +57,10 @@ class Project:
     formatting: str = "words"
 
     def with_lint_levels(self, diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
-        """Return the diagnostics with the severities that ``lint`` sets, without those with the level ``allow``."""
+        """Return the diagnostics with the severities that ``lint`` sets.
+
+        Diagnostics with the level ``allow`` are left out.
+        """
         kept = [diagnostic for diagnostic in diagnostics if self.lint.get(diagnostic.code) != "allow"]
         return tuple(
             replace(diagnostic, severity=self.lint.get(diagnostic.code, diagnostic.severity)) for diagnostic in kept
@@ -71,9 +78,9 @@ class Project:
 def project_for(path: str) -> Project:
     """Return the settings for a source file, from the nearest project file in its folder or above it.
 
-    For standard input (``-``), the search starts in the current folder. If ``path`` is relative, so
-    are the paths of libraries in the current folder, and messages show both in the same form.
-    Errors are those of :func:`read_project`.
+    For standard input (``-``), the search starts in the current folder. If ``path`` is relative,
+    the paths of libraries in the current folder are relative, too, so that messages show both in
+    the same form. Errors are those of :func:`read_project`.
     """
     try:
         folder = Path(path).absolute().parent if path != "-" else Path.cwd()
@@ -97,9 +104,10 @@ def project_file(folder: Path) -> Path | None:
 def read_project(path: Path) -> Project:
     """Return the settings in a project file.
 
-    Errors: TLT0001 if it is not a file, TLT0701 if it is not TOML. Otherwise all errors are raised
-    together: TLT0702 for each unknown key, TLT0703 for each wrong value, and TLT0777 for each
-    library that :func:`tltlc.io.files.confine_reads` forbids to read.
+    Errors (:class:`TltlError`): those of :func:`tltlc.io.files.read_source`; TLT0001 if it is not a
+    file; TLT0701 if it is not TOML. If the file is TOML, all its errors are raised together:
+    TLT0702 for each unknown key, TLT0703 for each wrong value, and TLT0777 for each library that
+    :func:`tltlc.io.files.confine_reads` forbids to read.
     """
     from tltlc.io.toml_text import parse
 

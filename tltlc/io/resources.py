@@ -1,8 +1,9 @@
-"""Limit the processor time and the memory of a command, for input that no limit of :mod:`tltlc.io.limits` stops.
+"""Limit the processor time and the memory of a command.
 
-Limits of bytes and steps give the same result on every machine. The limits of this module depend on
-the machine, so they are far above what any ordinary file needs. They apply only to the commands of
-tltlc: a program that imports tltlc keeps its own signal handlers and limits.
+This stops commands whose input exceeds none of the limits in :mod:`tltlc.io.limits`. The limits
+there count bytes and steps, so they give the same result on every machine. The limits of this
+module depend on the machine, so they are far above what any ordinary file needs. They apply only to
+the commands of tltlc: a program that imports tltlc keeps its own signal handlers and limits.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ destructor.
 _command_limits: list[ProcessLimit] = []
 """The limits of the command that this process runs, as a list of one entry.
 
-The list is empty if it runs none.
+The list is empty if the process runs no command.
 """
 
 _active: list[bool] = []
@@ -42,7 +43,7 @@ class OutOfTimeError(BaseException):
 def permit(process: ProcessLimit) -> None:
     """Set the limits that :func:`resource_limits` applies in this process.
 
-    A limit of 0 means that there is none.
+    0 instead of a number of bytes or seconds means that there is no limit.
     """
     _command_limits[:] = [process]
 
@@ -51,8 +52,8 @@ def permit(process: ProcessLimit) -> None:
 def resource_limits() -> Iterator[None]:
     """Raise OutOfTimeError or MemoryError in the ``with`` block when it uses more than :func:`permit` allows.
 
-    Inside another such block, and outside the main thread, this does nothing. Without a call of
-    :func:`permit`, there are no limits.
+    Does nothing inside another ``with`` block of this function, outside the main thread, or without
+    a call of :func:`permit`.
     """
     if not _command_limits or _active or current_thread() is not main_thread():
         # Only the main thread receives signals, and an outer block has set the limits already.
@@ -86,8 +87,8 @@ def limit(name: str, most: int) -> None:
 def _quiet_destructors() -> Iterator[None]:
     """Suppress Python's messages about destructors that ran out of memory or time.
 
-    The command itself reports this soon after. Python still prints a line if there is no memory
-    left to call the hook.
+    The command itself runs out of them soon after, and reports this. Python still prints a line if
+    there is no memory left to call the hook.
     """
     previous = sys.unraisablehook
 

@@ -37,8 +37,8 @@ _PLAIN_NAME: Final = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\Z")
 def split(argument: str) -> tuple[str, str | None]:
     """Return the path and the name of an argument ``PATH:NAME``, or the argument and None if it has no name.
 
-    An argument that is the path of a file is not split, and neither is a drive letter from its
-    path.
+    If a file has the whole argument as its path, the argument has no name. On Windows, a single
+    letter before the colon is a drive, and no path.
     """
     path, colon, name = argument.rpartition(":")
     if not colon or not path or not is_plain_name(name) or os.path.exists(argument):  # noqa: PTH110

@@ -25,7 +25,7 @@ from tltlc.io.locking import try_lock
 
 _NAME: Final = re.compile(r"(\.tltlc-[0-9]{1,20}-[0-9a-f]{16})(?:(\.lock)|-[0-9]+(?:\.[^.]+)?)")
 _MOST_LOCKS: Final = 200
-"""How many lock files of other processes are checked at a time; the others are checked later."""
+"""The most lock files of other processes that one call of :func:`remove_abandoned` checks."""
 _ATTEMPTS: Final = 100
 """The most attempts to create a lock file.
 
@@ -36,7 +36,7 @@ An attempt fails only if another process removes the new file.
 class Temporaries:
     """The temporary files of a task, in one or several folders.
 
-    :meth:`close` removes those that were not renamed.
+    :meth:`close` removes the temporary files that were not renamed.
     """
 
     def __init__(self) -> None:
@@ -90,7 +90,8 @@ class Temporaries:
     def close(self) -> None:
         """Remove the temporary files that are left, then the lock files.
 
-        In this order, because temporary files without a lock file would never be removed.
+        If the process is killed in between, other processes can still remove what is left: they
+        never remove temporary files without a lock file.
         """
         for path in self._paths:
             _remove(path)
@@ -124,7 +125,7 @@ def new_folders(folders: Iterable[Path]) -> Iterator[None]:
     If the ``with`` block raises an exception, remove the new folders that are empty.
 
     Raises:
-        OSError, ValueError: the system refuses to create one.
+        OSError, ValueError: the system refuses to create a folder.
     """
     created: list[Path] = []
     try:
@@ -187,8 +188,8 @@ def _no_folder_error(error: OSError) -> TltlError:
 def remove_abandoned(folder: Path) -> None:
     """Remove the temporary files and folders in ``folder`` whose processes have ended.
 
-    Removes only names of the form of this module, and of these only regular files and folders of
-    this user. Follows no links. Ignores what cannot be removed.
+    Removes only regular files, and folders of this user, whose names have the form that this module
+    gives. Follows no links. Ignores what cannot be removed.
     """
     with suppress(OSError):
         matches = list(filter(None, (_NAME.fullmatch(entry.name) for entry in os.scandir(folder))))
@@ -236,7 +237,10 @@ def _is_own_folder(path: Path) -> bool:
 
 
 def _restore_file(target: Path, backup: Path | None) -> bool:
-    """Put a backup back, or remove the new file if there is none; return False if the system refuses."""
+    """Put a backup back, or remove the file at ``target`` if there was none before.
+
+    Returns False if the system refuses.
+    """
     try:
         if backup is None:
             target.unlink(missing_ok=True)
@@ -264,7 +268,7 @@ def _is_file(path: Path) -> bool:
 
 
 def _lock_file(folder: Path) -> tuple[str, IO[bytes] | None]:
-    """Create a lock file in a folder, and return the prefix of names of temporary files there, and the file.
+    """Create a lock file in a folder; return the prefix of temporary files there, and the lock file.
 
     Instead of the file, returns None if locks do not work.
     """

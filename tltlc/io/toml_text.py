@@ -107,7 +107,10 @@ def _check_limits(source: SourceFile) -> None:
 
 
 def _syntax_error(source: SourceFile, message: str, code: str, help_: str) -> Diagnostic:
-    """Return a diagnostic with the message of the TOML library, and with a label at the position in it."""
+    """Return a diagnostic with a message of the TOML library, and with a label.
+
+    The label is at the position that the message names, or at the end of the text if it names none.
+    """
     location = re.search(r" \(at (?:line (\d+), column (\d+)|end of document)\)$", message)
     reason = message[: location.start()] if location else message
     label = Label(source, Span(len(source.text), len(source.text)), reason[:1].lower() + reason[1:])

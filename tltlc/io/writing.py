@@ -39,7 +39,7 @@ def write_files(
     UTF-8 with line feeds.
 
     Errors: TLT0005 if the system refuses; TLT0700 if a file would change that the command has read,
-    unless ``over_inputs`` is true. ``advice`` is the help of both: where else to write.
+    unless ``over_inputs`` is true. ``advice`` is the help of both errors: where else to write.
 
     With ``durable``, each file is complete even after a loss of power, and on the disk once this
     function has returned.
@@ -67,7 +67,10 @@ def write_file(
 
 
 def check_not_read(path: Path, advice: str = _OPTION) -> None:
-    """Raise TltlError, TLT0700, if the command has read the file at this path, so that no output replaces an input."""
+    """Raise TltlError, TLT0700, if the command has read the file at this path.
+
+    This keeps an output from replacing an input. ``advice`` is the help of the error.
+    """
     if was_read(path):
         raise TltlError([Diagnostic("TLT0700", f"`{path}` would be written over: it is an input", help=advice)])
 
@@ -102,8 +105,8 @@ def remove_file(path: Path, advice: str) -> None:
 def replace_file(path: Path, advice: str = _OPTION) -> Iterator[Path]:
     """Yield a temporary path beside ``path``, for code that writes a file itself.
 
-    It has the same extension. At the end, the temporary file is renamed to ``path``. If the
-    ``with`` block raises an exception, also by Ctrl-C, it is removed instead.
+    The temporary path has the same extension. At the end, the file there is renamed to ``path``. If
+    the ``with`` block raises an exception, also by Ctrl-C, the file is removed instead.
 
     Raises:
         TltlError: TLT0005 the system refuses to write, with ``advice`` as its help.
@@ -182,7 +185,7 @@ def _has_content(path: Path, mode: int, data: bytes) -> bool:
 
 
 def _sync_folder(folder: Path) -> None:
-    """Flush a folder, so that its renames reach the disk; do nothing on Windows."""
+    """Flush a folder, so that the renames in it reach the disk; do nothing on Windows."""
     if os.name == "nt":
         return
     descriptor = os.open(folder, os.O_RDONLY)
