@@ -32,8 +32,8 @@ def codes_with_prefix(prefix: str) -> tuple[str, ...]:
 def nearest_codes(code: str, most: int = 3) -> tuple[str, ...]:
     """Return at most ``most`` codes that resemble an unknown code, in order.
 
-    They are the codes that could have been mistyped as this one, or if there are none, the codes
-    with the nearest numbers.
+    They are the codes that could have been mistyped as ``code``. If there are none, they are the
+    codes with the nearest numbers.
     """
     from difflib import get_close_matches
 

@@ -56,7 +56,10 @@ class Diagnostic:
 
 
 def replacement_fix(source: SourceFile, span: Span, text: str, applicability: Applicability = "maybe") -> Fix:
-    """Return the fix that replaces a span by a text, with a space where it would otherwise join two words."""
+    """Return the fix that replaces a span by a text.
+
+    Where the text would join the word before or after the span, a space separates them.
+    """
     before, after = source.text[max(0, span.start - 1) : span.start], source.text[span.end : span.end + 1]
     start = " " if _is_word(before) and _is_word(text[:1]) else ""
     end = " " if _is_word(after) and _is_word(text[-1:]) else ""
@@ -75,7 +78,7 @@ def _is_word(character: str) -> bool:
 class TltlError(Exception):
     """Raised for errors that a user can fix, such as a wrong source text.
 
-    ``diagnostics`` contains at least one error, and all warnings up to that point.
+    ``diagnostics`` contains at least one error, and all warnings that were found before.
     """
 
     def __init__(self, diagnostics: Iterable[Diagnostic]) -> None:

@@ -27,17 +27,17 @@ def shorten(diagnostic: Diagnostic) -> Diagnostic:
 
 
 def short_text(text: str) -> str:
-    """Return a message with its middle cut out if it is too long, and the middle of each quote that is too long."""
+    """Return a message without the middle of each quote that is too long.
+
+    If the message is still too long, its own middle is left out, too.
+    """
     if len(text) <= LONGEST_QUOTE:
         return text
     return _cut(_QUOTED.sub(lambda quote: f"`{_cut(quote[1], LONGEST_QUOTE)}`", text), LONGEST_TEXT)
 
 
 def _cut(text: str, most: int) -> str:
-    """Return the text.
-
-    If it has more than ``most`` characters, an ellipsis replaces its middle.
-    """
+    """Return the text; if it has more than ``most`` characters, an ellipsis replaces its middle."""
     if len(text) <= most:
         return text
     end = most // 3

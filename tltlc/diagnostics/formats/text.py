@@ -63,7 +63,10 @@ def _label_lines(label: Label, gutter: int, colour: str, color: bool) -> list[st
 
 
 def _window(line: str, start: int, length: int) -> tuple[str, int, int]:
-    """Return the part of a line to show, and the column of the first caret and the number of carets below it."""
+    """Return the part of a line to show, the column of the first caret, and the number of carets.
+
+    ``start`` and ``length`` say which characters of the line to mark; ``start`` counts from 0.
+    """
     # A line may be a megabyte long, so first cut each part to the most that can be shown.
     end = start + length
     parts = (
@@ -85,7 +88,7 @@ def _window(line: str, start: int, length: int) -> tuple[str, int, int]:
 
 
 def _replace_except_tabs(text: str) -> str:
-    """Return a part of a line with all unprintable characters replaced except tabs."""
+    """Return a part of a line with U+FFFD for all unprintable characters except tabs."""
     return "\t".join(replace_unprintable(piece) for piece in text.split("\t"))
 
 
