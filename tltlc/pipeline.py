@@ -36,10 +36,10 @@ class CompileOptions:
     """Options of the compiler.
 
     ``library_dirs`` are searched for imports, after the folder of the file itself. ``params`` maps
-    names of params to other values, as texts of the language (``{"level_size": "30 m"}``).
-    ``state_budget`` is the most states that the construction of an automaton may explore; over
-    infinite traces, the most steps of the construction are proportional to it. ``specs`` has the
-    names of the specs to build; if it is empty, all are built.
+    names of params to values that replace those in the text, written as in the language
+    (``{"level_size": "30 m"}``). ``state_budget`` is the most states that the construction of an
+    automaton may explore; over infinite traces, the most steps of the construction are proportional
+    to it. ``specs`` has the names of the specs to build; if it is empty, all are built.
     """
 
     library_dirs: tuple[Path, ...] = ()
@@ -66,9 +66,9 @@ class Session:
 
     A stage runs when its result is first needed, and only once. ``module``, ``syntax_errors``,
     ``resolution`` and ``source_diagnostics`` work for any text: they leave out the parts with
-    errors. The other properties raise a :class:`TltlError` if a stage that they need has errors.
-    If ``proofs`` is false, the session does not prove that the values of predicates are in [-1, 1],
-    which takes longer than everything else.
+    errors. All other properties raise a :class:`TltlError` if a stage that they need has errors.
+    If ``proofs`` is false, the session does not prove that the values of predicates are in [-1, 1]:
+    the proof takes longer than everything else.
 
     >>> session = Session(SourceFile("hide.tltl", "signal seen: bool  spec hide = G !seen"))
     >>> [spec.name for spec in session.specs], [len(fspa.states) for fspa in session.automata]
@@ -105,7 +105,8 @@ class Session:
     def program(self) -> ResolvedFile:
         """The specs and tests.
 
-        Errors: :class:`TltlError` with the diagnostics of parsing, or of parsing and resolving.
+        Errors: :class:`TltlError` with the diagnostics of parsing if the text has syntax errors;
+        with those of parsing and resolving if it has other errors.
         """
         stop_at_errors(self.syntax_errors)
         stop_at_errors(self._unsilenced(self.source_diagnostics))
@@ -199,7 +200,7 @@ def pick_specs(specs: tuple[Spec, ...], names: tuple[str, ...], file: str) -> tu
 def unknown_spec(name: str, known: list[str], file: str) -> Diagnostic:
     """Return the error TLT0720 for a name that no spec of the file has.
 
-    ``known`` are the names of its specs.
+    ``known`` are the names of the specs in the file.
     """
     from difflib import get_close_matches
 
@@ -214,6 +215,7 @@ def compile_text(text: str, name: str = "<text>", options: CompileOptions | None
 
     ``name`` is the name of the text in messages. If it is a path, imported files are searched in
     its folder, too. Errors: :class:`TltlError`.
+
     >>> import tltlc
     >>> fspa, = tltlc.compile_text("signal seen: bool  spec hide = G !seen")
     >>> fspa.name, len(fspa.states), fspa.judge
@@ -234,6 +236,7 @@ def compile_file(path: str | os.PathLike[str], options: CompileOptions | None = 
     """Return the automata of the specs of a file, in order.
 
     Errors: :class:`TltlError`, with code TLT0001 to TLT0004 if the file is not readable text.
+
     >>> import tltlc
     >>> fspa, = tltlc.compile_file("examples/cover_and_hide.tltl")
     >>> fspa.spec_size
@@ -246,7 +249,9 @@ def compile_file(path: str | os.PathLike[str], options: CompileOptions | None = 
 def load(path: str | os.PathLike[str]) -> Fspa:
     """Return the automaton in an artefact ``NAME.fspa.json``.
 
-    Errors: :class:`TltlError` if the file cannot be read, is not an artefact, or is inconsistent.
+    Errors: :class:`TltlError` if the file cannot be read, is not an artefact, or contradicts
+    itself.
+
     >>> import tltlc, tempfile, pathlib
     >>> from tltlc.backends import emit
     >>> fspa, = tltlc.compile_text("signal seen: bool  spec hide = G !seen")
@@ -281,9 +286,10 @@ def decode_artefact(document: object, name: str) -> Fspa:
 
 
 def with_params(fspa: Fspa, values: Mapping[str, str]) -> Fspa:
-    """Return the automaton with other values of its params.
+    """Return the automaton with new values for some of its params.
 
-    ``values`` maps names of params to texts of the language, such as ``{"level_size": "30 m"}``.
+    ``values`` maps names of params to values as the language writes them, such as
+    ``{"level_size": "30 m"}``.
 
     Errors: TLT0307 if a value is out of range; TLT0308 if a param does not exist or a text is not a
     value for it.

@@ -1,8 +1,8 @@
 """The names of the compiler that other programs, such as the runtime, may import.
 
 Import them from here and from nowhere else in ``tltlc``, because other modules may move. This
-package has the classes and functions that most programs need. Eight modules have more; each is the
-answer to a question:
+package has the classes and functions that most programs need. Its eight modules have more; each
+answers a question:
 
 - ``cli``: how does a command take options, show diagnostics and choose its exit status?
 - ``compiler``: how do I get an automaton, and a monitor or picture of it?
