@@ -224,8 +224,8 @@ async def _name_everywhere(
 ) -> Occurrence | None:
     """Return the name that a request is about, after parsing all texts that may use it.
 
-    ``is_needed`` is whether a text must be parsed for a symbol. Return None if there is no name at
-    the place of the request.
+    ``is_needed(symbol, text)`` says whether a text must be parsed for a symbol. Return None if
+    there is no name at the place of the request.
     """
     name = _name(server, params)
     if name is not None:

@@ -39,7 +39,10 @@ _NAMES: Final = {"NAME"}
 
 
 def completions(document: Document, offset: int, encoding: str) -> list[types.CompletionItem]:
-    """Return what may be written at a character offset, the likeliest items first."""
+    """Return what may be written at a character offset, the likeliest items first.
+
+    ``encoding`` is the unit of columns in the edits of the items.
+    """
     quotation = quoted_text(document.source, offset)
     if quotation is not None:
         before, span = quotation
@@ -86,7 +89,7 @@ def _keywords(allowed: Iterable[str], place: Cursor) -> Iterator[types.Completio
     for terminal in sorted(set(allowed) - {END}):
         if terminal in spellings and terminal != "TIMES":
             word = spellings[terminal]
-            # `entity` is also the type of a parameter.
+            # After a colon, `entity` is a type, and does not begin a declaration.
             form = _FORMS.get(word) if place.last != "COLON" else None
             yield types.CompletionItem(word, kind=Kind.Keyword, detail=form.replace("`", "") if form else None)
 
@@ -187,7 +190,10 @@ def _expression_names(document: Document, place: Cursor) -> Iterator[types.Compl
 
 
 def _visible_names(document: Document, kinds: tuple[str, ...]) -> Iterator[types.CompletionItem]:
-    """Yield the visible names, sorted by kind; within a kind, imported names come last."""
+    """Yield the visible names of these kinds, in the order of ``kinds``.
+
+    Within a kind, imported names come last.
+    """
     scope = document.scope
     bindings = [(name, binding) for name, binding in scope.names.items() if binding.kind in kinds]
     for name, binding in sorted(bindings, key=lambda item: (kinds.index(item[1].kind), item[1].via is not None)):

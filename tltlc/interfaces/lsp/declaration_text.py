@@ -60,7 +60,11 @@ def declaration_text(
 
 
 def symbol_markdown(symbol: Symbol, env: Env, via: str | None) -> str:
-    """Describe a name that is not a spec, in Markdown; ``via`` is the file that it comes from."""
+    """Describe a name that is not a spec, in Markdown.
+
+    ``env`` has what is known about visible names. ``via`` is the name of the imported file that
+    declares the name; None if no import is needed.
+    """
     declaration = symbol.declaration
     lines = [_code(declaration_text(declaration, symbol.source))]
     doc = getattr(declaration, "doc", "")

@@ -30,9 +30,9 @@ class Document:
     """One version of a text, with its syntax and names.
 
     ``texts`` contains the texts of all open documents, by path; they replace the files on disk.
-    ``notes`` contains the states, by path, of the files that were read to find the project; from
-    them, :meth:`is_current` sees changes. Each property is computed on first use and then cached,
-    because the text does not change.
+    ``notes`` contains the stamps, by path, of the files that were read to find the project;
+    :meth:`is_current` compares them with new stamps (:func:`tltlc.io.files.stamp`). Each property
+    is computed on first use and then cached, because the text does not change.
     """
 
     def __init__(
@@ -64,9 +64,9 @@ class Document:
         return result
 
     def is_current(self) -> bool:
-        """Whether the files that this document depends on are unchanged.
+        """Whether the files on disk that this document depends on are unchanged.
 
-        Open files are not checked: the document was made from their texts in the editor.
+        Files that are open in the editor are not checked, because their texts come from the editor.
         """
         return all(path_of(path) in self.texts or stamp(path) == state for path, state in self._notes.items())
 
@@ -84,7 +84,7 @@ class Document:
     def diagnostics(self) -> tuple[Diagnostic, ...]:
         """The diagnostics of syntax and names that neither comments nor the project silence."""
         if self.is_broken:
-            # Report only errors in names, and only those that the unparsed parts cannot explain.
+            # Apart from syntax errors, report only errors in names that the unparsed parts cannot explain.
             errors = [diagnostic for diagnostic in self.resolution.diagnostics if diagnostic.severity == "error"]
             unparsed = unparsed_parts(self.module, self.tokens)
             return (*self.syntax_errors, *(diagnostic for diagnostic in errors if not unparsed.may_explain(diagnostic)))
@@ -131,8 +131,8 @@ class Document:
     def depends_on(self, name: str) -> bool:
         """Whether a change of the file at path ``name`` may affect this document.
 
-        This is so for this file and its imports. If an import failed, any file may be the missing
-        one.
+        A change of this document's file or of its imports may affect it. If an import failed, any
+        file may be the missing one.
         """
         # Before the names are resolved, the imports are not known.
         return "resolution" not in self.__dict__ or name in self.reads or self.scope.incomplete

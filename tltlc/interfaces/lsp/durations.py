@@ -19,7 +19,10 @@ from tltlc.resolve.problem import ResolutionError
 
 
 def hints(document: Document, span: Span, encoding: str) -> list[types.InlayHint]:
-    """Return hints such as ``= 40 steps`` for the times that end within a span of a document."""
+    """Return hints such as ``= 40 steps`` for the times that end within a span of a document.
+
+    ``encoding`` is the unit of columns.
+    """
     visible = [duration for duration in durations(document) if span.start <= duration[0].span.end <= span.end]
     return [
         types.InlayHint(

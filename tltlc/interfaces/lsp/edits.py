@@ -10,7 +10,10 @@ from tltlc.interfaces.lsp.positions import range_of
 
 
 def text_edit(source: SourceFile, edit: Edit, encoding: str) -> types.TextEdit:
-    """Convert an edit of a source text to an edit of the Language Server Protocol."""
+    """Convert an edit of a source text to an edit of the Language Server Protocol.
+
+    ``encoding`` is the unit of columns.
+    """
     return types.TextEdit(range_of(source, edit.span, encoding), edit.text)
 
 
@@ -24,7 +27,11 @@ def apply_edits(text: str, edits: list[Edit]) -> str:
 
 
 def difference(source: SourceFile, after: str) -> list[Edit]:
-    """Return the shortest single edit that turns the text into ``after``, if they differ."""
+    """Return the shortest edit that turns the text into ``after``, as a list of one edit.
+
+    The list is empty if both are equal. If the text has CRLF as line ends, ``after`` gets them
+    first.
+    """
     before = source.text
     if "\r\n" in before:
         after = after.replace("\r\n", "\n").replace("\n", "\r\n")

@@ -63,10 +63,10 @@ def _leads_to(declaration: Import, folder: str, there: str) -> bool:
 
 
 def _target(declaration: Import, there: str, folder: str, libraries: tuple[Path, ...]) -> str | None:
-    """Return how to import the file ``there`` in a file of ``folder``.
+    """Return what to write after ``import`` in a file of ``folder`` for the file ``there``.
 
-    Return a name if the import was by name and the new path allows it; else a path in quotation
-    marks. Return None if the path cannot be quoted in a source text.
+    Return a name if the import was by name and the new path allows a name; otherwise a path in
+    quotation marks. Return None if the path cannot be quoted in a source text.
     """
     if not declaration.is_path:
         for place in (folder, *map(str, libraries)):

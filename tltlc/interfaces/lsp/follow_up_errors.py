@@ -22,9 +22,9 @@ _HEADS: Final = ("signal", "entity", "param", "predicate", "let", "spec")
 class UnparsedParts:
     """What the unparsed parts of a text with syntax errors may contain.
 
-    ``declared`` has the names that they may declare. ``imports`` is whether they may contain an
-    import, and ``clock`` whether they may contain a clock. ``tests`` has, for each test, the span
-    of the spec's name, to which a diagnostic about the whole test points.
+    ``declared`` has the names that they may declare. ``imports`` says whether they may contain an
+    import, and ``clock`` whether they may contain a clock. ``tests`` has, for each parsed test, the
+    span of the spec's name: a diagnostic about the whole test points there. ``source`` is the text.
     """
 
     declared: frozenset[str]

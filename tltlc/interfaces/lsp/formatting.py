@@ -13,7 +13,8 @@ from tltlc.tools.fmt import format_source
 def formatting(document: Document, encoding: str) -> list[types.TextEdit] | None:
     """Return the edit that formats a document in the style of its project.
 
-    Return None if the document has a syntax error.
+    The list is empty if the document is formatted already. Return None if it has a syntax error.
+    ``encoding`` is the unit of columns.
 
     Raises:
         TltlError: TLT0004, the text is too large, or would become too large.

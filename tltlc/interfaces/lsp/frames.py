@@ -42,7 +42,7 @@ class Body:
 class Fault:
     """A problem with the headers, in words.
 
-    ``is_answered`` is whether the editor gets an error response; otherwise the fault is only logged.
+    If ``is_answered``, the editor gets an error response; otherwise the fault is only logged.
     """
 
     text: str
@@ -66,7 +66,7 @@ class Frames:
         self._padding = 0
         """How many more bytes the header announced after the last bracket of the last body."""
         self._padding_fault: Fault | None = None
-        """The fault to report if those bytes are not all white space."""
+        """The fault to report if the bytes that ``_padding`` counts are not all white space."""
         self._is_skipping = False
         """Whether bytes are being skipped, which is reported once."""
         self._frames: list[Frame] = []
@@ -134,7 +134,10 @@ class Frames:
             self._json_end = JsonEnd()
 
     def _pass_over(self, skipped: bytes, *, is_long: bool) -> None:
-        """Report that something other than a header is skipped, unless that is reported already."""
+        """Report that bytes other than a header are skipped, unless this is reported already.
+
+        ``is_long`` says whether they belong to a line that is too long.
+        """
         if skipped.strip() and not self._is_skipping and (is_long or not _OTHER_HEADER.match(skipped)):
             self._is_skipping = True
             self._frames.append(Fault(f"a message without a header `Content-Length` is passed over: {skipped[:60]!r}"))
@@ -207,7 +210,7 @@ def _short_body(size: int, length: int) -> Fault:
 
 
 def _prefix_pattern(word: bytes, ending: bytes) -> bytes:
-    """Return a pattern for each prefix of a word, and for the word followed by ``ending``."""
+    """Return a pattern that matches each prefix of a word, and the word followed by ``ending``."""
     pattern = ending
     for letter in reversed(word):
         pattern = b"(?:%c%s)?" % (letter, pattern)

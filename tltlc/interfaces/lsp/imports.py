@@ -18,7 +18,10 @@ def targets(document: Document) -> Iterator[tuple[Span, SourceFile]]:
 
 
 def links(document: Document, encoding: str, uri_of: Callable[[str], str]) -> list[types.DocumentLink]:
-    """Return the imports of a document as links to their files."""
+    """Return the imports of a document as links to their files.
+
+    ``encoding`` is the unit of columns, and ``uri_of`` converts a file name to a URI.
+    """
     return [
         types.DocumentLink(range_of(document.source, span, encoding), target=uri_of(source.name))
         for span, source in targets(document)

@@ -16,7 +16,10 @@ RUN_TESTS: Final = "tltlc.runTests"
 
 
 def lenses(document: Document, uri: str, analysis: DocumentAnalysis, encoding: str) -> list[types.CodeLens]:
-    """Return two lenses for each spec: its size and, if it has tests, their results."""
+    """Return one or two lenses for each spec: its size and, if it has tests, their results.
+
+    ``encoding`` is the unit of columns.
+    """
     figures = {entry.spec: entry for entry in analysis.figures}
     result = []
     for declaration in document.module.declarations:

@@ -15,7 +15,10 @@ from tltlc.resolve.scope import Binding, NamedDeclaration, Scope
 
 Kind = Literal["signal", "param", "predicate", "let", "entity", "spec", "parameter", "variable"]
 MERGED: tuple[Kind, ...] = ("signal", "param", "entity")
-"""Kinds whose declarations count as one if several files of a program declare the same name."""
+"""Kinds whose declarations count as one if several files of a program declare the same name.
+
+A program is a file with all files that it imports.
+"""
 
 _FORMULA_CLAUSES = ("reach", "keep", "avoid", "require")
 
@@ -36,7 +39,7 @@ class Symbol:
         return self.kind, self.source.name, self.span.start
 
     def is_same(self, other: Symbol) -> bool:
-        """Whether both are the same symbol; their files must belong to one program."""
+        """Whether both are the same symbol, if their files belong to one program."""
         if self.kind in MERGED:
             return (self.kind, self.name) == (other.kind, other.name)
         return self.key == other.key

@@ -1,6 +1,6 @@
 """Choose the document to analyse next: the one that the user looked at last.
 
-A long analysis of another document is stopped for it, and repeated afterwards.
+If the analysis of another document takes long, it is stopped, and repeated afterwards.
 """
 
 from __future__ import annotations
@@ -14,8 +14,7 @@ from tltlc.interfaces.lsp.slow_analysis import DocumentAnalysis
 LONG_S: Final = 0.5
 """Seconds after which an analysis may be stopped for a document that the user looked at later.
 
-It is repeated afterwards. This is much longer than the analysis of a small file, and longer than
-a restart of the process.
+The analysis of a small file takes much less, and a restart of the process takes less.
 """
 
 
@@ -56,7 +55,7 @@ class Queue:
     async def answer(self, uri: str) -> DocumentAnalysis | None:
         """Analyse a document before all others, and return the result.
 
-        Return None if the analysis is dropped or takes too long.
+        Return None if the analysis is dropped or takes too long, or if the document has errors.
         """
         future: asyncio.Future[DocumentAnalysis | None] = asyncio.get_running_loop().create_future()
         self._answers.setdefault(uri, []).append(future)

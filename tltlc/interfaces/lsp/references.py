@@ -116,7 +116,11 @@ def _documents(symbol: Symbol, workspace: Workspace) -> list[Document]:
 
 
 def _programs(symbol: Symbol, documents: list[Document]) -> set[str]:
-    """Return the paths of the files that belong to one program with the symbol's file."""
+    """Return the paths of the files that belong to one program with the symbol's file.
+
+    A program is a file with all files that it imports. Programs that share a file count as one if
+    several files may declare the symbol.
+    """
     known = {path_of(symbol.source.name)}
     if symbol.kind not in MERGED:
         return known | {path_of(document.source.name) for document in documents if document.reads & known}
@@ -175,23 +179,24 @@ def _check_free(symbol: Symbol, name: str, changes: list[tuple[Document, list[Ed
 
 
 def _name_targets(document: Document, edits: list[Edit], *, shift: bool = False) -> list[tuple[int, str, int]]:
-    """Return, for each name, its place and that of its declaration, as before the edits.
+    """Return, for each name, its place and the place of its declaration, as before the edits.
 
-    A correct rename does not change the result.
+    A correct rename does not change the result. With ``shift``, the document has been edited, and
+    its offsets are converted to those before the edits.
     """
     own = document.source.name
     before = _offset_before(edits if shift else [])
     targets = []
     for occurrence in document.names:
         symbol = occurrence.symbol
-        # Another file may be edited as well, so for its declarations compare only kind and file.
+        # Other files may be edited as well, so for declarations in them, compare only kind and file.
         target = before(symbol.span.start) if symbol.source.name == own else 0
         targets.append((before(occurrence.span.start), f"{symbol.kind} {symbol.source.name}", target))
     return targets
 
 
 def _offset_before(edits: list[Edit]) -> Callable[[int], int]:
-    """Return a function that maps a character offset after the edits to the one before them."""
+    """Return a function that maps a character offset after the edits to the offset before them."""
     ordered = sorted(edits, key=lambda edit: edit.span.start)
     shifts = [0, *accumulate(len(edit.text) - (edit.span.end - edit.span.start) for edit in ordered)]
     starts = [edit.span.start + shift for edit, shift in zip(ordered, shifts, strict=False)]

@@ -121,7 +121,7 @@ def create() -> EditorSession:
 
 
 def _with_error_answers(server: EditorSession, handler: Callable[[EditorSession, Any], Any]) -> Callable[[Any], Any]:
-    """Return a handler that answers a TltlError with an error response.
+    """Return a handler that calls ``handler`` and answers a TltlError with an error response.
 
     It also records that the user looks at the document, which is then analysed before others.
     """

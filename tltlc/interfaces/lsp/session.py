@@ -98,7 +98,8 @@ class EditorSession(LanguageServer):
     def on_use_change(self, uris: Iterable[str]) -> None:
         """Schedule new analyses of documents, after a change in files that may import them.
 
-        A declaration that those files used may be unused now, or used for the first time.
+        The importing files may no longer use a declaration in a document, or use it for the first
+        time.
         """
         for uri in uris:
             if self.texts.is_open(uri):
@@ -200,7 +201,8 @@ class EditorSession(LanguageServer):
     async def analysis_of(self, uri: str) -> DocumentAnalysis | None:
         """Return the analysis of a document, and make it if needed.
 
-        Return None if the document is missing, has errors or changes meanwhile.
+        Return None if the document is missing, has errors or changes meanwhile, or if the analysis
+        takes too long.
         """
         document = self.texts.document(uri)
         return (self.analysis(document) if document else None) or await self.queue.answer(uri)
@@ -208,7 +210,8 @@ class EditorSession(LanguageServer):
     async def _analyse_now(self, uri: str, again: bool) -> DocumentAnalysis | None:
         """Analyse a document and publish the result; with ``again``, even if the analysis is known.
 
-        Return None if the document is missing, has errors or changes meanwhile.
+        Return None if the document is missing, has errors or changes meanwhile, or if the analysis
+        is stopped.
         """
         document = self.texts.document(uri)
         if document is None or not document.is_clean:

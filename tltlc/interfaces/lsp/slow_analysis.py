@@ -70,7 +70,7 @@ class DocumentAnalysis:
 def analyse(request: Request) -> DocumentAnalysis:
     """Compile, lint and test a text.
 
-    If the text has errors, the analysis contains only them.
+    If the text has errors, the analysis contains only the diagnostics of the compiler.
     """
     with unsaved_texts(request.texts):
         try:

@@ -24,7 +24,10 @@ _KINDS: Final = {
 
 
 def symbols(document: Document, encoding: str) -> list[types.DocumentSymbol]:
-    """Return the declarations in order, with the clauses of a spec as its children."""
+    """Return the declarations in order, with the clauses of a spec as its children.
+
+    ``encoding`` is the unit of columns.
+    """
     source = document.source
     outline = []
     for declaration in document.module.declarations:
@@ -47,7 +50,8 @@ def symbols(document: Document, encoding: str) -> list[types.DocumentSymbol]:
 def matching_symbols(document: Document, query: str, encoding: str, uri: str) -> list[types.WorkspaceSymbol]:
     """Return the declarations whose names contain the letters of the query, in the query's order.
 
-    Case does not matter. An empty query matches all declarations.
+    Case does not matter. An empty query matches all declarations. ``uri`` is the URI of the
+    document, and ``encoding`` is the unit of columns.
     """
     source = document.source
     return [

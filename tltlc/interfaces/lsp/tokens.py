@@ -38,7 +38,8 @@ def tokens(document: Document, encoding: str) -> list[int]:
     """Return five numbers for each name: line, column, length, type and modifiers.
 
     The line counts from the line of the previous name. The column counts from the previous name if
-    both are on one line, and else from the start of the line.
+    both are on one line, and otherwise from the start of the line. Columns are in units of
+    ``encoding``. Type and modifiers are numbers of :data:`LEGEND`.
     """
     numbers: list[int] = []
     line = column = 0

@@ -43,7 +43,7 @@ class Workspace:
     def close(self, uri: str) -> list[str]:
         """Forget a closed text, so that the file on disk counts again.
 
-        Return the URIs of affected open documents.
+        Return the URIs of the open documents that this affects.
         """
         name = name_of(uri)
         self._open.pop(name, None)
@@ -63,7 +63,10 @@ class Workspace:
         return self.document_named(name_of(uri))
 
     def document_named(self, name: str) -> Document | None:
-        """Like :meth:`document`, by name: an absolute path, or ``<URI>`` if it is not a file."""
+        """Return the document with this name as :meth:`document` does; None if there is none.
+
+        The name is an absolute path, or ``<URI>`` for a text that is not a file.
+        """
         opened = self._open.get(name)
         document = self._documents.get(name)
         # The editor reports changes of open texts; closed files may change without notice.
@@ -121,7 +124,10 @@ class Workspace:
             return Project(), error.diagnostics
 
     def is_own(self, name: str) -> bool:
-        """Whether a file belongs to the workspace, and is not a library from elsewhere."""
+        """Whether a file belongs to the workspace: it is open, or in a folder of :attr:`folders`.
+
+        The standard library does not belong to it, unless it is in one of these folders.
+        """
         path = path_of(name)
         if path.startswith("<"):
             return True
@@ -149,7 +155,7 @@ class Workspace:
     async def parse(self, is_needed: Callable[[str], bool]) -> None:
         """Parse the documents whose texts ``is_needed`` selects, and find their names in advance.
 
-        Other requests are answered between two files.
+        Between two documents, the server may answer other requests.
 
         Raises:
             TltlError: TLT0004, there is too much to search or to parse.
