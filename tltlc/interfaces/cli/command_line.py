@@ -47,7 +47,7 @@ BUILT_IN: Final = {
 BOUNDED: Final = frozenset(BUILT_IN) - {"compile", "mine", "monitor", "watch", "lsp", "serve", "new", "completion"}
 """Built-in commands whose whole run is limited by ``--max-cpu`` and ``--max-memory``.
 
-The other commands limit only parts of their work.
+The commands that are left out here limit only parts of their work.
 """
 
 RUNTIME_COMMANDS: Final = {
@@ -164,7 +164,10 @@ class CommandLine(click.Group):
         )
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """Write the list of commands from the tables above, without loading any command."""
+        """Write the list of commands from :data:`BUILT_IN` and the entry points.
+
+        This loads no command.
+        """
         rows = list(BUILT_IN.items())
         for plugin in sorted(plugins.find(ENTRY_POINTS), key=lambda plugin: plugin.name):
             if plugin.name not in BUILT_IN:
@@ -177,7 +180,7 @@ class CommandLine(click.Group):
             formatter.write_dl(rows)
 
     def shell_complete(self, ctx: click.Context, incomplete: str) -> list[Any]:
-        """Complete command names from the table above, without loading any command."""
+        """Complete the name of a command, without loading any command."""
         from click.shell_completion import CompletionItem
 
         names = [CompletionItem(name, help=BUILT_IN.get(name)) for name in self.list_commands(ctx)]
@@ -187,7 +190,10 @@ class CommandLine(click.Group):
 
 
 def _completion_error(error: Exception | OutOfTimeError) -> Exception | OutOfTimeError:
-    """Return the error, or a usage error if the shell script's completion variables are missing."""
+    """Return the error, or a usage error if it comes from a wrong :data:`COMPLETE_VARIABLE`.
+
+    Only the scripts of ``tltlc completion`` set this variable, together with others.
+    """
     if os.environ.get(COMPLETE_VARIABLE) and isinstance(error, (KeyError, ValueError)):
         return click.UsageError(f"{COMPLETE_VARIABLE} is for the scripts that `tltlc completion` prints: unset it")
     return error

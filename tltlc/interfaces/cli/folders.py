@@ -34,9 +34,10 @@ def files_in_folders(arguments: Iterable[str]) -> list[str]:
 
 
 def sources(argument: str) -> list[str]:
-    """Return the argument itself, or the visible ``.tltl`` files in and below a folder, sorted.
+    """Return the argument itself; for a folder, the visible ``.tltl`` files in and below it, sorted.
 
-    Raises TltlError: TLT0722 if a folder contains none, TLT0001 if a folder cannot be read.
+    Raises TltlError: TLT0722 if the folder contains no such file, TLT0001 if a folder cannot be
+    read.
     """
     if not _is_folder(argument):
         return [argument]
@@ -75,7 +76,10 @@ def occupied_folder_error(folder: Path, advice: str) -> TltlError:
 
 
 def links_outside(path: str, arguments: Iterable[str]) -> bool:
-    """Whether a file was found in a folder, but is a link to a file outside all folders given."""
+    """Whether ``path`` was found in a folder of ``arguments``, but is a link out of all folders there.
+
+    It is not, if ``path`` itself is one of the arguments.
+    """
     arguments = tuple(arguments)
     folders = [os.path.realpath(argument) for argument in arguments if _is_folder(argument)]
     place = os.path.realpath(path)

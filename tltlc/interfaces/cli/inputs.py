@@ -27,7 +27,8 @@ if TYPE_CHECKING:
 class Input:
     """A compiled argument: its automata, in the order of its specs, and where they come from.
 
-    ``session`` is the compiler's session for the source text; None for an artefact.
+    ``name`` is the name of the file in messages. ``session`` is the compiler's session for the
+    source text; None for an artefact. ``diagnostics`` has no errors.
     """
 
     name: str
@@ -61,7 +62,7 @@ def open_input(argument: str, settings: CompileSettings, specs: Sequence[str] = 
 
     ``specs`` names the specs to compile, in addition to a name in the argument; without any name,
     all are compiled. Raises TltlError with all diagnostics of reading and compiling, with the
-    severities that the project file sets.
+    severities that the project file sets; click.UsageError if the argument is a TOML file.
     """
     path, name = split(argument)
     if path.endswith(".toml"):
@@ -91,9 +92,9 @@ def open_input(argument: str, settings: CompileSettings, specs: Sequence[str] = 
 
 
 def check_text(source: SourceFile) -> None:
-    """Check that a source is a source text.
+    """Check that a file has specs as text.
 
-    Raise TLT0722 for an artefact, TLT0652 for a HOA automaton.
+    Raise TLT0722 for an artefact, TLT0652 for an automaton in the Hanoi format (HOA).
     """
     if source.text.startswith("HOA:"):
         raise TltlError([_hoa_diagnostic(source)])

@@ -36,12 +36,15 @@ _arrival_times: Final[dict[int, float]] = {}
 def end_on_signals() -> Iterator[None]:
     """Let SIGINT, SIGTERM and SIGHUP end the process with 128 plus the signal's number.
 
-    They raise KeyboardInterrupt, so finished work is kept and temporary files are removed. A signal
-    that is already ignored stays ignored, such as SIGINT in a shell's background or SIGHUP under
-    ``nohup``. A program that this process starts has the default handlers, except for ignored
-    signals. A forked copy of this process has the defaults for SIGTERM and SIGHUP, but SIGINT still
-    raises KeyboardInterrupt there. After the command, SIGINT is ignored, because the process is
-    already ending.
+    These signals raise KeyboardInterrupt, so finished work is kept and temporary files are removed.
+    Exceptions:
+
+    - A signal that is already ignored stays ignored, such as SIGINT in a shell's background or
+      SIGHUP under ``nohup``.
+    - A program that this process starts has the default handlers, except for ignored signals.
+    - A forked copy of this process has the default handlers of SIGTERM and SIGHUP, but SIGINT still
+      raises KeyboardInterrupt there.
+    - After the command, SIGINT is ignored, because the process is already ending.
     """
     try:
         _listen()
@@ -74,9 +77,9 @@ def _stop_listening() -> None:
 def interrupt(number: int, frame: FrameType | None) -> None:
     """Handle a signal: raise KeyboardInterrupt as soon as no uninterruptible code runs.
 
-    Half-imported modules turn the exception into other errors or lose it, so an interrupt waits for
-    imports; if one takes too long, the process ends at once. Code that creates or removes temporary
-    files would leave some behind if it were interrupted, for example by a second signal.
+    Two kinds of code are uninterruptible. Imports would turn the exception into another error or
+    lose it; if an import takes too long, the process ends at once. Code that creates or removes
+    temporary files would leave some behind if it were interrupted, for example by a second signal.
     """
     if not _is_at_temporary_files(frame):
         if not _is_importing(frame):

@@ -49,14 +49,14 @@ def _run_process() -> "NoReturn":
         with end_on_signals():
             cli.main()
     except KeyboardInterrupt:
-        # It came before our handler was installed, or after it was removed.
+        # The interrupt came before our handler was installed, or after it was removed.
         raise SystemExit(_interrupted()) from None
 
 
 def _interrupted() -> int:
-    """Return the exit status for the signal.
+    """Return the exit status after a KeyboardInterrupt.
 
-    Before the command line is loaded, only Ctrl-C can raise.
+    Before the command line is loaded, only Ctrl-C can raise one.
     """
     import sys
 

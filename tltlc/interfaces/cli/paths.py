@@ -14,9 +14,10 @@ STDOUT: Final = "-"
 class OutputPath(click.Path):
     """A file or folder to write to.
 
-    ``-`` means standard output if ``stdout`` is set; else it is refused. ``kind`` is what an
-    existing path must be; "place" allows both. If ``checked``, an existing path of the other kind
-    is refused at once; otherwise it is reported when the command writes, with TLT0005.
+    ``-`` means standard output if ``stdout`` is set; otherwise ``-`` is refused. ``kind`` is what
+    an existing path must be: a file, a folder, or either ("place"). If ``checked``, an existing
+    path of the wrong kind is refused at once; otherwise it is reported with TLT0005 when the
+    command writes.
     """
 
     def __init__(

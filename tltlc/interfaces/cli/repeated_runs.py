@@ -25,9 +25,9 @@ _MOST_LOOKS: Final = 10
 def repeat(work: Callable[[tuple[str, ...]], None], list_files: Callable[[], Iterable[str]] = tuple) -> NoReturn:
     """Run ``work`` at once, and again after each change, until an exception such as Ctrl-C.
 
-    ``work`` receives the paths that changed; the first time, none. All files are watched that the
-    last run read, or looked for in vain, through :mod:`tltlc.io.files`. The files that
-    ``list_files`` returns are watched, too.
+    ``work`` receives the paths that changed; the first time, none. Two kinds of files are watched:
+    those that the last run read, or looked for in vain, with :mod:`tltlc.io.files`, and those that
+    ``list_files`` returns.
     """
     changed: tuple[str, ...] = ()
     while True:
@@ -40,7 +40,7 @@ def repeat(work: Callable[[tuple[str, ...]], None], list_files: Callable[[], Ite
 def _run_bounded(work: Callable[[tuple[str, ...]], None], changed: tuple[str, ...]) -> None:
     """Run ``work`` within the limits of time and memory.
 
-    Report the error if it exceeds them, because the next change may fix that.
+    If ``work`` exceeds a limit, only report this, because the next change may fix it.
     """
     try:
         with resource_limits():
@@ -54,8 +54,8 @@ def _changes(
 ) -> tuple[str, ...]:
     """Wait until files change, and then until they stop changing; return their paths.
 
-    Stop waiting after ``_MOST_LOOKS`` further checks. ``before`` has the earlier states of files by
-    path, and ``known`` the files that ``list_files`` returned before the last run.
+    Return after at most ``_MOST_LOOKS`` checks that find changes. ``before`` has the earlier stamps
+    of files by path, and ``known`` the files that ``list_files`` returned before the last run.
     """
     changed: dict[str, Stamp] = {}
     new: tuple[str, ...] = ()

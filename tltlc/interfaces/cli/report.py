@@ -33,7 +33,7 @@ class Report:
         self._document = sys.stderr if results else sys.stdout
 
     def add(self, diagnostics: Iterable[Diagnostic]) -> None:
-        """Show new diagnostics at once in the text format, else keep them for the document."""
+        """Show new diagnostics: in the text format at once, in machine formats at the end."""
         new = tuple(diagnostic for diagnostic in dict.fromkeys(diagnostics) if diagnostic not in self.diagnostics)
         if self.format == "text":
             # A full standard error must not change the exit status.
@@ -104,7 +104,7 @@ _Alike = tuple[str, str, str]
 
 
 def _first_of_each(diagnostics: Iterable[Diagnostic]) -> tuple[tuple[Diagnostic, ...], Counter[_Alike]]:
-    """Return the diagnostics to show, at most 20 of each kind, and how many are left out by kind.
+    """Return the diagnostics to show, at most 20 of each kind, and how many of each are left out.
 
     The kind is severity, code and file.
     """

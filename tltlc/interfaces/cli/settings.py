@@ -25,8 +25,8 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 class CompileSettings:
     """The options of the command line for compiling.
 
-    ``libraries`` are searched before the libraries of the project file. ``params`` overrides the
-    values of params, as written. If ``state_budget`` is None, the default applies.
+    ``libraries`` are folders that are searched before the libraries of the project file. ``params``
+    maps names of params to new values, as texts. If ``state_budget`` is None, the default applies.
     """
 
     libraries: tuple[Path, ...] = ()
@@ -107,7 +107,7 @@ def compile_settings(settings: CompileSettings, project: Project, specs: tuple[s
 def search_steps(settings: CompileSettings) -> int:
     """Return how many steps a search may take.
 
-    They are as many as building an automaton over infinite traces may take.
+    Building an automaton over infinite traces may take as many.
     """
     from tltlc.automaton.finite.build import DEFAULT_STATE_BUDGET
     from tltlc.automaton.work import STEPS_PER_STATE
@@ -124,9 +124,10 @@ def check_libraries(libraries: tuple[Path, ...]) -> None:
 
 
 def parse_assignments(texts: tuple[str, ...], form: str, option: str) -> dict[str, str]:
-    """Parse ``NAME=VALUE`` texts.
+    """Parse ``NAME=VALUE`` texts, and return the values by name.
 
-    Raise click.BadParameter for a wrong form or a name that is set twice.
+    Raise click.BadParameter for a wrong form or a name that is set twice. ``form`` and ``option``
+    are the required form and the name of the option in its message.
     """
     values: dict[str, str] = {}
     for text in texts:

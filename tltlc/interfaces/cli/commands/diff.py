@@ -89,11 +89,10 @@ def _open_sides(a: str, b: str, settings: CompileSettings) -> tuple[Input, Input
 
 
 def _open_side(argument: str, settings: CompileSettings) -> Input:
-    """Open one side; ``REV:FILE`` is FILE at the Git revision REV.
+    """Open one side: a FILE, or ``REV:FILE``, which is FILE at the Git revision REV.
 
-    Other arguments are opened by :func:`~tltlc.interfaces.cli.inputs.open_input`.
-
-    Raises the errors of :func:`~tltlc.tools.diff.revisions.earlier_files`, and TLT0751 if the revision
+    Raises the errors of :func:`~tltlc.interfaces.cli.inputs.open_input`. For ``REV:FILE``, also
+    raises those of :func:`~tltlc.tools.diff.revisions.earlier_files`, and TLT0751 if the revision
     has no such file.
     """
     from tltlc.interfaces.cli.inputs import open_input
@@ -137,9 +136,9 @@ def _exclusive_declarations(a: Input, b: Input) -> DeclaredGroups:
 
 
 def _matching_spec(name: str | None, side: Input) -> Input:
-    """Return the side with only the spec ``name``, which is named on the other side.
+    """Return the side with only the spec ``name``, the name in the argument for the other side.
 
-    Return it unchanged if it has no such spec.
+    If the side has no spec of this name, return the side unchanged.
     """
     matches = tuple(fspa for fspa in side.automata if fspa.name == name)
     return replace(side, automata=matches or side.automata)

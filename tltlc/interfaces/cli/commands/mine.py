@@ -204,7 +204,10 @@ def _traces_in(folder: str) -> list[str]:
 
 
 def _library(predicates: str) -> SourceFile:
-    """Read the file; if the argument is the name of a library, return a text that imports the library."""
+    """Return the text of the file with the predicates.
+
+    If the argument is the name of a library and not a file, return a text that imports the library.
+    """
     from tltlc.interfaces.cli.inputs import check_text
     from tltlc.io.files import is_file, read_source
 
