@@ -50,11 +50,11 @@ class Children:
     def answer(self, request: bytes, is_abandoned: Callable[[], bool] = lambda: False) -> str | None:
         """Return a child's answer to a request, or None if the bytes are not a request.
 
-        The answer is made by :func:`tltlc.interfaces.playground.protocol.answer`. ``is_abandoned``
-        is whether the client no longer waits.
+        The child calls :func:`tltlc.interfaces.playground.protocol.answer`. ``is_abandoned()`` says
+        whether the client no longer waits.
 
-        Raises AbandonedError as soon as the client no longer waits, and OSError if no process can
-        be started.
+        Raises AbandonedError as soon as the client no longer waits, or if :meth:`close` is called,
+        and OSError if no process can be started.
         """
         if not request:
             return None
@@ -115,9 +115,10 @@ class Children:
 
 
 def _answer(child: subprocess.Popen[bytes], request: bytes, limit_s: float, is_abandoned: Callable[[], bool]) -> bytes:
-    """Return the answer of a child, at most one byte more than the limit for an answer.
+    """Return the answer of a child.
 
-    Raises AbandonedError if the client no longer waits, TimeoutExpired after ``limit_s`` seconds.
+    It may have one byte more than :data:`tltlc.io.limits.ANSWER` allows, but no more. Raises
+    AbandonedError if the client no longer waits, TimeoutExpired after ``limit_s`` seconds.
     """
     end = monotonic() + limit_s
     responses: list[bytes] = []

@@ -61,7 +61,8 @@ class Site(Protocol):
 class ConnectionState(Enum):
     """The state of a connection.
 
-    If there is no room for a new connection, one in the state with the least value is closed.
+    If there is no room for a new connection, a connection in the state with the least value is
+    closed.
     """
 
     LEAVING = 0
@@ -85,7 +86,8 @@ class OpenConnections:
     def add(self, connection: Connection) -> bool:
         """Add a connection.
 
-        Return False if there is no room, even after closing the least important one.
+        If there is no room, first close the least important connection. Return False if none may be
+        closed.
         """
         if len(self._all) >= self.limits.most and not self.make_room():
             return False
@@ -93,11 +95,12 @@ class OpenConnections:
         return True
 
     def make_room(self) -> bool:
-        """Close the oldest of the connections in the lowest :class:`ConnectionState`.
+        """Close the least important connection: of those in the lowest state, the oldest.
 
-        Return whether a connection could be closed. Connections that wait for an answer, or send a
-        body after a valid head, stay open. If a client has stopped sending, it may have hung up, so
-        its connection may be closed.
+        The states are ordered by the values of :class:`ConnectionState`. Return whether a
+        connection could be closed. A connection stays open if the client waits for an answer, or
+        sends a body after a valid head. A client that has stopped sending does not count as
+        waiting, because it may have hung up.
         """
         candidates = [connection for connection in self._all if connection.gives_way]
         if not candidates:
@@ -187,7 +190,7 @@ class Connection(asyncio.Protocol):
         return False
 
     def resume_writing(self) -> None:
-        """Continue once everything is sent."""
+        """Continue with the next request or close, now that everything is sent."""
         if self.state is ConnectionState.WRITING:
             self._on_sent()
 
@@ -212,9 +215,9 @@ class Connection(asyncio.Protocol):
         self._transport.close()
 
     def _end(self) -> None:
-        """Close after the last answer.
+        """Close the connection of a client that has stopped sending, after the last answer.
 
-        Refuse an incomplete request, which can never be completed.
+        Refuse an incomplete request, since it can never be completed.
         """
         if self.state is ConnectionState.READING:
             self._refuse(HTTPStatus.BAD_REQUEST)

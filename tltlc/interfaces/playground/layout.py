@@ -1,9 +1,10 @@
 """Place the states of a small automaton and the texts of its edges without overlaps.
 
-Columns of states alternate with columns of texts. An edge has a height of its own in each column
-that it passes, its level, so it crosses no state and no text. Its text is above the level. Traps
-are in a row below. An edge to a trap goes straight down from its state or, if other states are
-below that state, down a lane beside them. All lengths are in pixels of the SVG; y points down.
+Columns of states alternate with columns of texts. In each column that an edge passes, it has a
+height of its own, called its level, so that it crosses no state and no text. The text of the edge
+is above the level. Traps are in a row below the columns. An edge to a trap goes straight down from
+its state or, if other states are below that state, down a lane beside them. All lengths are in
+pixels of the SVG; y points down.
 """
 
 from __future__ import annotations
@@ -33,8 +34,9 @@ Size = tuple[float, float]
 class StateBox:
     """A box to place: a state, with the texts over and under it.
 
-    ``over`` and ``under`` are the heights of the texts over and under the state, and ``span`` is
-    the width of the widest of them. ``below`` is whether the box is in the row of traps.
+    ``width`` and ``height`` are those of the state. ``over`` and ``under`` are the heights of the
+    texts over and under the state, and ``span`` is the width of the widest text. ``below`` says
+    whether the box is in the row of traps.
     """
 
     width: float
@@ -49,7 +51,7 @@ class StateBox:
 class Layout:
     """The centres of states, the centres of edges' texts, the curves of edges, and the total size.
 
-    States are given by number, texts and curves by the ends of their edges.
+    ``middles`` has the states by number. ``texts`` and ``curves`` have the edges by their ends.
     """
 
     middles: Mapping[int, Point]
@@ -110,10 +112,10 @@ class _LayoutPass:
         return (self.texts[node[0], node[1]][1] + 5, 3.0) if is_text else (0.0, 0.0)
 
     def _levels(self, top: float) -> dict[Node, float]:
-        """Return the level (height) of each node.
+        """Return the level (height) of each node; ``top`` is the upper end of the highest node.
 
-        It is near the levels of the nodes that edges link with it, and nodes of a column do not
-        overlap.
+        The level is near the levels of the nodes that edges link with the node. Nodes of a column
+        do not overlap.
         """
         beside = neighbours(link for nodes in self.chains.values() for link in pairwise(nodes))
         levels: dict[Node, float] = {}
@@ -154,7 +156,7 @@ class _LayoutPass:
     def _straighten(self, nodes: Sequence[Node], levels: dict[Node, float]) -> None:
         """Set as many nodes of an edge as possible to one level, then repeat with the rest.
 
-        So the edge has few bends.
+        This gives the edge few bends. ``levels`` is changed.
         """
         while nodes:
             low, high = self._room(nodes[0], levels)
@@ -169,7 +171,7 @@ class _LayoutPass:
             nodes = nodes[number:]
 
     def _room(self, node: Node, levels: Mapping[Node, float]) -> tuple[float, float]:
-        """Return the least and greatest level that a node may have beside its column neighbours."""
+        """Return the least and greatest level of a node between its neighbours in the column."""
         nodes = self.columns[self._number(node)]
         place = nodes.index(node)
         low = levels[nodes[place - 1]] + self._apart(nodes[place - 1], node) if place else -inf

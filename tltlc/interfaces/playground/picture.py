@@ -43,8 +43,8 @@ def picture(fspa: Fspa, notation: Notation = "english") -> tuple[str | None, str
 
     States are groups with the class ``state`` and the class of their verdict; ``data-states`` has
     the number of the state, or the numbers of all states that are folded into it. Edges are groups
-    with the class ``edge``, ``data-source`` and ``data-target``. The title of both is their full
-    text in words; the picture shows only the start of a long text.
+    with the class ``edge``, ``data-source`` and ``data-target``. The title of a state or an edge is
+    its full text in words; the picture shows only the start of a long text.
     """
     drawing = folded_drawing(fspa)
     if len(drawing.states) > MOST_STATES or len(drawing.edges) > MOST_EDGES:
@@ -83,7 +83,7 @@ class _PictureText:
         )
 
     def _lines(self, ends: Ends) -> list[str]:
-        """Return the lines of an edge's text; a text over or under a state may be wider."""
+        """Return the lines of an edge's text; a text over or under a state gets longer lines."""
         is_wide = ends[0] == ends[1] or ends[1] == self.trap
         return _shorten(self.guards[ends], _WIDE_GUARD if is_wide else _GUARD)
 

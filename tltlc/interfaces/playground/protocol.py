@@ -1,6 +1,6 @@
 """The requests of the page and their answers, as JSON.
 
-They are the same whether the compiler runs on a server or in the browser.
+Requests and answers are the same whether the compiler runs on a server or in the browser.
 """
 
 from __future__ import annotations
@@ -58,8 +58,8 @@ def answer(request: str) -> str:
 def question(request: str) -> Question | None:
     """Parse a request with the keys ``text``, ``spec``, ``letters`` and ``notation``.
 
-    Return None for the request ``{}``, which asks for the start data.
-    Raises RequestError if the text is not a request.
+    Return None for the request ``{}``, which asks for what :func:`start` returns. Raises
+    RequestError if the text is not a request.
     """
     try:
         parsed = loads(request, MESSAGE)

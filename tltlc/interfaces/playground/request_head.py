@@ -41,7 +41,7 @@ class Head:
 
     ``path`` is the path of the target, unescaped and without query. ``headers`` have names in lower
     case. ``length`` is the length of the body in bytes; None if the request does not give it.
-    ``keeps_alive`` is whether another request may follow. ``is_http_1_0`` is whether the client
+    ``keeps_alive`` says whether another request may follow, and ``is_http_1_0`` whether the client
     speaks HTTP/1.0, which has no interim answers.
     """
 
@@ -61,9 +61,15 @@ class Head:
 def read_head(data: bytes) -> tuple[Head, int] | None:
     """Parse the head of the request at the start of ``data``.
 
-    Return the head and the offset after it, or None if the head is incomplete. Raises RefusedError as early as
-    possible: 400 if the bytes are not HTTP, 414 and 431 if something is too long, 417 for an
-    unknown expectation, 501 for transfer codings, 505 for another version.
+    Return the head and the offset after it, or None if the head is incomplete. Raises RefusedError
+    as early as possible, with the status:
+
+    - 400 if the bytes are not HTTP, or are ambiguous;
+    - 413 if the length of the body has too many digits;
+    - 414 if the first line is too long, 431 if the headers are;
+    - 417 for an unknown expectation;
+    - 501 for transfer codings;
+    - 505 for another major version than 1.
     """
     # Empty lines before a request are allowed (RFC 9112, 2.2).
     start = len(data) - len(data.lstrip(b"\r\n"))

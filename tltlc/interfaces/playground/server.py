@@ -163,6 +163,7 @@ def _read_all(reader: socket.socket) -> None:
 class PlaygroundServer:
     """Serves the page at :data:`HOST` only; port 0 is any free port.
 
+    ``limit_s`` is the most seconds for an answer, and ``connections`` limits the connections.
     Raises TltlError, TLT0776, if the port is not available.
     """
 
@@ -260,7 +261,10 @@ class PlaygroundServer:
         task.add_done_callback(report_failure)
 
     def _pause_accepting(self) -> None:
-        """Stop accepting until a connection has been closed to free a descriptor, or else for a while."""
+        """Stop accepting until a connection has been closed to free a file descriptor.
+
+        If none may be closed, stop for :data:`_AGAIN_S`.
+        """
         self._loop.remove_reader(self._listener)
         if self.connections.make_room():
             # The connection is closed before this callback runs.
@@ -292,7 +296,7 @@ class PlaygroundServer:
             for end in (reader, writer):
                 end.setblocking(False)
             self._loop.add_reader(reader, _read_all, reader)
-            # So an interrupt between the two calls leaves no descriptor set that is closed below.
+            # Two calls: an interrupt between them leaves no descriptor set that is closed below.
             before = signal.set_wakeup_fd(-1)
             try:
                 signal.set_wakeup_fd(writer.fileno(), warn_on_full_buffer=False)

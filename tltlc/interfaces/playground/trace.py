@@ -67,7 +67,7 @@ def rows(fspa: Fspa, letters: Iterable[Letter]) -> list[dict[str, Any]]:
 def idle_step(fspa: Fspa) -> dict[str, Any]:
     """Return the step that the page suggests for a new row: one in which little happens.
 
-    It keeps the automaton in the initial state if possible, and few atoms hold.
+    The step keeps the automaton in the initial state if possible, and few atoms hold.
     """
 
     def cost(prime: tuple[tuple[int, bool], ...]) -> int:
@@ -88,7 +88,8 @@ def idle_step(fspa: Fspa) -> dict[str, Any]:
 def shortest_traces(fspa: Fspa) -> dict[str, Any]:
     """Return a shortest trace that succeeds and one that fails: ``{"succeed": …, "fail": …}``.
 
-    A trace is None if there is none, or if the search for it takes too many steps.
+    A trace is None if there is none, if it is too long for the page, or if the search for both
+    takes too many steps.
     """
     moves = Moves(fspa)
     try:
