@@ -63,7 +63,7 @@ def _pieces(value: Any, indent: int, used: int, encode: Encode) -> Iterator[str]
 
 
 def _flat(value: Any, indent: int, used: int, encode: Encode) -> str | None:
-    """Return the text of a value on one line; None if it must be broken."""
+    """Return the text of a value on one line; None if the value needs several lines."""
     if not isinstance(value, (dict, list)) or not value:
         return encode(value)
     # The outermost value is always broken.

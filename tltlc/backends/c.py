@@ -254,8 +254,9 @@ class _Source:
     def _refusal(self, problem: str, index: int) -> list[str]:
         """Return the lines that refuse the sample: they record the problem and return false.
 
-        The ``return`` is not inside the function that is called, so that compilers see that the
-        step ends here.
+        ``problem`` is the name of the problem in C, and ``index`` the index of the param, atom or
+        group that has it. The ``return`` is not inside the function that is called, so that
+        compilers see that the step ends here.
         """
         call = f"{self._prefix}_refuse_(monitor, {problem}, {index});"
         return [f"{_INDENT}{line}" for line in (call, "return false;")]

@@ -2,7 +2,7 @@
 
 Over infinite traces, the file has a Rabin automaton with acceptance on edges. The format has no
 automata over finite traces. For these, the file has a Büchi automaton with marks on the accepting
-states, and a header that says that a finite trace is accepted if its run ends in such a state.
+states, and a header that says that a finite trace is accepted if its run ends in one of them.
 """
 
 from __future__ import annotations

@@ -117,8 +117,8 @@ class _Python(Printer):
     def _text_and_binding(self, node: Expression) -> tuple[str, int]:
         """Return the text of an expression and its binding strength.
 
-        ``min(min(a, b), c)`` becomes ``min(a, b, c)``, which is faster, and likewise ``max``. Of
-        equal arguments, both return the first one.
+        ``min(min(a, b), c)`` becomes ``min(a, b, c)``, which is faster, and likewise ``max``. The
+        result is the same: of equal arguments, the first.
         """
         match node:
             case NumericCall("min" | "max" as function):

@@ -125,7 +125,7 @@ def _clash_error(name: str, written: Sequence[str], archive: Archive) -> TltlErr
 
 
 def _clash(first: str, second: str) -> bool:
-    """Whether two paths are the same, or one is a folder of the other."""
+    """Whether two paths are the same, or one is inside the other."""
     return f"{first}/".startswith(f"{second}/") or f"{second}/".startswith(f"{first}/")
 
 

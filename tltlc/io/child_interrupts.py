@@ -1,7 +1,7 @@
 """Treat an interrupt of a child process as an interrupt of this process.
 
-Ctrl-C in a terminal reaches both processes, and the child may end first. Without this module, its
-exit status would look like a failure.
+Ctrl-C in a terminal reaches both processes, and the child may end first. Without this module, the
+exit status of the child would look like a failure.
 """
 
 from __future__ import annotations

@@ -37,7 +37,10 @@ _active: list[bool] = []
 
 
 class OutOfTimeError(BaseException):
-    """The processor time is used up. It is a BaseException, so that no ``except Exception`` catches it."""
+    """Raised when the processor time is used up.
+
+    It is a BaseException, so that no ``except Exception`` catches it.
+    """
 
 
 def permit(process: ProcessLimit) -> None:

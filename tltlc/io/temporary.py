@@ -90,8 +90,8 @@ class Temporaries:
     def close(self) -> None:
         """Remove the temporary files that are left, then the lock files.
 
-        If the process is killed in between, other processes can still remove what is left: they
-        never remove temporary files without a lock file.
+        The lock files come last, in case the process is killed in between: other processes remove
+        temporary files only if their lock file is there.
         """
         for path in self._paths:
             _remove(path)

@@ -205,7 +205,7 @@ class ExpressionTranslator:
     # --- numbers ----------------------------------------------------------------------------------
 
     def _value(self, node: source.Expression, lines: list[Statement]) -> Expression:
-        """Return the value of an expression, and append to ``lines`` the statements that must run before it."""
+        """Translate an expression, and append to ``lines`` the statements to run before it."""
         if isinstance(node, source.Const):
             return Real(float(node.value))
         if isinstance(node, source.SignalValue):
@@ -250,7 +250,7 @@ class ExpressionTranslator:
     # --- tests ------------------------------------------------------------------------------------
 
     def _test(self, node: _Node, lines: list[Statement]) -> Expression:
-        """Return the test of a condition, and append to ``lines`` the statements that must run before it."""
+        """Translate a condition to a test, and append to ``lines`` the statements to run before it."""
         assert isinstance(node, source.Condition), "and, or, not and cases take conditions"
         if node.op == "not":
             return Not(self._part(node.args[0], lines))
@@ -270,10 +270,10 @@ class ExpressionTranslator:
         return Variable(name)
 
     def _join(self, node: source.Condition, lines: list[Statement]) -> Expression:
-        """Return the test of an ``and`` or ``or``, and append to ``lines`` the statements that must run before it.
+        """Translate an ``and`` or ``or`` to a test.
 
-        The statements that an operand needs run only if the operands before it do not decide the
-        result.
+        Appends to ``lines`` the statements to run before it. Those that an operand needs run only
+        if the operands before it do not decide the result.
         """
         tests: list[Expression] = []
         for part in node.args:

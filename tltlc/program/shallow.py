@@ -13,7 +13,7 @@ from typing import Final
 from tltlc.program.tree import Assign, Declare, Expression, If, Negate, NumericCall, Statement, Variable
 
 PART: Final = "part"
-"""The prefix of new variables, which are numbered from 1."""
+"""The prefix of the variables that :func:`split_deep_values` adds, which are numbered from 1."""
 
 _DEEPEST: Final = 30
 """The greatest depth of an expression, the same as for predicates (:mod:`tltlc.program.arithmetic`)."""

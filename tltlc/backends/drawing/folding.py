@@ -10,7 +10,10 @@ from tltlc.automaton.fspa import Fspa, Guard, Mark, State
 from tltlc.core.record import EMPTY, record, replace
 
 LEAST_FOLDED = 3
-"""The fewest inner states of a run that is folded: all states except its first and its last one."""
+"""A run is folded if it has at least this many inner states.
+
+The inner states are all except the first and the last one.
+"""
 
 _number = re.compile(r"(\d+)")
 _one_step = re.compile(r"\b1 step\b")

@@ -1,4 +1,4 @@
-"""Names of variables in GDScript: those that are taken already, and the conversion to snake_case."""
+"""Names of variables in GDScript: the reserved names, and the conversion to snake_case."""
 
 from __future__ import annotations
 

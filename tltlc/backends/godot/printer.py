@@ -71,7 +71,7 @@ class Gd(Printer):
     def _text_and_binding(self, node: Expression) -> tuple[str, int]:
         """Return the text of an expression and its binding strength.
 
-        A ``min`` or ``max`` of two variables or numbers that would call a function of the script
+        If a ``min`` or ``max`` of two variables or numbers would call a function of the script, it
         becomes a conditional expression, which is faster.
         """
         match node:

@@ -64,7 +64,8 @@ RUNTIME_COMMANDS: Final = {
 }
 """The commands of the runtime, with their summaries for the help text.
 
-They ship with tltlc, but each needs an extra. They are entry points, like the commands of plugins.
+They ship with tltlc, but each needs an extra (optional dependencies) of tltlc. They are entry
+points, like the commands of plugins.
 """
 
 ENTRY_POINTS: Final = "tltlc.commands"
@@ -77,7 +78,10 @@ class CommandLine(click.Group):
     """The click group that contains all commands."""
 
     def main(self, args: Sequence[str] | None = None, *_: Any, **extra: Any) -> NoReturn:
-        """Run the command and exit. Messages go to standard error; a traceback never appears."""
+        """Run the command and exit.
+
+        Messages go to standard error. A traceback appears only if TLTLC_DEBUG is 1.
+        """
         exits.received_signals.clear()
         for stream in (sys.stdout, sys.stderr):
             if hasattr(stream, "reconfigure"):

@@ -76,9 +76,9 @@ def occupied_folder_error(folder: Path, advice: str) -> TltlError:
 
 
 def links_outside(path: str, arguments: Iterable[str]) -> bool:
-    """Whether ``path`` was found in a folder of ``arguments``, but is a link out of all folders there.
+    """Whether ``path``, which was found in a folder, is a link to a file outside all given folders.
 
-    It is not, if ``path`` itself is one of the arguments.
+    ``arguments`` are the files and folders given. False if ``path`` itself is one of them.
     """
     arguments = tuple(arguments)
     folders = [os.path.realpath(argument) for argument in arguments if _is_folder(argument)]

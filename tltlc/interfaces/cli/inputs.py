@@ -92,7 +92,7 @@ def open_input(argument: str, settings: CompileSettings, specs: Sequence[str] = 
 
 
 def check_text(source: SourceFile) -> None:
-    """Check that a file has specs as text.
+    """Check that a file is a source text, not an automaton.
 
     Raise TLT0722 for an artefact, TLT0652 for an automaton in the Hanoi format (HOA).
     """

@@ -37,7 +37,7 @@ def end_on_signals() -> Iterator[None]:
     """Let SIGINT, SIGTERM and SIGHUP end the process with 128 plus the signal's number.
 
     These signals raise KeyboardInterrupt, so finished work is kept and temporary files are removed.
-    Exceptions:
+    There are four special cases:
 
     - A signal that is already ignored stays ignored, such as SIGINT in a shell's background or
       SIGHUP under ``nohup``.

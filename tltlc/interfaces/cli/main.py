@@ -1,4 +1,4 @@
-"""The entry point; imports nothing itself, so Ctrl-C is handled before anything slow starts.
+"""The entry point. Loading it imports nothing, so Ctrl-C is handled before anything slow starts.
 
 Python's own handler would print a traceback, and raise in the middle of an import.
 """

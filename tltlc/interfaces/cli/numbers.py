@@ -16,7 +16,7 @@ class WholeRange(click.IntRange):
     """A whole number in a range, at most :data:`LARGEST`."""
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """Return the number."""
+        """Return the number; fail with a usage error if it is no whole number in the range."""
         text = str(value).strip()
         digits = text.lstrip("+-").lstrip("0")
         # Python refuses to parse thousands of digits.
@@ -39,7 +39,7 @@ class FiniteRange(click.FloatRange):
     """A finite number in a range; click's own range check accepts `nan`."""
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """Return the number."""
+        """Return the number; fail with a usage error if it is no finite number in the range."""
         number = super().convert(value, param, ctx)
         if not isfinite(number):
             self.fail("write a number", param, ctx)

@@ -126,8 +126,8 @@ def check_libraries(libraries: tuple[Path, ...]) -> None:
 def parse_assignments(texts: tuple[str, ...], form: str, option: str) -> dict[str, str]:
     """Parse ``NAME=VALUE`` texts, and return the values by name.
 
-    Raise click.BadParameter for a wrong form or a name that is set twice. ``form`` and ``option``
-    are the required form and the name of the option in its message.
+    Raise click.BadParameter for a wrong form or a name that is set twice. Its message shows
+    ``form``, the required form, and ``option``, the name of the option.
     """
     values: dict[str, str] = {}
     for text in texts:

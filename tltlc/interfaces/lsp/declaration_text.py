@@ -28,7 +28,10 @@ from tltlc.resolve.spec import Spec
 from tltlc.resolve.values import Env, number_text, range_text
 
 _LONGEST: Final = 600
-"""Characters; of a longer declaration, only the part before its body is shown."""
+"""The most characters of a declaration that is shown whole.
+
+Of a longer declaration, only the part before its body is shown.
+"""
 
 _SUPPLIED_AS: Final = {
     "length": "metres",
@@ -75,7 +78,10 @@ def symbol_markdown(symbol: Symbol, env: Env, via: str | None) -> str:
 
 
 def spec_markdown(declaration: SpecDecl, spec: Spec | None, source: SourceFile, figures: str | None) -> str:
-    """Describe a spec in Markdown: what it asks for, and ``figures``, a text about its size."""
+    """Describe a spec in Markdown: what it asks for, and ``figures``, a text about its size.
+
+    ``spec`` is the resolved spec; None if the spec has errors.
+    """
     lines = [_code(declaration_text(declaration, source, head=True))]
     lines += [declaration.doc] if declaration.doc else []
     if spec is not None:

@@ -1,4 +1,4 @@
-"""Find errors that may only follow from others, because a part of the text was not parsed."""
+"""Find errors that may only follow from syntax errors, because a part of a text was not parsed."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def unparsed_parts(module: Module, tokens: Sequence[Token]) -> UnparsedParts:
 
 
 def _declared_names(tokens: Sequence[Token]) -> Iterator[str]:
-    """Yield the names after the keywords of declarations, up to the end of the text."""
+    """Yield the names after the keywords of declarations, also in parts that were not parsed."""
     head = ""
     for token in tokens:
         if token.text in _HEADS:

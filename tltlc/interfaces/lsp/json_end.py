@@ -43,8 +43,8 @@ class JsonEnd:
     def _leave_string(self, data: bytearray, limit: int) -> bool:
         """Move to the end of the string, and return whether it is in these bytes.
 
-        If it is not, the next call resumes at the end of these bytes, or at an incomplete escape
-        there.
+        If the end of the string is not in these bytes, the next call resumes at the end of these
+        bytes, or at an incomplete escape there.
         """
         match = _INSIDE.match(data, self._at, limit)
         self._at = match.end() if match else limit

@@ -96,7 +96,7 @@ class Queue:
     def _give_way(self) -> None:
         """Stop a long analysis if the user has since looked at another document in the queue.
 
-        If it does not take long yet, check again when it does.
+        If the analysis has not taken long yet, check again when it has.
         """
         if self._timer is not None:
             self._timer.cancel()

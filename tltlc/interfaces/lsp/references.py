@@ -45,8 +45,8 @@ def references(symbol: Symbol, workspace: Workspace) -> Matches:
 def may_have_references(symbol: Symbol, text: str) -> bool:
     """Whether a text must be parsed to find the uses of a symbol.
 
-    It must if it contains the name, or if it may import two files that declare the same signal,
-    param or entity.
+    It must be parsed if it contains the name, or if it may import two files that declare the same
+    signal, param or entity.
     """
     if symbol.kind in _FILE_LOCAL:
         return False

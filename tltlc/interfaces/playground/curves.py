@@ -10,7 +10,7 @@ Curve = tuple[Point, ...]
 """A start, then three points for each cubic piece: its two control points and its end."""
 
 _SHORT: Final = 0.05
-"""Pixels; a line that is not longer is invisible, and its direction unreliable."""
+"""In pixels. A line of at most this length is invisible, and its direction is unreliable."""
 
 
 def add_line(curve: Curve, end: Point) -> Curve:

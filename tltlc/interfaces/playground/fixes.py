@@ -13,7 +13,7 @@ from tltlc.tools.lint import fixes
 from tltlc.tools.lint.fixes import OfferedFix
 
 _LONGEST: Final = 20_000
-"""Characters; in longer texts, trying each fix would take too long."""
+"""The most characters of a text that gets fixes; trying them in longer texts would take too long."""
 
 
 def of_errors(source: SourceFile, diagnostics: Iterable[Diagnostic], libraries: tuple[Path, ...]) -> list[OfferedFix]:

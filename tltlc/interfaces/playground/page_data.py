@@ -29,10 +29,10 @@ NAME: Final = "<playground>"
 """The name of the text in messages; its imports are resolved from the current folder."""
 
 STATE_BUDGET: Final = 5_000
-"""More states than anyone can look at, but few enough to explore quickly."""
+"""The most states of an automaton: more than anyone can look at, but few enough to be quick."""
 
 MOST_MESSAGES: Final = 200
-"""If there are more messages, only the first ones are shown."""
+"""The most messages that are shown. If there are more, only the first ones are shown."""
 
 
 def view(text: str, spec: str = "", letters: Iterable[Letter] = (), notation: Notation = "english") -> dict[str, Any]:
@@ -42,10 +42,10 @@ def view(text: str, spec: str = "", letters: Iterable[Letter] = (), notation: No
     the steps of the trace. ``notation`` is the notation of formulas in the picture. The keys of the
     result:
 
-    - ``diagnostics``: each with code, severity, title, help, labels and ways_out. Their ``start``
-      and ``end`` are offsets into the text in UTF-16 units, as in browsers, or None in another
-      file. Failed tests are included. The ways_out are the fixes of :mod:`tltlc.tools.lint.fixes`,
-      each with a title and edits that do not overlap.
+    - ``diagnostics``: each with code, severity, title, help, labels and ways_out. Failed tests are
+      included. The ways_out are the fixes of :mod:`tltlc.tools.lint.fixes`, each with a title and
+      edits that do not overlap. The ``start`` and ``end`` of labels and edits are offsets into the
+      text in UTF-16 units, as in browsers; None for a label in another file.
     - ``more``: how many messages beyond :data:`MOST_MESSAGES` are left out.
     - ``specs``: the names of all specs; empty if there are errors.
     - ``tests``: the title of each test, its spec, and whether it passed.

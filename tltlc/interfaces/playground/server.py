@@ -31,7 +31,8 @@ TOKEN_HEADER: Final = "Tltlc-Token"
 _NAMES: Final = {HOST, "localhost"}
 """The host names that requests may use.
 
-Others are refused: a foreign page could use a domain name that resolves to this address.
+All other host names are refused: a foreign page could use a domain name that resolves to this
+address.
 """
 
 _API: Final = "/api"

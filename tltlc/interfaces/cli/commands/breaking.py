@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from tltlc.tools.diff.revisions import EarlierTree
 
 _SERVICE_FORMATS: Final = ("github", "sarif")
-"""Formats for services that know only the current files, so diagnostics must point into those."""
+"""Formats for services that know only the current files, so diagnostics must point into them."""
 
 
 @click.command(
@@ -94,7 +94,7 @@ def command(paths: tuple[str, ...], against: str, settings: CompileSettings, for
 def _files(argument: str, old: EarlierTree) -> list[str]:
     """Return the argument itself; for a folder, the spec files in its new and old versions.
 
-    Raise TLT0722 if there are none.
+    Raise TLT0722 if both versions of a folder have none.
     """
     from tltlc.interfaces.cli.folders import files_below
     from tltlc.tools.diff.revisions import SOURCE_ENDINGS

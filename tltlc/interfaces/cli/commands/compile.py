@@ -118,7 +118,7 @@ def _valid_inputs(
 def _check_distinct(files: Files, source: str, sources: dict[str, str], *, is_waiting: bool) -> None:
     """Record in ``sources``, by file name, the source that each file is generated from.
 
-    Raise TLT0700 if two sources make the same file. ``is_waiting`` is whether the command runs
+    Raise TLT0700 if two sources make the same file. ``is_waiting`` says whether the command runs
     again after each change of a file; then an edit can fix the error.
     """
     from tltlc.diagnostics.diagnostic import Diagnostic, TltlError

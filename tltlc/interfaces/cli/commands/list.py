@@ -55,7 +55,7 @@ def command(what: str, libraries: tuple[Path, ...], as_json: bool) -> int:
 
 
 def show(rows: list[Row]) -> None:
-    """Print a table to a terminal, and tab-separated columns to a file."""
+    """Print a table if standard output is a terminal, and tab-separated columns otherwise."""
     if sys.stdout.isatty():
         _table(rows)
     else:
@@ -65,7 +65,7 @@ def show(rows: list[Row]) -> None:
 def _predicates(libraries: tuple[Path, ...], add: Callable[..., None]) -> Iterator[Row]:
     """Yield a row for each predicate of each library, with its signature as declared.
 
-    Report the errors of broken files.
+    Pass the errors of broken files to ``add``.
     """
     from tltlc.grammar.parser import parse
     from tltlc.grammar.tree import PredicateDecl

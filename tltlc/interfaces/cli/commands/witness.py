@@ -116,7 +116,10 @@ def _traces(
 
 
 def _trace_texts(fspa: Fspa, traces: list[Witness], kind: Literal["test", "csv"], report: Report) -> dict[str, str]:
-    """Return the texts of the traces by file name."""
+    """Return the texts of the traces by file name.
+
+    If the spec has no atoms, or for CSV no signals, report an error and return no texts.
+    """
     from tltlc.monitor import Monitor
     from tltlc.tools.witness import captions
     from tltlc.tools.witness import text as trace_text
