@@ -151,7 +151,7 @@ class _Source:
         return lines
 
     def _give(self) -> list[str]:
-        """Return the code that sets a signal, given its index, with a case for each signal."""
+        """Return the body of a function that sets the signal with a given index, case by case."""
         if not self._fspa.signals:
             return []
         lines = ["switch (signal)", "{"]
@@ -191,9 +191,9 @@ class _Source:
         return [*lines, *(f"double {name} = _params.{name};" for name in self._program.params if name in used)]
 
     def _bools(self, state: int | None) -> list[str]:
-        """Return the code that converts the bool signals that only this state reads to 0 or 1.
+        """Return the code that makes numbers, 0 or 1, of the bool signals that only this state reads.
 
-        If ``state`` is None, it converts the bool signals that every step reads.
+        If ``state`` is None, it does so with the bool signals that every step reads.
         """
         return [f"double {name} = sample.{name} ? 1.0 : 0.0;" for name in self._program.bools_read_in(state)]
 

@@ -132,7 +132,7 @@ class _Lua(Printer):
         return [f"{self.INDENT * depth}{call}"]
 
     def head(self, test: str, *, first: bool) -> str:
-        """Return the line that begins a case: ``if`` or ``else if``, with its test."""
+        """Return the line that begins a case: ``if`` or ``elseif``, with its test."""
         return f"{'if' if first else 'elseif'} {test} then"
 
     def otherwise(self) -> str:
@@ -261,7 +261,7 @@ class _Source:
         return ", ".join(name for name in (*program_.signals, *program_.params, *atoms) if name in used)
 
     def _moves(self) -> list[str]:
-        """Return a function for each state."""
+        """Return the source of a function for each state; nothing if there are few states."""
         lines: list[str] = []
         for state in [] if self._few_states else self._fspa.states:
             lines += ["", *self._printer.comment(str(state.label))]

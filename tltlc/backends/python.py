@@ -103,7 +103,7 @@ class _Python(Printer):
         return self.text(statement.value)
 
     def head(self, test: str, *, first: bool) -> str:
-        """Return the line that begins a case: ``if`` or ``else if``, with its test."""
+        """Return the line that begins a case: ``if`` or ``elif``, with its test."""
         return f"if {test}:" if first else f"elif {test}:"
 
     def otherwise(self) -> str:
@@ -196,7 +196,7 @@ class _Source:
         return f"tuple[int, float, {'float, ' if states.PROGRESS in self._results else ''}str | None]"
 
     def _function(self, state: int) -> str:
-        """Return the function of a state."""
+        """Return the source of a state's function, which finds the edge to take and its results."""
         lines = call_lines(f"def _from_{state}", [f"{atom}: float" for atom in self._computed], f" -> {self._result}:")
         lines += self._printer.lines([CommentLine(str(self._fspa.states[state].label))], depth=1)
         body = split_deep_values(self._program.states[state], self._names)
@@ -250,7 +250,10 @@ class _Source:
         return [*lines, params] if self._program.params else lines
 
     def _compute(self) -> list[str]:
-        """Return the code that computes all atoms, first those needed at every step, then those of each state."""
+        """Return the code that computes all atoms that anything needs.
+
+        The atoms that every step needs come first, then the atoms that a single state needs.
+        """
         program_ = self._program
         lines: list[str] = []
         fails = False

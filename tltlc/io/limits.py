@@ -170,7 +170,7 @@ UNPACKED_PATH: Final = Limit(size=4096, depth=100)
 """A path in a git revision or another archive that is unpacked; ``depth`` counts its parts."""
 
 UNPACKED_NAME: Final = Limit(size=255)
-"""A part of a path that :data:`UNPACKED_PATH` limits; common file systems allow no longer names."""
+"""A part of a path that :data:`UNPACKED_PATH` limits; common file systems refuse longer names."""
 
 PLAYGROUND: Final = Connections(most=64, idle_s=15.0, request_s=20.0, write_s=30.0, linger_s=2.0)
 """The connections to the playground's server."""

@@ -71,7 +71,7 @@ def resource_limits() -> Iterator[None]:
 
 
 def limit(name: str, most: int) -> None:
-    """Set a resource limit of this process, which it cannot raise again.
+    """Set a resource limit of this process. The process cannot raise the limit again.
 
     ``name`` is a name in the module :mod:`resource`, such as ``RLIMIT_AS``. Does nothing if the
     system does not support the limit.

@@ -211,7 +211,7 @@ def _range(signal: Signal) -> Range:
 
 
 def _prefix(names: Sequence[str]) -> str:
-    """Return a prefix for temporary variables that none of the names begins with."""
+    """Return a prefix for temporary variables with which none of the ``names`` begins."""
     number, prefix = 1, f"{TEMPORARY}_"
     while any(name.startswith(prefix) for name in names):
         number += 1

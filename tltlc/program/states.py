@@ -141,9 +141,9 @@ class _StateCode:
         return lines if self._at_goal or NEAREST in variables_read(lines) else lines[1:]
 
     def _limiting_statements(self, prime: Sequence[tuple[int, bool]], value: str) -> list[Statement]:
-        """Return statements that assign to ``LIMITING`` the first atom of ``prime`` whose literal has this value.
+        """Return statements that assign the first atom of ``prime`` whose literal has a given value.
 
-        ``value`` is the variable with the value.
+        They assign it to ``LIMITING``. ``value`` is the variable with the value.
         """
         *before, (last, _) = prime
         otherwise = Assign(LIMITING, Int(last))

@@ -18,8 +18,8 @@ class Gd(Printer):
     """Prints a program in GDScript.
 
     ``names`` maps variables of the program to their names in the script. ``functions`` maps
-    functions of the program to functions of the engine; all others are in the script. Functions in
-    ``swapped`` get their arguments in reverse order.
+    functions of the program to functions of the engine; all other functions are in the script.
+    Functions in ``swapped`` get their arguments in reverse order.
     """
 
     INDENT: ClassVar[str] = "\t"

@@ -51,7 +51,7 @@ unchanged.
 
 @record
 class Dialect:
-    """How a version of the engine differs from others.
+    """How a version of the engine differs from other versions.
 
     ``version`` is the name of the version in templates, and ``title`` its name for readers.
     ``base`` is the engine's class of reference-counted objects. ``functions`` maps functions of a
@@ -207,9 +207,9 @@ class _Source:
         return [*lines, *self._stop()] if checked else lines
 
     def _bools(self, state: int | None) -> list[str]:
-        """Return the code that converts the bool signals that only this state reads to 0 or 1.
+        """Return the code that makes numbers, 0 or 1, of the bool signals that only this state reads.
 
-        If ``state`` is None, it converts the bool signals that every step reads.
+        If ``state`` is None, it does so with the bool signals that every step reads.
         """
         names = map(self._printer.name, self._program.bools_read_in(state))
         return [f"var {name}: float = 1.0 if sample.{name} else 0.0" for name in names]

@@ -196,7 +196,7 @@ class CommandLine(click.Group):
 def _completion_error(error: Exception | OutOfTimeError) -> Exception | OutOfTimeError:
     """Return the error, or a usage error if it comes from a wrong :data:`COMPLETE_VARIABLE`.
 
-    Only the scripts of ``tltlc completion`` set this variable, together with others.
+    The scripts of ``tltlc completion`` set this variable together with other variables.
     """
     if os.environ.get(COMPLETE_VARIABLE) and isinstance(error, (KeyError, ValueError)):
         return click.UsageError(f"{COMPLETE_VARIABLE} is for the scripts that `tltlc completion` prints: unset it")

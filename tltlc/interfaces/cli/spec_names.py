@@ -55,7 +55,7 @@ def _files_declaring(name: str) -> Iterator[Path]:
 
 
 def _visible_sources() -> Iterator[Path]:
-    """Yield visible source files, those of the current folder first; skip pipes and devices."""
+    """Yield visible source files, first the files of the current folder; skip pipes and devices."""
     for place, folders, files in islice(walk("."), _MOST_FOLDERS):
         folders[:] = sorted(name for name in folders if not name.startswith("."))
         paths = (Path(place, name) for name in sorted(files) if name.endswith(".tltl") and not name.startswith("."))

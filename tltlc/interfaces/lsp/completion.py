@@ -284,7 +284,7 @@ def _imports(document: Document, place: Cursor) -> Iterator[types.CompletionItem
 
 
 def _libraries(document: Document) -> Iterator[types.CompletionItem]:
-    """Yield the libraries that an import finds by name, those next to the text first."""
+    """Yield the libraries that an import finds by name, first the libraries next to the text."""
     folders: dict[str, Path] = {}
     for folder in (_folder(document), *document.project.libraries, standard_library()):
         for path in _sources(folder, document):
@@ -296,7 +296,7 @@ def _libraries(document: Document) -> Iterator[types.CompletionItem]:
 
 
 def _paths(document: Document) -> Iterator[types.CompletionItem]:
-    """Yield the files next to a text, and those in the folder above."""
+    """Yield the source files next to a text, and the source files in the folder above."""
     here = _folder(document)
     for folder, prefix in ((here, ""), (here.parent, "../")):
         for path in _sources(folder, document):

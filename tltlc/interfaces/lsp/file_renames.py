@@ -28,7 +28,7 @@ def edits_of_moves(moves: Moves, workspace: Workspace) -> list[tuple[Document, l
 
 
 def may_import(text: str) -> bool:
-    """Whether a source text may import others."""
+    """Whether a source text may import files."""
     return "import" in text
 
 

@@ -183,7 +183,7 @@ class Frames:
     def _read_padding(self) -> bool:
         """Skip white space after the last bracket of a body; return whether all of it is skipped.
 
-        If anything else follows, the header was wrong.
+        If other bytes follow before that, the header was wrong: record a fault.
         """
         padding = self._buffer[: self._padding]
         blank = len(padding) - len(padding.lstrip(_WHITE))

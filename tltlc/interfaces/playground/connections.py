@@ -35,7 +35,7 @@ _INTERIM_S: Final = 0.2
 
 @record
 class Response:
-    """A response: a status, headers in addition to those that every response has, and a body."""
+    """A response: a status, a body, and the headers that not every response has."""
 
     status: HTTPStatus
     headers: Mapping[str, str]

@@ -34,8 +34,8 @@ Size = tuple[float, float]
 class StateBox:
     """A box to place: a state, with the texts over and under it.
 
-    ``width`` and ``height`` are those of the state. ``over`` and ``under`` are the heights of the
-    texts over and under the state, and ``span`` is the width of the widest text. ``below`` says
+    ``width`` and ``height`` are the size of the state. ``over`` and ``under`` are the heights of
+    the texts over and under the state, and ``span`` is the width of the widest text. ``below`` says
     whether the box is in the row of traps.
     """
 

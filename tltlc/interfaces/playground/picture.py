@@ -154,7 +154,7 @@ class _PictureText:
 
 
 def _trap(drawing: Drawing) -> int | None:
-    """Return the violated state that no edge leaves, unless it is the initial state; else None."""
+    """Return the violated state that no edge leaves; None if there is none but the initial state."""
     leaving = {edge.source for edge in drawing.edges if edge.source != edge.target}
     traps = (state.id for state in drawing.states if state.verdict == "violated" and state.id not in leaving)
     return next((state for state in traps if state), None)

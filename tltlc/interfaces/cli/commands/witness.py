@@ -91,7 +91,7 @@ def command(
 def _traces(
     moves: Moves, accepting: bool, rejecting: bool, cover: bool, settings: CompileSettings, report: Report
 ) -> list[Witness]:
-    """Find the requested traces; report those that do not exist or cannot be found."""
+    """Find the requested traces; report if a trace does not exist or cannot be found."""
     from tltlc.tools.witness import captions, traces
     from tltlc.tools.witness import cover as edge_cover
 
