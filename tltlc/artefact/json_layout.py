@@ -66,7 +66,7 @@ def _flat(value: Any, indent: int, used: int, encode: Encode) -> str | None:
     """Return the text of a value on one line; None if the value needs several lines."""
     if not isinstance(value, (dict, list)) or not value:
         return encode(value)
-    # The outermost value is always broken.
+    # The outermost value always gets several lines.
     if indent == 0 or not _is_small(value):
         return None
     flat = encode(value)

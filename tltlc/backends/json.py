@@ -21,7 +21,7 @@ def emit(fspa: Fspa, options: Options) -> Files:
         ValueError: the document does not fit the schema, which would be a bug of the compiler.
     """
     subject = f"the artefact of `{fspa.name}`"
-    # This rejects most automata that are too large before any text is built.
+    # Reject most automata that are too large already here, before any text is built.
     check_size(subject, *least_size(fspa))
     document = encode(fspa)
     validate(document)

@@ -80,7 +80,7 @@ class Protocol(LanguageServerProtocol):
         except JsonRpcException as error:
             raise JsonRpcInvalidParams("; ".join(transform_error(error.__cause__ or error))) from None
         if isinstance(structured, types.ExecuteCommandRequest) and structured.params.arguments is None:
-            # The library needs a list to count them.
+            # The library counts the arguments, so it needs a list.
             structured.params.arguments = []
         if isinstance(structured, types.DidChangeTextDocumentNotification):
             uri = structured.params.text_document.uri

@@ -253,7 +253,7 @@ class _LayoutPass:
             for index, a in enumerate(sources):
                 share = (index + 1) / (len(sources) + 1) - 0.5
                 port = x + box.width * share, y - box.height / 2
-                # The texts of other boxes in the row may reach as far up as those of this one.
+                # The texts of other boxes in the row may reach as far up as the texts of this box.
                 curves[a, target] = add_line(add_drop(paths_down[a], (port[0], port[1] - box.over)), port)
         return curves
 

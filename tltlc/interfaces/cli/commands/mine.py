@@ -334,7 +334,7 @@ def _import_line(library: SourceFile, predicates: str, path: Path) -> str:
     try:
         relative = os.path.relpath(predicates, path.parent)
     except ValueError:
-        # It is on another Windows drive.
+        # The library is on another Windows drive.
         relative = str(Path(predicates).absolute())
     target = quote(Path(relative).as_posix())
     if target is None:
