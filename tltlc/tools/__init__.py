@@ -1,1 +1,1 @@
-"""The tools over compiled specs: lint, fmt, explain, diff, witness, mine, conformance, hoa."""
+"""The tools that work on specs and automata. Each package is one tool."""

@@ -32,7 +32,10 @@ def ending(fspa: Fspa) -> str:
 
 
 def limit_text(steps: int | None, seconds: float | None) -> str:
-    """Return a sentence about the limit of an episode; None in both arguments means no limit."""
+    """Return a sentence about the limit of an episode.
+
+    ``steps`` is None if there is no limit. ``seconds`` is None if the length of a step is unknown.
+    """
     if steps is None:
         return "There is no limit."
     time = "" if seconds is None else f", {seconds:g} s"

@@ -36,10 +36,10 @@ class NextStep:
 
 @record
 class StateRow:
-    """A state: what remains to be satisfied, its verdict, its distance, and its edges to the goal.
+    """A state of the automaton. ``remains`` says what remains to be satisfied.
 
-    ``distance`` is None in a trap. :func:`~tltlc.tools.explain.next_steps.edges_leading_on` defines
-    which edges are in ``leads``.
+    ``distance`` is None in a trap. ``leads`` has the edges that lead on, as
+    :func:`~tltlc.tools.explain.next_steps.edges_leading_on` defines them.
     """
 
     id: int
@@ -95,8 +95,9 @@ class Explanation:
     differ only in a count; each state of a run leads to the next. ``judge`` is ``goal`` or
     ``limit``, and ``ending`` says what that means for this spec.
 
-    ``succeed`` and ``fail`` are None if there is no such trace, or if the search found none. Over
-    finite traces both are shortest traces, and ``fail`` ends where success is no longer possible.
+    ``succeed`` is a trace that succeeds, and ``fail`` one that fails. They are None if there is no
+    such trace, or if the search found none. Over finite traces both are as short as possible, and
+    ``fail`` ends where success is no longer possible.
     """
 
     name: str
@@ -199,7 +200,7 @@ def _states(fspa: Fspa, guards: tuple[Formula, ...]) -> tuple[StateRow, ...]:
 def _failures(fspa: Fspa, guards: tuple[Formula, ...]) -> tuple[TrapCondition, ...]:
     """Return the conditions that lead into a trap, one entry for each condition.
 
-    Conditions that apply in every undecided state come first.
+    Conditions that do so in every state that is neither satisfied nor violated come first.
     """
     violated = {state.id for state in fspa.states if state.verdict == "violated"}
     undecided = {state.id for state in fspa.states if state.verdict in ("pending", "holding")}

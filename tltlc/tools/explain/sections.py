@@ -44,7 +44,7 @@ class Section:
 
 
 def sections(explanation: Explanation) -> tuple[Section, ...]:
-    """Return the sections. The heading of the first one is the spec's name."""
+    """Return the sections of an explanation. The heading of the first one is the spec's name."""
     # Over infinite traces, the search finds short traces, but not always the shortest.
     article = "A way" if explanation.semantics == "infinite" else "The shortest way"
     return (
@@ -87,7 +87,7 @@ def _failures(explanation: Explanation) -> tuple[str | SectionList, ...]:
 def failure_texts(explanation: Explanation) -> tuple[str, ...]:
     """Return what breaks the spec for good, and in which states.
 
-    If there are more than ``_MOST_FAILURES`` failures, the last text has the number of the others.
+    If there are more than ``_MOST_FAILURES`` failures, the last text says how many are left out.
     """
     texts = [_failure_text(failure) for failure in explanation.failures[:_MOST_FAILURES]]
     rest = len(explanation.failures) - len(texts)

@@ -43,12 +43,13 @@ def _list(block: SectionList) -> Iterator[str]:
 
 
 def _table(table: SectionTable) -> Iterator[str]:
-    """Yield the lines of a table. The last two columns share the width that the others leave."""
+    """Yield the lines of a table. The last two columns share the width that is left for them."""
     rows = (table.header, *table.rows)
     widths = [max(len(row[column]) for row in rows) for column in range(len(table.header))]
     left = _WIDTH - len(_GAP) * len(widths) - sum(widths[:-2])
     if sum(widths[-2:]) > left:
-        # The last column gets what the other one leaves, or almost half, but no more than it needs.
+        # The last column gets what the one before it leaves, or almost half, but no more than it
+        # needs.
         last = min(widths[-1], max(left - widths[-2], left // 2 - _NARROWEST // 2))
         widths[-2:] = [left - last, last]
     for row in rows:

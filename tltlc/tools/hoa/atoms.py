@@ -19,14 +19,14 @@ def vocabulary_of(
 ) -> tuple[Vocabulary, FormulaOf, tuple[Diagnostic, ...]]:
     """Return the atoms of a HOA file in order, a function that resolves formulas, and warnings.
 
-    ``predicates`` maps the names of propositions to predicates of the library. The names of other
-    propositions must be predicates themselves. The function resolves a syntax tree over the library
-    to a formula, or to None.
+    ``predicates`` maps the names of propositions to predicates of the library. A proposition that
+    is not in ``predicates`` must itself have the name of a predicate. The returned function takes a
+    syntax tree. It returns the formula, or None if the tree is not a formula over the library.
 
     Raises:
-        TltlError: the errors of the library; TLT0655 if a proposition is not an atom or is the same
-            atom as another proposition, or if ``predicates`` has a proposition that the file does not
-            have; any other error in the formula of a proposition.
+        TltlError: the errors of the library and of the predicates; TLT0655 if a proposition is not
+            an atom, if two propositions are the same atom, or if ``predicates`` names a proposition
+            that the file does not have.
     """
     module, diagnostics = parse(library)
     stop_at_errors(diagnostics)
@@ -53,8 +53,11 @@ def vocabulary_of(
 def _by_proposition(hoa: Hoa, options: Mapping[str, str]) -> dict[str, str]:
     """Return a dict from the names of propositions in the file to predicates.
 
-    The command line splits ``NAME=PREDICATE`` at the first ``=``, but a name may contain ``=``. So
-    this takes the longest name of a proposition that matches.
+    ``options`` has the two parts of each ``--atom NAME=PREDICATE``, which the command line splits
+    at the first ``=``. A name may contain ``=`` itself. So this function joins the parts, and
+    splits them after the longest name in the file with which the whole text begins.
+
+    Raises TltlError, TLT0655, if the text begins with no name in the file.
     """
     names = {atom.text for atom in hoa.atoms}
     by_proposition: dict[str, str] = {}
@@ -79,10 +82,10 @@ def _unknown(hoa: Hoa, name: str) -> Diagnostic:
 
 
 def _with_places_in_file(message: Diagnostic, starts: Mapping[str, int], source: SourceFile) -> Diagnostic:
-    """Return a diagnostic about the name of a proposition with its labels moved into the file.
+    """Return a diagnostic with its labels moved to the proposition in the file, and help for it.
 
     ``starts`` maps the name of the source of each proposition to the offset in the file at which the
-    proposition begins.
+    proposition begins. A diagnostic about anything else is returned unchanged.
     """
     if not message.labels or message.labels[0].source.name not in starts:
         return message
@@ -94,7 +97,8 @@ def _with_places_in_file(message: Diagnostic, starts: Mapping[str, int], source:
         return replace(label, source=source, span=Span(label.span.start + start, label.span.end + start))
 
     mapped = f'say which predicate it is: `--atom "{message.labels[0].source.text.strip()}=…"`'
-    # Only these help texts fit a proposition; others are for the author of a formula.
+    # Only the help texts of these codes fit a proposition; the rest are for the author of a
+    # formula.
     own_help = message.help if message.code in ("TLT0201", "TLT0655") else None
     help_ = f"{own_help}; or {mapped}" if own_help else mapped
     return replace(message, labels=tuple(map(place_in_file, message.labels)), help=help_)

@@ -27,11 +27,14 @@ _MOST_PROBLEMS: Final = 5
 """The most errors that are reported about states that are not deterministic or not complete."""
 
 Moves = dict[int, int]
-"""For each reachable state, the node of its function from letters to moves, in the diagrams."""
+"""A dict from the number of each reachable state to its moves.
+
+The moves are a function from letters to moves, given by its node in the decision diagrams.
+"""
 
 
 class FiniteAnalysis:
-    """The successors (``targets``) and the verdicts of states, over finite traces.
+    """The successors (``targets``) and the verdicts of an automaton's states, over finite traces.
 
     ``goals`` are the accepting states.
     """
@@ -45,11 +48,14 @@ class FiniteAnalysis:
         self._verdicts = verdicts(self.targets, distances(self.targets, goals.__contains__), goals.__contains__)
 
     def verdict(self, state: int) -> Verdict:
-        """Return the verdict of a trace that ends in a state."""
+        """Return the verdict of a state."""
         return self._verdicts[state]
 
     def default_judge(self) -> Judge:
-        """Return ``limit`` if the initial state is accepting, else ``goal``."""
+        """Return the judge for a file that names none.
+
+        It is ``limit`` if the initial state is accepting, else ``goal``.
+        """
         return "limit" if 0 in self.goals else "goal"
 
 
@@ -58,12 +64,13 @@ def automaton_of(
 ) -> tuple[Rabin, Analysis | FiniteAnalysis]:
     """Return the automaton of a file, and its analysis. The file must have passed ``check``.
 
-    ``atoms`` has the names of the atoms of the file, followed by any further atoms. At most one atom
-    of each group of ``exclusive`` holds at a time. The labels of states are their numbers in the
-    file. States with the same behaviour are merged.
+    ``atoms`` are names of atoms; it begins with those of the file. At most one atom of each group
+    of ``exclusive`` holds at a time. The labels of states are their numbers in the file. States
+    with the same behaviour are merged.
 
     Over infinite traces, the acceptance condition of each strongly connected component is converted
-    to Rabin pairs. This adds states if no pairs over the existing states express the condition.
+    to Rabin pairs. The conversion adds states if no pairs over the existing states express the
+    condition.
 
     Raises:
         TltlError: TLT0651 if a label is wrong; TLT0653 if the automaton is not deterministic;
@@ -77,7 +84,7 @@ def automaton_of(
 
 
 def _moves(hoa: Hoa, transitions: HoaTransitions, state_budget: int) -> Moves:
-    """Return the moves of the states that can be reached. Errors are as in :func:`automaton_of`."""
+    """Return the moves of all reachable states. The errors are those of :func:`automaton_of`."""
     states = {state.number: state for state in hoa.states}
     queue = list(hoa.starts[0].states)
     moves: Moves = {}
@@ -146,6 +153,9 @@ def _infinite_automaton(hoa: Hoa, moves: Moves, letters: Diagrams[Any]) -> tuple
 
 
 def _piece(letters: Diagrams[Any], component: ComponentAutomaton) -> RabinComponent:
-    """Return a component with Rabin pairs: those of the file, unless fewer pairs are found."""
+    """Return the component with Rabin pairs for its clauses.
+
+    If the clauses are pairs already, keep them, unless the conversion needs fewer pairs.
+    """
     best, unchanged = with_pairs(letters, component, letters.work), clauses_as_pairs(letters, component)
     return unchanged if unchanged is not None and unchanged.pairs <= best.pairs else best

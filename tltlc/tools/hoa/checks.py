@@ -20,10 +20,10 @@ def check(hoa: Hoa) -> None:
     """Raise TltlError for the first problem of a file.
 
     Raises:
-        TltlError: TLT0651, a state or an acceptance set does not exist, or a state or the name of an
-            atom occurs twice; TLT0652, the automaton does not have exactly one initial state, it is
-            alternating, its header :data:`FINITE` does not fit, or an unknown header changes its
-            meaning.
+        TltlError: TLT0651 if a state or an acceptance set does not exist, or if a state or the name
+            of an atom occurs twice; TLT0652 if the automaton is alternating or does not have
+            exactly one ``Start:`` header, if the header :data:`FINITE` has a wrong value or
+            contradicts the acceptance, or if an unknown header changes the meaning of the file.
     """
     _check_condition(hoa, hoa.condition)
     for header in hoa.headers:
@@ -42,7 +42,11 @@ def is_finite(hoa: Hoa) -> bool:
 
 
 def _check_header(hoa: Hoa, header: Header) -> None:
-    """Check a header. By the format, an unknown header that begins in upper case must not be ignored."""
+    """Check a header that has no field in :class:`~tltlc.tools.hoa.tree.Hoa`.
+
+    Raises TltlError, TLT0652. The format allows a reader to ignore an unknown header only if its
+    name begins in lower case.
+    """
     if header.name == FINITE and header.values == ("finite",):
         if (hoa.sets, hoa.condition.op, hoa.condition.outside) != (1, "inf", False):
             title = "over finite traces a state accepts or does not: `Acceptance: 1 Inf(0)`"

@@ -13,9 +13,10 @@ class Acceptance:
     """An acceptance condition in disjunctive normal form, as ``clauses`` over marks.
 
     Each different ``Fin`` or ``Inf`` of the condition has a number, its mark. An edge carries the
-    mark if it is in the set, or for ``Fin(!0)`` and ``Inf(!0)``, if it is not.
+    mark of ``Fin(0)`` or ``Inf(0)`` if the edge is in set 0. It carries the mark of ``Fin(!0)`` or
+    ``Inf(!0)`` if it is not in set 0.
 
-    Raises :class:`~tltlc.automaton.work.OutOfWork` if there are too many clauses.
+    Raises :class:`~tltlc.automaton.work.OutOfWork` if the clauses take more work than is left.
     """
 
     def __init__(self, hoa: Hoa, work: Work) -> None:

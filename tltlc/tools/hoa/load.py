@@ -41,13 +41,14 @@ from tltlc.resolve.spec import Judge
 
 @record
 class ImportOptions:
-    """The information that a HOA file does not contain.
+    """What :func:`load` needs besides a HOA file and a library.
 
-    ``atoms`` maps the names of atomic propositions to predicates; the names of other propositions
-    must be predicates themselves. ``name`` is the name of the spec. By default, it is the ``name:`` of
-    the file if that is a plain name, and otherwise the name of the file. ``level``, ``limit_steps``
-    and ``judge`` are as in :class:`~tltlc.resolve.spec.Spec`. ``resolve`` has the options for the
-    library. ``state_budget`` is the most states, and ``work`` the most steps of work.
+    ``atoms`` maps the names of atomic propositions to predicates. A proposition that is not in
+    ``atoms`` must itself have the name of a predicate. ``name`` is the name of the spec. Without
+    it, the header ``name:`` gives the name if that is a plain name, else the name of the file does.
+    ``level``, ``limit_steps`` and ``judge`` are as in :class:`~tltlc.resolve.spec.Spec`, and have
+    precedence over the headers of the file. ``resolve`` has the options for the library. The
+    automaton may have ``state_budget`` states, and its computation may take ``work`` steps.
     """
 
     atoms: Mapping[str, str] = EMPTY
@@ -142,9 +143,8 @@ def _name(hoa: Hoa) -> str:
 def _state_names(hoa: Hoa, numbers: Sequence[int]) -> list[str]:
     """Return a name for each state of the automaton.
 
-    ``numbers`` are the states' numbers in the file.
-
-    States that come from the same state of the file are counted: "state 3 (1 of 2)".
+    ``numbers`` has, for each state of the automaton, the number of its state in the file. States
+    that come from the same state of the file are counted: "state 3 (1 of 2)".
     """
     names = {state.number: state.name or f"state {state.number}" for state in hoa.states}
     totals, counts = Counter(numbers), Counter[int]()
@@ -160,7 +160,7 @@ def _label(name: str, formula_of: FormulaOf) -> Formula | Text:
     """Return a name as a formula if that formula is printed exactly like the name, else as text."""
     expression, _ = parse_formula(SourceFile("<name>", name))
     formula = None if expression is None else formula_of(expression)
-    # Operators of other tools may have other precedences.
+    # Compare, because the tool that wrote the name may give its operators other precedences.
     if formula is not None and ascii_text(formula) == name:
         return formula
     return Text(name.encode("ascii", "backslashreplace").decode(), name, name)

@@ -14,7 +14,10 @@ _LARGEST: Final = 10**9
 
 @record
 class Metadata:
-    """The values of tltlc's headers, as in :class:`~tltlc.resolve.spec.Spec`; None if missing."""
+    """The values of tltlc's headers; None if a header is missing.
+
+    The fields mean the same as in :class:`~tltlc.resolve.spec.Spec`.
+    """
 
     judge: Judge | None = None
     limit_steps: int | None = None

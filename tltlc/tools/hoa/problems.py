@@ -12,13 +12,16 @@ DETERMINISTIC: Final = "make it deterministic and complete first, e.g. with Spot
 
 
 def format_error(source: SourceFile, span: Span, title: str, help_: str = FORMAT, remark: str = "") -> TltlError:
-    """Return the error TLT0651: the text does not follow the format. ``remark`` labels ``span``."""
+    """Return the error TLT0651: the text does not follow the format.
+
+    ``remark`` is the text of the label at ``span``.
+    """
     return TltlError([Diagnostic("TLT0651", title, (Label(source, span, remark),), help_)])
 
 
 def unsupported_error(source: SourceFile, span: Span, title: str, help_: str, remark: str = "") -> TltlError:
     """Return the error TLT0652: tltlc cannot read this kind of automaton.
 
-    ``remark`` labels ``span``.
+    ``remark`` is the text of the label at ``span``.
     """
     return TltlError([Diagnostic("TLT0652", title, (Label(source, span, remark),), help_)])

@@ -31,7 +31,7 @@ _NAMES: Final = {
     "STRING": "a text in double quotes",
     "VERSION": "a version as `v1`",
 }
-"""What messages call the terminals that are patterns."""
+"""What messages call each terminal of the grammar that matches a pattern."""
 _MOST_EXPECTED: Final = 5
 _LONGEST_SHOWN: Final = 40
 
@@ -62,7 +62,10 @@ def read_hoa(source: SourceFile) -> Hoa:
 
 
 def _cause(error: VisitError) -> Exception:
-    """Return the original error. It may be wrapped several times, because labels are parsed separately."""
+    """Return the error that a method of :class:`_Tree` raised, which Lark has wrapped.
+
+    The error is wrapped twice if it is about a label, because labels are parsed separately.
+    """
     cause: Exception = error
     while isinstance(cause, VisitError):
         cause = cause.orig_exc
@@ -107,7 +110,7 @@ def _without_comments(source: SourceFile) -> str:
 def _syntax_error(source: SourceFile, error: UnexpectedInput, whole: Span, at_end: str) -> TltlError:
     """Return the error for a part of the text that cannot be parsed.
 
-    ``whole`` is the span of the part. ``at_end`` is what messages call whatever follows the part.
+    ``whole`` is the span of the part. ``at_end`` is what messages call the end of the part.
     """
     if not isinstance(error, UnexpectedToken):
         start = whole.start + (error.pos_in_stream or 0)
@@ -173,7 +176,7 @@ class _Tree(Transformer_NonRecursive[Token, Hoa]):
         """The offset in the file at which the parsed text begins: not 0 for a label."""
 
     def automaton(self, version: Token, *items: Any) -> Hoa:
-        """Build the whole automaton."""
+        """Build the whole automaton. Raises TltlError, TLT0651, if the header is wrong."""
         if version != "v1":
             help_ = "this reads version 1 of the format, `HOA: v1`"
             raise format_error(self._source, self._span(version), f"`{_shorten(version)}` is no version known", help_)
@@ -231,7 +234,7 @@ class _Tree(Transformer_NonRecursive[Token, Hoa]):
         return "name:", text, self._span(word)
 
     def header(self, name: Token, *values: Token) -> Any:
-        """Read any other header item, e.g. ``acc-name: Buchi``."""
+        """Read a header item that no other method reads, e.g. ``acc-name: Buchi``."""
         return "", Header(str(name), tuple(map(_as_text, values)), self._span(name)), self._span(name)
 
     # The methods for the body.
@@ -248,7 +251,10 @@ class _Tree(Transformer_NonRecursive[Token, Hoa]):
         return HoaEdge(self._label(label), targets, sets)
 
     def _label(self, label: Token | None) -> HoaExpression | None:
-        """Parse a label in square brackets. Equal labels share one term, with the spans of the first."""
+        """Parse a label in square brackets.
+
+        Equal labels share one expression, with the spans of the first label.
+        """
         if label is None:
             return None
         if label not in self._labels:

@@ -1,6 +1,6 @@
-"""Combine the edges of a state into one function of the letter.
+"""Combine the edges of a state into one function from letters to moves.
 
-The edges must be deterministic and complete.
+The edges must be deterministic and complete: each letter takes exactly one edge.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ Move = tuple[int, frozenset[int]]
 """Where a letter leads: the target state, and the acceptance sets of the edge and its source."""
 
 NOT_ALLOWED: Final = None
-"""The value of functions for the letters that ``exclusive`` declarations rule out."""
+"""The value of a function from letters, at each letter that ``exclusive`` declarations rule out."""
 
 
 class HoaTransitions:
@@ -68,7 +68,8 @@ class HoaTransitions:
     def _labelled_edges(self, state: HoaState) -> int:
         """Return a function from letters to the positions of the edges that they take.
 
-        A letter is mapped to two positions at most: two show that the state is not deterministic.
+        Two positions show that the state is not deterministic, so no letter is mapped to more than
+        two. A duplicate of an edge does not count.
         """
         letters = self._letters
         edges = letters.leaf(())
@@ -85,10 +86,12 @@ class HoaTransitions:
         return edges
 
     def _unlabelled_edges(self, state: HoaState) -> int:
-        """Return a function from letters to the position of the edge, for edges without labels.
+        """Return a function from each letter to the position of its edge, for edges without labels.
 
         The first edge is for the letter without atoms, the next edge for the letter with atom 0 only,
         and so on: bit i of the position says whether atom i holds.
+
+        Raises TltlError, TLT0651, if the state does not have one edge for each letter.
         """
         count, letters = len(self._hoa.atoms), self._letters
         # The message says 2^count: Python refuses to print numbers of thousands of digits.
