@@ -1,4 +1,7 @@
-"""The formatter: one layout for every source text, with operators in one of four styles."""
+"""The formatter: one layout for every source text, with operators in one of four styles.
+
+Begin with :mod:`tltlc.tools.fmt.format`.
+"""
 
 from tltlc.tools.fmt.format import format_source as format_source
 from tltlc.tools.fmt.format import format_text as format_text

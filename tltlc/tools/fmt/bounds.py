@@ -1,4 +1,4 @@
-"""Convert bounds between words and brackets if both mean exactly the same."""
+"""Convert a bound from words to brackets, or back, if both forms mean exactly the same."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def bound_forms(node: tree.Unary, number: Callable[[tree.NumberExpr], str]) -> d
     Words look like ``within 3 steps``, and brackets like ``[0,3]``. The result is empty without a
     bound, and has one form if the other cannot express the bound. ``for 3 steps`` counts samples, and
     ``[0,2]`` names the last one. A time is rounded up to samples, so no brackets equal ``for`` with
-    a time. ``after`` has no brackets. ``number`` returns the text of a number.
+    a time. ``after`` has no form in brackets. ``number`` returns the text of a number.
     """
     bound = node.bound
     if bound is None:
@@ -41,7 +41,7 @@ def bound_forms(node: tree.Unary, number: Callable[[tree.NumberExpr], str]) -> d
 
 
 def _in_brackets(op: str, high: tree.NumberExpr, text: str) -> str | None:
-    """Return the end in brackets that equals ``within`` or ``for`` with this bound, or None."""
+    """Return the ``high`` of the brackets ``[0,high]`` that equal ``within`` or ``for``, or None."""
     if high.unit not in _STEPS:
         return text if op == "F" else None
     count = text.partition(" ")[0]

@@ -18,7 +18,10 @@ _AMOUNT: Final = re.compile(r"(<=|>=|[<>≤≥])\s*([0-9.eE+-]+)\s*(\S*)\Z")
 
 
 class DeclarationPrinter:
-    """Writes the declarations of a source on a page. No line begins at an offset in ``joints``."""
+    """Writes the declarations of a source on a page.
+
+    ``joints`` are offsets in the source. The text at a joint does not begin a line.
+    """
 
     def __init__(self, source: SourceFile, page: Page, one_line: OneLinePrinter, joints: Set[int]) -> None:
         self._source = source

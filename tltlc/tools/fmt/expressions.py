@@ -34,8 +34,8 @@ class Item(NamedTuple):
 class Expressions:
     """Writes expressions of a source on a page.
 
-    ``indent`` is the column at which further lines begin. ``reserved`` is the number of columns to
-    leave free at the end of the last line.
+    In the methods, ``indent`` is the column at which each line after the first begins, and
+    ``reserved`` is the number of columns to leave free at the end of the last line.
     """
 
     def __init__(self, page: Page, one_line: OneLinePrinter) -> None:
@@ -196,17 +196,20 @@ class Expressions:
     # --- items of lists -------------------------------------------------------------------------
 
     def _put_lines(self, items: Sequence[Item], indent: int) -> None:
-        """Write each item on a line. The further lines of a single item are not indented."""
+        """Write each item on a line. If an item takes several lines, indent them after the first.
+
+        If there is only one item, do not indent them.
+        """
         for place, item in enumerate(items):
             self._page.put_comments(item.span.start, indent)
             self._page.end_line(indent)
             self._put_item(item, indent + STEP if len(items) > 1 else indent, "," if place < len(items) - 1 else "")
 
     def _put_hugging(self, items: Sequence[Item], indent: int) -> None:
-        """Write the items one after another, with the only large one broken inside its brackets."""
+        """Write the items one after another. Break the only large one inside its brackets."""
         for place, item in enumerate(items):
             comma = ", " if place < len(items) - 1 else ""
-            # The brackets are broken even if they would fit on their own.
+            # Reserve a whole line, so that the large item is broken even if it fits.
             self._put_item(item, indent, comma, 0 if _is_simple(item.value) else WIDTH)
 
     def _put_item(self, item: Item, indent: int, comma: str, reserved: int = 0) -> None:
@@ -239,7 +242,7 @@ class Expressions:
         return ", ".join(texts)
 
     def _is_hugged(self, items: Sequence[Item], end: int, room: int) -> bool:
-        """Whether the only large item shares lines with the brackets, as in ``clamp(min(``."""
+        """Whether just one item is large, and its brackets fit on the line, as in ``clamp(min(``."""
         large = [item.value for item in items if not _is_simple(item.value)]
         if len(large) != 1 or not isinstance(large[0], (tree.CallExpr, tree.GroupExpr)):
             return False

@@ -21,7 +21,10 @@ _GAP: Final = 2
 """The number of blanks between a line and the comment after it."""
 
 _OPENERS: Final = ("{", "(", ":", "=")
-"""Ends of lines whose comments are about several lines, so they are not aligned with later ones."""
+"""A comment after a line with one of these ends is not aligned with the comments below it.
+
+It is about several lines, not about one.
+"""
 
 
 class Page:

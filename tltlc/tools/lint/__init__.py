@@ -1,4 +1,4 @@
-"""Lint rules for specs that compile but may not mean what their author intended. Some have a fix.
+"""Lint rules for specs that compile but may not mean what their author intended.
 
-Each rule is a module in :mod:`tltlc.tools.lint.rules`.
+Each rule is a module in :mod:`tltlc.tools.lint.rules`. :mod:`tltlc.tools.lint.run` runs them.
 """

@@ -28,9 +28,12 @@ _LIKE_ALLOW: Final = re.compile(r"//+\s*tltlc\s*:\s*(?:allow\b|\w+\s+TLT[0-9]{4}
 def apply_allow_comments(view: View, findings: Iterable[LintFinding]) -> list[LintFinding]:
     """Return the findings that no comment silences, plus findings about the comments themselves.
 
-    A comment silences findings in its own file. Each code that a comment of the linted file allows,
-    but that silences nothing, gets a finding, unless the comment also allows TLT0427. Each comment
-    that names no code or is misspelt gets a finding, too.
+    A comment silences findings in its own file. In the linted file, there is a finding for
+
+    - each code that a comment allows, but that silences nothing. There is none if the comment also
+      allows TLT0427, or applies to one of :class:`_SettledSpecs`;
+    - each comment that names no code;
+    - each comment that is probably a misspelt ``allow`` comment.
     """
     comments = AllowIndex(loaded.module for loaded in view.modules)
     remaining = [finding for finding in findings if not comments.silences(finding.diagnostic)]
@@ -62,7 +65,8 @@ def apply_allow_comments(view: View, findings: Iterable[LintFinding]) -> list[Li
 class _SettledSpecs:
     """The specs that every trace satisfies or no trace satisfies.
 
-    Most rules skip these specs, so a comment on one of them may silence a finding later.
+    Most rules skip these specs. So a comment on such a spec may silence a finding once the spec is
+    corrected, even if it silences nothing now.
     """
 
     def __init__(self, view: View) -> None:

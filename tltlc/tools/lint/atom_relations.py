@@ -35,8 +35,8 @@ class _DeclaredSignals:
 def relations(spec: SpecView, names: Collection[str]) -> tuple[Conjunct, ...]:
     """Return the proved relations between the atoms ``names``, as clauses to add to the spec.
 
-    Each has the form ``G !(p & q)``, where p and q are atoms or negated atoms over common signals
-    that never hold together.
+    Each has the form ``G !(p & q)``: p and q never hold together. Both are atoms or negated atoms,
+    and they have a signal in common.
     """
     formulas = (always(not_(pair)) for pair in _impossible_pairs(spec, names))
     return tuple(Conjunct(formula, spec.spec.source, spec.spec.name_span) for formula in formulas)
@@ -74,7 +74,7 @@ def _never_hold_together(pair: tuple[Atom, Atom], signs: tuple[bool, ...], decla
 
 
 def _is_simple(candidate: Atom) -> bool:
-    """Whether the expression of an atom is small and linear in signals and params."""
+    """Whether the expression of an atom is small and piecewise linear in signals and params."""
     count = 0
     for count, node in enumerate(nodes(candidate.expression), start=1):
         if count > _MOST_NODES or isinstance(node, When) or (isinstance(node, Op) and not _is_linear(node)):

@@ -48,9 +48,9 @@ class Expression:
         return " ".join(self.source.slice(without_brackets(self.tree).span).split())
 
     def with_tree(self, tree: Expr) -> Expression:
-        """Return a part of this expression, with the same environment.
+        """Return the part ``tree`` of this expression, with the same environment.
 
-        The part must not be inside a quantifier of this expression: use :meth:`parts` for those.
+        ``tree`` must not be inside a quantifier: :meth:`parts` yields the parts in there.
         """
         return Expression(tree, self.env)
 

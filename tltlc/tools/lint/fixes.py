@@ -54,9 +54,10 @@ def fixes_of_findings(findings: Iterable[LintFinding], module: Module) -> Iterat
 
 
 def fixes_of_errors(diagnostics: Iterable[Diagnostic], source: SourceFile, errors: ErrorFinder) -> Iterator[OfferedFix]:
-    """Yield the fixes of diagnostics that leave fewer errors in the text.
+    """Yield each fix that leaves fewer errors in the text ``source``.
 
-    Diagnostics about other files are left out. ``errors`` checks a text before and after each fix.
+    Only fixes of the first ``_MOST_ERRORS`` diagnostics are tried, and only if the diagnostic is
+    about ``source``. ``errors`` finds the errors of the text before and after each fix.
     """
     candidates = [
         OfferedFix(diagnostic, fix)

@@ -26,7 +26,7 @@ def goals(spec: SpecView) -> Iterator[Expression]:
 def conjuncts(goal: Expression) -> list[Expression]:
     """Return the conjuncts of a goal, in order.
 
-    For `all`, these are the conjuncts of the body for each entity.
+    The conjuncts of an `all` quantifier are those of its body, once for each entity.
     """
     parts: list[Expression] = []
     for tree in walk.conjuncts(goal.tree):

@@ -15,9 +15,9 @@ from tltlc.grammar.tree import Comment
 def removal_span(source: SourceFile, span: Span, comments: Sequence[Comment] = ()) -> Span:
     """Return the span to delete in order to remove a declaration, clause or comment.
 
-    The result includes the documentation above ``span``. If nothing else is on its lines, it also
-    includes the line ends, and the empty line below if there is one above, too. ``comments`` are
-    those of the module.
+    The result includes the documentation above ``span``. If its lines contain nothing else, or only
+    a comment at the end, the result has the whole lines. If an empty line is above and below these
+    lines, it also has the empty line below. ``comments`` are those of the module.
     """
     text = source.text
     start, end = documentation_start(source, span.start, comments), span.end
@@ -38,9 +38,10 @@ def removal_span(source: SourceFile, span: Span, comments: Sequence[Comment] = (
 
 
 def item_removal_spans(spans: Sequence[Span], index: int, comments: Sequence[Comment]) -> tuple[Span, ...]:
-    """Return the span that removes an item from a list of at least two items, with one comma.
+    """Return the span to delete in order to remove the item at ``index`` from a list.
 
-    The tuple is empty if removing the item would delete a comment.
+    ``spans`` are the spans of the items, at least two. The result includes one comma. It is empty
+    if the deletion would remove a comment.
     """
     removed = Span(spans[index - 1].end, spans[index].end) if index else Span(spans[0].start, spans[1].start)
     return () if any(removed.start <= comment.span.start < removed.end for comment in comments) else (removed,)

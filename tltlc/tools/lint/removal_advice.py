@@ -23,8 +23,9 @@ def removal_help(part: Conjunct, remaining: Sequence[Conjunct], spec: SpecView) 
 def changes_judge(part: Conjunct, remaining: Sequence[Conjunct], spec: SpecView) -> bool:
     """Whether removing ``part``, which leaves ``remaining``, changes when the spec is judged.
 
-    A spec is judged at its limit if each of its conjuncts alone would be. So removing such a
-    conjunct changes nothing.
+    False if the spec has a ``judge`` clause, or is over infinite traces. Also False if ``part``
+    alone would be judged at its limit: a spec is judged at its limit if each of its conjuncts alone
+    would be, so the removal changes nothing.
     """
     if spec.spec.judge is not None or spec.spec.semantics == "infinite":
         return False

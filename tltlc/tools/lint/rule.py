@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 class Remark:
     """What a rule reports, with fields as in :class:`~tltlc.diagnostics.diagnostic.Diagnostic`.
 
-    The runner adds the code and the severity of the rule. A fix must not change the meaning of any
-    spec in the file.
+    :func:`~tltlc.tools.lint.run.findings` adds the code and the severity of the rule. A fix must
+    not change the meaning of any spec in the file.
     """
 
     title: str
@@ -50,7 +50,10 @@ class LintFinding:
 
     @property
     def fix(self) -> tuple[Edit, ...]:
-        """The edits of the first safe fix, or (). A safe fix changes the meaning of no spec."""
+        """The edits of the first safe fix, or () if there is none.
+
+        A safe fix changes the meaning of no spec.
+        """
         return next((fix.edits for fix in self.diagnostic.fixes if fix.applicability == "safe"), ())
 
 

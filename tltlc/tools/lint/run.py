@@ -31,7 +31,8 @@ def lint(
     :func:`apply_levels` explains ``levels``.
 
     Raises:
-        TltlError: all diagnostics, as in :func:`tltlc.pipeline.compile_source`.
+        TltlError: all diagnostics, if the file does not compile, as in
+            :func:`tltlc.pipeline.compile_source`.
     """
     return findings(replace(view_of(source, options or CompileOptions()), used_elsewhere=used_elsewhere), levels)
 
@@ -39,13 +40,13 @@ def lint(
 def findings(view: View, levels: Mapping[str, str] = EMPTY) -> tuple[LintFinding, ...]:
     """Return the findings of the compiler and of all rules, in the order of the text.
 
-    Findings that comments or ``levels`` silence are left out. A finding that is left
-    supersedes others, as its rule says, if their severity is not higher than its own.
+    Findings that comments or ``levels`` silence are left out. So are findings that a more specific
+    one of these findings supersedes; :class:`~tltlc.tools.lint.rule.LintRule` says which.
     """
     all_findings = [LintFinding(diagnostic) for diagnostic in view.diagnostics]
     supersedes: dict[str, tuple[str, ...]] = {}
     for rule in rules():
-        # A rule looks at the body of a quantifier once for each entity, and reports the same for all.
+        # Drop duplicates: a rule sees the body of a quantifier once for each entity.
         all_findings += dict.fromkeys(_rule_findings(rule, view))
         supersedes[rule.code] = rule.supersedes
     unsilenced = apply_levels(apply_allow_comments(view, all_findings), levels)
@@ -101,9 +102,10 @@ def _rule_findings(rule: LintRule, view: View) -> Iterator[LintFinding]:
 
 
 def _is_superseded(diagnostic: Diagnostic, superseding: Iterable[Diagnostic]) -> bool:
-    """Whether a diagnostic in ``superseding`` makes this one superfluous.
+    """Whether one of the diagnostics in ``superseding`` makes ``diagnostic`` superfluous.
 
-    Its severity must be at least as high, and a label of this one must cover its first label.
+    That one has at least the severity of ``diagnostic``, and its first label is inside a label of
+    ``diagnostic``.
     """
     places = [
         candidate.labels[0] for candidate in superseding if _RANKS[candidate.severity] >= _RANKS[diagnostic.severity]

@@ -32,9 +32,9 @@ def apply_edits(source: SourceFile, edits: Iterable[Edit]) -> SourceFile:
 def preserve_scopes(module: Module, edits: Sequence[Edit]) -> tuple[Edit, ...] | None:
     """Return the edits, adjusted so that each remaining comment applies to the same statements.
 
-    Comments that apply only to removed statements are removed, too. An edit that would delete
-    another comment is split around it. Such a comment applies to the whole file, or to another
-    statement on the same line.
+    A comment that applies only to removed statements is removed, too. A comment that applies to the
+    whole file, or also to another statement on its line, is kept: an edit that would delete it is
+    split around it.
 
     Returns None if a remaining comment would apply to other statements than before. For example,
     when the first declaration of a file is removed, a comment on the next one can become a comment

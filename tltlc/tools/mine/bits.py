@@ -3,7 +3,7 @@
 So a question about every trace, such as "where does `a` hold for the first time?", takes a few
 operations on one integer. The integer has a segment for each trace, and all segments have the same
 number of bytes. The lowest bit of a segment is for the first sample of its trace. The highest bit
-is for none, so that carries and borrows do not reach the next segment.
+belongs to no sample, so that carries and borrows do not reach the next segment.
 """
 
 from __future__ import annotations

@@ -18,9 +18,9 @@ _MOST_NAMED: Final = 4
 
 @record
 class Columns:
-    """The columns of a trace: each name with whether all its values are `true` or `false`.
+    """The columns of a trace. ``trace`` is its name.
 
-    ``trace`` is the name of the trace.
+    ``columns`` maps the name of each column to True if all its values are `true` or `false`.
     """
 
     trace: str

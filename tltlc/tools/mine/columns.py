@@ -13,7 +13,8 @@ Row = Sequence[tuple[str, bool]]
 def columns(data: bytes, name: str) -> dict[str, bool]:
     """Return the columns of a trace in order, each with whether all its values are 0, 1, true or false.
 
-    ``name`` is the name of the trace in messages.
+    ``name`` is the name of the trace in messages. A column that is missing in some sample is left
+    out.
 
     Raises:
         TltlError: TLT0622, a line cannot be read.

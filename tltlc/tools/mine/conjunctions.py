@@ -52,7 +52,7 @@ def _pool(clauses: Sequence[MinedClause]) -> list[MinedClause]:
     """Return the first clauses of each template, in order.
 
     Without a limit for each template, many good clauses of one template would leave no room for
-    others.
+    the other templates.
     """
     counts: dict[str, int] = {}
     pool = []
@@ -90,7 +90,10 @@ def best_candidates(
 
 
 def _all_needed(conjunction: Conjunction, accepts: Verdicts, bits: Bits) -> bool:
-    """Whether the conjunction would accept a further counterexample without any of its clauses."""
+    """Whether each clause rejects a counterexample that the rest of the conjunction accepts.
+
+    ``accepts`` are the traces that the whole conjunction accepts.
+    """
     accepted_by_rest = (
         accepted_traces((clause for clause in conjunction if clause is not dropped), bits) for dropped in conjunction
     )

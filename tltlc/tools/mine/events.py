@@ -18,8 +18,8 @@ def best_events(evidence: Evidence, events: Sequence[str], most: int = MOST_EVEN
     """Return the ``most`` atoms of ``events`` that best separate traces from counterexamples.
 
     An atom separates them well if it first holds early in the traces and late in the
-    counterexamples, or the other way round, or if it holds at every sample of only one of the two.
-    The order of ``events`` is kept.
+    counterexamples, or the other way round. It also does so if it holds at every sample of the
+    traces, but not of the counterexamples, or the other way round. The order of ``events`` is kept.
     """
     if len(events) <= most:
         return list(events)
@@ -48,8 +48,8 @@ def _first_samples(trace: LabelledTrace) -> dict[str, float]:
 def _separation(values: Sequence[float], good: int) -> float:
     """Return Youden's index, in [0, 1], of the best threshold on the values.
 
-    The threshold is to separate the first ``good`` values from the others. 1 means that it
-    separates all of them.
+    The threshold is to separate the first ``good`` values from the rest. The index is 1 if it
+    separates all of them, and 0 if there are no values but the first ``good``.
     """
     bad = len(values) - good
     if not bad:

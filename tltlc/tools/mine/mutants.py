@@ -28,9 +28,13 @@ Run = tuple[Letter, int]
 def with_mutants(traces: Sequence[LabelledTrace]) -> Evidence:
     """Return the traces with generated counterexamples, which do not depend on the order of traces.
 
-    A trace is mutated in these ways: it is cut before the last sample at which an atom becomes true;
-    its runs of equal samples are shuffled; two of the runs are swapped; an atom that holds somewhere
-    never holds; an atom that holds at every sample of all traces fails at one sample.
+    A trace is mutated in these ways:
+
+    - it is cut before the last sample at which an atom becomes true;
+    - its runs of equal samples are shuffled;
+    - two of these runs are swapped;
+    - an atom that holds at some of its samples never holds;
+    - an atom that holds at every sample of all traces fails at one sample.
     """
     random = Random(_SEED)
     good = {trace.letters for trace in traces}

@@ -113,7 +113,7 @@ class SpecSearch:
         return chosen
 
     def _events(self) -> list[str]:
-        """Return the atoms that hold throughout too few traces for a proposal `keep ATOM`."""
+        """Return the atoms for which too few traces satisfy `keep ATOM`."""
         bits = self.bits
         return [
             name

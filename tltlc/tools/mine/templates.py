@@ -25,9 +25,10 @@ _LEAST_TRIGGERED: Final = 3
 def clauses(forwards: Bits, backwards: Bits, events: Collection[str], least: int) -> Iterator[list[MinedClause]]:
     """Yield every instance of the templates that is not vacuous in all traces, in small portions.
 
-    Clauses about two atoms use only ``events``: for an atom that always holds, `keep` is enough.
-    The work grows with the square of the number of events, so the caller limits them. The bound of
-    a response is the smallest with which at least ``least`` traces satisfy it.
+    ``backwards`` has the same traces as ``forwards``, each in reverse order. Clauses about two
+    atoms use only ``events``: for an atom that always holds, `keep` is enough. The work grows with
+    the square of the number of events, so the caller limits them. The bound of a response is the
+    smallest with which at least ``least`` traces satisfy it.
     """
     for portion in _candidates(forwards, backwards, events, least):
         # A clause that is only vacuously true says nothing about the game.

@@ -38,7 +38,7 @@ _MOST_INSTANCES: Final = WORK["mined instances"]
 
 @record
 class MiningVocabulary:
-    """The atoms of the traces, and the names to read them and to write specs with.
+    """The atoms of the traces, and the declarations of all names that specs over them need.
 
     ``library`` is a source text that declares all names. ``entities`` are the entities of the
     traces that the original library does not declare. ``reader`` is an automaton that accepts every
@@ -144,7 +144,7 @@ def _calls(names: Iterable[str], taken: Collection[str]) -> dict[str, tuple[str,
     """Return the columns such as `near(s1)`, each with its signal and its entities.
 
     ``taken`` has the names of other signals. A column is left out if its declarations would conflict
-    with others.
+    with one of these signals, or with the declarations of an earlier column.
     """
     lengths: dict[str, int] = {}
     entities: set[str] = set()

@@ -13,10 +13,11 @@ from tltlc.tools.lint.rule import LintRule, Remark
 
 
 def check(view: View) -> Iterator[Remark]:
-    """Yield a remark for each condition in `require` that begins with an unbracketed `always`.
+    """Yield a remark for each `implies` or `iff` whose left side begins with a bare `always`.
 
-    An example is `G a -> F b`. If the operand of `always` contains temporal operators, as in
-    `G F a -> G F b`, the author usually means what is written, so there is no remark.
+    An example is `G a -> F b`: the operand of `always` has no brackets. Only `require` clauses are
+    checked. If the operand of `always` contains temporal operators, as in `G F a -> G F b`, the
+    author usually means what is written, so there is no remark.
     """
     for spec in view.specs:
         for _, value in spec.clauses("require"):

@@ -14,7 +14,9 @@ from tltlc.tools.lint.rule import LintRule, Remark
 
 
 def check(view: View) -> Iterator[Remark]:
-    """Yield a remark for each `require` clause of a block that constrains only the first step.
+    """Yield a remark for each `require` clause that constrains only the first step.
+
+    There is none for a spec of the form `spec NAME = FORMULA`.
 
     Also yields a remark for conjuncts that follow the operand of a temporal operator and were
     probably meant to belong to the operand, like b in `eventually a and b`.

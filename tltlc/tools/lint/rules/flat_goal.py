@@ -12,9 +12,9 @@ from tltlc.tools.lint.rule import LintRule, Remark
 
 
 def check(view: View) -> Iterator[Remark]:
-    """Yield a remark for each atom that an edge towards the goal needs and that is never negative.
+    """Yield a remark for each atom whose value is never negative, if an edge to the goal needs it.
 
-    There is no remark if the edge also needs an atom that can be negative.
+    Yield none if the edge also needs an atom whose value can be negative.
     """
     for spec in view.specs:
         flat = {index for index, atom in enumerate(spec.fspa.atoms) if _is_flat(atom, spec.fspa)}
@@ -32,11 +32,12 @@ def _is_flat(atom: Atom, fspa: Fspa) -> bool:
 
 
 def _awaited(fspa: Fspa, flat: Set[int]) -> list[int]:
-    """Return the flat atoms that an edge towards the goal needs but the self-loop does not.
+    """Return the indices of the flat atoms that an edge towards the goal needs.
 
-    Atoms are indices; ``flat`` are those whose value is never negative and can be 0. If an edge
-    needs several atoms, progress uses the least of their values. So one atom that can be negative
-    is enough to tell near from far, and then no atom of this edge is returned.
+    ``flat`` has the indices of the atoms whose value is never negative and can be 0. Atoms that the
+    self-loop of the edge's source needs, too, are left out. So are the atoms of an edge that always
+    needs an atom whose value can be negative as well: progress uses the least value, and that one
+    tells near from far.
     """
     stays: dict[int, list[Implicant]] = {}
     for edge in fspa.edges:

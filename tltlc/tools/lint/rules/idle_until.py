@@ -12,10 +12,11 @@ from tltlc.tools.lint.rule import LintRule, Remark
 
 
 def check(view: View) -> Iterator[Remark]:
-    """Yield a remark for each `until` in a clause that is equivalent to its second operand.
+    """Yield a remark for each `until` in a `reach` or `avoid` clause.
 
-    `a until b` holds at every step where b holds. In a chain of goals, only the last `until` gets a
-    remark: an earlier `until` also determines from which step the next goal counts.
+    `a until b` holds at every step where b holds, so the clause means the same with b alone. In a
+    chain of goals, only the last `until` gets a remark: an earlier `until` also determines from
+    which step the next goal counts.
     """
     for spec in view.specs:
         for clause, value in spec.clauses("reach", "avoid"):

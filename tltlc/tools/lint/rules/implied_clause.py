@@ -16,14 +16,14 @@ from tltlc.tools.lint.rule import LintRule, Remark
 from tltlc.tools.lint.rules import recurrence
 
 _MOST_PARTS = 24
-"""Specs with more clauses are not checked, because each check builds an automaton of the others."""
+"""Specs with more clauses are not checked, because a check builds automata of many clauses."""
 
 
 def check(view: View) -> Iterator[Remark]:
     """Yield a remark for each clause that other clauses of its spec imply.
 
-    The labels after the first one are on these clauses. A clause that constrains only the last step
-    is usually a mistake, so it does not count as a reason.
+    The first label is on the implied clause, the rest are on the clauses that imply it. A clause
+    that constrains only the last step is usually a mistake, so it never is one of the latter.
     """
     last_step_labels = [remark.labels[0] for remark in recurrence.check(view)]
     for spec in view.specs:
@@ -70,7 +70,10 @@ def _relations(part: Conjunct, spec: SpecView) -> list[Conjunct]:
 def _reasons(
     part: Conjunct, others: Sequence[Conjunct], proved: Sequence[Conjunct], spec: SpecView
 ) -> tuple[Conjunct, ...]:
-    """Return a minimal set of other conjuncts that imply ``part``, or () if they do not."""
+    """Return a minimal subset of ``others`` that implies ``part``, or () if there is none.
+
+    ``proved`` are proved relations between atoms.
+    """
     if not _share_atoms(part, others, proved, spec.spec):
         return ()
     negated = replace(part, formula=not_(part.formula))
@@ -82,9 +85,10 @@ def _reasons(
 
 
 def _share_atoms(part: Conjunct, others: Sequence[Conjunct], proved: Sequence[Conjunct], spec: Spec) -> bool:
-    """Whether other conjuncts have an atom of ``part``, or an atom that excludes one of its atoms.
+    """Whether ``others`` have an atom of ``part``, or one that is related to such an atom.
 
-    If they have none, they cannot imply ``part``.
+    The relations are the ``proved`` ones and the exclusive groups of the spec. If ``others`` have
+    no such atom, they cannot imply ``part``.
     """
     own = set(part.formula.atoms()).union(*(relation.formula.atoms() for relation in proved))
     for group in spec.exclusive:

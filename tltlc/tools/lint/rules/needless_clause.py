@@ -16,9 +16,11 @@ from tltlc.tools.lint.rule import LintRule, Remark
 
 
 def check(view: View) -> Iterator[Remark]:
-    """Yield a remark for each clause that no trace violates, whatever the other clauses are."""
+    """Yield a remark for each clause that every trace satisfies.
+
+    Yield none if every trace satisfies the whole spec: the compiler reports that.
+    """
     for spec in view.specs:
-        # If every trace satisfies the whole spec, the compiler reports that.
         if spec.fspa.states[0].verdict == "satisfied":
             continue
         remaining = list(spec.spec.parts)

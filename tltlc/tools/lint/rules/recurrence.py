@@ -13,10 +13,13 @@ from tltlc.tools.lint.goals import consists_of_implications
 from tltlc.tools.lint.rule import LintRule, Remark
 
 _WORDS = {"F": "it comes again and again", "G": "it lasts from some time on"}
-"""What the author usually means by ``G F`` and by ``F G``, by the inner operator."""
+"""What the author usually means: for ``F`` by ``G F``, and for ``G`` by ``F G``."""
 _DUAL = {"G": "F", "F": "G"}
 _OF_CLAUSES = {"keep": ("G", True), "avoid": ("G", False), "reach": ("F", True)}
-"""By kind of clause, its operator, and whether this applies to the formula or to its negation."""
+"""For each kind of clause, its operator, and whether the formula is the operand.
+
+If the value is False, the negated formula is the operand.
+"""
 
 
 def check(view: View) -> Iterator[Remark]:

@@ -10,9 +10,9 @@ from tltlc.tools.lint.file_view import SpecView, View
 from tltlc.tools.lint.rule import LintRule, Remark
 
 _WORK: Final = 200_000
-"""The most steps of work for the comparison of two specs; after these, they count as different.
+"""The most steps of work for the comparison of two specs.
 
-A note must not take longer than the compilation.
+Specs that need more count as different, because a note must not take longer than the compilation.
 """
 
 

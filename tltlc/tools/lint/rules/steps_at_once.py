@@ -24,11 +24,11 @@ A note must not take longer than the compilation.
 
 
 def check(view: View) -> Iterator[Remark]:
-    """Yield a remark for each predicate of which several goals can be met at one step.
+    """Yield a remark for each group of goals over one predicate that one step can meet.
 
-    An example is a step with ``near(s1)`` and ``near(s2)``, if the path to the goal would be longer
-    with these atoms declared exclusive. Also yields a remark for each goal that asks for several of
-    these atoms at one step.
+    An example is ``near(s1)`` and ``near(s2)``. There is a remark only if the path to the goal gets
+    longer once these atoms are declared exclusive. Also yield a remark for each goal that asks for
+    several of these atoms at one step.
     """
     entities = {binding.name for binding in view.env.scope.names.values() if binding.kind == "entity"}
     for spec in view.specs:
@@ -46,7 +46,7 @@ def check(view: View) -> Iterator[Remark]:
 def _joint_goals(groups: list[set[int]], spec: SpecView) -> Iterator[Remark]:
     """Yield a remark for each goal that asks for several atoms of a group at one step.
 
-    The author may mean one after the other.
+    The author may mean several goals, one after the other.
     """
     for goal in goals(spec):
         parts = [part for part in conjuncts(goal) if _atom(part)]
