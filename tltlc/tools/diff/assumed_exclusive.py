@@ -23,12 +23,16 @@ The entry of an artefact is None, because an artefact stores only the groups tha
 
 
 def assumed_groups(a: Fspa, b: Fspa, declared: DeclaredGroups, *, by_name: bool = False) -> tuple[ExclusiveGroup, ...]:
-    """Return the groups of atoms that the comparison of two specs treats as exclusive.
+    """Return the groups that the comparison of two specs assumes besides the specs' own groups.
 
-    If both files are sources, the groups are those that both declare. An artefact only has the
-    groups of which its spec uses at least two atoms, so for other groups the source decides. If both
-    files are artefacts, there are no further groups. Atoms that are different in A and B are in no
-    group. ``by_name`` is as in :func:`~tltlc.tools.diff.relation.compare`.
+    - If both files are sources, these are the groups that both declare.
+    - If one file is an artefact, these are the groups of the source that the artefact does not
+      contradict. It cannot confirm all of them, because it stores a group only if its spec uses at
+      least two of the atoms.
+    - If both files are artefacts, there are none.
+
+    Atoms that are different in A and B are in no group. ``by_name`` is as in
+    :func:`~tltlc.tools.diff.relation.compare`.
     """
     in_a, in_b = declared
     if in_a is not None and in_b is not None:

@@ -69,6 +69,8 @@ class FileChange:
 def version_changes(change: FileChange, work: int = DEFAULT_WORK) -> tuple[Diagnostic, ...]:
     """Return the changes of the specs, in order, and then those of their signals, params and atoms.
 
+    If neither version has specs, return the changes of what the library offers and sets.
+
     Error (:class:`~tltlc.diagnostics.diagnostic.TltlError`): TLT0750 if a comparison takes more
     than ``work`` steps.
     """
@@ -164,6 +166,6 @@ def _shared_changes(pairs: Sequence[SpecPair], places: Mapping[str, Label]) -> I
         yield findings.atoms_renamed(same_predicate, places[users[same_predicate[0]][0].b.name])
     for first, *rest in by_predicate.values():
         using = users[first]
-        # Specs with different names for signals have different samples for the same atom.
+        # An atom has several differences if specs give its signals different names. Name it once.
         names = list(dict.fromkeys(difference.name for difference in rest if difference.name != first.name))
         yield findings.atom_changed(first, names, using[0], places[using[0].b.name])

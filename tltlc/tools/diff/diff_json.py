@@ -49,7 +49,7 @@ def _pair(pair: SpecPair) -> dict[str, Any]:
 
 
 def _beginnings(pair: SpecPair) -> dict[str, Any] | None:
-    """Compare the finite beginnings of traces after which the specs can still be met.
+    """Return the comparison of beginnings as JSON: those after which a spec can still be met.
 
     Return None unless one spec is over finite traces and the other over infinite traces.
     """

@@ -30,8 +30,8 @@ class Difference:
     """One difference between two automata: its kind, and the values in A and B.
 
     ``name`` is the name of the signal, param or atom, and empty for other kinds. ``a`` and ``b`` are
-    the values in A and B: records for signals, params and atoms, the names of the atoms for an
-    ``exclusive`` group, and plain values otherwise. If one of the two has no value, it is None.
+    the values in A and B: the record of a signal, param or atom, the names of the atoms of an
+    ``exclusive`` group, or the value of a setting of the spec. A value is None if A or B lacks it.
     ``value_difference`` is set only for atoms.
     """
 

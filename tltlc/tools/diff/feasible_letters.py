@@ -23,7 +23,7 @@ _MOST: Final = 30
 
 
 class FeasibleLetters:
-    """Searches samples of signals for letters over the atoms of two automata.
+    """Searches for samples of signals at which letters over the atoms of two automata occur.
 
     ``impossible`` collects the conjunctions of literals for which the search found no sample.
     ``never`` has conjunctions that are known to be impossible; they are not added to

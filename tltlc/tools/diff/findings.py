@@ -71,7 +71,10 @@ def traces_changed(pair: SpecPair, place: Label) -> Diagnostic:
 
 
 def signal_changed(difference: Difference, specs: Sequence[str], place: Label) -> Diagnostic:
-    """Return TLT0754 or TLT0755: a host must supply other signals to the monitors of ``specs``."""
+    """Return TLT0754 or TLT0755: a signal is new, gone or renamed, or has another type or range.
+
+    ``specs`` are the names of the specs that read it.
+    """
     name, used_by = difference.name, name_list(specs)
     if difference.a is None:
         assert isinstance(difference.b, Signal)

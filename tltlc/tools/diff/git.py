@@ -35,9 +35,9 @@ It then prints a size in bytes, and a text of that size.
 _HASH: Final = re.compile("[0-9a-f]{40,64}")
 _MOST_NAMES: Final = 1000
 _LONGEST_NAME: Final = 200
-"""Characters; a misspelt revision is compared with up to ``_MOST_NAMES`` branches and tags.
+"""The most characters of a name that may be suggested for a misspelt revision.
 
-Branches and tags with longer names than ``_LONGEST_NAME`` are left out.
+At most ``_MOST_NAMES`` branches and tags are tried.
 """
 
 
@@ -104,7 +104,7 @@ def write_out(repository: Path, commit: str, revision: str, is_wanted: Callable[
 
     Raises:
         TltlError: TLT0751, git does not provide the files; TLT0764, they exceed
-            :data:`tltlc.io.limits.REVISION` and the limits below it; TLT0009, a path cannot be
+            a limit on revisions in :mod:`tltlc.io.limits`; TLT0009, a path cannot be
             a file below the folder; TLT0005, the system refuses to write.
     """
     wanted = _wanted_files(_files(repository, commit, revision), is_wanted, revision)
@@ -174,7 +174,7 @@ def _parse_listing(stream: IO[bytes], revision: str) -> Iterator[_File]:
 
 
 def _lines(stream: IO[bytes], revision: str) -> Iterator[bytes]:
-    """Yield the parts of a stream that end with NUL, without it, in linear time.
+    """Yield the parts of a stream that end with NUL, without the NUL, in linear time.
 
     Error TLT0764 if there are too many, or if they are too long.
     """

@@ -26,10 +26,10 @@ class OfferedName:
     """The declaration behind a name that a library offers.
 
     ``is_own`` is true if the library itself declares the name, and false if it imports the name.
-    ``value`` is set for a signal or param. ``meanings`` is set for a predicate of the library
-    itself. It maps each possible number of arguments to the meaning of the predicate with this
-    number of arguments; the other parameters have their defaults. In a meaning, a signal with the name of the
-    parameter takes the place of each argument, unless the argument is an entity.
+    ``value`` is set for a signal or param. ``meanings`` is set for a predicate that the library
+    declares itself. It maps each number of arguments that a use can have to the meaning of that
+    use. There, each argument is a signal, or an entity, with the name of its parameter. The
+    remaining parameters have their defaults.
     """
 
     name: str
@@ -72,7 +72,9 @@ def _meanings(binding: Binding, parameters: tuple[Parameter, ...], env: Env) -> 
 
 
 def _meaning(binding: Binding, open_parameters: tuple[Parameter, ...], env: Env) -> Meaning | None:
-    """Return the meaning of a predicate, with a signal in place of each of these parameters.
+    """Return the meaning of a predicate, as in :class:`OfferedName`.
+
+    Each of ``open_parameters`` gets an argument.
 
     Return None if the predicate does not resolve, for example because of unknown units.
     """

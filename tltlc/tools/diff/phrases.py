@@ -31,7 +31,7 @@ def unrelated_reason(a: Fspa, b: Fspa) -> str:
 def name_list(names: Sequence[str], most: int = 4) -> str:
     """Return names in backquotes, with ``and`` before the last one.
 
-    If there are more than ``most`` names, the text has the first ones and the number of the others.
+    If there are more than ``most`` names, the text has the first ones and the number of the rest.
     """
     quoted = [f"`{name}`" for name in names]
     if len(quoted) > most:

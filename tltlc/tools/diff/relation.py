@@ -139,7 +139,7 @@ def _merge(groups: Iterable[ExclusiveGroup], atoms: set[str]) -> tuple[Exclusive
 
 
 def _exclusive_pairs(groups: Iterable[ExclusiveGroup], own_groups: Iterable[ExclusiveGroup]) -> Iterator[Literals]:
-    """Yield the pairs of atoms in groups that no group of the automata contains."""
+    """Yield the pairs of atoms of each group that is not part of a group in ``own_groups``."""
     own = [set(group.names) for group in own_groups]
     for group in groups:
         if not any(own_group.issuperset(group.names) for own_group in own):

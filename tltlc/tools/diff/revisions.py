@@ -65,8 +65,8 @@ class EarlierTree:
     ) -> tuple[Diagnostic, ...]:
         """Return the diagnostics with the labels on old files moved to the current files.
 
-        Services that know only the current files need this. ``before`` is the old version of
-        ``path``.
+        Tools that know only the current files need this, such as the review page of a pull request.
+        ``before`` is the old version of ``path``.
         """
         return tuple(
             replace(
@@ -179,9 +179,9 @@ def _path_in_repository(repository: Path, path: str) -> str:
 def _relative_path(path: str, folder: Path) -> Path | None:
     """Return a path relative to a folder, or None if the path is outside the folder.
 
-    A link to a file inside the folder is not resolved, because it may have another target in another
-    revision. A link from outside is resolved. So is a link to a folder, because links to folders are
-    left out of revisions.
+    A link to a file is kept as it is if the link is in the folder: it may have another target in
+    another revision. Every other link is resolved: one outside the folder, and one to a folder,
+    since links to folders are left out of revisions.
     """
     parent, name = os.path.split(os.path.abspath(path))  # noqa: PTH100
     places = [os.path.realpath(path)]

@@ -32,14 +32,16 @@ _BREAKING: Final[Mapping[Relation | None, str]] = {
     "looser": "Every beginning of a trace that breaks B for good breaks A, too, and others do.",
     "incomparable": "Each is broken for good by beginnings of traces that do not break the other.",
 }
-"""What violates the specs, by the relation of the beginnings that do not violate them."""
+"""How the beginnings compare that violate A and B, by the relation of those that do not."""
 
 _WIDTH: Final = 100
 _MOST_LEFT_OUT: Final = 5
 _MOST_ATOMS: Final = 10
 _TITLES: Final = {"A": "no longer accepted", "B": "not accepted before"}
 _TITLES_OF_BEGINNINGS: Final = {"A": "broken now", "B": "broken before"}
-"""Titles of printed tests, by the spec that accepts the trace, or that it does not violate.
+"""Titles of printed tests, by the spec that accepts the trace.
+
+For the beginning of a trace, by the spec that the beginning does not violate.
 """
 
 

@@ -44,8 +44,8 @@ def difference_test(pair: SpecPair, description: TraceDescription, title: str) -
     """Return the name of the spec that a test is for, ``A`` or ``B``, and its ``test`` block.
 
     The test is for B, or for A if only A has all atoms of the trace. Returns None if no test can show
-    the difference: the verdicts are the same, or an atom has the same name but another expression.
-    Of an infinite trace, the test has the prefix and one round of the cycle.
+    the difference: the verdicts are the same, or an atom of the trace differs in A and B, but not
+    in its name. Of an infinite trace, the test has the prefix and one round of the cycle.
     """
     letters = (*description.trace.prefix, *description.trace.cycle)
     named = frozenset[str]().union(*letters)

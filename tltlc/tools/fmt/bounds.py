@@ -41,7 +41,7 @@ def bound_forms(node: tree.Unary, number: Callable[[tree.NumberExpr], str]) -> d
 
 
 def _in_brackets(op: str, high: tree.NumberExpr, text: str) -> str | None:
-    """Return the ``high`` of the brackets ``[0,high]`` that equal ``within`` or ``for``, or None."""
+    """Return the ``high`` of brackets ``[0,high]`` that equal ``within`` or ``for``, or None."""
     if high.unit not in _STEPS:
         return text if op == "F" else None
     count = text.partition(" ")[0]

@@ -242,7 +242,7 @@ class Expressions:
         return ", ".join(texts)
 
     def _is_hugged(self, items: Sequence[Item], end: int, room: int) -> bool:
-        """Whether just one item is large, and its brackets fit on the line, as in ``clamp(min(``."""
+        """Whether just one item is large and its brackets fit on the line: ``clamp(min(``."""
         large = [item.value for item in items if not _is_simple(item.value)]
         if len(large) != 1 or not isinstance(large[0], (tree.CallExpr, tree.GroupExpr)):
             return False
