@@ -50,7 +50,7 @@ class Border:
                     yield (x, threshold) if self.threshold is None else (x,)
 
     def holds(self, x: float, threshold: float | None = None) -> bool:
-        """Whether the comparison is true."""
+        """Whether the comparison is true. ``threshold`` is given if it is a signal."""
         right = self.threshold if threshold is None else threshold
         assert right is not None, "a threshold that varies is given"
         return {"<": x < right, "<=": x <= right, ">": x > right, ">=": x >= right}[self.op]
@@ -89,7 +89,7 @@ def random_borders(draw: Draw, count: int) -> tuple[Border, ...]:
 
 
 def _random_number(draw: Draw) -> float:
-    """Return a normal number; Mono's compiler and library misread subnormal ones by a bit."""
+    """Return a random float, but no subnormal one: Mono, which runs C#, misreads those by a bit."""
     sign = -1.0 if draw.chance(0.5) else 1.0
     return sign * ldexp(1 + draw.below(1 << 20) / (1 << 20), draw.below(2046) - 1022)
 

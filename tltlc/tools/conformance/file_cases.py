@@ -1,4 +1,4 @@
-"""Cases from files: the specs of the paper, each with a recorded trace, and more that cover the language."""
+"""Cases from files: the specs of the paper with a recorded trace each, and specs of other kinds."""
 
 from __future__ import annotations
 

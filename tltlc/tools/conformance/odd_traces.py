@@ -336,7 +336,10 @@ MORE_VALUES: Final[Mapping[str, OddTrace]] = {
     ),
     "a million digits and a smaller exponent": _x_cell(b"-" + b"9" * 1_040_000 + b"e-99999999999999999999", -0.0),
 }
-"""Values that are not in the corpus, because checking the corpus starts a program for each trace."""
+"""Traces that only tests read.
+
+They are not in the corpus, because checking it starts a program for each trace.
+"""
 
 
 def _case(name: str, about: str, odd: Mapping[str, OddTrace]) -> ConformanceCase:

@@ -34,8 +34,7 @@ class BlockWriter:
     """Writes ``test`` blocks of one spec.
 
     If a trace begins like the trace before it, the monitor only runs the rest, so traces with long
-    common beginnings need few steps of the monitor. ``monitor_steps`` counts these steps. The
-    literals of a letter are computed once for each state.
+    common beginnings need few steps of the monitor. ``monitor_steps`` counts these steps.
     """
 
     def __init__(self, spec: Fspa) -> None:
@@ -71,10 +70,11 @@ class BlockWriter:
         return "\n".join([*lines, "}", ""])
 
     def expectations(self, letters: Iterable[Letter], steps: Iterable[int] | None = None) -> Expectations:
-        """Return what the monitor reports after these steps of a trace, by step number from 1.
+        """Return what the monitor reports after ``steps``, by step number from 1.
 
-        By default, only the last step is included. The report has the verdict, the progress rounded
-        down to four decimals if it is above 0, and the label of the state unless it is very long.
+        ``steps`` are numbers of steps of the trace, by default that of the last one. The report has
+        the verdict, the progress rounded down to four decimals if it is above 0, and the label of
+        the state unless it is very long.
         """
         results = self.results(letters)
         numbers = {len(results)} if steps is None else set(steps)

@@ -25,7 +25,7 @@ class UntakenEdge:
 
 @record
 class Cover:
-    """Traces that together take as many edges as possible, shortest first, and the other edges."""
+    """Traces that together take as many edges as possible, shortest first, and the edges left."""
 
     traces: tuple[Witness, ...]
     untaken: tuple[UntakenEdge, ...]
@@ -51,9 +51,9 @@ def cover(moves: Moves) -> Cover:
 
 
 def _trace(moves: Moves, nearest: NearestEdges) -> Iterator[SampledEdge]:
-    """Yield the moves of a trace from the initial state that takes edges that no trace has taken.
+    """Yield the moves of a trace from the initial state to one untaken edge after another.
 
-    Nothing is yielded if there is no such trace.
+    Nothing is yielded if no untaken edge can be reached.
     """
     state = 0
     while path := nearest.take(state):

@@ -138,10 +138,10 @@ def _cell(signal: Signal, value: float) -> str:
 
 
 def _point(group: AtomGroup, polarity: Mapping[int, bool]) -> Point | UnsatisfiedLiterals:
-    """Return values of the signals of a group at which its atoms have these truth values.
+    """Return values of a group's signals at which its atoms have the truth values in ``polarity``.
 
-    If possible, atoms that are not in ``polarity`` do not hold. Returns a minimal set of
-    unsatisfied literals if no point is found.
+    If possible, atoms that are not in ``polarity`` do not hold. If no such values are found, return
+    a minimal set of literals for which there are none.
     """
     literals = tuple((atom, polarity[atom]) for atom in group.atoms if atom in polarity)
     point = group.find(tuple((atom, polarity.get(atom, False)) for atom in group.atoms)) or group.find(literals)

@@ -245,7 +245,7 @@ def _middle(low: float, high: float) -> float:
 def _sign_parts(expression: Expression, holds: bool) -> Iterator[tuple[Expression, bool]]:
     """Yield the subexpressions that decide the sign of an expression.
 
-    Each comes with whether it must be positive. ``holds`` is whether the expression itself must be.
+    Each comes with whether it must be positive. ``holds`` says the same of the whole expression.
     """
     stack = [(expression, holds)]
     while stack:

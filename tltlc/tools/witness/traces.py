@@ -57,10 +57,11 @@ def accepting_trace(moves: Moves, work: int = DEFAULT_WORK) -> Witness | None:
 
 
 def rejecting_trace(moves: Moves, work: int = DEFAULT_WORK) -> Witness | None:
-    """Return a shortest trace that violates the spec and for which samples are found.
+    """Return a rejected trace for which samples are found, or None if there is none.
 
-    If there is none, return a shortest rejected trace, or any rejected trace if the spec is over
-    infinite traces. Return None if none is found. Errors are as in :func:`accepting_trace`.
+    If possible, it is a shortest trace that violates the spec. Otherwise it is a shortest rejected
+    trace, or any rejected trace if the spec is over infinite traces. Errors are as in
+    :func:`accepting_trace`.
     """
     fspa = moves.fspa
     violating = _shortest_to(moves, "rejecting", [state.verdict == "violated" for state in fspa.states])
@@ -77,14 +78,17 @@ def _shortest_to(moves: Moves, kind: Kind, is_target: list[bool]) -> Witness | N
 
 
 def _with_loop(moves: Moves, trace: Witness) -> Witness | None:
-    """Return a trace that ends in a trap, extended by a loop in the trap as its cycle."""
+    """Return a trace that ends in a trap, with a loop in the trap as its cycle.
+
+    Return None if no samples are found for a loop.
+    """
     trap = moves.fspa.edges[trace.moves[-1].edge].target
     loop = moves.shortest_path(trap, lambda edge: moves.fspa.edges[edge].target == trap)
     return None if loop is None else Witness(trace.kind, (*trace.moves, *loop), len(trace.moves))
 
 
 def _lasso(moves: Moves, kind: Literal["accepting", "rejecting"], work: int) -> Witness | None:
-    """Return an infinite trace (a prefix and a cycle) that samples take, or None.
+    """Return an infinite trace, a prefix and a cycle, with a sample for each step, or None.
 
     If no sample is found for an edge of the trace, the edge is closed, and the search starts again.
     """
