@@ -1,1 +1,4 @@
-"""The commands that the runtime adds to `tltlc`, one module each.  Only they print."""
+"""The commands that the runtime adds to `tltlc`, one module each.
+
+No other package of the runtime prints.
+"""

@@ -77,7 +77,10 @@ def command(suite: Path | None, path: Path | None, fresh: bool, workers: Any) ->
 
 
 def _older_references(path: Path) -> tuple[Reference, ...]:
-    """Return the references in the output file; empty if the file is missing or is not a baseline."""
+    """Return the references in the output file: what it has recorded, level by level.
+
+    The result is empty if the file is missing or is not a baseline.
+    """
     from tltl_runtime.regression.verdict.baseline import read_baseline
 
     with suppress(TltlError):
@@ -88,7 +91,7 @@ def _older_references(path: Path) -> tuple[Reference, ...]:
 def _stopped_text(path: Path, partial: Path | None, *, existed: bool) -> str:
     """Describe the files of a stopped recording and how to continue.
 
-    ``partial`` is the file of the finished references, if there is one.  ``existed`` says whether the
+    ``partial`` is the file of the finished references, if there is one. ``existed`` says whether the
     output file existed before.
     """
     from tltl_runtime.support.shown_path import path_text
@@ -128,7 +131,7 @@ def _success_count(reference: Reference) -> int:
 def _older_reference(reference: Reference, older: tuple[Reference, ...]) -> Reference | None:
     """Return the older reference of the same level, variant and spec; None if there is none.
 
-    A reference of the same policy is preferred.  A reference of another policy is returned only if it
+    A reference of the same policy is preferred. A reference of another policy is returned only if it
     is the only one.
     """
     names = ("level", "variant", "place", "spec")

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 
 _MOST_NAMED: Final = 6
-"""The most removed files that are named."""
+"""The most removed files that a message names."""
 
 
 @click.command(

@@ -89,7 +89,7 @@ def command(folder: Path, shipped: bool, minutes: float | None, workers: Any) ->
 
 
 def _table(options: _Table1Options) -> str:
-    """Return the table over the paper's number of episodes, and the table over all episodes."""
+    """Return two tables as text: over the paper's number of episodes, and over all episodes."""
     from tltl_runtime.regression.table1.paper_table import LEVELS, MODELS, RUNS, VARIANTS, TableRow, markdown
     from tltl_runtime.regression.table1.table_cells import EPISODES, SEED, cell_episodes, figures
     from tltl_runtime.training.run.versions import versions
@@ -156,7 +156,7 @@ def _training_result(options: _Table1Options, level: str, model: Model) -> Train
 
 
 def _train(arguments: list[str]) -> None:
-    """Run ``tltlc train``, which shows its progress.  Ctrl-C reaches that process, too."""
+    """Run ``tltlc train``, which shows its progress. Ctrl-C reaches that process, too."""
     with subprocess.Popen([sys.executable, "-m", "tltlc", "train", *arguments], stdout=sys.stderr) as training:
         try:
             training.wait()

@@ -53,9 +53,10 @@ def play_at_keyboard(
 ) -> None:
     """Open a window and play episodes of ``env`` until the player stops.
 
-    The game also ends if ``enough`` returns true after an episode.  ``recordings`` creates the receiver
-    of the episodes from the name LEVEL-VARIANT.  ``seed`` is the seed of the first episode.  Warnings
-    about unreachable goals are printed to standard error before the window opens.
+    The game also ends if ``enough`` returns true after an episode. ``recordings`` takes the name
+    LEVEL-VARIANT, and returns the object that stores the episodes. ``seed`` is the seed of the
+    first episode. Warnings about unreachable goals are printed to standard error before the window
+    opens.
 
     Raises:
         TltlError: TLT0830, no window can be opened; TLT0730, pygame is not installed.

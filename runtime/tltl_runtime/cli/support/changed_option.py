@@ -13,7 +13,7 @@ _OPTION: Final = "--changed"
 class ChangedCommand(click.Command):
     """A command whose option ``--changed``, declared with ``multiple``, takes any number of words.
 
-    So it accepts the output of ``$(git diff --name-only)``, which may be empty.  The first value of the
+    So it accepts the output of ``$(git diff --name-only)``, which may be empty. The first value of the
     option is always an empty string, which distinguishes an empty option from a missing one.
     """
 

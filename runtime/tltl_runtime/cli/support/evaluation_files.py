@@ -50,10 +50,11 @@ class EvaluationFiles:
     """Collects the results of an evaluation and writes its files.
 
     ``path`` is the policy's file, ``sha256`` the hash of its bytes, in hexadecimal, and ``first`` the
-    index of the first episode.  ``command`` evaluates the same episodes again.  ``folder``, which is
-    created if it is missing, gets recordings and pictures.  ``json_file`` gets the JSON report.  Both are
-    optional.  The first result removes from the folder the report and the pictures of an earlier
-    evaluation, and the recordings of another policy on this level: see ``removed_files``.
+    index of the first episode. ``command`` evaluates the same episodes again. ``folder``, which is
+    created if it is missing, gets recordings and pictures. ``json_file`` gets the JSON report.
+    Either may be None. When the first result is added, the report and the pictures of an earlier
+    evaluation are removed from the folder, and so are recordings of another policy on this level:
+    ``removed_files`` names them.
 
     Raises:
         TltlError: TLT0005, a file cannot be written, also from ``add`` and ``write``; TLT0722, a file has
@@ -125,7 +126,7 @@ class EvaluationFiles:
     def document(self, complete: bool) -> dict[str, Any]:
         """Return the JSON report: figures with sampled actions, and under ``argmax`` with the likeliest actions.
 
-        The report does not depend on which workers played.  ``complete`` says whether all episodes were
+        The report does not depend on which workers played. ``complete`` says whether all episodes were
         played.
         """
         setup, evaluations = self._setup, self._evaluations()
@@ -234,7 +235,7 @@ def _is_report(path: Path) -> bool:
 def _as_json(evaluation: Evaluation) -> dict[str, Any]:
     """Return the figures, how failed episodes ended, and the list of episodes.
 
-    The list replaces the number of episodes in the figures.
+    The key ``episodes`` has the list, and not the number of episodes as in the figures.
     """
     figures = {name: value for name, value in to_json(evaluation.figures).items() if name != "episodes"}
     return {

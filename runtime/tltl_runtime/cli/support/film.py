@@ -21,14 +21,14 @@ FILMS: Final = (".gif", ".mp4")
 """The file extensions of films."""
 
 _MAX_FRAMES_PER_SECOND: Final = 30.0
-"""The greatest default frame rate.  A faster film leaves steps out."""
+"""The greatest default frame rate. A faster film leaves steps out."""
 
 
 @record
 class Film:
     """The options of a film.
 
-    ``rate`` is in frames per second; None: one frame per decision.  ``size`` is in pixels.
+    ``rate`` is in frames per second; None: one frame per decision. ``size`` is in pixels.
     """
 
     view: View = "third_person"

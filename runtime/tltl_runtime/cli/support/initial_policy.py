@@ -84,7 +84,7 @@ def check_initial_policy(
 ) -> Sensors:
     """Check the initial policy; return its sensors, which the agent uses.
 
-    ``sensor_options`` are the values of the sensor options.
+    ``sensor_options`` has the sensors for which an option was given, by name.
 
     Raises:
         TltlError: TLT0843, the policy does not fit the level or the spec; TLT0941, the options ask for

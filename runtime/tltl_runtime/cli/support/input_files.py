@@ -11,7 +11,7 @@ T = TypeVar("T")
 
 
 def read_each(files: Sequence[str], read: Callable[[str], T], report: cli.Report) -> Iterator[tuple[str, T]]:
-    """Yield the name of each file and the result of ``read``.  Errors go into the report."""
+    """Yield the name of each file and the result of ``read``. Errors go into the report."""
     for name in files:
         try:
             content = read(name)

@@ -121,7 +121,10 @@ def _specs(opened: cli.Input) -> Iterator[tuple[Fspa, SpecPlaces]]:
 
 
 def _supply_text(level: StealthLevel, fspa: Fspa) -> str:
-    """Return, as text, the entities, other signals and params that a level supplies to a spec."""
+    """Return, as text, what a level supplies to a spec.
+
+    These are its entities, the signals that are about no entity, and its params.
+    """
     names = list(used_entities(level, fspa))
     names += [signal.name for signal in fspa.signals if "(" not in signal.name]
     names += [f"{name} = {value:.4g} m" for name, value in params_from_level(level, fspa).items()]

@@ -17,9 +17,9 @@ from tltlc.api import Diagnostic, TltlError, fileio
 def policy_place(policy: Path | None, level: str | None, command: str) -> tuple[Path, str | None, str | None]:
     """Return the file of a policy, and the level and the variant to play.
 
-    Level and variant are None if those in the policy's card are to be played.  ``policy`` is a path, or
-    ``LEVEL`` or ``LEVEL:VARIANT`` for the policy that comes with a level.  Without ``policy``, the policy
-    that comes with ``level`` is used.  At least one of the two must be given.  ``command`` is a command
+    Level and variant are None if those in the policy's card are to be played. ``policy`` is a path, or
+    ``LEVEL`` or ``LEVEL:VARIANT`` for the policy that comes with a level. Without ``policy``, the policy
+    that comes with ``level`` is used. At least one of the two must be given. ``command`` is a command
     that takes a policy as its argument, for suggestions in messages.
 
     Raises:
@@ -62,7 +62,7 @@ def check_level_is_shipped(level: str, policy: Path, command: str) -> None:
 
 
 def policy_path(path: Path) -> Path:
-    """Return the file of a policy: ``path`` itself, or the existing policy in that folder.
+    """Return the file of a policy: ``path`` itself, or the policy in it if it is a folder.
 
     Raises:
         TltlError: TLT0840, the file is an ONNX model or a TOML file; TLT0872, the folder contains no

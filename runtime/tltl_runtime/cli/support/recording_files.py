@@ -78,7 +78,7 @@ def write_elsewhere(episode: Episode, name: str, error: TltlError) -> Path:
 
 
 def _write_problem(folder: Path, make: bool) -> str:
-    """Return why a folder cannot be written; empty if it can.  With ``make``, create it first."""
+    """Return why a folder cannot be written; empty if it can. With ``make``, create it first."""
     try:
         if make:
             folder.mkdir(parents=True, exist_ok=True)

@@ -18,7 +18,7 @@ _EPISODES_BETWEEN_LINES: Final = 25
 class RegressionDisplay:
     """Shows the progress of a case; call it after each played episode.
 
-    As a context manager, it removes the bar at the end.  ``most``, for example ``at most``, is printed
+    As a context manager, it removes the bar at the end. ``most``, for example ``at most``, is printed
     before the number of episodes of the case.
     """
 

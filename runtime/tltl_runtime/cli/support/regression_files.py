@@ -46,8 +46,8 @@ _NOT_UTF8: Final = re.compile("[\ud800-\udfff]")
 class SuiteRun:
     """The outcome of a run of a suite in its ``folder``.
 
-    ``left_out`` are the names of the cases that depend on none of the ``changed`` files.  ``missing`` are
-    the names of the cases that were not judged because the run was stopped.  ``complete`` says whether
+    ``left_out`` are the names of the cases that depend on none of the ``changed`` files. ``missing`` are
+    the names of the cases that were not judged because the run was stopped. ``complete`` says whether
     all requested cases were judged and retrained.
     """
 
@@ -122,13 +122,13 @@ REPORTS: Final[Mapping[str, Callable[[SuiteRun], str]]] = {
     "--junit": _junit_text,
     "--html": _page_text,
 }
-"""The functions that make the reports, by option.  The page takes longest and comes last."""
+"""The functions that make the reports, by option. The page takes longest and comes last."""
 
 
 def write_reports(outcome: SuiteRun, files: Mapping[str, Path]) -> Path | None:
     """Write the requested reports, and the page into the folder of the run; return the path of a page, or None.
 
-    The keys of ``files`` are options.  The folder gets no page if the run was stopped before its first
+    The keys of ``files`` are options. The folder gets no page if the run was stopped before its first
     case and no page was requested.
 
     Raises:
@@ -180,7 +180,7 @@ def _curve(case: FinishedCase, folder: Path) -> bytes:
 
 
 def _episodes(case: FinishedCase, folder: Path) -> dict[int, Episode]:
-    """Return the recorded episodes by index.  Damaged recordings are left out."""
+    """Return the recorded episodes by index. Damaged recordings are left out."""
     episodes: dict[int, Episode] = {}
     for index, name in case.report.recordings:
         with suppress(TltlError):

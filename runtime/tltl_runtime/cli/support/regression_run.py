@@ -37,7 +37,7 @@ _EXPECTED_NOTE: Final = "v1 and v2 of the shipped levels are changed on purpose:
 class RegressOptions:
     """The options of ``tltlc regress``.
 
-    ``files`` are the files of reports, by their options.  ``folder`` is the folder of the run.
+    ``files`` are the files of reports, by their options. ``folder`` is the folder of the run.
     ``minutes`` limits the retraining of each case that does not pass; None: no retraining.
     """
 
@@ -115,7 +115,7 @@ def _select_cases(suite: Suite, options: RegressOptions) -> Selection:
 
 
 def _references(suite: Suite, cases: Sequence[Case]) -> tuple[Reference, ...]:
-    """Read the baseline; errors count only if there are cases to play."""
+    """Read the baseline. If it has an error, raise it only if there are cases to play."""
     try:
         return baseline_of(suite)
     except TltlError:

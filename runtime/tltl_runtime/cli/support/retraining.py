@@ -35,7 +35,7 @@ _FATAL_ERRORS: Final = WORKER_ERRORS | {"TLT0005"}
 class Retraining:
     """The options of retraining: at most ``minutes`` for each case, below the ``folder`` of the run.
 
-    ``again`` is the command that continues a stopped run, without --minutes.  With ``fresh``, stored
+    ``again`` is the command that continues a stopped run, without --minutes. With ``fresh``, stored
     trainings are not reused.
     """
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     _Type = click.ParamType[Any]
 else:
-    # Only newer versions of click have a type there.
+    # In older versions of click, a ParamType cannot have a type in brackets.
     _Type = click.ParamType
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -24,7 +24,7 @@ def senses_options(command: Function) -> Function:
     """Add the options ``--entities``, ``--variables``, ``--map`` and their ``--no-`` forms to a command.
 
     The command gets ``sensors``, a mapping for
-    :func:`tltl_runtime.stealth.observation.sensors.choose_sensors`.  Without options, it is empty: the level's
+    :func:`tltl_runtime.stealth.observation.sensors.choose_sensors`. Without options, it is empty: the level's
     own sensors apply.
     """
 
@@ -104,7 +104,7 @@ class _Map(_Type):
         }
 
     def _number(self, key: str, items: list[str], param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """Convert the value of a numeric key.  Unknown keys are reported later, with the level."""
+        """Convert the value of a numeric key. Unknown keys are reported later, with the level."""
         kind = {"cell": float, "extent": int}.get(key, str)
         try:
             (item,) = items

@@ -48,7 +48,7 @@ class Display(Protocol):
 def display(run: TrainingRun, again: str) -> Iterator[Display]:
     """Yield a display that writes to standard error.
 
-    ``again`` is the command that resumes the training.  If torchrun started several processes, only the
+    ``again`` is the command that resumes the training. If torchrun started several processes, only the
     first one writes.
     """
     if process_group().rank > 0:

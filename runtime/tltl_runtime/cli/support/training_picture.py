@@ -34,7 +34,7 @@ from tltlc.api import Fspa, State, label_text
 _WIDTH: Final = 100
 """The greatest width of the picture, in characters."""
 _MARGIN: Final = 4
-"""The free columns at the right.  The terminal prints `^C` there, and the next picture covers that."""
+"""The free columns at the right. The terminal prints `^C` there, and the next picture covers that."""
 _MOST_STATES: Final = 8
 _LINES_FOR_SPACE: Final = 17
 """With at least this many lines inside the border, empty lines separate the parts."""
@@ -44,7 +44,7 @@ _BAR: Final = 24, 10
 
 
 class TrainingDisplay:
-    """Draws the last report of a training.  Between reports, the times that it shows go on."""
+    """Draws the last report of a training. Between reports, the times that it shows go on."""
 
     def __init__(self, run: TrainingRun, console: Console) -> None:
         self._run, self._console = run, console
@@ -106,7 +106,7 @@ class TrainingDisplay:
         return Group(table, Text(f"\n{search_line(searched)}\n\n{search_end(exploration)}\n\n{SEARCH_IS_LOST}"))
 
     def _after_iteration(self, report: TrainingReport, bar: int, room: int) -> RenderableType:
-        """Return the picture after an iteration, in ``room`` lines.  With less room, it shows fewer states."""
+        """Return the picture after an iteration, in ``room`` lines. With less room, it shows fewer states."""
         now, run, window, stop = time.monotonic(), self._run, report.window, self._run.settings.stop
         space = [Text()] if room >= _LINES_FOR_SPACE else []
         since = 0.0 if report.stop else now - self._report_time

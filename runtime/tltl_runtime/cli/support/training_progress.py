@@ -39,7 +39,7 @@ def stopped_line(run: TrainingRun, again: str) -> str | None:
 
 @contextmanager
 def _worker_errors(again: str) -> Iterator[None]:
-    """Raise TltlError, TLT0871, if a worker is lost.  ``again`` is the command that resumes the training."""
+    """Raise TltlError, TLT0871, if a worker is lost. ``again`` is the command that resumes the training."""
     try:
         yield
     except WorkerError as error:

@@ -83,7 +83,7 @@ def new_run(options: TrainOptions, folder: Path | None) -> TrainingRun:
 
     Raises:
         TltlError: the spec, the level, the sensors or the settings are invalid, or the initial policy
-            does not fit them; TLT0873, the folder contains other files.
+            does not fit them; TLT0873, the folder has files, but no training.
     """
     if options.spec is not None and names_level(options.spec):
         if options.level is not None:
@@ -148,7 +148,7 @@ def new_settings(options: TrainOptions, initial: InitialPolicyOptions | None) ->
 def resumed_run(options: TrainOptions, folder: Path) -> TrainingRun:
     """Set up the training in ``folder`` to be resumed.
 
-    Only some settings may change.  Level, demonstrations and initial policy must be the same, but their
+    Only some settings may change. Level, demonstrations and initial policy must be the same, but their
     files may have moved.
 
     Raises:
@@ -216,9 +216,9 @@ def _with_level_path(run: TrainingRun, options: TrainOptions) -> TrainingRun:
 
 
 def _check_folder(folder: Path) -> None:
-    """Raise TltlError, TLT0873, if the folder contains other files.
+    """Raise TltlError, TLT0873, if the folder has files, but no training.
 
-    They could be lost when the user deletes the training.
+    The files could be lost when the user deletes the training later.
     """
     if process_group().rank > 0 or not folder.is_dir() or (folder / RUN).exists():
         return

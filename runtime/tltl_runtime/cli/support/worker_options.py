@@ -9,7 +9,7 @@ import click
 if TYPE_CHECKING:
     _Type = click.ParamType[Any]
 else:
-    # Only newer versions of click have a type there.
+    # In older versions of click, a ParamType cannot have a type in brackets.
     _Type = click.ParamType
 
 

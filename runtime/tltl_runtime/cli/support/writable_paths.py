@@ -14,7 +14,7 @@ _OUTPUT: Final = ("-", "/dev/stdout")
 
 
 def check_writable(files: Mapping[str, Path | None]) -> None:
-    """Check, before minutes of play, that files can be written.  The keys of ``files`` are options.
+    """Check, before minutes of play, that files can be written. The keys of ``files`` are options.
 
     Raises:
         TltlError: TLT0005 if a file cannot be written, TLT0700 if a file is an input of the command.
@@ -67,5 +67,5 @@ def is_standard_output(path: Path) -> bool:
 
 
 def _creates_file(path: Path) -> bool:
-    """Whether writing to a path creates or replaces a file.  Pipes and devices are written directly."""
+    """Whether writing to a path creates or replaces a file. Pipes and devices are written directly."""
     return not fileio.exists(path) or fileio.is_file(path)
