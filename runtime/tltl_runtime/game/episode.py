@@ -81,9 +81,9 @@ class RecordedEpisode(Protocol):
 Kind = Literal["success", "killed", "violated", "limit", "no way", "stopped"]
 """How an episode ended.
 
-``killed``: the player died.  ``violated``: the spec was broken otherwise.  ``limit``: time ran out.
-``no way``: time ran out for the expert, which had no route to a goal.  ``stopped``: the episode is
-unfinished.
+``killed``: the player died. ``violated``: the spec was broken, but the player lived. ``limit``:
+time ran out. ``no way``: time ran out for the expert, which had no route to a goal. ``stopped``:
+the episode is unfinished.
 """
 
 
@@ -110,7 +110,7 @@ class Cause:
 class Trajectory:
     """The player's path, the automaton's states, and the end of an episode of n decisions.
 
-    It is much smaller than a recorded episode, so hundreds fit into memory.  ``points`` are the x and y
+    It is much smaller than a recorded episode, so hundreds fit into memory. ``points`` are the x and y
     of the feet, (n + 1, 2), in metres; ``states`` is (n + 1,).
     """
 

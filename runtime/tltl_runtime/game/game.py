@@ -27,7 +27,10 @@ class Game(ABC, Generic[LevelT, EpisodeT]):
     """
 
     choices: Mapping[str, tuple[str, ...]]
-    """The branches of an action and the names of their choices."""
+    """The branches of an action, each with the names of its choices.
+
+    An action makes one choice in each branch.
+    """
 
     clock_s: float
     """The seconds of game time that a decision takes."""
@@ -62,13 +65,13 @@ class Game(ABC, Generic[LevelT, EpisodeT]):
 
     @abstractmethod
     def params(self, level: LevelT) -> dict[str, float]:
-        """Return the params of specs that a level defines, in SI units."""
+        """Return the values that a level gives to the params of specs, in SI units."""
 
     @abstractmethod
     def check_fit(self, level: LevelT, fspa: Fspa, spec: str | Path | Fspa) -> None:
         """Raise one TltlError for everything that a spec needs and a level lacks.
 
-        ``fspa`` is the automaton of ``spec``.  The labels of the error point into the spec's source.
+        ``fspa`` is the automaton of ``spec``. The labels of the error point into the spec's source.
         """
 
     @abstractmethod

@@ -1,6 +1,6 @@
 """Points, boxes and regions in a level, in metres.
 
-x points east, y north, z up.  Boxes are parallel to the axes.
+x points east, y north, z up. Boxes are parallel to the axes.
 """
 
 from __future__ import annotations

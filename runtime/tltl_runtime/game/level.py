@@ -18,7 +18,7 @@ class Level(Protocol):
 
     @property
     def variant(self) -> str:
-        """The name of the variant, with those of its added overlays."""
+        """The name of the variant and of the overlays added to it: ``v0`` or ``v0+OVERLAY``."""
 
     @property
     def spec(self) -> str:
@@ -38,7 +38,7 @@ class Level(Protocol):
 
     @property
     def regions(self) -> tuple[Region, ...]:
-        """The named parts of the level.  Where regions overlap, a place has the name of the first one."""
+        """The named parts of the level. Where regions overlap, a place has the name of the first one."""
 
 
 def default_spec(level: Level) -> str:

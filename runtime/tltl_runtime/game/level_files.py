@@ -50,7 +50,7 @@ class LevelFiles(ABC, Generic[LevelT]):
     def dependencies(self, name: str, variant: str) -> Iterator[Path]:
         """Yield the files that a level depends on, among them its spec.
 
-        The files need not load: from a file with errors, everything readable counts.  Also yields
+        The level need not load: if a file has errors, this uses what can be read of it. Also yield
         the paths where a new file would take precedence over an existing one.
         """
 

@@ -15,6 +15,6 @@ It is imported by its name. So no package that plays games has to import a parti
 
 
 def registered_game() -> Game[Any, Any]:
-    """Return the game.  Its levels and recordings can be read even if its physics engine is not installed."""
+    """Return the game. Its levels and recordings can be read even if its physics engine is not installed."""
     game: Game[Any, Any] = import_module(_MODULE).GAME
     return game

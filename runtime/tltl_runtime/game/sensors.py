@@ -12,7 +12,7 @@ from tltlc.api import record
 class MapSensor:
     """The semantic map around the agent: ``extent`` by ``extent`` cells of ``cell`` metres.
 
-    ``extent`` is odd, so that the agent is in the middle cell.  ``types`` are the types of things that
+    ``extent`` is odd, so that the agent is in the middle cell. ``types`` are the types of things that
     the map shows, such as ``wall``.
     """
 
@@ -25,7 +25,7 @@ class MapSensor:
 class Sensors:
     """The parts of an agent's observation: vectors to ``entities``, values of signals, and a map.
 
-    ``variables`` are the names of the signals.  ``map`` is None if the agent has no map.
+    ``variables`` are the names of the signals. ``map`` is None if the agent has no map.
     """
 
     entities: tuple[str, ...]
@@ -34,4 +34,7 @@ class Sensors:
 
 
 SensorChoice = Sensors | Mapping[str, Any]
-"""A record, or a mapping with some of the fields of :class:`Sensors`; ``map`` may be a mapping, too."""
+"""All sensors, or a mapping with some fields of :class:`Sensors`; the level has the other fields.
+
+``map`` may be such a mapping, too.
+"""
