@@ -9,9 +9,9 @@ from tltlc.api import Diagnostic, TltlError, record
 class LoadErrors:
     """The errors of one kind of file, which messages call ``article`` and ``noun``, such as "a" and "policy".
 
-    ``unreadable_code`` is the code for a file that is something else or damaged, ``version_code``
-    for another version, and ``broken_code`` for invalid content. ``again`` says how to make the file
-    again, such as "train the policy again".
+    ``unreadable_code`` is the code for a file that is damaged or of another format,
+    ``version_code`` for another version, and ``broken_code`` for invalid content. ``again`` says
+    how to make the file again, such as "train the policy again".
     """
 
     article: str
@@ -22,7 +22,7 @@ class LoadErrors:
     again: str
 
     def unreadable_error(self, name: str, why: str) -> TltlError:
-        """Return the error for a file ``name`` that is something else or damaged; ``why`` is the reason."""
+        """Return the error for a file that is damaged or of another format; ``why`` says how."""
         return self._error(self.unreadable_code, f"`{name}` cannot be read as {self.article} {self.noun}: {why}")
 
     def broken_error(self, name: str, why: str) -> TltlError:

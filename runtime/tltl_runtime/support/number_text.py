@@ -60,13 +60,13 @@ def duration(seconds: float) -> str:
 
 
 def short_list(names: Sequence[str], most: int) -> str:
-    """Return the first ``most`` names, separated by commas, and the number of the others."""
+    """Return the first ``most`` names, separated by commas, and the number of names left out."""
     left_out = len(names) - most
     return ", ".join(names[:most]) + (f" and {left_out} more" if left_out > 0 else "")
 
 
 def column(head: str, text: str, *, width: int = WIDTH) -> str:
-    """Return ``text`` after ``head``, wrapped at words, with further lines below its start.
+    """Return ``text`` after ``head``, wrapped at words. Each line begins where the text begins.
 
     A word that is longer than the column stays whole, because users may copy it.
     """
