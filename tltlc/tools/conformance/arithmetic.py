@@ -172,7 +172,7 @@ _REFUSED: Final[dict[str, tuple[Expression, Expression, tuple[tuple[float, float
         ((10, 2), (1, 100), (1, -1e200)),
     ),
 }
-"""Two predicates, and pairs of x and y at which one of them has no value."""
+"""Cases by name: two predicates, and pairs of x and y at which one predicate has no value."""
 
 
 def _refused_case(name: str) -> ConformanceCase:
@@ -203,7 +203,10 @@ def _nested_when(inside: Literal["value", "otherwise", "condition"]) -> Expressi
 
 
 def _long_when() -> Expression:
-    """Return a ``when`` of 160 cases whose conditions need statements of their own in some languages."""
+    """Return a ``when`` of 160 cases.
+
+    Some languages can compute its conditions only in statements of their own.
+    """
     near = ((_condition("<", _op("^", _op("-", _Y, at / 80 - 1.0), 2.0), 1e-4), Const(at / 160)) for at in range(160))
     return When(tuple(near), Const(-0.25))
 

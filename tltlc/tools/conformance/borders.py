@@ -42,7 +42,7 @@ class Border:
     def values(self) -> Iterator[tuple[float, ...]]:
         """Yield values at and next to the threshold, and the ends of the range.
 
-        A value is a pair of x and the threshold, or x alone.
+        A value is a pair of x and the threshold, or x alone if the threshold is a number.
         """
         for threshold in (self.low, self.high, 0.0) if self.threshold is None else (self.threshold,):
             for x in (threshold, *_neighbours(threshold), self.low, self.high, 1e-30, -1e-30):
@@ -50,7 +50,7 @@ class Border:
                     yield (x, threshold) if self.threshold is None else (x,)
 
     def holds(self, x: float, threshold: float | None = None) -> bool:
-        """Whether the comparison is true. ``threshold`` is given if it is a signal."""
+        """Whether the comparison is true. ``threshold`` is its value if it is a signal."""
         right = self.threshold if threshold is None else threshold
         assert right is not None, "a threshold that varies is given"
         return {"<": x < right, "<=": x <= right, ">": x > right, ">=": x >= right}[self.op]

@@ -60,7 +60,7 @@ class ExpectedOutput:
 
 
 def expected_output(fspa: Fspa, trace: bytes) -> ExpectedOutput:
-    """Return the output of a monitor of the automaton on a CSV file."""
+    """Return what every monitor of the automaton must print for the CSV file ``trace``."""
     monitor, rows, sample = Monitor(fspa), list[tuple[str, ...]](), Sample()
     refusal = None
     try:
@@ -130,7 +130,7 @@ def _without_value(fspa: Fspa, sample: Sample) -> tuple[Kind, str]:
 
 
 def _conflicting_atoms(fspa: Fspa, sample: Sample) -> tuple[str, ...]:
-    """Return the atoms that hold in the first exclusive group with more than one of them."""
+    """Return the atoms that hold together, from the first exclusive group of which several hold."""
     signals, params = _clamp(fspa, sample), {param.name: param.value for param in fspa.params}
     holds = [evaluate(atom.expression, signals, params) > 0.0 for atom in fspa.atoms]
     holding = [[atom for atom in group if holds[atom]] for group in fspa.exclusive]

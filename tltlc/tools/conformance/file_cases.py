@@ -1,4 +1,4 @@
-"""Cases from files: the specs of the paper with a recorded trace each, and specs of other kinds."""
+"""Cases from files: the specs of the paper with a recorded trace each, and more of the language."""
 
 from __future__ import annotations
 

@@ -59,7 +59,7 @@ def _seen_cell(cell: bytes, value: float | None) -> OddTrace:
 
 
 def _note(cell: bytes) -> OddTrace:
-    """Return a trace with this cell in a column that is not a signal, so it is ignored."""
+    """Return a trace with this cell in a column that is no signal. The cell is ignored."""
     return OddTrace(b"note,x,seen\n" + cell + b",0.5,1\n-,-0.25,0\n", _TWO)
 
 

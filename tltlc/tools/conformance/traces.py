@@ -19,7 +19,10 @@ Pools = Mapping[str, Sequence[float]]
 """Values to draw from, per signal."""
 
 _OPEN: Final = 25.0
-"""A range without a lower end begins at -_OPEN; one without an upper end is 2 * _OPEN wide."""
+"""How far values are drawn if a range has no lower or no upper end.
+
+Without a lower end, the range begins at -_OPEN. Without an upper end, it is 2 * _OPEN wide.
+"""
 _ATTEMPTS: Final = 200
 _TRIES: Final = 6
 

@@ -27,8 +27,7 @@ def assumed_groups(a: Fspa, b: Fspa, declared: DeclaredGroups, *, by_name: bool 
 
     - If both files are sources, these are the groups that both declare.
     - If one file is an artefact, these are the groups of the source that the artefact does not
-      contradict. It cannot confirm all of them, because it stores a group only if its spec uses at
-      least two of the atoms.
+      contradict. An artefact stores a group only if its spec uses at least two of the atoms.
     - If both files are artefacts, there are none.
 
     Atoms that are different in A and B are in no group. ``by_name`` is as in

@@ -1,4 +1,4 @@
-"""Find traces over the atoms of two specs that a game can produce.
+"""Find traces that a game can produce, over the atoms of two specs.
 
 Atoms over the same signals may imply each other, as ``fuel > 30`` implies ``fuel > 20``. So there
 are traces for which no samples exist.
@@ -54,7 +54,7 @@ class FeasibleLetters:
         return trace
 
     def _obstacles(self, trace: Trace) -> list[Literals]:
-        """Return conjunctions of literals of the letters for which no sample was found."""
+        """Return the conjunctions of literals in the letters for which no sample is found."""
         if self._joint is None or self._finder is None:
             return []
         obstacles = []

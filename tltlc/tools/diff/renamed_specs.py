@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from tltlc.automaton.fspa import Fspa
 
 _SOURCE: Final = ".tltl"
-"""The ending of files whose specs can move. A host finds an artefact by its file name."""
+"""The ending of source files. Only their specs can move: a host finds an artefact by its file."""
 _MOST_RENAMED: Final = 6
 """The most new specs that a removed spec is compared with."""
 

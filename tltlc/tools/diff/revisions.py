@@ -87,7 +87,7 @@ class EarlierTree:
         return Label(SourceFile(now, ""), Span(0, 0), message)
 
     def with_display_names(self, diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
-        """Return the diagnostics with the paths of old files replaced by readable names."""
+        """Return the diagnostics with the path ``{prefix}x`` for each old file ``root/x``."""
         root = f"{self.root}{os.sep}"
 
         def text(original: str) -> str:

@@ -32,7 +32,10 @@ _BREAKING: Final[Mapping[Relation | None, str]] = {
     "looser": "Every beginning of a trace that breaks B for good breaks A, too, and others do.",
     "incomparable": "Each is broken for good by beginnings of traces that do not break the other.",
 }
-"""How the beginnings compare that violate A and B, by the relation of those that do not."""
+"""What to print about the beginnings of traces that violate A or B.
+
+The keys are the relations of the beginnings that do not violate them.
+"""
 
 _WIDTH: Final = 100
 _MOST_LEFT_OUT: Final = 5

@@ -44,8 +44,8 @@ def difference_test(pair: SpecPair, description: TraceDescription, title: str) -
     """Return the name of the spec that a test is for, ``A`` or ``B``, and its ``test`` block.
 
     The test is for B, or for A if only A has all atoms of the trace. Returns None if no test can show
-    the difference: the verdicts are the same, or an atom of the trace differs in A and B, but not
-    in its name. Of an infinite trace, the test has the prefix and one round of the cycle.
+    the difference: the verdicts are the same, or an atom of the trace has different meanings in A
+    and B. Of an infinite trace, the test has the prefix and one round of the cycle.
     """
     letters = (*description.trace.prefix, *description.trace.cycle)
     named = frozenset[str]().union(*letters)
@@ -82,7 +82,7 @@ def step_lines(pair: SpecPair, letters: Sequence[Letter]) -> list[str]:
 
 
 def ordered_atoms(pair: SpecPair, letter: Letter) -> list[str]:
-    """Return the atoms of a letter: atoms of A in their order, then other atoms of B."""
+    """Return the atoms of a letter: first those of A in their order, then those that only B has."""
     split_names = pair.comparison.split_names
     names = [atom.name + (OF_A if atom.name in split_names else "") for atom in pair.a.atoms]
     names += [atom.name + (OF_B if atom.name in split_names else "") for atom in pair.b.atoms]

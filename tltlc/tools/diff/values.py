@@ -126,7 +126,7 @@ def _common_box(one: Meaning, other: Meaning) -> tuple[dict[Variable, tuple[floa
 
 
 def _shorten(difference: ValueDifference, one: Meaning, other: Meaning, box: Box) -> ValueDifference:
-    """Return the difference at a sample with fewer digits if it is of the same kind there."""
+    """Return a difference of the same kind with fewer digits, or ``difference`` if none is found."""
     for digits in (2, 3, 4, 6):
         sample = {name: float(f"{value:.{digits}g}") for name, value in difference.sample}
         is_inside = all(low <= sample[node.name] <= high for node, (low, high) in box.items())

@@ -41,7 +41,7 @@ def bound_forms(node: tree.Unary, number: Callable[[tree.NumberExpr], str]) -> d
 
 
 def _in_brackets(op: str, high: tree.NumberExpr, text: str) -> str | None:
-    """Return the ``high`` of brackets ``[0,high]`` that equal ``within`` or ``for``, or None."""
+    """Return the end with which ``[0,END]`` equals ``within`` or ``for``; None if none does."""
     if high.unit not in _STEPS:
         return text if op == "F" else None
     count = text.partition(" ")[0]
@@ -51,7 +51,7 @@ def _in_brackets(op: str, high: tree.NumberExpr, text: str) -> str | None:
 
 
 def _in_words(op: str, high: tree.NumberExpr, text: str) -> str | None:
-    """Return the bound of ``within`` or ``for`` that equals the brackets ``[0,high]``, or None."""
+    """Return the bound with which ``within`` or ``for`` equals ``[0,high]``; None if none does."""
     if high.unit not in _STEPS:
         return text if op == "F" else None
     count = text.partition(" ")[0]

@@ -196,17 +196,14 @@ class Expressions:
     # --- items of lists -------------------------------------------------------------------------
 
     def _put_lines(self, items: Sequence[Item], indent: int) -> None:
-        """Write each item on a line. If an item takes several lines, indent them after the first.
-
-        If there is only one item, do not indent them.
-        """
+        """Write each item on a line. Indent its further lines, unless it is the only item."""
         for place, item in enumerate(items):
             self._page.put_comments(item.span.start, indent)
             self._page.end_line(indent)
             self._put_item(item, indent + STEP if len(items) > 1 else indent, "," if place < len(items) - 1 else "")
 
     def _put_hugging(self, items: Sequence[Item], indent: int) -> None:
-        """Write the items one after another. Break the only large one inside its brackets."""
+        """Write the items one after another. Break the only large item inside its brackets."""
         for place, item in enumerate(items):
             comma = ", " if place < len(items) - 1 else ""
             # Reserve a whole line, so that the large item is broken even if it fits.
@@ -242,7 +239,10 @@ class Expressions:
         return ", ".join(texts)
 
     def _is_hugged(self, items: Sequence[Item], end: int, room: int) -> bool:
-        """Whether just one item is large and its brackets fit on the line: ``clamp(min(``."""
+        """Whether just one item is large and its brackets fit on the line: ``clamp(min(``.
+
+        An item is large if it is more than a name, a number or a constant.
+        """
         large = [item.value for item in items if not _is_simple(item.value)]
         if len(large) != 1 or not isinstance(large[0], (tree.CallExpr, tree.GroupExpr)):
             return False

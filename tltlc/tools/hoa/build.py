@@ -64,7 +64,7 @@ def automaton_of(
 ) -> tuple[Rabin, Analysis | FiniteAnalysis]:
     """Return the automaton of a file, and its analysis. The file must have passed ``check``.
 
-    ``atoms`` are names of atoms; it begins with those of the file. At most one atom of each group
+    ``atoms`` has the names of all atoms, those of the file first. At most one atom of each group
     of ``exclusive`` holds at a time. The labels of states are their numbers in the file. States
     with the same behaviour are merged.
 

@@ -40,8 +40,8 @@ def lint(
 def findings(view: View, levels: Mapping[str, str] = EMPTY) -> tuple[LintFinding, ...]:
     """Return the findings of the compiler and of all rules, in the order of the text.
 
-    Findings that comments or ``levels`` silence are left out. So are findings that a more specific
-    one of these findings supersedes; :class:`~tltlc.tools.lint.rule.LintRule` says which.
+    Findings that comments or ``levels`` silence are left out. So are findings that
+    one of the others supersedes; :class:`~tltlc.tools.lint.rule.LintRule` says when.
     """
     all_findings = [LintFinding(diagnostic) for diagnostic in view.diagnostics]
     supersedes: dict[str, tuple[str, ...]] = {}

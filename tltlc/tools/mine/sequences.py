@@ -28,7 +28,7 @@ from tltlc.tools.witness.blocks import atom_operand
 BEAM: Final = 60
 """The most sequences of one length that are extended.
 
-This many are extended of the sequences whose steps are all single atoms, and as many of the rest.
+The limit is for the sequences whose steps are all single atoms, and again for the rest.
 """
 ALIKE: Final = 3
 """The most sequences that are kept for one set of accepted traces."""

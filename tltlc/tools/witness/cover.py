@@ -25,7 +25,10 @@ class UntakenEdge:
 
 @record
 class Cover:
-    """Traces that together take as many edges as possible, shortest first, and the edges left."""
+    """Traces that together take as many edges as possible, the shortest first.
+
+    ``untaken`` has the remaining edges.
+    """
 
     traces: tuple[Witness, ...]
     untaken: tuple[UntakenEdge, ...]

@@ -212,7 +212,7 @@ class AtomGroup:
         return None
 
     def _deficit(self, point: Point, goals: Sequence[tuple[Callable[[Sequence[float]], float], bool]]) -> float:
-        """Return by how much, in total, the functions miss their required signs at a point."""
+        """Return by how much, in total, the functions in ``goals`` miss their signs at a point."""
         inputs = [point[name] for name in self._names]
         try:
             # Aim beyond the border: at the border the value is 0 and the atom does not hold.

@@ -23,7 +23,7 @@ class Witness:
 
     A move is an edge with a sample that takes it. The moves from index ``cycle`` on repeat for
     ever; ``cycle`` is None for a finite trace. For a trace of a cover, ``new_steps`` has the
-    numbers, from 1, of the steps that take an edge that no earlier step of the cover takes.
+    numbers, from 1, of the steps that take an edge for the first time in the cover.
     """
 
     kind: Kind

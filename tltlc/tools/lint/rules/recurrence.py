@@ -13,7 +13,7 @@ from tltlc.tools.lint.goals import consists_of_implications
 from tltlc.tools.lint.rule import LintRule, Remark
 
 _WORDS = {"F": "it comes again and again", "G": "it lasts from some time on"}
-"""What the author usually means: for ``F`` by ``G F``, and for ``G`` by ``F G``."""
+"""What the author usually means by ``G F`` (the key ``F``) and by ``F G`` (the key ``G``)."""
 _DUAL = {"G": "F", "F": "G"}
 _OF_CLAUSES = {"keep": ("G", True), "avoid": ("G", False), "reach": ("F", True)}
 """For each kind of clause, its operator, and whether the formula is the operand.
