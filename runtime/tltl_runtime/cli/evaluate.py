@@ -196,7 +196,8 @@ def _bar(count: int) -> Any:
 def _print_results(files: EvaluationFiles, json_file: Path | None, folder: Path | None, requested: int) -> None:
     """Print the report on the played episodes, and write the files.
 
-    ``requested`` episodes of each kind were requested; fewer were played if the evaluation was stopped.
+    ``requested`` is the number of episodes to play with sampled actions, and again with the most
+    probable ones. Fewer were played if the evaluation was stopped.
     """
     played = files.episode_counts
     if not any(played.values()):

@@ -113,7 +113,7 @@ def command(
 
 
 def _level_and_variant(level: str | None, spec: str | None) -> tuple[str, str]:
-    """Return the level and the variant that are named, or the level that the spec names."""
+    """Return the level and the variant that are named, else the level of the spec in ``v0``."""
     if level is not None:
         file, variant = split_level(level)
         return file, variant or "v0"
@@ -125,7 +125,7 @@ def _level_and_variant(level: str | None, spec: str | None) -> tuple[str, str]:
 
 
 def _existing_lines(demonstrations: Demonstrations, requested: int) -> list[str]:
-    """Describe the recordings that the folder already contains, in lines."""
+    """Return lines that describe the recordings that are in the folder already."""
     # If there are enough demonstrations, the last line of the output says so.
     lines = [f"{_count_text(demonstrations, requested)} already"] if 0 < demonstrations.count < requested else []
     if number := len(demonstrations.rejected):

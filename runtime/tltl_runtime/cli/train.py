@@ -238,9 +238,9 @@ def _end_lines(run: TrainingRun, last: TrainingReport, again: str) -> Iterator[s
 
 
 def _finished_text(run: TrainingRun, record: Mapping[str, Any], again: str) -> str:
-    """Describe a training that cannot be resumed because it has ended.
+    """Describe a training that is not resumed because it has ended.
 
-    ``again`` is the command that resumes it.
+    ``again`` is the command that resumes it, to which the user can add a higher limit.
     """
     from tltl_runtime.cli.support.training_text import minutes
 

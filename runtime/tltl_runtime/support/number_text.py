@@ -66,7 +66,7 @@ def short_list(names: Sequence[str], most: int) -> str:
 
 
 def column(head: str, text: str, *, width: int = WIDTH) -> str:
-    """Return ``text`` after ``head``, wrapped at words. Each line begins where the text begins.
+    """Return ``text`` after ``head``, wrapped at words. All its lines begin in one column.
 
     A word that is longer than the column stays whole, because users may copy it.
     """

@@ -1,4 +1,4 @@
-"""A hash of all source modules, which identifies the code even between two versions."""
+"""A hash of all source modules. It tells code apart that has the same version number."""
 
 from __future__ import annotations
 

@@ -124,10 +124,11 @@ class EvaluationFiles:
         return text
 
     def document(self, complete: bool) -> dict[str, Any]:
-        """Return the JSON report: figures with sampled actions, and under ``argmax`` with the likeliest actions.
+        """Return the JSON report.
 
-        The report does not depend on which workers played. ``complete`` says whether all episodes were
-        played.
+        It has the figures with sampled actions, and under ``argmax`` those with the likeliest
+        actions. The report does not depend on which workers played. ``complete`` says whether all
+        episodes were played.
         """
         setup, evaluations = self._setup, self._evaluations()
         card = setup.policy.card

@@ -104,7 +104,7 @@ def _cases_not_run(outcome: SuiteRun) -> Iterator[NotRun]:
 
 
 def _earlier_verdict(outcome: SuiteRun, name: str) -> Verdict | None:
-    """Return the verdict of an earlier run in the folder on a case, or None."""
+    """Return the verdict on a case that an earlier run left in the folder, or None."""
     path = case_folder(outcome.suite, name, outcome.folder / CASES) / _REPORT
     with suppress(OSError, ValueError, KeyError, TypeError, RecursionError):
         verdict = fileio.load_json(path, fileio.limits.REPORT)["content"]["verdict"]

@@ -217,7 +217,7 @@ def _report_after_error(outcome: SuiteRun, options: RegressOptions) -> None:
 
 
 def _are_expected(outcome: SuiteRun) -> bool:
-    """Whether there are findings, and all of them concern changed variants."""
+    """Whether some cases do not pass, and each of them plays another variant than its baseline."""
     findings = {case.report.name for case in outcome.cases if case.report.verdict != "pass"}
     return bool(findings) and all(
         case.variant != case.reference for case in outcome.suite.cases if case.name in findings

@@ -204,7 +204,8 @@ def _level_and_variant(options: TrainOptions, initial: InitialPolicyOptions | No
 def _with_level_path(run: TrainingRun, options: TrainOptions) -> TrainingRun:
     """Return the training with the path of ``--level``, if that is the same level.
 
-    Otherwise check that the level's file exists.
+    If it is another level, return the training unchanged. Without ``--level``, check that the file
+    of the training's level exists.
     """
     if options.level is None:
         check_level_exists(run.level, run.variant, resume_command(run.folder))
@@ -252,7 +253,7 @@ def _usage(message: str) -> click.UsageError:
 
 
 def _with_file(settings: TrainingSettings, path: Path) -> TrainingSettings:
-    """Return settings with those that a file changes; raises the errors of :func:`read_settings`."""
+    """Return settings with the values that a file sets; the errors are those of reading it."""
     for table, values in read_values(fileio.read_source(path)).items():
         changed = {table: replace(getattr(settings, table), **values)} if table else values
         settings = replace(settings, **changed)
