@@ -1,4 +1,4 @@
-"""One case for each operator and function of predicates, at values where languages differ."""
+"""Cases for operators and functions in predicates, at values where programming languages differ."""
 
 from __future__ import annotations
 

@@ -36,7 +36,7 @@ class Border:
         return "".join(f"signal {name} in [{self.low!r}, {self.high!r}]\n" for name in names)
 
     def comparison(self, number: int) -> str:
-        """Return the comparison as it is written in a spec."""
+        """Return the comparison as a spec contains it: ``x1 > 0.5``."""
         return f"x{number} {self.op} {f'y{number}' if self.threshold is None else repr(self.threshold)}"
 
     def values(self) -> Iterator[tuple[float, ...]]:
@@ -56,7 +56,7 @@ class Border:
         return {"<": x < right, "<=": x <= right, ">": x > right, ">=": x >= right}[self.op]
 
     def true_values(self) -> tuple[float, ...]:
-        """Return values at which the comparison is true."""
+        """Return a value, in the form of :meth:`values`, at which the comparison is true."""
         x, threshold = (self.high, self.low) if self.op[0] == ">" else (self.low, self.high)
         return (x, threshold) if self.threshold is None else (x,)
 
@@ -95,7 +95,10 @@ def _random_number(draw: Draw) -> float:
 
 
 def _case(name: str, borders: tuple[Border, ...]) -> ConformanceCase:
-    """Return a case that requires all comparisons again and again; in each row at most one is false."""
+    """Return a case whose spec requires all comparisons again and again.
+
+    In each row of its trace, at most one comparison is false.
+    """
     numbered = list(enumerate(borders, start=1))
     declarations = "".join(border.declaration(number) for number, border in numbered)
     formula = " and ".join(border.comparison(number) for number, border in numbered)

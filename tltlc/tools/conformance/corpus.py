@@ -33,7 +33,7 @@ TOLERANCE: Final = 1e-12
 """The largest allowed difference from an expected number, in cases that are not exact."""
 
 _ROUNDED_BY_LIBRARY: Final = ("exp", "tanh", "^")
-"""Operators whose rounding depends on the library of the language."""
+"""Operators whose results depend on the mathematical library of the monitor's language."""
 
 
 def files() -> backends.Files:

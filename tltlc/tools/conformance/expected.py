@@ -26,10 +26,10 @@ COLUMNS: Final = (
 
 @record
 class Refusal:
-    """The refusal of a trace: its reason, its step (from 1), and the signals or atoms at fault.
+    """The refusal of a trace: its reason (``kind``), its step, and the signals or atoms at fault.
 
-    ``line`` is the line of the file (from 1) that cannot be read. It is None if the monitor refuses
-    a sample.
+    ``step`` counts from 1. ``line`` is the line of the file (from 1) that cannot be read. It is
+    None if the monitor refuses a sample.
     """
 
     kind: Kind
@@ -99,7 +99,7 @@ def _refusal(fspa: Fspa, error: Diagnostic, step: int, trace: bytes, sample: Sam
 
 
 def _missing_signals(fspa: Fspa, trace: bytes) -> tuple[str, ...]:
-    """Return the signals without a column."""
+    """Return the signals of the automaton for which the trace has no column."""
     table = read_rows(TraceLines(io.BytesIO(trace), "trace"))
     header = table.header if isinstance(table, TraceTable) else ()
     return tuple(signal.name for signal in fspa.signals if signal.name not in header)
@@ -138,7 +138,7 @@ def _conflicting_atoms(fspa: Fspa, sample: Sample) -> tuple[str, ...]:
 
 
 def _clamp(fspa: Fspa, sample: Mapping[str, float]) -> dict[str, float]:
-    """Return the signals, clamped to their ranges."""
+    """Return the values of the signals, clamped to their ranges."""
     values = {}
     for signal in fspa.signals:
         value = sample[signal.name]

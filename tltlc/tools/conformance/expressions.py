@@ -38,7 +38,7 @@ _EXPONENTS: Final = (2.0, 3.0, 0.5, -1.0, 1.5)
 
 
 def predicate(draw: Draw) -> Expression:
-    """Return an expression whose values mostly lie in [-1, 1], with both signs."""
+    """Return a random expression whose values mostly lie in [-1, 1], with both signs."""
     inner = _expression(draw, 3)
     choice = draw.below(4)
     if choice == 0:

@@ -1,4 +1,4 @@
-"""Cases from files: the specs of the paper with a recorded trace each, and more of the language."""
+"""Cases from files: specs of the paper, each with a recorded trace, and specs of our own."""
 
 from __future__ import annotations
 

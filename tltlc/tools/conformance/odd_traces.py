@@ -34,7 +34,7 @@ _TWO: Final = ((0.5, 1.0), (-0.25, 0.0))
 
 
 def _bad_row(row: bytes) -> OddTrace:
-    """Return a trace whose second row is refused."""
+    """Return a trace whose second row is ``row`` and must be refused."""
     return OddTrace(_HEAD + b"0.5,1\n" + row + b"\n0.5,1\n", _ONE, 3)
 
 
@@ -64,7 +64,7 @@ def _note(cell: bytes) -> OddTrace:
 
 
 def _bad_note(cell: bytes, line: int = 3) -> OddTrace:
-    """Return a trace that is refused at this line, for a cell in a column that is not a signal."""
+    """Return a trace that must be refused at ``line``, for a cell in a column that is no signal."""
     return OddTrace(b"note,x,seen\n-,0.5,1\n" + cell + b",0.5,1\n-,0.5,1\n", _ONE, line)
 
 

@@ -17,7 +17,10 @@ _VALUES: Final = (-1.0, -0.5, -0.25, 0.0, 0.25, 0.5, 1.0)
 
 
 def _exclusive_case(name: str, count: int) -> ConformanceCase:
-    """Return a case of places to visit in order; at most one of their atoms holds at a time."""
+    """Return a case with ``count`` places, some of which are to be visited in order.
+
+    At most one of their atoms holds at a time.
+    """
     atoms = [f"at_{number}" for number in range(count)]
     order = f.atom(atoms[-1])
     for atom in reversed(atoms[:3]):

@@ -37,9 +37,9 @@ def table(columns: Sequence[str], rows: Iterable[Sequence[object]], end: str = "
 
 
 def random_trace(fspa: Fspa, draw: Draw, length: int, pools: Pools = EMPTY, *, refused: bool = False) -> bytes:
-    """Return a random trace of samples that the automaton accepts.
+    """Return a random trace whose samples a monitor reads without an error.
 
-    If ``refused``, add a last sample that the automaton rejects, if one is found.
+    If ``refused``, add a last sample that the monitor refuses, if one is found.
     """
     # The predicates are compiled once here, not for each sample.
     atoms = Samples(fspa, None, [])
@@ -69,7 +69,7 @@ def _liveliness(fspa: Fspa, trace: bytes) -> tuple[int, int]:
 
 
 def _sample(fspa: Fspa, atoms: Samples, draw: Draw, pools: Pools, accepted: bool) -> dict[str, float]:
-    """Draw samples until one is accepted, or rejected if ``accepted`` is false.
+    """Draw samples until :func:`_is_accepted` gives ``accepted`` for one, and return that one.
 
     After ``_ATTEMPTS`` samples, return the last one anyway.
     """
@@ -81,7 +81,7 @@ def _sample(fspa: Fspa, atoms: Samples, draw: Draw, pools: Pools, accepted: bool
 
 
 def _is_accepted(fspa: Fspa, atoms: Samples, sample: Mapping[str, float]) -> bool:
-    """Whether each atom has a value in the sample, and no two exclusive atoms hold."""
+    """Whether a monitor takes a sample: each atom has a value, and no two exclusive atoms hold."""
     try:
         check_exclusive(fspa, atoms.atom_values(sample, 1), 1)
     except MonitorError:
@@ -108,7 +108,7 @@ def _value(draw: Draw, signal: Signal, pool: Sequence[float]) -> float:
 
 
 def _text(draw: Draw, signal: Signal, value: float) -> str:
-    """Return a number, written in one of several ways."""
+    """Return the value of a signal as text, in a form that is drawn at random."""
     if signal.type == "bool" and draw.chance(0.7):
         return "true" if value else "false"
     if value == int(value) and draw.chance(0.7):

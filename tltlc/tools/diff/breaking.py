@@ -69,7 +69,8 @@ class FileChange:
 def version_changes(change: FileChange, work: int = DEFAULT_WORK) -> tuple[Diagnostic, ...]:
     """Return the changes of the specs, in order, and then those of their signals, params and atoms.
 
-    If neither version has specs, return the changes of what the library offers and sets.
+    If neither version has specs, return the changes of the library: its declarations, clock and
+    exclusive atoms.
 
     Error (:class:`~tltlc.diagnostics.diagnostic.TltlError`): TLT0750 if a comparison takes more
     than ``work`` steps.

@@ -158,7 +158,10 @@ def values_changed(
     place: Label,
     kind: str = "atom",
 ) -> Diagnostic:
-    """Return TLT0757: an atom or predicate has other values; the help shows one sample."""
+    """Return TLT0757: an atom or predicate has other values; the help shows one sample.
+
+    ``subject`` is its name in the title. ``others`` are the names of atoms that changed alike.
+    """
     title = f"the {kind} {subject} is {'judged' if difference.differs_in_truth else 'scaled'} otherwise"
     if others:
         title += f", as {'is' if len(others) == 1 else 'are'} {name_list(others)}"

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 Relation = Literal["equivalent", "stricter", "looser", "incomparable"]
 
 _STEPS_OF_A_PAIR: Final = 100
-"""The least number of steps of work that each pair of exclusive atoms takes."""
+"""A comparison counts at least this many steps of work for each pair of exclusive atoms."""
 
 OF_A: Final = " of A"
 OF_B: Final = " of B"

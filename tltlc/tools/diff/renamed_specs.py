@@ -21,7 +21,10 @@ _MOST_RENAMED: Final = 6
 
 @record
 class _SpecInChange:
-    """A spec that is in only one version of a file; ``number`` is the index of the change."""
+    """A spec that is in only one version of a file.
+
+    ``number`` is the index of the file's change in the list of changes.
+    """
 
     number: int
     fspa: Fspa

@@ -90,10 +90,11 @@ class ExampleTrace:
 class Explanation:
     """A spec in words. The fields are those of the JSON of ``tltlc explain --format json``.
 
-    ``outline`` is None if the automaton comes from another tool and has no formula. ``exclusive``
-    lists groups of atoms of which at most one holds at a time. ``counting`` lists runs of states that
-    differ only in a count; each state of a run leads to the next. ``judge`` is ``goal`` or
-    ``limit``, and ``ending`` says what that means for this spec.
+    ``outline`` has the goals and rules of the formula. It is None if the automaton comes from
+    another tool and has no formula. ``exclusive`` lists groups of atoms of which at most one holds
+    at a time. ``counting`` lists runs of states that differ only in a count; each state of a run
+    leads to the next. ``judge`` is ``goal`` or ``limit``, and ``ending`` says what that means for
+    this spec.
 
     ``succeed`` is a trace that succeeds, and ``fail`` one that fails. They are None if there is no
     such trace, or if the search found none. Over finite traces both are as short as possible, and
@@ -214,9 +215,9 @@ def _failures(fspa: Fspa, guards: tuple[Formula, ...]) -> tuple[TrapCondition, .
 
 
 def _witness(moves: Moves, accept: bool) -> Witness | None:
-    """Return a trace that succeeds, if ``accept``, or one that fails; None if none is found.
+    """Return a trace that succeeds, if ``accept``, else one that fails; None if none is found.
 
-    A finite trace that fails must end in a violated state.
+    A finite trace that fails counts only if it ends in a violated state.
     """
     try:
         witness = accepting_trace(moves, _MOST_WORK) if accept else rejecting_trace(moves, _MOST_WORK)

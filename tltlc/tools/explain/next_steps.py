@@ -33,7 +33,7 @@ def edges_leading_on(fspa: Fspa) -> tuple[int, ...]:
 
 
 def _edges_with_less_left(fspa: Fspa, edges: Sequence[int]) -> Iterable[int]:
-    """Return the edges whose target accepts strictly more traces than their source.
+    """Return those of ``edges`` whose target accepts strictly more traces than their source.
 
     The result is empty if the comparison takes too much work.
     """

@@ -20,7 +20,7 @@ _MOST_STEPS = 60
 
 @record
 class SectionList:
-    """A list of items under a title, which may be empty; numbered from 1 if ``numbered``."""
+    """A list of items, numbered from 1 if ``numbered``. The title may be empty."""
 
     title: str
     items: tuple[str, ...]

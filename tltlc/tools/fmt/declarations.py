@@ -126,7 +126,7 @@ class DeclarationPrinter:
     # --- blocks ---------------------------------------------------------------------------------
 
     def _put_block(self, span: Span, head: int, items: Sequence[tree.Clause | tree.TestStep | tree.TestExpect]) -> None:
-        """Write ``{ … }``.
+        """Write ``{ … }``. In the source, the text before the block ends at the offset ``head``.
 
         The block stays on one line if it is on one line in the source and fits. Otherwise, each item
         gets a line.

@@ -21,9 +21,9 @@ _GAP: Final = 2
 """The number of blanks between a line and the comment after it."""
 
 _OPENERS: Final = ("{", "(", ":", "=")
-"""A comment after a line with one of these ends is not aligned with the comments below it.
+"""Ends of lines. A comment after such a line is not aligned with the comments below it.
 
-It is about several lines, not about one.
+It is about the lines that follow, not about one line.
 """
 
 
@@ -107,7 +107,7 @@ class Page:
     def find(self, sign: str, start: int) -> int:
         """Return the offset of the first ``sign`` in the source that is not before ``start``.
 
-        Comments that are not written yet are skipped.
+        A ``sign`` in a comment that is not written yet does not count.
         """
         place = self._text.find(sign, start)
         for number in range(self._next, len(self._comments)):

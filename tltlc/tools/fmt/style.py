@@ -66,7 +66,7 @@ STYLES: Final[Mapping[str, Style]] = {
     "symbols": _style(ASCII._replace(prefix={**ASCII.prefix, "F": "<>", "G": "[]"})),
     "unicode": _style(UNICODE, {"<=": " ≤ ", ">=": " ≥ "}),
 }
-"""The styles by name. An operator without a symbol keeps its letter."""
+"""The styles by name. In the last two, an operator without a symbol keeps its letter."""
 
 DEFAULT: Final = "words"
 """The default style."""

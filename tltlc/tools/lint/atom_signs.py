@@ -35,7 +35,7 @@ class DeclaredNames(Protocol):
 
 _MOST_POINTS: Final = 600
 _ABOVE_ZERO: Final = 1e3 * TOLERANCE
-"""A value that is proved to be at least this is above 0, although proofs tolerate rounding."""
+"""Proofs tolerate rounding errors. A value that is proved to be at least this is above 0."""
 
 _RANGES: Final[dict[Sign, tuple[float, float]]] = {
     "positive": (_ABOVE_ZERO, inf),
@@ -48,8 +48,8 @@ _RANGES: Final[dict[Sign, tuple[float, float]]] = {
 def can_be(sign: Sign, atom: Atom, declarations: DeclaredNames, tries: int = _MOST_POINTS) -> bool:
     """Whether a search finds values of signals and params for which an atom has this sign.
 
-    The search tries at most ``tries`` points, and stops when it has used up the steps that the
-    check of a predicate may take. False means only that the search found no such values.
+    The search tries at most ``tries`` points, and spends at most the steps of work that the
+    compiler spends on checking a predicate. False means only that the search found no such values.
     """
     try:
         with step_limit(WORK["check of a predicate"]):

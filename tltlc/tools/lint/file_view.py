@@ -31,7 +31,7 @@ _COMPARISONS = ("<", "<=", ">", ">=")
 class Expression:
     """An expression of a clause, with the environment in which its names are resolved.
 
-    The environment also has the entity of each enclosing quantifier.
+    Inside a quantifier, the environment also has the entity for the quantifier's variable.
     """
 
     tree: Expr
@@ -50,7 +50,7 @@ class Expression:
     def with_tree(self, tree: Expr) -> Expression:
         """Return the part ``tree`` of this expression, with the same environment.
 
-        ``tree`` must not be inside a quantifier: :meth:`parts` yields the parts in there.
+        ``tree`` must not be inside a quantifier. Use :meth:`parts` for the parts of a quantifier.
         """
         return Expression(tree, self.env)
 
@@ -104,9 +104,9 @@ class SpecView:
 
     @property
     def decision(self) -> Decision:
-        """The function that decides whether some parts of the spec are unsatisfiable together.
+        """The function that decides whether given parts of the spec contradict each other.
 
-        It decides over finite or infinite traces, depending on the semantics of the spec.
+        It decides over finite or infinite traces, as the spec's semantics says.
         """
         if self.spec.semantics == "finite":
             return unsatisfiable

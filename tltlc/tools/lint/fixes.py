@@ -23,7 +23,7 @@ _MOST_ERRORS: Final = 8
 """The most errors whose fixes are tried."""
 
 ErrorFinder = Callable[[SourceFile], tuple[Sequence[Diagnostic], Iterable[Diagnostic]]]
-"""A function from a text to its syntax errors, and to all diagnostics of its syntax and names."""
+"""A function that returns a text's syntax errors, and all diagnostics of its syntax and names."""
 
 
 @record

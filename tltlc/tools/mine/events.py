@@ -37,7 +37,7 @@ def best_events(evidence: Evidence, events: Sequence[str], most: int = MOST_EVEN
 
 
 def _first_samples(trace: LabelledTrace) -> dict[str, float]:
-    """Return the first sample, from 0, at which each atom holds."""
+    """Return, for each atom, the number of the first sample at which it holds, counted from 0."""
     firsts: dict[str, float] = {}
     for number, letter in enumerate(trace.letters):
         for name in letter:

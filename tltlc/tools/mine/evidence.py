@@ -8,7 +8,7 @@ from tltlc.core.record import record
 
 @record
 class LabelledTrace:
-    """A trace: its name, and for each of its samples, at least one, the atoms that hold."""
+    """A trace: its name, and the atoms that hold at each of its samples, at least one."""
 
     name: str
     letters: tuple[Letter, ...]
@@ -16,10 +16,10 @@ class LabelledTrace:
 
 @record
 class Evidence:
-    """The traces, at least one, that a proposal should accept, and counterexamples that it should not.
+    """The traces that a proposal should accept, and the counterexamples that it should reject.
 
-    ``made_up`` is true if the counterexamples are not recordings, but generated from the traces
-    (:mod:`tltlc.tools.mine.mutants`).
+    There is at least one trace. ``made_up`` is true if the counterexamples are not recordings, but
+    generated from the traces (:mod:`tltlc.tools.mine.mutants`).
     """
 
     traces: tuple[LabelledTrace, ...]

@@ -31,7 +31,8 @@ def read_evidence(
     Raises:
         TltlError: the errors of :func:`~tltlc.tools.mine.vocabulary.vocabulary_of_library`,
             :func:`~tltlc.tools.mine.vocabulary.vocabulary_of_columns` and
-            :func:`~tltlc.tools.mine.trace_letters.read_traces`; the errors of a trace without columns.
+            :func:`~tltlc.tools.mine.trace_letters.read_traces`; the errors of
+            :func:`~tltlc.tools.mine.trace_letters.check_trace` for a trace without columns.
     """
     all_columns = []
     for file in (*good, *bad):

@@ -138,7 +138,7 @@ class _Sequences:
     def _supported_choices(
         self, steps: Sequence[tuple[SequenceStep, Verdicts]], room: int
     ) -> Iterator[tuple[SequenceStep, Verdicts]]:
-        """Yield each choice between two steps that enough traces meet, and these traces."""
+        """Yield each choice of two steps that enough traces meet, with the set of these traces."""
         bits = self._bits
 
         def sort_key(item: tuple[SequenceStep, Verdicts]) -> tuple[float, int, str]:

@@ -41,7 +41,7 @@ class MiningVocabulary:
     """The atoms of the traces, and the declarations of all names that specs over them need.
 
     ``library`` is a source text that declares all names. ``entities`` are the entities of the
-    traces that the original library does not declare. ``reader`` is an automaton that accepts every
+    traces that the user's library does not declare. ``reader`` is an automaton that accepts every
     trace and has all atoms, so that their values can be computed with it. ``left_out`` lists the
     columns that are not atoms. Those in ``misnamed`` are true or false, but have names that no atom
     can have. ``unread_count`` is the number of possible atoms beyond the limits on work.
@@ -196,7 +196,7 @@ def _visible_names(module: Module, options: ResolveOptions) -> dict[str, Binding
 
 
 def _with_entities(library: SourceFile, names: Sequence[str]) -> SourceFile:
-    """Return the library with further entities at its end, so that its own positions stay valid."""
+    """Return the library with further entities at its end, so that positions in its text stay valid."""
     return SourceFile(library.name, f"{library.text}\nentity {', '.join(names)}\n") if names else library
 
 

@@ -91,7 +91,7 @@ class NearestEdges:
         return self._live_edges[self._component[state]] > 0
 
     def _remove_live_edge(self, component: int) -> None:
-        """Remove a live edge from a component.
+        """Remove a live edge from a component; :meth:`_find_components` says which edges are live.
 
         If the component has no live edge left, its predecessors lose a live edge, too.
         """

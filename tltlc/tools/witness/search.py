@@ -35,7 +35,7 @@ _HALVINGS = 60
 _FAR = tuple(
     sign * size for size in (1e9, 1e12, 1e20, 1e50, 1e100, 1e200, 1e300, 1e308, float_info.max) for sign in (1.0, -1.0)
 )
-"""Values of a signal without a finite range that are tried if all else fails."""
+"""The last values to try for a signal without a finite range."""
 _LARGE = 1e6
 """For numbers above this, bisection uses geometric means: arithmetic ones would take too long."""
 _UNDEFINED = (ZeroDivisionError, OverflowError, ValueError)
@@ -129,14 +129,14 @@ class AtomGroup:
 
     @cached_property
     def _simple(self) -> list[Point]:
-        """The simple points; empty if there are no signals."""
+        """The points to try first, without regard to literals; empty if there are no signals."""
         whole = Op("min", (*self._expressions, *map(Const, self._params.values())))
         box: Box = {Variable(name): self._ranges[name] for name in self._names}
         bools: frozenset[AnyVariable] = frozenset(Variable(name) for name in self._bools)
         return [{variable.name: value for variable, value in point.items()} for point in points(whole, box, bools)]
 
     def _points(self) -> Iterator[Point]:
-        """Yield simple points, then points between borders, varying one signal at a time."""
+        """Yield the points of :attr:`_simple`, then points at and between the borders of atoms."""
         yield from self._simple
         for name in self._names:
             if name not in self._bools and self._simple:
@@ -171,7 +171,7 @@ class AtomGroup:
             yield {**start, name: value}
 
     def _border(self, start: dict[str, float], name: str, index: int, low: float, high: float) -> tuple[float, float]:
-        """Return two almost equal values of a signal between which the truth of an atom changes."""
+        """Return two almost equal values of a signal. The truth of an atom changes between them."""
         below = self._sign({**start, name: low}, index)
         for _ in range(_HALVINGS):
             middle = _middle(low, high)

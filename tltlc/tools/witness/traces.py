@@ -90,7 +90,7 @@ def _with_loop(moves: Moves, trace: Witness) -> Witness | None:
 def _lasso(moves: Moves, kind: Literal["accepting", "rejecting"], work: int) -> Witness | None:
     """Return an infinite trace, a prefix and a cycle, with a sample for each step, or None.
 
-    If no sample is found for an edge of the trace, the edge is closed, and the search starts again.
+    If no sample is found for an edge of the trace, search again for a trace without this edge.
     """
     from tltlc.automaton.compare import separating
 

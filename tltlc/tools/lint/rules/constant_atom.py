@@ -10,7 +10,7 @@ from tltlc.tools.lint.rule import LintRule, Remark
 
 
 def check(view: View) -> Iterator[Remark]:
-    """Yield a remark for each constant atom, once for each name in the file."""
+    """Yield one remark for each atom that always holds or never holds."""
     checked: set[str] = set()
     for spec in view.specs:
         for atom in spec.fspa.atoms:

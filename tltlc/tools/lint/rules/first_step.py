@@ -18,8 +18,8 @@ def check(view: View) -> Iterator[Remark]:
 
     There is none for a spec of the form `spec NAME = FORMULA`.
 
-    Also yields a remark for conjuncts that follow the operand of a temporal operator and were
-    probably meant to belong to the operand, like b in `eventually a and b`.
+    Also yield a remark for conjuncts like b in `eventually a and b`. They do not belong to the
+    operand of the temporal operator, but were probably meant to.
     """
     for spec in view.specs:
         for clause, value in spec.clauses("require"):

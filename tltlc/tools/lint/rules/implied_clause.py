@@ -16,7 +16,7 @@ from tltlc.tools.lint.rule import LintRule, Remark
 from tltlc.tools.lint.rules import recurrence
 
 _MOST_PARTS = 24
-"""Specs with more clauses are not checked, because a check builds automata of many clauses."""
+"""Specs with more clauses are not checked, because each check builds automata from all clauses."""
 
 
 def check(view: View) -> Iterator[Remark]:

@@ -60,7 +60,7 @@ def _remarks(goal: Expression, spec: SpecView) -> Iterator[Remark]:
 
 
 def _without_temporal_operators(formula: Formula) -> Formula:
-    """Return a formula without temporal operators that is equivalent while no atom changes."""
+    """Return a formula without temporal operators, which means the same while no atom changes."""
     still: dict[Formula, Formula] = {}
     for part in formula.bottom_up():
         args = tuple(still[argument] for argument in part.args)
