@@ -159,7 +159,7 @@ def _replay_command(policy: Path | None, level: str | None, spec: str | None, se
 def _with_progress(playing: Iterator[PlayedEpisode], count: int) -> Iterator[PlayedEpisode]:
     """Yield the results and report progress on standard error.
 
-    On a terminal this is a bar, else a line for each tenth.
+    On a terminal this is a bar, else a line for each tenth of the episodes.
     """
     from tltl_runtime.evaluation.player import CHOICES
 

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 def _setting(table: str, key: str) -> Callable[[click.Context, click.Parameter, Any], Any]:
-    """Return a callback that checks an option by the rules of the settings file."""
+    """Return a callback that checks an option like the setting ``key`` in the table ``table``."""
 
     def check(_: click.Context, parameter: click.Parameter, value: Any) -> Any:
         from tltl_runtime.training.run.settings_file import KINDS

@@ -103,7 +103,7 @@ class Game(ABC, Generic[LevelT, EpisodeT]):
 
     @abstractmethod
     def level_fault(self, error: RuntimeError) -> TltlError | None:
-        """Return the fault of the level that caused ``error`` in play, or None if the level is not at fault."""
+        """Return the error to report if the level has caused ``error`` in play, else None."""
 
     # --- episodes ----------------------------------------------------------------------------------
 

@@ -10,7 +10,7 @@ from tltlc.api import record
 
 @record
 class MapSensor:
-    """The semantic map around the agent: ``extent`` by ``extent`` cells of ``cell`` metres.
+    """A map of the things around the agent: ``extent`` by ``extent`` cells of ``cell`` metres.
 
     ``extent`` is odd, so that the agent is in the middle cell. ``types`` are the types of things that
     the map shows, such as ``wall``.

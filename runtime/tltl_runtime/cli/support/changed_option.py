@@ -18,7 +18,7 @@ class ChangedCommand(click.Command):
     """
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """Parse the arguments of the command."""
+        """Parse the arguments of the command, with any number of words after ``--changed``."""
         return super().parse_args(ctx, list(_with_repeated_option(args)))
 
 

@@ -85,7 +85,7 @@ class EvaluationFiles:
 
     @property
     def episode_counts(self) -> dict[str, int]:
-        """The number of played episodes, by how actions were chosen."""
+        """The number of played episodes for each way to choose actions."""
         return {CHOICES[sampled]: len(summaries) for sampled, summaries in self._summaries.items()}
 
     @property
@@ -153,7 +153,7 @@ class EvaluationFiles:
         }
 
     def write(self, text: str) -> str:
-        """Write the JSON report and, if there is a folder, the pictures of trajectories.
+        """Write the JSON report ``text`` and, if there is a folder, the pictures of trajectories.
 
         Return a description of the folder's contents; empty without a folder.
         """

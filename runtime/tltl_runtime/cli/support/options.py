@@ -16,7 +16,7 @@ _OUTPUT: Final = ("--output", "--out", "-o")
 
 
 def output_folder(help_text: str, default: Path | None = None) -> Callable[[Function], Function]:
-    """Return the option ``-o DIR``, which the command gets as ``folder``."""
+    """Return a decorator for the option ``-o DIR``. The command gets its value as ``folder``."""
     return click.option(
         *_OUTPUT,
         "folder",
@@ -29,12 +29,12 @@ def output_folder(help_text: str, default: Path | None = None) -> Callable[[Func
 
 
 def output_file(metavar: str, help_text: str) -> Callable[[Function], Function]:
-    """Return the option ``-o FILE``, which the command gets as ``path``."""
+    """Return a decorator for the option ``-o FILE``. The command gets its value as ``path``."""
     return click.option(*_OUTPUT, "path", metavar=metavar, type=cli.OutputPath("file", checked=True), help=help_text)
 
 
 def seed_option(help_text: str) -> Callable[[Function], Function]:
-    """Return the option ``--seed N``, by default 0."""
+    """Return a decorator for the option ``--seed N``, by default 0."""
     kind = cli.WholeRange(min=0)
     return click.option("--seed", metavar="N", type=kind, default=0, show_default=True, help=help_text)
 

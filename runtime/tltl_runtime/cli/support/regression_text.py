@@ -15,7 +15,10 @@ _COLORS = {"pass": "green", "review": "yellow", "fail": "red"}
 
 
 def case_lines(report: CaseReport, width: int, *, is_cached: bool) -> Iterator[str]:
-    """Yield the lines of a case. Its name is padded to ``width`` columns."""
+    """Yield the lines of a case. Its name is padded to ``width`` columns.
+
+    ``is_cached`` says that the case was not played again.
+    """
     verdict = click.style(report.verdict, fg=_COLORS[report.verdict], bold=True)
     # Keep the padding outside of the coloured text, so that `rstrip` can remove it at the end of a line.
     beside = f"{' ' * (6 - len(report.verdict))}  {_figures(report)}{'  (as before)' if is_cached else ''}"

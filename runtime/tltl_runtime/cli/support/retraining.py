@@ -28,7 +28,7 @@ from tltl_runtime.training.run.run_file import RUN, TrainingRun
 from tltlc.api import TltlError, cli, record, replace
 
 _FATAL_ERRORS: Final = WORKER_ERRORS | {"TLT0005"}
-"""The codes of errors of worker processes or of the folder: they are no faults of a case."""
+"""The codes of errors that end all retraining: those of worker processes and of the folder."""
 
 
 @record
