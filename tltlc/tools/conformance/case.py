@@ -29,7 +29,7 @@ class ConformanceCase:
 
 
 CaseBuilders = Mapping[str, Callable[[], ConformanceCase]]
-"""Cases by name, each as a function that builds it, so that one case is built without the others."""
+"""Cases by name, each as a function that builds it. So a caller can build only those it needs."""
 
 
 def automaton(

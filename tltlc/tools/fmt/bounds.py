@@ -14,12 +14,16 @@ _WORD: Final = {"F": "within", "G": "for", "X": "after", "N": "after"}
 
 
 def bound_forms(node: tree.Unary, number: Callable[[tree.NumberExpr], str]) -> dict[str, str]:
-    """Return the forms of the bound of an operator, by the names ``words`` and ``brackets``.
+    """Return the bound of an operator in two forms, by the names ``words`` and ``brackets``.
 
-    Words look like ``within 3 steps``, and brackets like ``[0,3]``. The result is empty without a
-    bound, and has one form if the other cannot express the bound. ``for 3 steps`` counts samples, and
-    ``[0,2]`` names the last one. A time is rounded up to samples, so no brackets equal ``for`` with
-    a time. ``after`` has no form in brackets. ``number`` returns the text of a number.
+    Words look like ``within 3 steps``, and brackets like ``[0,3]``. The result is empty if there is
+    no bound. It lacks a form that cannot express the bound:
+
+    - ``for 3 steps`` counts samples, and ``[0,2]`` names the last one, so each expresses the other;
+    - no brackets equal ``for`` with a time, because a time is rounded up to samples;
+    - no brackets equal ``after``.
+
+    ``number`` returns the text of a number.
     """
     bound = node.bound
     if bound is None:

@@ -45,7 +45,7 @@ class ImportOptions:
 
     ``atoms`` maps the names of atomic propositions to predicates. A proposition that is not in
     ``atoms`` must itself have the name of a predicate. ``name`` is the name of the spec. Without
-    it, the header ``name:`` gives the name if that is a plain name, else the name of the file does.
+    it, the header ``name:`` gives the name if a spec can have it, else the name of the file does.
     ``level``, ``limit_steps`` and ``judge`` are as in :class:`~tltlc.resolve.spec.Spec`, and have
     precedence over the headers of the file. ``resolve`` has the options for the library. The
     automaton may have ``state_budget`` states, and its computation may take ``work`` steps.
@@ -131,7 +131,7 @@ def _trivial_warnings(fspa: Fspa, source: SourceFile) -> tuple[Diagnostic, ...]:
 
 
 def _name(hoa: Hoa) -> str:
-    """Return the name of the automaton if it is a plain name, else a name made from its file name."""
+    """Return the automaton's name if a spec can have it, else a name made from the file name."""
     if hoa.name and is_plain_name(hoa.name.text):
         return hoa.name.text
     if hoa.source.name == STDIN_NAME:

@@ -17,10 +17,14 @@ _ROOTS: Final = ("tltl.toml", ".git")
 def neighbours(paths: Iterable[str]) -> dict[Path, str]:
     """Return the texts of the given files and of their neighbours, by resolved path.
 
-    The neighbours are the source files in the same folder trees and in the folders above. The root
-    of a tree is the folder of the project file or of the repository. If there is neither, it is the
-    current folder, or the file's own folder if that is not below the current folder. Files that
-    cannot be read are left out.
+    The neighbours of a file are the source files in the same folder tree and in all folders above
+    it. The root of the tree is
+
+    - the folder of the project file or of the repository, if there is one;
+    - else the current folder, if the file is in it or below it;
+    - else the folder of the file.
+
+    Files that cannot be read are left out.
     """
     from tltlc.diagnostics.diagnostic import TltlError
     from tltlc.io.files import read_source

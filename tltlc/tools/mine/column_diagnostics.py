@@ -29,10 +29,10 @@ class Columns:
 
 @record
 class OddColumns:
-    """Columns (``names``) that the same ``traces`` lack.
+    """Columns (``names``) that cannot be atoms because of the same ``traces``.
 
-    With ``has_other_values``, the traces do not lack them, but have other values than `true` and
-    `false` in them.
+    These traces lack the columns. If ``has_other_values`` is true, they have the columns, but with
+    values other than `true` and `false`.
     """
 
     traces: tuple[str, ...]

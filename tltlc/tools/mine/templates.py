@@ -28,9 +28,9 @@ def clauses(forwards: Bits, backwards: Bits, events: Collection[str], least: int
     To satisfy an instance only vacuously is not enough.
 
     ``backwards`` has the same traces as ``forwards``, each in reverse order. Clauses about two
-    atoms use only ``events``: for an atom that always holds, `keep` is enough. The work grows with
-    the square of the number of events, so the caller limits them. The bound of a response is the
-    smallest with which at least ``least`` traces satisfy it.
+    atoms use only the atoms in ``events``: for an atom that always holds, `keep` is enough. The
+    work grows with the square of the number of events, so the caller limits them. The bound of a
+    response is the smallest with which at least ``least`` traces satisfy it.
     """
     for portion in _candidates(forwards, backwards, events, least):
         # A clause that is only vacuously true says nothing about the game.

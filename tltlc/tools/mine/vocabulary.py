@@ -196,7 +196,7 @@ def _visible_names(module: Module, options: ResolveOptions) -> dict[str, Binding
 
 
 def _with_entities(library: SourceFile, names: Sequence[str]) -> SourceFile:
-    """Return the library with further entities at its end, so that positions in its text stay valid."""
+    """Return the library with further entities at its end, where they shift no other text."""
     return SourceFile(library.name, f"{library.text}\nentity {', '.join(names)}\n") if names else library
 
 

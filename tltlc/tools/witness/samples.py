@@ -141,7 +141,7 @@ def _point(group: AtomGroup, polarity: Mapping[int, bool]) -> Point | Unsatisfie
     """Return values of a group's signals at which its atoms have the truth values in ``polarity``.
 
     If possible, atoms that are not in ``polarity`` do not hold. If no such values are found, return
-    a minimal set of literals for which there are none.
+    a minimal set of literals for which none are found.
     """
     literals = tuple((atom, polarity[atom]) for atom in group.atoms if atom in polarity)
     point = group.find(tuple((atom, polarity.get(atom, False)) for atom in group.atoms)) or group.find(literals)

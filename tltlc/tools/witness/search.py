@@ -70,7 +70,7 @@ class AtomGroup:
         return self._cache[literals]
 
     def _find(self, literals: Implicant) -> Point | None:
-        """Return the best of the simple points, else the end of a climb, else the best far point.
+        """Return the best of ``_candidates``, else the end of a climb, else the best far candidate.
 
         Return None if the literals are true at none of them.
         """
