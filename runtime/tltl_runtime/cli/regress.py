@@ -19,7 +19,7 @@ from tltl_runtime.cli.support.writable_paths import is_standard_output
 from tltlc.api import TltlError, cli, fileio
 
 _MINUTES: Final = 10.0
-"""The default limit of each training with --retrain."""
+"""The default limit of each training with --retrain, in minutes."""
 _REPORTS: Final = {"json": "the JSON", "junit": "the XML", "html": "the page"}
 
 

@@ -34,7 +34,7 @@ class Sensors:
 
 
 SensorChoice = Sensors | Mapping[str, Any]
-"""All sensors, or a mapping with some fields of :class:`Sensors`; the level has the other fields.
+"""All sensors, or a mapping with some fields of :class:`Sensors`.
 
-``map`` may be such a mapping, too.
+The level's own sensors give the remaining fields. ``map`` may be such a mapping, too.
 """

@@ -6,7 +6,7 @@ already contains JSON data.
 
 The class of a record may have an attribute ``json_inlined``. It maps the name of a field whose
 value is another record to names of fields of that inner record. In JSON, these inner fields are
-keys of the outer object, in place of an inner object. They must not have defaults.
+keys of the outer object, in place of an inner object. The inner fields must not have defaults.
 """
 
 from __future__ import annotations
