@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from tltlc.resolve.spec import Atom, Signal
 
 _MOST: Final = 30
-"""The most impossible traces that one comparison replaces by another trace."""
+"""The most impossible traces that one comparison replaces."""
 
 
 class FeasibleLetters:

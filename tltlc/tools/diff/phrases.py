@@ -31,7 +31,8 @@ def unrelated_reason(a: Fspa, b: Fspa) -> str:
 def name_list(names: Sequence[str], most: int = 4) -> str:
     """Return names in backquotes, with ``and`` before the last one.
 
-    If there are more than ``most`` names, the text has the first ones and the number of the rest.
+    If there are more than ``most`` names, the text has the first ones, and says how many are left
+    out.
     """
     quoted = [f"`{name}`" for name in names]
     if len(quoted) > most:

@@ -1,4 +1,4 @@
-"""Find the names of a file that other files may use by importing it, directly or through others."""
+"""Find the names of a file that other files may use, because they import it or its importers."""
 
 from __future__ import annotations
 

@@ -41,7 +41,7 @@ def findings(view: View, levels: Mapping[str, str] = EMPTY) -> tuple[LintFinding
     """Return the findings of the compiler and of all rules, in the order of the text.
 
     Findings that comments or ``levels`` silence are left out. So are findings that
-    one of the others supersedes; :class:`~tltlc.tools.lint.rule.LintRule` says when.
+    one of the remaining findings supersedes; :class:`~tltlc.tools.lint.rule.LintRule` says when.
     """
     all_findings = [LintFinding(diagnostic) for diagnostic in view.diagnostics]
     supersedes: dict[str, tuple[str, ...]] = {}

@@ -71,7 +71,7 @@ def odd_columns(traces: Sequence[Columns], *, truths: bool) -> tuple[OddColumns,
 
 
 def first_names(names: Sequence[str]) -> str:
-    """Return the names in words. If there are many, list the first ones and count the others."""
+    """Return the names in words. If there are many, list the first and say how many are left."""
     if len(names) <= _MOST_NAMED:
         return name_list(names)
     first = names[: _MOST_NAMED - 1]
@@ -79,6 +79,6 @@ def first_names(names: Sequence[str]) -> str:
 
 
 def _first(traces: Sequence[str]) -> str:
-    """Return the name of the first trace, and the number of the others, in words."""
+    """Return the name of the first trace, and how many traces follow, in words."""
     remaining = len(traces) - 1
     return f"`{traces[0]}`" + (f" and {remaining} other trace{'s' * (remaining > 1)}" if remaining else "")

@@ -17,9 +17,12 @@ MOST_EVENTS: Final = isqrt(WORK["mined pairs"])
 def best_events(evidence: Evidence, events: Sequence[str], most: int = MOST_EVENTS) -> list[str]:
     """Return the ``most`` atoms of ``events`` that best separate traces from counterexamples.
 
-    An atom separates them well if it first holds early in the traces and late in the
-    counterexamples, or the other way round. It also does so if it holds at every sample of the
-    traces, but not of the counterexamples, or the other way round. The order of ``events`` is kept.
+    An atom separates them well in two cases, in which traces and counterexamples may change places:
+
+    - it first holds early in the traces, and late in the counterexamples;
+    - it holds at every sample of the traces, but not of the counterexamples.
+
+    The order of ``events`` is kept.
     """
     if len(events) <= most:
         return list(events)

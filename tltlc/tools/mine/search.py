@@ -80,8 +80,8 @@ class SpecSearch:
     def ranking(self) -> list[Conjunction]:
         """Return the conjunctions found so far, the best first.
 
-        A conjunction is left out if no counterexample violates it, or if another one that is not
-        longer has a better score.
+        A conjunction is left out if no counterexample violates it. It is also left out if a
+        conjunction of at most the same length has a better score.
         """
         ranked: list[tuple[float, int, Conjunction]] = []
         for conjunction, accepts in best_candidates(self._candidates.items(), self.bits):

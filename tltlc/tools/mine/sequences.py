@@ -28,7 +28,7 @@ from tltlc.tools.witness.blocks import atom_operand
 BEAM: Final = 60
 """The most sequences of one length that are extended.
 
-The limit is for the sequences whose steps are all single atoms, and again for the rest.
+It applies to the sequences of single atoms, and separately to those with pairs or choices.
 """
 ALIKE: Final = 3
 """The most sequences that are kept for one set of accepted traces."""

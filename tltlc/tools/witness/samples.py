@@ -28,7 +28,7 @@ class UnsatisfiedLiterals:
     """Literals for which no sample was found that makes them all true.
 
     Each literal is the index of an atom and its truth value. The set is minimal: if any literal is
-    left out, the search finds a sample for the others.
+    left out, the search finds a sample for the remaining ones.
     """
 
     literals: Implicant

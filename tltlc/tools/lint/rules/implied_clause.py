@@ -22,8 +22,9 @@ _MOST_PARTS = 24
 def check(view: View) -> Iterator[Remark]:
     """Yield a remark for each clause that other clauses of its spec imply.
 
-    The first label is on the implied clause, the rest are on the clauses that imply it. A clause
-    that constrains only the last step is usually a mistake, so it never counts as implying another.
+    The first label is on the implied clause. The next labels are on the clauses that imply it. A
+    clause that constrains only the last step is usually a mistake, so it never counts as implying
+    another.
     """
     last_step_labels = [remark.labels[0] for remark in recurrence.check(view)]
     for spec in view.specs:

@@ -21,7 +21,7 @@ _SUGGESTION = "let a signal count the time, and ask for enough of it, as in `rea
 
 
 def check(view: View) -> Iterator[Remark]:
-    """Yield a remark for each bounded `always` in the last goal of a clause that one step can meet.
+    """Yield a remark for each bounded `always` in a clause's last goal, if one step can meet it.
 
     Only specs whose episodes end with success as soon as the spec is met are checked.
     """

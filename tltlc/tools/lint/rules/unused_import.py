@@ -62,7 +62,7 @@ def _provides_any(declaration: Import, names: Sequence[str]) -> bool:
 
 
 def _first(names: Sequence[str], start: str) -> str:
-    """Return the first of these sorted names that is ``start`` or comes after it, or an empty text."""
+    """Return the first of these sorted names from ``start`` on, or an empty string."""
     place = bisect_left(names, start)
     return names[place] if place < len(names) else ""
 
