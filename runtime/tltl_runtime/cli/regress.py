@@ -1,4 +1,4 @@
-"""``tltlc regress``: report which levels still play as designed, and why others do not."""
+"""``tltlc regress``: report which levels still play as designed, and why the rest do not."""
 
 from __future__ import annotations
 
