@@ -1,1 +1,4 @@
-"""Regression tests: suites of cases, verdicts by statistics, explanations and reports."""
+"""Regression tests: do trained policies still meet their specs on changed levels?
+
+Begin with :mod:`~tltl_runtime.regression.verdict.suite_run`.
+"""

@@ -1,1 +1,4 @@
-"""Explanations: what a policy does differently from its baseline."""
+"""Explanations: what a policy does differently from the baseline.
+
+Begin with :mod:`~tltl_runtime.regression.explain.explain`.
+"""

@@ -1,7 +1,7 @@
-"""Explanations: sentences that say what a policy does differently from the baseline, with example episodes.
+"""Sentences that say what a policy does differently from the baseline, with example episodes.
 
 A *stage* is a part of the spec: the automaton's states at one distance from acceptance, with the
-subgoal that leads on from them.
+subgoal that leads from them towards acceptance.
 """
 
 from __future__ import annotations
@@ -20,26 +20,26 @@ from tltl_runtime.support.number_text import count_text, percent
 from tltlc.api import Fspa, record
 
 _STAGE_TOLERANCE: Final = 0.05
-"""If the shares of episodes that complete a stage differ by less than this, they count as equal."""
+"""The least change of the share of episodes that complete a stage. Smaller changes are ignored."""
 
 _COMMON_SHARE: Final = 0.8
-"""A stage is named if more than this share of the episodes complete it."""
+"""A stage without change is mentioned only if more than this share of the episodes complete it."""
 
 _REGION_DIFFERENCE: Final = 0.4
-"""The least difference, to be reported, between the shares of successes that pass through a region."""
+"""The least change of the share of successes that visit a region. Smaller changes are ignored."""
 
 _LENGTH_RATIO: Final = 1.15
-"""If the ratio of the mean lengths of successes is less than this, they count as equal."""
+"""Two mean lengths count as equal if the greater one is less than this times the smaller."""
 
 _MIN_SUCCESSES: Final = 3
-"""The least number of successes, now and before, whose lengths and regions are described."""
+"""Lengths and regions are described only if there are this many successes, both now and before."""
 
 
 @record
 class Finding:
-    """A sentence and the indices of episodes that show it.
+    """A sentence about episodes, and the indices of the episodes that show what it says.
 
-    If ``others`` is true, these are the episodes that do not do what the sentence says.
+    If ``others`` is true, they are instead the episodes that do not do what it says.
     """
 
     text: str
@@ -52,8 +52,8 @@ def findings(
 ) -> tuple[Finding, ...]:
     """Compare the episodes ``now`` with those of the baseline, ``before``.
 
-    The findings say which stages the episodes complete, how they fail, how long successes are, and which
-    regions they pass through.  ``level`` is the level that was played now.
+    The findings say which stages the episodes complete, how they fail, how long successes are, and
+    which regions they pass through. ``level`` is the level that was played now.
     """
     return (
         *_stages(fspa, now, before),
@@ -64,7 +64,12 @@ def findings(
 
 
 def _stages(fspa: Fspa, now: Sequence[ExplainedEpisode], before: Sequence[ExplainedEpisode]) -> Iterator[Finding]:
-    """Describe the completed stages in one sentence, up to the first stage whose share has changed."""
+    """Yield one finding about the completed stages, or none.
+
+    The finding goes through the stages in order. It names each that most episodes complete as
+    before. It ends with the first stage that clearly more or clearly fewer episodes complete than
+    before.
+    """
     unchanged_stages: list[Subgoal] = []
     for distance, states in _visited_states(fspa, (*now, *before)):
         passed_now, passed_before = (_episodes_past(fspa, episodes, distance) for episodes in (now, before))
@@ -87,7 +92,10 @@ def _stages(fspa: Fspa, now: Sequence[ExplainedEpisode], before: Sequence[Explai
 
 
 def _visited_states(fspa: Fspa, episodes: Sequence[ExplainedEpisode]) -> list[tuple[int, set[int]]]:
-    """Return the visited states that are neither accepting nor traps, grouped by distance, greatest first."""
+    """Return pairs of a distance and the visited states at that distance, greatest distance first.
+
+    Accepting states and traps are left out.
+    """
     states_by_distance: dict[int, set[int]] = {}
     for state in {arrival.state for episode in episodes for arrival in episode.arrivals}:
         if distance := fspa.states[state].distance:
@@ -108,16 +116,16 @@ def _distances(fspa: Fspa, episode: ExplainedEpisode) -> list[int]:
 def most_frequent_end(
     level: Level, fspa: Fspa, now: Sequence[ExplainedEpisode], before: Sequence[ExplainedEpisode]
 ) -> str | None:
-    """Describe how most of the failed episodes end, without details; None if no episode failed."""
+    """Describe the most frequent end of failed episodes in short; None if no episode failed."""
     return next((headline for headline, _ in _ends(level, fspa, now, before)), None)
 
 
 def _ends(
     level: Level, fspa: Fspa, now: Sequence[ExplainedEpisode], before: Sequence[ExplainedEpisode]
 ) -> Iterator[tuple[str, Finding]]:
-    """Describe how failed episodes end, most frequent first; yield each in short and in full.
+    """Yield the ways in which the episodes ``now`` fail, each in short and as a finding.
 
-    All sentences are distinct.
+    The most frequent ways come first. All sentences are distinct.
     """
     ends_before = [end_of(level, fspa, episode) for episode in before if not episode.summary.success]
     for group in failures(level, fspa, now):
@@ -141,7 +149,7 @@ def _lengths(now: Sequence[ExplainedEpisode], before: Sequence[ExplainedEpisode]
 
 
 def _regions(level: Level, now: Sequence[ExplainedEpisode], before: Sequence[ExplainedEpisode]) -> Iterator[Finding]:
-    """Describe the regions that clearly more or clearly fewer successful episodes pass through than before."""
+    """Describe the regions through which clearly more or fewer successes pass than before."""
     new, old = ([episode for episode in episodes if episode.summary.success] for episodes in (now, before))
     if min(len(new), len(old)) < _MIN_SUCCESSES:
         return

@@ -1,4 +1,4 @@
-"""An episode with what explains its result: the data that verdicts, explanations and pictures use."""
+"""An episode with the facts that explain its result, for verdicts, explanations and pictures."""
 
 from __future__ import annotations
 
@@ -20,7 +20,10 @@ _SEEN_WITHIN_S: Final = 3.0
 
 @record
 class Arrival:
-    """The entry into a state of the automaton: the step, and the position of the player's feet, in metres."""
+    """An entry into a state of the automaton, at a step.
+
+    ``place`` is the position of the player's feet at that step, in metres.
+    """
 
     state: int
     step: int
@@ -29,13 +32,18 @@ class Arrival:
 
 @record
 class NearestMiss:
-    """How near a failed episode came to taking an edge towards acceptance, from the state in which it failed.
+    """How near a failed episode came to an edge that leads from its last state towards acceptance.
 
-    ``robustness``, in [-1, 1], is the greatest robustness of the guard of such an edge, and ``place`` is
-    where the player was then.  ``atom`` is the atom that limited the robustness: it had to hold, or had
-    to be false if ``wanted`` is False.  If the atom had to hold and depends on a single distance,
-    ``target`` is the entity that the distance is measured to, and ``distance``, in metres, is the least
-    distance at which the atom did not hold.  Only the last stay in the state counts.
+    If a violation ended the episode, its last state is the one before the violation. Only the last
+    stay in that state counts.
+
+    ``robustness``, in [-1, 1], is the greatest robustness of the guards of such edges, and
+    ``place`` is where the player was then. ``atom`` is the atom that limited the robustness. It had
+    to be true if ``wanted`` is true, else false.
+
+    ``target`` and ``distance`` are None unless the atom had to be true and depends only on the
+    distance to one entity. Then ``target`` is that entity, and ``distance``, in metres, is the
+    least distance at which the atom was false.
     """
 
     atom: str
@@ -48,14 +56,17 @@ class NearestMiss:
 
 @record
 class ExplainedEpisode:
-    """An episode of a case: its ``summary``, and what explains the result.
+    """An episode of a case: its ``summary``, and the facts that explain its result.
 
-    ``arrivals`` are the entries into states, from the first sample on.  ``cause``, ``by`` and ``place``
-    say how, by what and where the episode ended, as in :class:`~tltl_runtime.game.episode.Cause`.
-    ``seen_by`` are the enemies that saw the player in the last 3 seconds.  ``broke`` are the atoms that
-    broke the spec; ``arrived`` says that without them the last step would have been a transition
-    towards acceptance.  ``way`` is the simplified trajectory.  ``shut`` are the solid barriers that were
-    closed at the end.
+    - ``cause``, ``by`` and ``place`` say how, by what and where the episode ended, as in
+      :class:`~tltl_runtime.game.episode.Cause`.
+    - ``seen_by`` are the enemies that saw the player in the last 3 seconds; none for a success.
+    - ``arrivals`` are all entries into states, in order. The first is the start at step 0.
+    - ``nearest`` is the nearest miss, or None: a success has none.
+    - ``way`` is the simplified trajectory.
+    - ``broke`` are the atoms that broke the spec.
+    - ``arrived`` says whether only these atoms kept the last step from leading towards acceptance.
+    - ``shut`` are the barriers that were closed at the end and stop players.
     """
 
     json_inlined = MappingProxyType(
@@ -81,14 +92,11 @@ def summaries_of(episodes: Iterable[ExplainedEpisode]) -> list[EpisodeSummary]:
 
 
 def explain_episode(summary: EpisodeSummary, episode: RecordedEpisode) -> ExplainedEpisode:
-    """Return an episode with what explains its result, from its recording.
-
-    ``summary`` is the summary of the ``episode``.
-    """
+    """Explain the result of a recorded ``episode``, whose summary is ``summary``."""
     game, positions = registered_game(), _positions(episode)
     cause = game.cause(episode)
     return ExplainedEpisode(
-        # Neither verdicts and reports nor the files of a baseline have these fields.
+        # Verdicts, reports and the files of baselines do not contain these fields.
         summary=replace(summary, verdict=None, seconds=None, state=None, label=None),
         cause=cause.kind,
         by=cause.by,
@@ -110,7 +118,10 @@ def _arrivals(episode: RecordedEpisode, positions: Sequence[Point]) -> tuple[Arr
 
 
 def _has_arrived(episode: RecordedEpisode, state: int, broke: Sequence[str]) -> bool:
-    """Whether only the atoms in ``broke`` prevented, at the last sample, a transition towards acceptance."""
+    """Whether only the atoms in ``broke`` kept the last step from leading towards acceptance.
+
+    ``state`` is the automaton's state before that step.
+    """
     fspa, values = episode.fspa, episode.atoms[-1].tolist()
     primes = [prime for edge in monitors.tables(fspa).improving[state] for prime in edge.guard.primes]
     missing = [
@@ -122,7 +133,7 @@ def _has_arrived(episode: RecordedEpisode, state: int, broke: Sequence[str]) -> 
 def _nearest_miss(episode: RecordedEpisode, state: int, positions: Sequence[Point]) -> NearestMiss | None:
     """Return the nearest miss in a state.
 
-    None if no edge leads from the state towards acceptance, or if the episode never was in the state.
+    None if no edge leads from the state towards acceptance, or if the episode made no step in it.
     """
     fspa = episode.fspa
     guards = [edge.guard for edge in monitors.tables(fspa).improving[state]]
@@ -146,9 +157,10 @@ def _last_stay(episode: RecordedEpisode, state: int) -> list[int]:
 
 
 def _target_and_distance(episode: RecordedEpisode, atom: int, rows: Sequence[int]) -> tuple[str | None, float | None]:
-    """Return the target of an atom's distance, and the least distance at which the atom did not hold.
+    """Return the entity that an atom asks the player to approach, and the least distance to it.
 
-    ``rows`` are the steps that count.  Both are None if the atom does not depend on a single distance.
+    The distance, in metres, is the least of the steps ``rows`` at which the atom does not hold.
+    Both are None if the atom does not depend on a single distance.
     """
     target = target_of(episode.fspa, atom)
     if target is None:
@@ -159,7 +171,7 @@ def _target_and_distance(episode: RecordedEpisode, atom: int, rows: Sequence[int
 
 
 def _positions(episode: RecordedEpisode) -> list[Point]:
-    """Return the positions of the player's feet, rounded to centimetres."""
+    """Return the positions of the player's feet, in metres, rounded to centimetres."""
     return [_rounded((x, y, z)) for x, y, z in episode.positions.tolist()]
 
 

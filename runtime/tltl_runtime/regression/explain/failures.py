@@ -18,15 +18,19 @@ _T = TypeVar("_T")
 _FailureKind = tuple[Kind, tuple[str, ...]]
 
 _FEW: Final = 3
-"""At most this many groups of failures, the largest, get a text of their own.
+"""At most this many groups of failures, the largest ones, get a text of their own.
 
-Such a group has at least as many episodes as this number, or a tenth of all episodes.
+Such a group must also have this many episodes, or a tenth of all episodes.
 """
 
 
 @record
 class FailureEnd:
-    """How and where an episode failed, and which subgoal it had not reached."""
+    """How and where an episode failed, and which subgoal it had not reached.
+
+    ``cause`` and ``by`` are as in :class:`~tltl_runtime.game.episode.Cause`. ``where`` is a phrase,
+    for example ``in the corridor``.
+    """
 
     cause: Kind
     by: tuple[str, ...]
@@ -43,8 +47,8 @@ class FailureEnd:
 class Failures:
     """A group of episodes that fail alike.
 
-    ``text`` describes the failures and ``more`` adds details.  ``matches`` says whether an end belongs
-    to this group, provided that it belongs to no earlier group.
+    ``text`` says how they fail, and ``more`` adds details. ``matches`` says whether an end belongs
+    to the group. Ask it only about ends that belong to no earlier group.
     """
 
     text: str
@@ -60,7 +64,11 @@ def end_of(level: Level, fspa: Fspa, episode: ExplainedEpisode) -> FailureEnd:
 
 
 def failures(level: Level, fspa: Fspa, episodes: Sequence[ExplainedEpisode]) -> Iterator[Failures]:
-    """Group the failed episodes by how they end, most frequent first.  All texts are distinct."""
+    """Group the failed episodes by how they end. All texts are distinct.
+
+    The largest groups with equal ends come first. Next are groups with equal causes. The last group
+    contains the rest.
+    """
     groups: dict[FailureEnd, list[ExplainedEpisode]] = {}
     for episode in episodes:
         if not episode.summary.success:
@@ -68,7 +76,7 @@ def failures(level: Level, fspa: Fspa, episodes: Sequence[ExplainedEpisode]) -> 
     frequent = _frequent_groups(groups, len(episodes))
     stages = Counter(replace(end, undone=Subgoal()) for end in groups)
     for end in frequent:
-        # If the same end occurs in several stages, the texts must differ.
+        # If the same end occurs with several subgoals, name the subgoal, so that the texts differ.
         stage = f" before it {end.undone.text}" if stages[replace(end, undone=Subgoal())] > 1 else ""
         group = groups[end]
         details = f"{approach_text(level, fspa, end.undone, group)}; {remaining_text(fspa, group)}"
@@ -89,7 +97,11 @@ def _remaining_failures(
     frequent: Collection[FailureEnd],
     episode_count: int,
 ) -> Iterator[Failures]:
-    """Group the remaining ends: by cause if the cause is frequent, then all others together."""
+    """Group the ends in ``groups``, which have no text of their own.
+
+    There is a group for each frequent cause, and one for all rare causes together. The ends in
+    ``frequent`` have texts of their own.
+    """
     causes: dict[_FailureKind, list[ExplainedEpisode]] = {}
     for end, episodes in groups.items():
         causes.setdefault(end.kind, []).extend(episodes)
@@ -112,9 +124,10 @@ def _remaining_failures(
 def _text_for_cause(
     level: Level, ends: Sequence[FailureEnd], episodes: Sequence[ExplainedEpisode], frequent: Collection[FailureEnd]
 ) -> tuple[str, Callable[[FailureEnd], bool]]:
-    """Return a text for these ends of one cause, and a predicate for all ends that the text describes.
+    """Return a text for ``ends``, which have the same cause, and a predicate.
 
-    The ends in ``frequent`` have texts of their own.
+    The predicate says whether the text describes an end. ``episodes`` are the episodes with these
+    ends. The ends in ``frequent`` have texts of their own, from which this one must differ.
     """
     cause, places, stages = ends[0].kind, {end.where for end in ends}, {end.undone for end in ends}
     frequent_places = {end.where for end in frequent if end.kind == cause}
@@ -139,9 +152,10 @@ def _text_for_cause(
 
 
 def _end_text(level: Level, end: FailureEnd, episodes: Sequence[ExplainedEpisode]) -> str:
-    """Describe the end of these episodes.
+    """Describe an end that ``episodes`` share, without the number of episodes.
 
-    An aside ends with a comma, because the number of episodes follows.
+    The caller appends the number. So if the text ends with an aside, the aside is closed by a
+    comma.
     """
     by = f" by {_names(end.by)}" if end.by else ""
     broke = _majority_clause("breaking", [episode.broke for episode in episodes])
@@ -161,9 +175,9 @@ def _end_text(level: Level, end: FailureEnd, episodes: Sequence[ExplainedEpisode
 
 
 def _majority_clause(verb: str, names_by_episode: Sequence[Sequence[str]]) -> str:
-    """Return a clause with the names that more than half of the episodes have; empty if there are none.
+    """Return a clause with the names that more than half of the episodes have.
 
-    The clause starts with a comma.
+    The clause is a comma, ``verb`` and the names. It is empty if there are no such names.
     """
     counts = Counter(name for names in names_by_episode for name in names)
     frequent = [name for name, count in counts.items() if 2 * count > len(names_by_episode)]

@@ -14,10 +14,12 @@ from tltlc.api import Fspa, label_text
 
 
 def approach_text(level: Level, fspa: Fspa, undone: Subgoal, episodes: Sequence[ExplainedEpisode]) -> str:
-    """Describe how near most of the episodes came to the next stage; the text starts with a semicolon.
+    """Describe how near the episodes came to the next stage. Each clause begins with a semicolon.
 
-    Episodes that had reached the stage when something else broke the spec are counted first.  The text
-    is empty if there is nothing to say.
+    The first clause counts the episodes that had reached the stage when another atom broke the
+    spec. The second describes the nearest miss, if more than half of the episodes have one and had
+    not reached the stage. The text is empty if neither clause applies. ``undone`` is the subgoal of
+    the stage.
     """
     text = ""
     if arrived := sum(episode.arrived for episode in episodes):
@@ -31,16 +33,16 @@ def approach_text(level: Level, fspa: Fspa, undone: Subgoal, episodes: Sequence[
 
 
 def remaining_text(fspa: Fspa, episodes: Sequence[ExplainedEpisode]) -> str:
-    """Describe the state in which most of the episodes failed, and what remained to be done there."""
+    """Name the state in which episodes failed most often, and what remained to be done there."""
     ((state, count),) = Counter(episode.summary.unmet for episode in episodes).most_common(1)
     often = "" if count == len(episodes) else "mostly " if 2 * count > len(episodes) else "most often "
     return f"{often}in state {state}, where this remained: {label_text(fspa, state)}"
 
 
 def _limit_text(level: Level, fspa: Fspa, misses: Sequence[NearestMiss], of: str) -> str:
-    """Describe the most frequent limiting atom and the nearest miss.
+    """Describe the atom that limits the misses most often, and the nearest of its misses.
 
-    ``of`` is a phrase that says which episodes are meant; it may be empty.
+    ``of`` says which episodes are meant, for example `` of the others``. It may be empty.
     """
     (((atom, must_hold), count),) = Counter((miss.atom, miss.wanted) for miss in misses).most_common(1)
     same_limit = [miss for miss in misses if (miss.atom, miss.wanted) == (atom, must_hold)]
@@ -51,20 +53,21 @@ def _limit_text(level: Level, fspa: Fspa, misses: Sequence[NearestMiss], of: str
         nearest, sufficient = _distance_texts(min(distances), _sufficient_distance(level, fspa, atom))
         return f"closest approach{of} to `{same_limit[0].target}`: {nearest} ({often}`{atom}` is the limit{sufficient})"
     best = max(miss.robustness for miss in same_limit)
-    # Atoms that are only true or false have robustness 1 or -1, which says nothing.
+    # A Boolean atom that does not hold has robustness -1, which says nothing.
     return f"{often}the limit is `{atom}`" + (f", {number(best, 2)} at best" if best > -1.0 else "")
 
 
 def _sufficient_distance(level: Level, fspa: Fspa, name: str) -> float | None:
-    """Return the distance, in metres, below which the atom called ``name`` holds; None if there is none."""
+    """Return the distance in metres below which the atom ``name`` holds; None if there is none."""
     atoms = {atom.name: row for row, atom in enumerate(fspa.atoms)}
     return near_enough(fspa, atoms[name], registered_game().params(level)) if name in atoms else None
 
 
 def _distance_texts(least: float, limit: float | None) -> tuple[str, str]:
-    """Format the least distance, and the distance that is sufficient, with enough decimals to tell them apart.
+    """Return the least distance as a text, and a clause about the distance that would suffice.
 
-    Returns the first as a text and the second as a clause, which is empty if ``limit`` is None.
+    The distances are in metres, with enough decimals to tell them apart. ``limit`` is the distance
+    that would suffice. If it is None, the clause is empty.
     """
     if limit is None:
         return f"{least:.1f} m", ""

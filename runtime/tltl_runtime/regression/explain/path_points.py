@@ -1,4 +1,4 @@
-"""The simplified trajectory of an episode: few points, between which the player moved almost linearly."""
+"""The simplified trajectory of an episode: few points, with nearly straight motion between them."""
 
 from __future__ import annotations
 
@@ -12,7 +12,10 @@ from numpy.typing import NDArray
 from tltl_runtime.game.episode import RecordedEpisode
 
 TrajectoryPoints = tuple[tuple[float, float, int, float], ...]
-"""Points (x, y, state, time): x and y in metres, the automaton's state from there on, seconds since the start."""
+"""Points (x, y, state, time), with x and y in metres, and the time in seconds since the start.
+
+``state`` is the automaton's state from this point to the next.
+"""
 
 POSITION_INTERVAL_S: Final = 0.1
 """Seconds between two positions that :func:`positions_along` yields."""
@@ -25,7 +28,7 @@ It is less than the distance of a player's centre from a wall, so that no trajec
 
 
 def simplified_trajectory(episode: RecordedEpisode) -> TrajectoryPoints:
-    """Return few points that approximate an episode's trajectory to 0.2 m.
+    """Return few points that approximate an episode's trajectory to within 0.2 m.
 
     There is a point at each change of the automaton's state.
     """
@@ -42,9 +45,9 @@ def simplified_trajectory(episode: RecordedEpisode) -> TrajectoryPoints:
 
 
 def positions_along(trajectory: TrajectoryPoints) -> Iterator[tuple[float, float]]:
-    """Yield the player's position (x, y), in metres, at equal intervals, from the start until just before the end.
+    """Yield the player's positions (x, y), in metres, every ``POSITION_INTERVAL_S`` seconds.
 
-    The interval is ``POSITION_INTERVAL_S``.
+    The first is at the start, and the last is just before the end.
     """
     times = np.array([time for *_, time in trajectory])
     moments = np.arange(times[0], times[-1], POSITION_INTERVAL_S)
@@ -55,9 +58,10 @@ def positions_along(trajectory: TrajectoryPoints) -> Iterator[tuple[float, float
 def _split_rows(times: NDArray[np.float64], places: NDArray[np.float64], first: int, last: int) -> Iterator[int]:
     """Yield the rows between ``first`` and ``last`` that the simplified trajectory needs.
 
-    Split at the row with the greatest distance from the straight line, and repeat for both halves.
-    Distances are between positions at the same time, as in Meratnia and de By, Spatiotemporal
-    compression techniques for moving point objects, EDBT 2004.
+    Split at the row that is farthest from the straight line between the two, if it is farther than
+    ``_TOLERANCE_M``. Repeat for both halves. The distance of a row is measured to the point of the
+    line at the same time, as in Meratnia and de By, Spatiotemporal compression techniques for
+    moving point objects, EDBT 2004.
     """
     spans = [(first, last)]
     while spans:

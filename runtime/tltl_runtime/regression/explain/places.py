@@ -12,17 +12,20 @@ from tltl_runtime.game.level import Level
 from tltl_runtime.game.registry import registered_game
 
 _NEAR_M: Final = 2.5
-"""A place is near an entity if it is within this many metres."""
+"""A place is near an entity if the distance between them is at most this, in metres."""
 
 _BESIDE: Final = 0.99
-"""A box hides a target only if the line from the player to the target meets it in this first share of the line."""
+"""A box hides a target if the line from the player to the target meets the box early enough.
+
+The line must enter the box within this share of its length.
+"""
 
 _TOUCHING_M: Final = 0.7
 """A solid blocks a player if it is within this many metres of the player's centre."""
 
 
 def place_name(level: Level, point: Point) -> str:
-    """Describe where a point is, by its region, else by an entity near it, else by a compass direction.
+    """Describe where a point is: by its region, else by an entity near it, else by a direction.
 
     Examples: ``in the corridor``, ``near `s2```, ``in the north-east``.
     """
@@ -42,10 +45,11 @@ def nearest_entity(level: Level, point: Point) -> str | None:
 
 
 def blocking_solids(level: Level, players: Sequence[tuple[Point, Sequence[str]]]) -> list[str]:
-    """Return the solids and closed barriers that more than half of the players touch.
+    """Return the names of the solids and closed barriers that more than half of the players touch.
 
-    The order is most frequent first, then nearest first.  The floor does not count.  ``players`` are
-    the positions of the players' feet, each with the names of the barriers that were closed then.
+    Those that most players touch come first; of equal ones, the nearest. The floor does not count,
+    nor does a box that is hidden behind another one. ``players`` has for each player the position
+    of the feet, and the names of the barriers that were closed then.
     """
     game = registered_game()
     solids, barriers = game.solids(level), game.barriers(level)
@@ -65,7 +69,7 @@ def blocking_solids(level: Level, players: Sequence[tuple[Point, Sequence[str]]]
 def _distance_to_body(feet: Point, box: Box) -> float:
     """Return the horizontal distance from a player to a box, in metres.
 
-    It is infinite for a box below the feet, such as one to stand on.
+    It is infinite for a box below the feet, such as the one that the player stands on.
     """
     body = (*feet[:2], max(feet[2], box.low[2]))
     return _distance(body, box) if box.high[2] > feet[2] + 0.1 else float("inf")
@@ -74,7 +78,7 @@ def _distance_to_body(feet: Point, box: Box) -> float:
 def _hides(box: Box, feet: Point, target: Box) -> bool:
     """Whether a box stands between a player and the box ``target``, seen from above.
 
-    The two boxes must also overlap in height.
+    ``box`` and ``target`` must also overlap in height.
     """
     first, last = 0.0, 1.0
     for at, low, high, near, far in zip(feet[:2], box.low, box.high, target.low, target.high, strict=False):

@@ -18,7 +18,7 @@ from tltl_runtime.support.number_text import count_text, interval_text, percent_
 from tltlc.api import Fspa
 
 _OVERLAYS: Final = "overlays/"
-"""The prefix of the names of overlays among the files of a level."""
+"""Among the names of a level's files, those of overlays begin with this."""
 
 
 def reasons(
@@ -26,7 +26,7 @@ def reasons(
 ) -> Iterator[str]:
     """Describe the statistics of a verdict: the pass rate and the figures that have changed.
 
-    ``now`` and ``before`` are the episodes and those of the baseline.
+    ``now`` are the episodes that the verdict is about, and ``before`` those of the baseline.
     """
     passed, passed_before = (sum(episode.success for episode in episodes) for episodes in (now, before))
     pass_rate, fail_rate = percent_exactly(thresholds.pass_rate), percent_exactly(thresholds.fail_rate)
@@ -49,16 +49,16 @@ def reasons(
 
 
 def _change_text(figure: str, now: float, before: float) -> str:
-    """Say how the mean of a figure has changed."""
+    """Say how the mean of a figure, such as ``progress``, has changed."""
     direction = "lower" if now < before else "higher"
     return f"{figure} is {direction}, {now:.2f} on average; before: {before:.2f}"
 
 
 def _uncertain_change_text(figure: str, now: Sequence[EpisodeSummary], before: Sequence[EpisodeSummary]) -> str:
-    """Say how the mean of a figure has changed over the seeds that both sides have.
+    """Say how the mean of a figure has changed, over the seeds that ``now`` and ``before`` share.
 
-    Reports also show the mean over all episodes of the baseline.  The sentence mentions that mean if it
-    looks different.
+    Reports also show the mean over all episodes of the baseline. If that mean looks different, the
+    sentence mentions it, too.
     """
     count = min(len(now), len(before))
     new, old, overall = (
@@ -72,9 +72,9 @@ def _uncertain_change_text(figure: str, now: Sequence[EpisodeSummary], before: S
 
 
 def obstacles(level: Level, fspa: Fspa) -> Iterator[str]:
-    """Describe the entities of the spec that no player can reach in the level.
+    """Yield a sentence for each entity of the spec that no player can reach in the level.
 
-    If several things have the same cause, only the first one is described.
+    If several entities cannot be reached for the same reason, describe only the first.
     """
     warnings = [warning for warning in registered_game().reach_warnings(level, fspa) if warning.code == "TLT0814"]
     yield from {warning.help: f"{warning.title}: {warning.help}" for warning in reversed(warnings)}.values()
@@ -83,10 +83,11 @@ def obstacles(level: Level, fspa: Fspa) -> Iterator[str]:
 def edits(
     now: Identity, before: Identity, changes: Sequence[str], texts: Texts = (), texts_before: Texts = ()
 ) -> Iterator[str]:
-    """Describe the differences from the baseline: files, versions and ``changes``.
+    """Describe how a case differs from its baseline: in files, in overlays, and in versions.
 
-    ``changes`` are the descriptions of the overlays.  If both texts of a file are known, the sentence
-    names the keys that have changed.
+    ``now`` and ``before`` identify what was played now and for the baseline. ``changes`` describe
+    the overlays of the variant. ``texts`` and ``texts_before`` are the texts of the level's files.
+    If both texts of a changed file are known, the sentence names its changed keys.
     """
     old, new = dict(before.files), dict(now.files)
     changed_names = [name for name in dict.fromkeys((*new, *old)) if old.get(name) != new.get(name)]

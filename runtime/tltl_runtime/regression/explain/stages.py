@@ -1,4 +1,4 @@
-"""The stages of a spec: the next subgoal in each state of its automaton, in terms of its atoms."""
+"""The subgoals of a spec: what leads from each state of its automaton towards acceptance."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tltlc.api import EMPTY, Fspa, Implicant, expressions, monitors, record
 _REACHES: Final = "reaches "
 
 _FAR: Final = 1e4
-"""A distance, in metres, that is greater than any level."""
+"""A distance, in metres, that is greater than any distance in a level."""
 
 _PRECISION: Final = 1e-4
 """The precision, in metres, of :func:`near_enough`."""
@@ -19,10 +19,10 @@ _PRECISION: Final = 1e-4
 
 @record
 class Subgoal:
-    """What leads from a state towards acceptance.
+    """What the player must do so that the automaton leaves a state towards acceptance.
 
-    ``place`` names the entities to reach, for example ```a` or `b```.  It is empty if something else
-    leads towards acceptance; ``other`` then describes that, for example ``makes `open` true``.
+    Either ``place`` names the entities to reach, for example ```a` or `b```, or ``other`` says what
+    else to do, for example ``makes `open` true``. The field that does not apply is empty.
     """
 
     place: str = ""
@@ -32,7 +32,7 @@ class Subgoal:
 
     @property
     def text(self) -> str:
-        """The description: ``reaches `s1```, ``reaches `a` or `b``` or ``makes `open` true``."""
+        """The subgoal in words, for example ``reaches `s1``` or ``makes `open` true``."""
         return f"{_REACHES}{self.place}" if self.place else self.other
 
 
@@ -40,9 +40,10 @@ _MEETS: Final = Subgoal(other="meets the spec")
 
 
 def target_of(fspa: Fspa, atom: int) -> str | None:
-    """Return the entity that the player must approach for an atom to hold.
+    """Return the entity that the player must approach for an atom to hold, or None.
 
-    None unless the atom depends only on the distance to one entity.
+    ``atom`` is the index of the atom. The atom has such an entity if it depends on one signal only,
+    the distance to that entity, and if it holds at distance 0 but not far away.
     """
     expression = fspa.atoms[atom].expression
     names = {node.name for node in expressions.nodes(expression) if isinstance(node, expressions.SignalValue)}
@@ -54,9 +55,10 @@ def target_of(fspa: Fspa, atom: int) -> str | None:
 
 
 def near_enough(fspa: Fspa, atom: int, params: Mapping[str, float]) -> float | None:
-    """Return the distance, in metres, to which the player must approach an atom's target for it to hold.
+    """Return the distance, in metres, to an atom's target below which the atom holds.
 
-    None if the atom has no target (see :func:`target_of`) or depends on params not in ``params``.
+    ``atom`` is the index of the atom. Return None if the atom has no target (see
+    :func:`target_of`), or if it depends on a param that is not in ``params``.
     """
     target, expression = target_of(fspa, atom), fspa.atoms[atom].expression
     if (
@@ -94,10 +96,14 @@ def subgoal(fspa: Fspa, state: int) -> Subgoal:
 
 
 def _subgoal(fspa: Fspa, prime: Implicant) -> Subgoal | None:
-    """Return what makes a prime implicant true; None if nothing has to be done for it.
+    """Return what the player must do to make a prime implicant true; None if that is nothing.
 
-    If it has targets, only they are named; otherwise the atoms that must hold; otherwise the atoms that
-    must not hold.  Literals that every accepting run needs all the time are left out.
+    Leave out the literals that every accepting run needs all the time. Name the first of these that
+    exist:
+
+    1. the targets to approach (see :func:`target_of`);
+    2. the atoms that must hold;
+    3. the atoms that must not hold.
     """
     literals = [(atom, holds) for atom, holds in prime if not _is_invariant(fspa, atom, holds)]
     if targets := [f"`{target}`" for atom, holds in literals if holds and (target := target_of(fspa, atom))]:
@@ -109,9 +115,9 @@ def _subgoal(fspa: Fspa, prime: Implicant) -> Subgoal | None:
 
 
 def subgoal_of_all(fspa: Fspa, states: Collection[int], distance: int) -> Subgoal:
-    """Return what leads from these states, all at the same distance, towards acceptance.
+    """Return the subgoal that ``states`` share. All are at ``distance`` from acceptance.
 
-    If that differs between the states, the subgoal says how near to acceptance it leads.
+    If their subgoals differ, return one that only says how near to acceptance it leads.
     """
     subgoals = {subgoal(fspa, state) for state in states}
     if len(subgoals) == 1:
@@ -121,9 +127,9 @@ def subgoal_of_all(fspa: Fspa, states: Collection[int], distance: int) -> Subgoa
 
 
 def _is_invariant(fspa: Fspa, atom: int, truth: bool) -> bool:
-    """Whether accepting runs need this truth value of an atom all the time.
+    """Whether an accepting run needs this truth value of an atom all the time.
 
-    This is so if every edge that does not lead to a trap requires it.
+    This is so if each edge requires it, except for edges that lead to traps.
     """
     useful_edges = [edge for edge in fspa.edges if fspa.states[edge.target].distance is not None]
     return all((atom, truth) in prime for edge in useful_edges for prime in edge.guard.primes)

@@ -1,1 +1,1 @@
-"""Reports: JSON, JUnit, GitHub annotations and the HTML page."""
+"""The reports on a suite: JSON, JUnit, GitHub annotations and an HTML page."""

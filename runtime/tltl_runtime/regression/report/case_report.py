@@ -23,11 +23,16 @@ from tltlc.api import Diagnostic, TltlError, record
 class CaseReport:
     """The report on a case.
 
-    ``causes`` are sentences that justify the verdict.  ``explanation`` are findings about episodes.
-    ``edits`` describe the differences from the baseline.  ``certain`` and ``rate_interval`` are as in
-    :class:`~tltl_runtime.regression.verdict.verdict.Judgement`.  ``baseline`` are the figures that the
-    case is compared with.  ``accounts`` are the played episodes.  A case that cannot be played has
-    ``causes`` only.
+    - ``causes`` are sentences that justify the verdict.
+    - ``certain``, ``rate_interval`` and ``changes`` are as in
+      :class:`~tltl_runtime.regression.verdict.verdict.Judgement`.
+    - ``figures`` and ``baseline`` are the statistics of the played episodes and of the baseline's.
+    - ``explanation`` says what the policy does differently from the baseline.
+    - ``edits`` are sentences about what has changed since the baseline: files, overlays, versions.
+    - ``played`` and ``reference`` identify what was played now and for the baseline.
+    - ``accounts`` are the played episodes.
+
+    A case that cannot be played has no figures and no episodes.
     """
 
     name: str
@@ -46,13 +51,13 @@ class CaseReport:
     reference: Identity | None = None
     accounts: tuple[ExplainedEpisode, ...] = ()
     recordings: tuple[tuple[int, str], ...] = ()
-    """The indices of the recorded episodes and the names of their files."""
+    """The index of each recorded episode, with the name of its file."""
     retrained: RetrainingResult | None = None
     """The result of retraining the policy; None if it was not requested or not needed."""
     told: str = ""
     """The headline; if it is empty, the first reason is the headline."""
     fault_at: tuple[str, int] | None = None
-    """The file and the line, counted from 1, of the error because of which the case cannot be played."""
+    """The file and the line, from 1, of the error because of which the case cannot be played."""
 
     @property
     def headline(self) -> str:
@@ -82,7 +87,7 @@ def report_on(result: JudgedCase) -> CaseReport:
         name=case.name,
         level=level.name,
         variant=level.variant,
-        # A case does not pass by an outdated spec.
+        # A case cannot pass while an outdated spec judges it.
         verdict="review" if outdated and result.judgement.verdict == "pass" else result.judgement.verdict,
         certain=result.judgement.certain,
         rate_interval=result.judgement.rate_interval,
@@ -104,7 +109,7 @@ def report_on(result: JudgedCase) -> CaseReport:
 def _edits(result: JudgedCase) -> Iterator[str]:
     """Describe the differences from the baseline.
 
-    If a file was edited meanwhile, its changed keys are unknown.
+    If a file was edited after the case was set up, its changed keys are not named.
     """
     prepared, before = result.prepared, result.reference
     texts = level_texts(prepared.setup.level, prepared.setup.variant, prepared.played.files)
@@ -114,10 +119,13 @@ def _edits(result: JudgedCase) -> Iterator[str]:
 def _headline(
     judgement: Judgement, thresholds: Thresholds, statistics: Sequence[str], most_frequent: str | None
 ) -> str:
-    """Return the headline.
+    """Return the headline: the first of these sentences that applies.
 
-    It says how the case fails if its pass rate may be too low; else which figure has changed; else the
-    pass rate.
+    1. how failed episodes end most often, if that is given and the pass rate may be too low;
+    2. which figure has changed;
+    3. the pass rate.
+
+    ``statistics`` are the sentences of :func:`~tltl_runtime.regression.explain.reasons.reasons`.
     """
     if most_frequent and judgement.rate_interval[0] < thresholds.pass_rate:
         return most_frequent
@@ -127,7 +135,7 @@ def _headline(
 def report_on_broken(case: Case, error: TltlError) -> CaseReport:
     """Return the report on a case that cannot be played.
 
-    Its verdict is ``fail``, because the level has an error, not the suite.
+    Its verdict is ``fail``: the error is in what the case tests, not in the suite.
     """
     causes = ("it cannot be played", *map(_one_line, error.diagnostics))
     # Name the variant as for a level that loads, without the paths of overlay files.
@@ -139,7 +147,10 @@ def report_on_broken(case: Case, error: TltlError) -> CaseReport:
 
 
 def report_on_edited(case: Case, error: TltlError) -> CaseReport:
-    """Return the report on a case whose level was edited while it was played.  It has no figures."""
+    """Return the report on a case whose level was edited while it was played.
+
+    Its verdict is ``review``, and it has no figures.
+    """
     variant = variant_text(case.variant)
     causes = tuple(map(_one_line, error.diagnostics))
     return CaseReport(case.name, Path(case.level).stem, variant, "review", causes, certain=False)
@@ -158,6 +169,6 @@ def _one_line(diagnostic: Diagnostic) -> str:
 
 
 def _error_location(error: TltlError) -> tuple[str, int] | None:
-    """Return the file and the line, from 1, of the first diagnostic that has a label; None if none has one."""
+    """Return the file and the line, from 1, of the first diagnostic with a label, or None."""
     label = next((diagnostic.labels[0] for diagnostic in error.diagnostics if diagnostic.labels), None)
     return (label.source.name, label.source.position(label.span.start)[0]) if label else None

@@ -1,4 +1,4 @@
-"""Workflow commands of GitHub Actions, which annotate the changed files with the verdicts of a suite."""
+"""Annotations of changed files with the verdicts of a suite, as commands of GitHub Actions."""
 
 from __future__ import annotations
 
@@ -16,11 +16,16 @@ _COMMANDS: Final = {"fail": "error", "review": "warning"}
 
 
 def workflow_commands(suite: Suite, reports: Sequence[CaseReport], root: Path) -> Iterator[str]:
-    """Yield an ``::error`` for each case with verdict ``fail`` and a ``::warning`` for each ``review``.
+    """Yield an ``::error`` for each ``fail`` and a ``::warning`` for each ``review``.
 
-    If a level does not load, the annotation is at the file and line of the error.  Otherwise it is at a
-    file that has changed since the baseline, or else at the suite.  Paths inside ``root``, the top of
-    the checkout, are relative to it.
+    An annotation is at the first of these places that exists:
+
+    1. the file and the line of the error that keeps the case from being played;
+    2. the file of the level, if no episodes were judged;
+    3. a file that has changed since the baseline, an overlay rather than the level;
+    4. the suite.
+
+    ``root`` is the top of the checkout. Paths inside it are relative to it.
     """
     cases = {case.name: case for case in suite.cases}
     for report in reports:
@@ -33,11 +38,14 @@ def workflow_commands(suite: Suite, reports: Sequence[CaseReport], root: Path) -
 
 
 def _file_to_annotate(suite: Suite, case: Case, report: CaseReport) -> Path:
-    """Return the file to annotate: the level, a file that has changed since the baseline, or the suite."""
+    """Return the file to annotate for an error without a location.
+
+    The choice is that of :func:`workflow_commands`.
+    """
     if report.played is None:
         return registered_game().level_files.path(case.level)
     before = dict(report.reference.files) if report.reference else {}
-    # The level comes first in `files`.  Prefer overlays: they are more specific.
+    # `files` begins with the level. Prefer overlays, which come later: they are more specific.
     changed = [name for name, sha256 in reversed(report.played.files) if before.get(name) != sha256]
     paths = dependencies(suite, case)
     for name in changed:

@@ -15,18 +15,20 @@ _NOT_IN_XML: Final = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U00
 """The characters that XML 1.0 does not allow, not even escaped."""
 
 _ELEMENTS: Final = {"fail": "failure", "review": "error"}
-"""The XML element of each verdict.
+"""The XML element of each verdict, except for ``pass``, which has none.
 
-A ``review`` is an ``error``, in JUnit a test without a result, so that no viewer hides it.
+In JUnit, an ``error`` is a test without a result. A ``review`` becomes one, so that no viewer hides
+it.
 """
 
 
 def junit(suite: Suite, reports: Sequence[CaseReport], missing: Sequence[str] = ()) -> str:
-    """Format a ``testsuite`` with a ``testcase`` for each case, by the schema junit-10 of Jenkins' xUnit plugin.
+    """Format the reports as a ``testsuite`` with a ``testcase`` for each case.
 
-    Reasons are the texts of elements.  Figures are properties of the ``testsuite``, for example
-    ``CASE.pass_rate``, because a ``testcase`` has no properties.  ``missing`` are the names of cases that
-    were not judged because the run was stopped; they count as errors.
+    The schema is junit-10 of Jenkins' xUnit plugin. The reasons of a verdict are the text of an
+    element in the ``testcase``. Figures are properties of the ``testsuite``, for example
+    ``CASE.pass_rate``, because a ``testcase`` cannot have properties. ``missing`` are the names of
+    cases that were not judged because the run was stopped; they count as errors.
     """
     verdicts = [report.verdict for report in reports]
     counts = {

@@ -35,8 +35,8 @@ def document(
 ) -> dict[str, Any]:
     """Return the report on a suite as JSON data.
 
-    ``complete`` says whether all requested cases were judged and retrained.  ``left_out`` are the names
-    of the cases that do not depend on the changed files.
+    ``complete`` says whether all requested cases were judged and retrained. ``left_out`` are the
+    names of the cases that were not run because they do not depend on the changed files.
     """
     verdicts = [report.verdict for report in reports]
     return {

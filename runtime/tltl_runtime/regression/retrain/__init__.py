@@ -1,1 +1,1 @@
-"""Retraining of policies on levels whose cases no longer pass."""
+"""The retraining of policies whose cases no longer pass."""

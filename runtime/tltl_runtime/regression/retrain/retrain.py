@@ -1,4 +1,7 @@
-"""Continue the training of policies on changed levels, to find out whether the levels are feasible."""
+"""Retrain a policy on a changed level, to find out whether the level is feasible.
+
+A level is feasible if a player can meet the spec there.
+"""
 
 from __future__ import annotations
 
@@ -46,9 +49,9 @@ from tltl_runtime.training.run.training_lock import lock_training
 from tltlc.api import Diagnostic, Fspa, TltlError, fileio, label_text, replace
 
 FOLDER: Final = "retrained"
-"""The name of a folder in the folder of a run.  It has a folder for the training of each case."""
+"""The name of the folder, in the folder of a run, with a folder for the training of each case."""
 EPISODE: Final = "met.episode.npz"
-"""The name of a file in the folder of a training: an episode of the retrained policy that met the spec."""
+"""The file, in a training's folder, with an episode in which the retrained policy succeeded."""
 
 _RESULT: Final = "retrained.json"
 _VERSION: Final = 1
@@ -57,7 +60,7 @@ _VERSION: Final = 1
 def configure_retraining(suite: Suite, prepared: PreparedCase, folder: Path, minutes: float, pool: Pool) -> TrainingRun:
     """Configure the retraining of a case's policy on its level, below the ``folder`` of a run.
 
-    The training stops after ``minutes`` at the latest.
+    The training stops after ``minutes`` at the latest. ``pool`` says which processes play.
 
     Raises:
         TltlError: TLT0942, the policy of a case lies in the folder of the training.
@@ -83,14 +86,14 @@ def configure_retraining(suite: Suite, prepared: PreparedCase, folder: Path, min
 def is_stored(run: TrainingRun) -> bool:
     """Whether ``run.folder`` contains this training, finished or not.
 
-    Level, spec, policy, seed and settings must be the same.
+    The stored training must have the same level, spec, initial policy, seed and settings.
 
     Raises:
-        TltlError: the level does not load, which is no fault of the folder.
+        TltlError: the level does not load. An error in the folder only makes the result False.
     """
     expected = identity(run)
     try:
-        # The folder may name the level differently.  Compare the hash of its content instead.
+        # The folder may name the level differently. Compare the hash of its content instead.
         stored = replace(read_run(run.folder), level=run.level, variant=run.variant)
         if {**identity(stored), "level": read_level_hash(run.folder)} != expected:
             return False
@@ -104,7 +107,11 @@ def is_stored(run: TrainingRun) -> bool:
 
 
 def check_policy_folders(suite: Suite, cases: Sequence[Case], folder: Path) -> None:
-    """Raise TltlError, TLT0942, if a policy lies in the folder of the training for one of the cases."""
+    """Check that no policy of the suite lies in the folder of a training for one of ``cases``.
+
+    Raises:
+        TltlError: TLT0942, a policy lies there.
+    """
     for case in cases:
         _training_folder(suite, case, folder)
 
@@ -126,14 +133,14 @@ def _training_folder(suite: Suite, case: Case, folder: Path) -> Path:
 
 
 def make_room(suite: Suite, folder: Path) -> Path | None:
-    """Make room for another training in a folder.
+    """Make room for another training in ``folder``.
 
-    A finished training is moved to a new folder beside it, whose path is returned.  The files of an
-    unfinished training are removed, and None is returned.  Other files in the folder remain.
+    - If the training there is finished, rename the folder, and return its new path.
+    - Else remove the files of the training, leave all other files, and return None.
 
     Raises:
-        TltlError: TLT0005, a file cannot be removed, or the folder cannot be moved; TLT0865, another
-            process trains there.
+        TltlError: TLT0005, a file cannot be removed, or the folder cannot be moved; TLT0865,
+            another process trains there.
     """
     names = (RUN, CHECKPOINT, POLICY, CURVE, METRICS, EPISODE, _RESULT)
     with lock_training(folder):
@@ -154,7 +161,7 @@ def make_room(suite: Suite, folder: Path) -> Path | None:
 def _free_folder(suite: Suite, folder: Path) -> Path:
     """Return the first of ``FOLDER-2``, ``FOLDER-3`` and so on that is free.
 
-    The folder does not exist and is not reserved for another case.
+    A free folder does not exist, and no case of the suite has it as the folder of its training.
     """
     reserved = {case_folder(suite, case.name, folder.parent) for case in suite.cases}
     candidates = (folder.with_name(f"{folder.name}-{number}") for number in count(2))
@@ -170,9 +177,9 @@ def retraining_result(
 ) -> RetrainingResult:
     """Return the result of the finished training in ``run.folder``.
 
-    The retrained policy plays fresh episodes, unless the result is cached.  Playing stops as soon as it
-    is certain whether the pass rate reaches the case's threshold.  After each episode, ``on_episode``
-    is called with the number of episodes so far and the last episode.
+    The retrained policy plays fresh episodes, unless the result is cached. Play stops as soon as it
+    is certain whether the pass rate reaches the case's threshold. After each episode,
+    ``on_episode`` is called with the number of episodes so far and the last episode.
 
     Raises:
         TltlError: the policy's file cannot be read; errors from playing; TLT0005, a file cannot be
@@ -220,7 +227,7 @@ def training_summary(run: TrainingRun) -> FinishedRetraining:
     if end is None:
         title = f"`{run.folder / RECORD}` does not say how the training ended"
         raise TltlError([Diagnostic("TLT0863", title, help="remove it: the training then goes on to its end")])
-    # Successes of the agent count, too: they may be shorter than the search's, or the only ones.
+    # Successes of the agent count, too: they may be shorter than those of the search, or the only ones.
     lengths = [int(length) for process in state.processes for length in process.get("way_lengths", ())]
     return FinishedRetraining(
         end=end,
@@ -237,8 +244,8 @@ def _play_until_certain(
 ) -> tuple[list[ExplainedEpisode], bytes, tuple[float, float]]:
     """Play episodes until it is certain whether the pass rate reaches the case's threshold.
 
-    Returns the episodes, the recording of the first one that met the spec (empty if there is none), and
-    the confidence interval of the pass rate.
+    Returns the episodes, the recording of the first one that met the spec (empty if there is none),
+    and the confidence interval of the pass rate.
     """
     threshold = prepared.case.thresholds.pass_rate
     played, recording, interval = list[ExplainedEpisode](), b"", (0.0, 1.0)
@@ -271,7 +278,8 @@ def _inputs(
 ) -> str:
     """Return the hash of everything that the result depends on, for the cache.
 
-    ``judged_episodes`` are the episodes by which the case was judged.
+    ``weights`` is the hash of the policy's weights. ``judged_episodes`` are the episodes by which
+    the case was judged.
     """
     case = prepared.case
     parts = [
@@ -287,6 +295,6 @@ def _inputs(
 
 
 def _cached_result(folder: Path, inputs: str) -> RetrainingResult | None:
-    """Return the cached result, if nothing has changed since and its episode's file exists; else None."""
+    """Return the cached result if it is up to date and its episode's file exists; else None."""
     result = read_cache(RetrainingResult, folder / _RESULT, inputs)
     return result if result and (result.episode is None or (folder / EPISODE).is_file()) else None

@@ -1,4 +1,7 @@
-"""The result of retraining a case's policy on the changed level: whether the level is feasible."""
+"""The result of retraining a case's policy on the changed level: whether the level is feasible.
+
+A level is feasible if a player can meet the spec there.
+"""
 
 from __future__ import annotations
 
@@ -20,9 +23,11 @@ OUTCOMES: Final[Mapping[Outcome, str]] = {"learned": "learned", "feasible": "fea
 class FinishedRetraining:
     """A finished training that started from a case's policy.
 
-    ``steps`` are the agent's steps.  ``seconds`` include the search, which took ``searched`` decisions
-    and was ``complete`` unless a limit stopped it.  ``shortest`` is the length, in steps, of the
-    shortest known demonstration, by the search or by the agent; None if none is known.
+    ``end`` says why it ended: it ``met`` its goal, or a limit of ``steps`` or ``minutes`` was
+    reached. ``steps`` are the decisions of the agent. ``seconds`` include the search before the
+    training. The search took ``searched`` decisions; ``complete`` is False if a limit stopped it.
+    ``shortest`` is the number of steps in the shortest known episode that met the spec, of the
+    search or the agent; None if none is known.
     """
 
     end: Literal["met", "steps", "minutes"]
@@ -35,7 +40,10 @@ class FinishedRetraining:
 
 @record
 class BestFailedEpisode:
-    """The best failed episode: its progress, in [0, 1], and what remained to be done then, in English."""
+    """The failed episode with the greatest progress, in [0, 1].
+
+    ``remained`` says in English what remained to be done in it.
+    """
 
     progress: float
     remained: str
@@ -43,14 +51,18 @@ class BestFailedEpisode:
 
 @record
 class RetrainingResult:
-    """Whether a changed level is feasible, according to a training.
+    """Whether a changed level is feasible, according to a retraining.
 
-    ``outcome`` is ``learned`` if the retrained policy's pass rate is certainly at least the case's
-    ``pass_rate``; ``feasible`` if the search or any policy met the spec; ``no_way`` if none did.
-    ``text`` says so in a sentence.  ``figures`` are the figures of the retrained policy in fresh
-    episodes, and ``rate_interval`` is the confidence interval of its pass rate.  ``best`` is the best
-    failed episode, or None if all episodes met the spec.  ``policy`` and ``episode`` are paths relative
-    to the folder of the run; ``episode`` is a recording of an episode that met the spec.
+    ``outcome`` is the first of these that applies:
+
+    - ``learned``: the retrained policy's pass rate is certainly at least the case's ``pass_rate``.
+    - ``feasible``: the search, the agent or a policy met the spec at least once.
+    - ``no_way``: nobody met the spec.
+
+    ``text`` says so in a sentence. ``figures`` are those of the retrained policy in fresh episodes,
+    and ``rate_interval`` is the confidence interval of its pass rate. ``best`` is the best failed
+    episode, or None if all episodes met the spec. ``policy`` and ``episode`` are paths relative to
+    the folder of the run; ``episode`` is a recording of an episode that met the spec, or None.
     """
 
     outcome: Outcome
@@ -64,10 +76,10 @@ class RetrainingResult:
 
 
 def outcome_of(trained: FinishedRetraining, low: float, thresholds: Thresholds, met: int) -> Outcome:
-    """Return the outcome of a training.
+    """Return the outcome of a retraining, as in :class:`RetrainingResult`.
 
-    ``low`` is the lower bound of the pass rate.  ``met`` counts the episodes that met the spec,
-    including those by which the case was judged.
+    ``low`` is the lower end of the pass rate's confidence interval. ``met`` counts the episodes
+    that met the spec, also among those by which the case was judged.
     """
     if low >= thresholds.pass_rate:
         return "learned"

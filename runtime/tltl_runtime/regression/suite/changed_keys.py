@@ -10,17 +10,18 @@ from tltl_runtime.support.number_text import short_list
 from tltlc.api import SourceFile, TltlError, fileio
 
 _MOST_KEYS: Final = 3
-"""The most keys of a file that are named.  The others are counted."""
+"""At most this many keys of a file are named. Further keys are counted."""
 
 _MOST_CHARACTERS: Final = 24
-"""The most characters of a value that is shown.  If a value is longer, only its key is shown."""
+"""A value is shown if its JSON has at most this many characters. Else only its key is shown."""
 
 
 def changed_keys(before: str, now: str) -> str:
-    """Describe the keys whose values differ between two TOML texts, with short values.
+    """Describe the keys whose values differ between two TOML texts, with their values if short.
 
-    Tables in lists are matched by ``name`` if all names are present and distinct, else by position,
-    counted from 1.  The description is empty if a text is not TOML.
+    The description is ``its layout`` if no value differs, and empty if a text is not TOML. Tables
+    in lists are compared by ``name`` if all names are present and distinct, else by position,
+    counted from 1.
     """
     try:
         old, new = (fileio.parse_toml(SourceFile("", text), "TLT0801", "") for text in (before, now))
@@ -30,7 +31,10 @@ def changed_keys(before: str, now: str) -> str:
 
 
 def _changes(path: tuple[str, ...], old: Mapping[str, Any], new: Mapping[str, Any]) -> Iterator[str]:
-    """Describe the differences between two tables at ``path``, in the order of the new table."""
+    """Describe the differences between two tables at ``path``.
+
+    The order is that of the new table, and removed keys come last.
+    """
     for key in dict.fromkeys((*new, *old)):
         key_path = (*path, key)
         name, before, now = f"`{'.'.join(key_path)}`", old.get(key), new.get(key)
@@ -69,6 +73,6 @@ def _positions(tables: Sequence[Mapping[str, Any]]) -> dict[str, Mapping[str, An
 
 
 def _value_text(before: str, value: Any) -> str:
-    """Return ``before`` and the value as JSON; empty if the value is too long."""
+    """Return ``before`` and the value as JSON; empty if the JSON is too long."""
     text = json.dumps(value, ensure_ascii=False, default=str)
     return before + text if len(text) <= _MOST_CHARACTERS else ""

@@ -1,7 +1,7 @@
 """The files that a case depends on, and the selection of the cases that a change affects.
 
-The files need not load: from a file with errors, everything readable counts.  A superfluous case
-costs minutes, but a missing one hides a finding.  When in doubt, a file counts as a dependency.
+The files need not load: from a file with errors, everything readable counts. A superfluous case
+costs minutes, but a missing one hides a finding. When in doubt, a file counts as a dependency.
 """
 
 from __future__ import annotations
@@ -28,9 +28,9 @@ _LETTERS: Final = {bytes([key]): bytes([code]) for key, code in zip(b"abtnvfr", 
 class Selection:
     """The result of selecting cases by changed files.
 
-    ``cases`` depend on the changed files, ``left_out`` do not.  No case depends on the names in
-    ``unknown``.  ``suggestions`` are the unknown names that resemble a dependency, each with the
-    suggested name.
+    ``cases`` depend on a changed file, and ``left_out`` on none. ``unknown`` are names on which no
+    case depends. ``suggestions`` are pairs of an unknown name and a similar name that is a
+    dependency.
     """
 
     cases: tuple[Case, ...]
@@ -42,9 +42,9 @@ class Selection:
 def select(suite: Suite, changed: Sequence[str]) -> Selection:
     r"""Select the cases that depend on a file in ``changed``.
 
-    A name is the path of a file, the last parts of the path (``assets/guard.toml``, ``guard.toml``),
-    either of them without the extension (``guard``), or the path of a folder.  Names quoted by git are
-    accepted, too (``"assets/w\303\244chter.toml"``).
+    A name is the path of a file, the last parts of the path (``assets/guard.toml``,
+    ``guard.toml``), either of them without the extension (``guard``), or the path of a folder.
+    Names quoted by git are accepted, too (``"assets/w\303\244chter.toml"``).
     """
     dependencies_of = {case.name: dependencies(suite, case) for case in suite.cases}
     affected = {
@@ -66,10 +66,10 @@ def select(suite: Suite, changed: Sequence[str]) -> Selection:
 
 
 def dependencies(suite: Suite, case: Case) -> tuple[Path, ...]:
-    """Return the files that a case depends on, as absolute paths, both as named and with links resolved.
+    """Return the absolute paths of the files that a case depends on.
 
-    Paths that do not exist but would take precedence over a file count, too: creating or deleting
-    such a file affects the case.
+    If a path has links, return it both as named and with links resolved. A path without a file
+    counts, too, if a file there would be read in place of another one.
     """
     files = [suite.path, suite.baseline, policy_file(case.policy)]
     files += registered_game().level_files.dependencies(case.level, case.variant)
@@ -99,9 +99,10 @@ def _matches_any(name: str, paths: Iterable[Path]) -> bool:
 
 
 def _similar_name(name: str, paths: Iterable[Path]) -> str | None:
-    """Suggest a correction of a name; None if there is none.
+    """Return a name that is similar to ``name`` and means one of ``paths``; None without one.
 
-    None also for a name with a folder, which may be a deleted file that git lists.
+    None also for an existing file, and for a name with a folder: it may be a deleted file that git
+    lists.
     """
     named_path = Path(_unquote(name))
     if len(named_path.parts) > 1 or fileio.exists(named_path):
@@ -112,11 +113,14 @@ def _similar_name(name: str, paths: Iterable[Path]) -> str | None:
 
 
 def _unquote(name: str) -> str:
-    """Undo git's quoting: double quotes, and non-ASCII bytes in octal.  Other names are unchanged."""
+    """Undo git's quoting: double quotes, and non-ASCII bytes in octal.
+
+    A name that is not quoted is returned unchanged.
+    """
     if len(name) < 2 or not (name.startswith('"') and name.endswith('"')):
         return name
     parts = _ESCAPE.split(os.fsencode(name[1:-1]))
-    # Every second part is what followed a backslash.
+    # Every second part is what comes after a backslash.
     parts[1::2] = [
         bytes([int(escape, 8) % 256]) if escape.isdigit() else _LETTERS.get(escape, escape) for escape in parts[1::2]
     ]

@@ -12,7 +12,7 @@ from tltl_runtime.regression.verdict.baseline import Reference, text_sha256
 from tltlc.api import TltlError, fileio
 
 Texts = tuple[tuple[str, str], ...]
-"""Names of files, as in ``files`` of a :class:`~tltl_runtime.game.level.Level`, each with its text or its hash."""
+"""The names of a level's files, as in ``Level.files``, each with its text or its hash."""
 
 _NAME: Final = re.compile(r"(?:(?:assets|overlays)/)?[^/\\:\0]+\.toml")
 _BASELINE: Final = fileio.Archive(
@@ -24,8 +24,8 @@ _SPEC: Final = re.compile(r"^spec\s*=.*$", re.MULTILINE)
 def level_texts(name_or_path: str, variant: str, files: Texts) -> Texts:
     """Return the name and the text of each file of a level, in order.
 
-    ``files`` are the names of the files, each with its SHA-256.  A file that was edited since, and so
-    has another hash, is left out.
+    ``files`` are the names of the files, each with its SHA-256. A file that has another hash now is
+    left out: it was edited meanwhile.
     """
     level_files = registered_game().level_files
     texts = []
@@ -45,9 +45,12 @@ def current_text(name_or_path: str, variant: str, name: str) -> str | None:
 
 
 def baseline_level(reference: Reference) -> Level | None:
-    """Load the level of a reference from the texts in the baseline, as it was recorded; None if they do not load."""
+    """Load the level on which a reference was recorded, from the texts in the baseline.
+
+    None if a text is missing or the level does not load.
+    """
     played, texts = reference.played, dict(reference.texts)
-    # Two overlays of the same name do not fit into one folder.  Reject names that lead out of the folder.
+    # Two overlays of the same name do not fit into one folder, and a name must not lead out of it.
     if len(texts) != len(played.files) or not texts or not all(map(_NAME.fullmatch, texts)):
         return None
     name = played.files[0][0]

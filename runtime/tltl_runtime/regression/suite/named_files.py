@@ -18,7 +18,10 @@ _NO_SUCH_SPEC: Final = {"TLT0720", "TLT0721"}
 
 
 def policy_file(path: Path) -> Path:
-    """Return the file of a case's policy: ``path`` itself, or the policy in the folder of a training."""
+    """Return the file of a case's policy: ``path`` itself, or if it is a folder, the policy in it.
+
+    The folder is that of a training.
+    """
     if not fileio.is_dir(path):
         return path
     from tltl_runtime.training.run.run_file import POLICY
@@ -27,9 +30,10 @@ def policy_file(path: Path) -> Path:
 
 
 def policy_diagnostics(path: Path, label: Label) -> list[Diagnostic]:
-    """Return the diagnostics, at ``label``, of a policy that cannot be read; none if it can.
+    """Return the diagnostics, at ``label``, for a policy that cannot be read; none if it can.
 
-    TLT0872 if the folder contains no policy; otherwise the diagnostics of ``read_policy``.
+    The code is TLT0872 if ``path`` is a folder without a policy. Otherwise the diagnostics are
+    those of ``read_policy``.
     """
     file = policy_file(path)
     if file != path and not fileio.exists(file):
@@ -42,11 +46,11 @@ def policy_diagnostics(path: Path, label: Label) -> list[Diagnostic]:
 
 
 def spec_diagnostics(spec: str, label: Label) -> list[Diagnostic]:
-    """Return the diagnostics, at ``label``, of a spec that is not found; none if it is.
+    """Return the diagnostics, at ``label``, for a spec that is not found; none if it is found.
 
     TLT0720 if the file has no spec of that name; TLT0721 if no spec is named and the file does not
-    have exactly one.  Other errors in the file are reported when the case is played, because a change
-    of the file may have caused them.
+    have exactly one. Other errors in the file are reported when the case is played, because a
+    change of the file may have caused them.
     """
     try:
         read_spec(spec)
@@ -56,9 +60,10 @@ def spec_diagnostics(spec: str, label: Label) -> list[Diagnostic]:
 
 
 def similar_level(name: str, folder: Path) -> str | None:
-    """Suggest a level for an unknown ``name`` in a suite in ``folder``; None if no name is similar.
+    """Return a hint that names a level similar to ``name``, which does not exist; None without one.
 
-    Candidates are the files there and the levels of the package.
+    ``name`` is from a suite in ``folder``. Candidates are the level files beside the path ``name``,
+    and the levels of the package.
     """
     names: list[str] = []
     # The name may not be a valid path on this system.
@@ -70,7 +75,7 @@ def similar_level(name: str, folder: Path) -> str | None:
 
 
 def _is_level(path: Path) -> bool:
-    """Whether a file looks like a level.  Pipes and devices are not read."""
+    """Whether a file looks like a level. Pipes and devices are not read."""
     if not fileio.may_be_file(path):
         return False
     try:
@@ -80,9 +85,9 @@ def _is_level(path: Path) -> bool:
 
 
 def level_with_fitting_policy(level: str) -> str | None:
-    """Return the level of the package whose policy may play ``level``; None if there is none.
+    """Return the level of the package whose policy may fit ``level``; None if there is none.
 
-    The two levels have specs of the same name, because ``level`` may be a copy of the other.
+    The two levels have specs of the same name: ``level`` may be a copy of the other.
     """
     game = registered_game()
     with suppress(TltlError):

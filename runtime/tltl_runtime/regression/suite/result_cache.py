@@ -16,19 +16,26 @@ T = TypeVar("T")
 
 
 def inputs_hash(parts: Sequence[Any]) -> str:
-    """Return the SHA-256, in hexadecimal, of ``parts``, which are JSON data, and of the source code."""
+    """Return the SHA-256, in hexadecimal, of ``parts`` and of the program's source code.
+
+    ``parts`` are JSON data.
+    """
     return hashlib.sha256(json.dumps([*parts, sources_hash()], sort_keys=True).encode()).hexdigest()
 
 
 def cache_text(inputs: str, content: object) -> str:
-    """Return the text of a cache file with ``content``, which depends on inputs with the hash ``inputs``."""
+    """Return the text of a cache file with ``content``.
+
+    ``inputs`` is the hash of everything that the content depends on.
+    """
     return json.dumps({"identity": inputs, "content": to_json(content)}, ensure_ascii=False) + "\n"
 
 
 def read_cache(kind: type[T], path: Path, inputs: str) -> T | None:
-    """Read the content of a cache file with :func:`~tltl_runtime.support.record_json.from_json`.
+    """Read the content of a cache file, a value of type ``kind``.
 
-    None if the file does not exist, cannot be read, or has another hash: compute the content again.
+    None if the file does not exist, cannot be read, or has another hash than ``inputs``. The caller
+    then computes the content again.
     """
     if not fileio.may_be_file(path):
         return None

@@ -15,7 +15,8 @@ _RESERVED: Final = re.compile(r"(con|prn|aux|nul|com[0-9]|lpt[0-9])(\..*)?\Z", r
 def slugs(names: Sequence[str]) -> tuple[str, ...]:
     """Return a short ASCII name for each name: ``navigation:v1`` becomes ``navigation-v1``.
 
-    The results are distinct, even without regard to case.  Each is a valid folder name on any system.
+    The results are distinct, even without regard to case. Each is a valid folder name on any
+    system.
     """
     unique: list[str] = []
     taken: set[str] = set()

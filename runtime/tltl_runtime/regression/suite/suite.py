@@ -1,4 +1,7 @@
-"""Suites: TOML files that list the cases of a regression test (``docs/regression.md`` describes every key)."""
+"""Suites: TOML files that list the cases of a regression test.
+
+``docs/regression.md`` describes every key.
+"""
 
 from __future__ import annotations
 
@@ -27,17 +30,20 @@ SHIPPED: Final = Path(__file__).with_name("shipped") / "suite.toml"
 """The suite that comes with the package: three levels, each in three variants."""
 
 LEAST_EPISODES: Final = 25
-"""The least number of episodes for a verdict and an explanation; the paper's Table I uses the same number."""
+"""The least number of episodes for a verdict. The paper's Table I uses the same number."""
 
 MOST_EPISODES: Final = 300
-"""The default limit of episodes of a case."""
+"""The most episodes of a case, unless the suite says otherwise."""
 
 _MOST_ERRORS: Final = 100
-"""After this many errors, no further cases of a suite are read, because checking a case can take long."""
+"""After this many errors, no more cases are read, because checking a case can take long."""
 
 _MAX_EPISODES: Final = 10_000
 _GREATEST: Final = {"pass_rate": 0.999}
-"""The greatest values of thresholds.  No number of episodes can make a pass rate of 1 certain."""
+"""The greatest values of thresholds, where these are less than 1.
+
+No number of episodes can make a pass rate of 1 certain.
+"""
 _HELP: Final = 'values are written as in `episodes = 100`, texts as in `level = "navigation"`'
 
 
@@ -45,9 +51,9 @@ _HELP: Final = 'values are written as in `episodes = 100`, texts as in `level = 
 class Thresholds:
     """The thresholds of a verdict.
 
-    A case passes if its pass rate is certainly at least ``pass_rate``.  It fails if its pass rate is
-    certainly below ``fail_rate``.  Both are in [0, 1].  ``progress`` and ``reward`` are the least
-    changes of these means that count.
+    A case passes if its pass rate is certainly at least ``pass_rate``. It fails if its pass rate is
+    certainly below ``fail_rate``. Both are in [0, 1]. ``progress`` and ``reward`` are the least
+    changes of the mean progress and of the mean reward that count.
     """
 
     pass_rate: float = 0.85
@@ -60,11 +66,11 @@ class Thresholds:
 class Case:
     """A regression test: a policy plays a level in a variant, and a spec judges the episodes.
 
-    ``level`` and ``variant`` name the level, as for :meth:`~tltl_runtime.game.game.Game.load_level`.
-    ``reference`` is the variant whose figures the case is compared with.  ``spec`` is ``FILE:NAME``, or
-    None for the policy's own spec.  ``episodes`` is the most that are played.  ``place`` distinguishes
-    levels of the same name: it is the level's path relative to the suite, or empty for a level of the
-    package.
+    ``level`` and ``variant`` name the level, as for
+    :meth:`~tltl_runtime.game.game.Game.load_level`. ``reference`` is the variant whose baseline the
+    case is compared with. ``spec`` is ``FILE:NAME``, or None for the policy's own spec.
+    ``episodes`` is the greatest number of episodes. ``place`` distinguishes levels of the same
+    name: it is the level's path relative to the suite, or empty for a level of the package.
     """
 
     name: str
@@ -82,9 +88,9 @@ class Case:
 class Suite:
     """Cases that are judged together.
 
-    ``seed`` is the seed of the episodes.  ``error``, in (0, 1), bounds the probability that any certain
-    ``fail`` or ``review`` is wrong, or that any case passes although its pass rate is too low.
-    ``baseline`` is the file that the cases are compared with.
+    ``path`` is the suite's file. ``seed`` is the seed of the episodes. ``error``, in (0, 1), bounds
+    the probability that any certain ``fail`` or ``review`` is wrong, or that any case passes
+    although its pass rate is too low. ``baseline`` is the file that the cases are compared with.
     """
 
     path: Path
@@ -95,22 +101,25 @@ class Suite:
 
 
 def baseline_path(suite: Path) -> Path:
-    """Return the default path of a suite's baseline: ``NAME.baseline.json`` beside ``NAME.toml``."""
+    """Return the default path of a suite's baseline: ``NAME.baseline.json`` beside the suite.
+
+    ``NAME`` is that of the suite, ``NAME.toml``.
+    """
     return suite.with_name(f"{suite.stem}.baseline.json")
 
 
 @fileio.resource_limits()
 def read_suite(path: Path, baseline: Path | None = None) -> Suite:
-    """Read a suite from a file.  Paths in the file are relative to it.
+    """Read a suite from a file. Paths in the file are relative to it.
 
     The baseline is ``baseline``, or by default the file at :func:`baseline_path`.
 
     Raises:
-        TltlError: all errors that can be found at once.  TLT0801, not TOML; TLT0802, an unknown key;
-            TLT0803, a missing key, or a value of the wrong kind or out of range; TLT0804, two cases of
-            the same name; TLT0805, a file does not exist; TLT0800, a level or variant does not exist;
-            TLT0853, no policy comes with the level; TLT0006, too many cases; and the errors of policies
-            and specs from :mod:`~tltl_runtime.regression.suite.named_files`.
+        TltlError: all errors that can be found at once. TLT0801, not TOML; TLT0802, an unknown key;
+            TLT0803, a missing key, or a value of the wrong kind or out of range; TLT0804, two cases
+            of the same name; TLT0805, a file does not exist; TLT0800, a level or variant does not
+            exist; TLT0853, no policy comes with the level; TLT0006, too many cases; and the errors
+            of policies and specs from :mod:`~tltl_runtime.regression.suite.named_files`.
     """
     source = fileio.read_source(path, path_text(path))
     log: list[Diagnostic] = []
@@ -165,7 +174,11 @@ def _unread_cases_error(count: int, label: Label) -> Diagnostic:
 def _case(
     table: CheckedTable, folder: Path, episodes: int, thresholds: Thresholds, known_variants: dict[str, tuple[str, ...]]
 ) -> tuple[Case, Label] | None:
-    """Read a case and its label; None if it has errors.  ``known_variants`` is the cache of :func:`_variants`."""
+    """Read a case and its label; None if it has errors.
+
+    ``folder`` is the folder of the suite. ``episodes`` and ``thresholds`` are the values for a case
+    that does not set them. ``known_variants`` is the cache of :func:`_variants`.
+    """
     before = len(table.log)
     level, place = _level(table, folder)
     variant = _text(table, "variant", "")
@@ -199,7 +212,7 @@ def _case(
 
 
 def _text(table: CheckedTable, key: str, default: str = REQUIRED) -> str:
-    """Read a string that must not be empty if it is present."""
+    """Read a text; the default if the key is missing. A text that is present must not be empty."""
     text, entry = table.text(key, default), table.entries.get(key)
     if entry is not None and entry.value == "":
         table.log[-1] = wrong_value(entry, key, "a text that is not empty")
@@ -207,10 +220,11 @@ def _text(table: CheckedTable, key: str, default: str = REQUIRED) -> str:
 
 
 def _variants(table: CheckedTable, level: str, known_variants: dict[str, tuple[str, ...]]) -> tuple[str, ...]:
-    """Return the variants of a level.  If the level does not load, return those that the case names.
+    """Return the variants of a level.
 
-    A level that does not load is a finding of the case, not an error of the suite.  ``known_variants``
-    caches the variants of levels; it maps a level that does not load to an empty tuple.
+    A level that does not load is a finding of the case, not an error of the suite. For such a
+    level, return the variants that the case names, and ``v0``. ``known_variants`` caches the
+    variants of levels; it maps a level that does not load to an empty tuple.
     """
     if level not in known_variants:
         try:
@@ -222,7 +236,10 @@ def _variants(table: CheckedTable, level: str, known_variants: dict[str, tuple[s
 
 
 def _level(table: CheckedTable, folder: Path) -> tuple[str, str]:
-    """Read a level and its path relative to the suite; the path is empty if the level is not a file."""
+    """Read a level; return its name or path, and its path relative to the suite.
+
+    The second is empty if the level is not a file.
+    """
     level = _text(table, "level")
     if not level:
         return "", ""
@@ -248,7 +265,7 @@ def _level(table: CheckedTable, folder: Path) -> tuple[str, str]:
 
 
 def _separate_keys_help(level: str, variant: str) -> str:
-    """Return a help text: how a suite writes ``LEVEL:VARIANT+OVERLAY``, the notation of the commands."""
+    """Return a help text that says how to write ``LEVEL:VARIANT+OVERLAY`` in a suite."""
     base, overlays = split_overlays(variant)
     lines = [
         f'`level = "{level}"`',
@@ -259,7 +276,7 @@ def _separate_keys_help(level: str, variant: str) -> str:
 
 
 def _overlays(table: CheckedTable, folder: Path) -> tuple[str, ...]:
-    """Read the overlays that are added to the variant: names, or paths relative to the working directory."""
+    """Read the overlays to add to the variant: names, or paths from the working directory."""
     entry = table.entries.get("overlay")
     single = entry is not None and not isinstance(entry.value, list)
     names = (_text(table, "overlay"),) if single else table.names("overlay", ())
@@ -286,9 +303,11 @@ def _spec(table: CheckedTable, folder: Path) -> str | None:
 
 
 def _policy(table: CheckedTable, folder: Path, level: str) -> Path | None:
-    """Read the policy: a file or the folder of a training; by default the policy that comes with the level.
+    """Read the policy of a case; return its path, or None if no policy comes with the level.
 
-    Returns its path, or None if no policy comes with the level.
+    A suite names a policy's file, the folder of a training, or a level of the package, for the
+    policy that comes with that level. By default, it is the policy that comes with the case's
+    level.
     """
     name = _text(table, "policy", "")
     if not name or name in shipped_policies():

@@ -1,4 +1,4 @@
-"""Find files that have changed since the baseline but that the user did not name as changed."""
+"""Find files that have changed since the baseline, though the user did not name them."""
 
 from __future__ import annotations
 
@@ -16,9 +16,10 @@ from tltl_runtime.regression.verdict.baseline import Reference, text_sha256
 def unnamed_changes(
     suite: Suite, left_out: Sequence[Case], references: Sequence[Reference]
 ) -> dict[str, tuple[str, ...]]:
-    """Return the files of ``left_out`` cases that differ from the baseline, each with its cases' names.
+    """Return the files of ``left_out`` cases that differ from the baseline, each with its cases.
 
-    Only the files of levels are compared.  They have the names that the baseline gives them.
+    A file has the name that the baseline gives it, and comes with the names of the cases that use
+    it. Only the files of levels are compared.
     """
     cases_of: dict[str, tuple[str, ...]] = {}
     for case in left_out:

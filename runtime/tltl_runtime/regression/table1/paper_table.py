@@ -1,4 +1,4 @@
-"""Table I of Gutiérrez-Sánchez et al., IEEE Trans. Games 2024, and its comparison with our own figures."""
+"""Table I of Gutiérrez-Sánchez et al., IEEE Trans. Games 2024, beside our own figures."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ Model = Literal["expert", "imitation", "ours"]
 
 MODELS: Final[tuple[Model, ...]] = ("expert", "imitation", "ours")
 LEVELS: Final = ("navigation", "cover_and_hide", "branching")
-"""Cases 1 to 3 of the paper."""
+"""The levels of the cases 1 to 3 of the paper."""
 VARIANTS: Final = ("v0", "v1", "v2")
 RUNS: Final = 25
 """The number of episodes for each figure in the paper."""
@@ -35,7 +35,7 @@ class CellFigures:
 class TableRow:
     """The figures of one model on one level, by variant.
 
-    ``hours`` is the duration of the training, or None without a training.  ``cloning_share`` is the
+    ``hours`` is the duration of the training, or None without a training. ``cloning_share`` is the
     share of steps with behavioural cloning alone, or None if the model does not imitate.
     """
 
@@ -49,7 +49,8 @@ def _row(
 ) -> TableRow:
     """Return a row of the paper.
 
-    For each of v0, v1 and v2: pass rate, mean and deviation of progress, mean and deviation of reward.
+    ``figures`` are, for each of v0, v1 and v2: the pass rate, mean and deviation of progress, mean
+    and deviation of reward.
     """
     cells = (CellFigures(RUNS, rate, Spread(p, dp), Spread(r, dr)) for rate, p, dp, r, dr in figures)
     return TableRow(dict(zip(VARIANTS, cells, strict=True)), hours, cloning_share)
@@ -96,11 +97,14 @@ PAPER: Final[Mapping[tuple[str, Model], TableRow]] = {
         6.8, (1.00, 1.00, 0.00, 0.66, 0.01), (0.93, 0.96, 0.17, 0.64, 0.36), (0.47, 0.89, 0.23, 0.27, 0.46)
     ),
 }
-"""The rows of the paper.  Its experts are humans."""
+"""The rows of the paper. Its experts are humans."""
 
 
 def markdown(rows: Mapping[tuple[str, Model], TableRow]) -> str:
-    """Format the table as Markdown: each of our rows, followed by the paper's row.  Missing rows are left out."""
+    """Format the table as Markdown: each of our rows, and below it the same row of the paper.
+
+    Rows that ``rows`` does not contain are left out.
+    """
     return "\n".join(_lines(rows)) + "\n"
 
 
@@ -127,7 +131,7 @@ def _line(level: str, model: str, row: TableRow) -> str:
 
 
 def _rate(figures: CellFigures) -> str:
-    """Format a pass rate, with its confidence interval if there are more episodes than in the paper."""
+    """Format a pass rate. Add its confidence interval if it has more episodes than the paper's."""
     if figures.runs <= RUNS:
         return f"{figures.pass_rate:.2f}"
     low, high = wilson(round(figures.pass_rate * figures.runs), figures.runs)

@@ -1,4 +1,7 @@
-"""The cells of our Table I: a model plays 100 episodes of a level in a variant.  Results are cached in a folder."""
+"""The cells of our Table I: a model plays 100 episodes of a level in a variant.
+
+The results are cached in a folder.
+"""
 
 from __future__ import annotations
 
@@ -24,7 +27,10 @@ from tltlc.api import fileio, record
 
 EPISODES: Final = 100
 SEED: Final = 25_000
-"""The seed of the evaluations.  It is unlikely that a training played episodes with the same seeds."""
+"""The seed of the evaluations.
+
+It is unlikely that a training played episodes with the same seeds.
+"""
 
 
 @record
@@ -52,7 +58,7 @@ def cell_episodes(
 ) -> tuple[EpisodeResult, ...]:
     """Return the episodes of a cell: cached in ``folder``, or played now and stored there.
 
-    Without a ``policy``, the expert plays.  The current spec of the level judges the episodes.
+    Without a ``policy``, the expert plays. The current spec of the level judges the episodes.
 
     Raises:
         TltlError: errors from playing, among them TLT0843, the policy was trained for another spec;
@@ -99,7 +105,7 @@ def _expert_episodes(level: str, variant: str, pool: Pool) -> Generator[EpisodeR
 class _ExpertPlayer:
     """Plays episodes with the scripted expert.
 
-    :class:`~tltl_runtime.evaluation.player.Player` does so with a policy.
+    :class:`~tltl_runtime.evaluation.player.Player` does the same with a policy.
     """
 
     def __init__(self, level: str, variant: str) -> None:
@@ -108,7 +114,7 @@ class _ExpertPlayer:
         self._seeds: deque[int] = deque()
         """The seeds of the next episodes.
 
-        One expert plays them all, because it keeps what it has computed about the level.
+        One expert plays all episodes, so that it can reuse what it has computed about the level.
         """
         self._episodes = self._game.expert_episodes(self._env, iter(self._seeds.popleft, None))
 

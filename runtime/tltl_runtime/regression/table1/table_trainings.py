@@ -32,7 +32,10 @@ class Limits:
 
 @record
 class TableTraining:
-    """A training of a model on a level, in a folder of its own."""
+    """A training of a model on a level, in a folder of its own.
+
+    ``imitates`` says whether the model learns by imitation.
+    """
 
     folder: Path
     level: str
@@ -44,8 +47,8 @@ class TableTraining:
 class TrainedModel:
     """The result of a training with a ``seed``: its policy and the hours that it took.
 
-    ``cloning_share`` is the share of its steps with behavioural cloning, or None if the model does not
-    imitate.
+    ``cloning_share`` is the share of its steps with behavioural cloning, or None if the model does
+    not imitate.
     """
 
     policy: Path
@@ -55,14 +58,15 @@ class TrainedModel:
 
 
 def limits(minutes: float | None) -> Limits:
-    """Return the limits of our trainings, by default one hour."""
+    """Return the limits of our trainings: the default steps, and ``minutes``, or else one hour."""
     return Limits(read_settings().stop.steps, _MINUTES if minutes is None else minutes)
 
 
 def limits_of_policy(card: Card, minutes: float | None) -> Limits:
-    """Return the limits of the training that made a policy, except for ``minutes`` if given.
+    """Return the limits of the training that made a policy.
 
-    Trainings with the same limits can be compared.
+    Trainings with the same limits can be compared. ``card`` is the card of the policy. If
+    ``minutes`` is given, it replaces that limit.
     """
     stop = card.training["settings"]["stop"]
     return Limits(int(stop["steps"]), float(stop["minutes"]) if minutes is None else minutes)
@@ -71,10 +75,10 @@ def limits_of_policy(card: Card, minutes: float | None) -> Limits:
 def table_training(folder: Path, level: str, model: Model, limits: Limits) -> TableTraining:
     """Configure the training of a model on a level as it is now.
 
-    The name of its folder contains a hash of level, spec, sensors and settings, but not of the code.
-    For a model that imitates, the hash includes the limits, since cloning takes a share of them.  So a
-    change of any of these gives a new training.  Without cloning, a training can continue with greater
-    limits.
+    The name of its folder contains a hash of the level, the spec, the sensors and the settings. So
+    a change of any of them gives a new training, while a change of the code does not. If the model
+    imitates, the hash includes the limits, since cloning takes a share of them. If not, the
+    training can continue with greater limits in the same folder.
 
     Raises:
         TltlError: the level or its spec cannot be read.
@@ -98,8 +102,8 @@ def table_training(folder: Path, level: str, model: Model, limits: Limits) -> Ta
 def train_arguments(training: TableTraining) -> list[str]:
     """Return the arguments with which ``tltlc train`` starts or continues the training.
 
-    A stopped training keeps the limits that it started with if they are greater, because it may already
-    have passed the new limits.
+    A stopped training keeps the limits that it started with if they are greater, because it may
+    already have passed the new limits.
     """
     steps, minutes = training.limits.steps, training.limits.minutes
     if (training.folder / RUN).exists():
@@ -116,7 +120,9 @@ def train_arguments(training: TableTraining) -> list[str]:
 
 
 def finished_training(training: TableTraining) -> TrainedModel | None:
-    """Return the result of a training that reached its goal or its limits; None for any other training.
+    """Return the result of a training that reached its goal or its limits.
+
+    None for a training that did neither.
 
     Raises:
         TltlError: TLT0863, the folder cannot be read.

@@ -33,11 +33,11 @@ _REFUSALS: Final = LoadErrors(
 class Identity:
     """What was played: policy, level, variant, spec and seed of the episodes.
 
-    ``level`` and ``spec`` are names.  ``level_hash`` is from
+    ``level`` and ``spec`` are names. ``level_hash`` is from
     :meth:`~tltl_runtime.game.game.Game.level_hash`, ``spec_hash`` from
-    :func:`~tltl_runtime.policies.identity.spec_hash`.  ``policy`` is the SHA-256 of the policy's
-    file.  ``files`` are the files that the level was loaded from, each with its SHA-256.
-    ``versions`` are those of the software that played.  ``place`` is the ``place`` of the case.
+    :func:`~tltl_runtime.policies.identity.spec_hash`. ``policy`` is the SHA-256 of the policy's
+    file. ``files`` are the files that the level was loaded from, each with its SHA-256.
+    ``versions`` are those of the software that played. ``place`` is the ``place`` of the case.
     """
 
     level: str
@@ -56,9 +56,9 @@ class Identity:
 class Reference:
     """The recorded episodes that cases are compared with.
 
-    ``accounts`` are all episodes, in order from episode 0.  ``texts`` are the texts of the level's
-    files, by their names in ``played.files``.  ``sources`` is the hash of the code that played, or
-    empty if unknown.
+    ``played`` identifies what was played. ``accounts`` are all episodes, in order from episode 0.
+    ``texts`` are the texts of the level's files, by their names in ``played.files``. ``sources`` is
+    the hash of the code that played, or empty if unknown.
     """
 
     played: Identity
@@ -68,7 +68,7 @@ class Reference:
 
 
 def write_baseline(path: Path, references: tuple[Reference, ...]) -> None:
-    """Write the baseline of a suite.  Raises TltlError, TLT0005, if the file cannot be written."""
+    """Write the baseline of a suite. Raises TltlError, TLT0005, if the file cannot be written."""
     references_without_texts = tuple(
         _StoredReference(reference.played, reference.accounts, reference.sources) for reference in references
     )
@@ -169,7 +169,7 @@ def baseline_of(suite: Suite) -> tuple[Reference, ...]:
     """Read the baseline of a suite.
 
     Raises:
-        TltlError: TLT0903, the suite has no baseline; see also :func:`read_baseline`.
+        TltlError: TLT0903, the suite has no baseline; the errors of :func:`read_baseline`.
     """
     if _is_missing(suite.baseline):
         title = f"the suite `{path_text(suite.path)}` has no baseline: there is no `{path_text(suite.baseline)}`"
@@ -225,9 +225,10 @@ def check_states(reference: Reference, fspa: Fspa, suite: Suite) -> None:
 
 
 def default_output(suite: Path) -> Path:
-    """Return the default output path of `tltlc baseline` for a suite.
+    """Return the path to which ``tltlc baseline`` writes the baseline of a suite by default.
 
-    For the suite that comes with the package, the file is in the working directory, not in the package.
+    For the suite that comes with the package, the file is in the working directory, not in the
+    package.
     """
     return Path("shipped.baseline.json") if suite == SHIPPED else baseline_path(suite)
 

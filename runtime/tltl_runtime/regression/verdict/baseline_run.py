@@ -27,7 +27,8 @@ _ADVICE: Final = "name another place with --output"
 class RecordedReference:
     """A recorded reference and the cases that are compared with it.
 
-    ``outdated`` says why none of the cases passes if the level's spec has changed; otherwise None.
+    If the level's spec has changed since the policy was trained, ``outdated`` says so: none of the
+    cases can pass. Otherwise it is None.
     """
 
     reference: Reference
@@ -38,13 +39,11 @@ class RecordedReference:
 def record_baseline(
     suite: Suite, pool: Pool, on_episode: OnEpisode, finished: tuple[Reference, ...] = ()
 ) -> Generator[RecordedReference]:
-    """Play all episodes of each combination of level, variant, spec and policy in the suite.
+    """Play the episodes of all references that the cases of a suite need, and yield the references.
 
-    Yields each recorded reference.  ``on_episode`` is called after each episode.
-
-    Cases that are compared with the same reference share its episodes.  The case with the most
-    episodes sets their number.  A reference in ``finished``, from an earlier recording, is not played
-    again if nothing has changed since.
+    Cases with the same level, reference variant, spec and policy share a reference. The case with
+    the most episodes sets their number. A reference in ``finished``, from an earlier recording, is
+    not played again if nothing has changed since. ``on_episode`` is called after each episode.
 
     Raises:
         TltlError: a case cannot be set up (raised before anything is played); TLT0905, a level was
@@ -62,12 +61,12 @@ def record_and_write_baseline(
     *,
     fresh: bool = False,
 ) -> Generator[RecordedReference]:
-    """Record the baseline of a suite with :func:`record_baseline` and write it to ``path`` at the end.
+    """Record the baseline of a suite with :func:`record_baseline`, then write it to ``path``.
 
-    Until then, finished references are stored in the file :func:`partial_path`, so that a stopped
-    recording can continue.  References of an ``older`` baseline are not played again if neither they
-    nor the code that plays have changed.  With ``fresh``, only references from an earlier ``fresh``
-    recording are reused.
+    Until it is complete, the file that :func:`partial_path` names stores the finished references,
+    so that a stopped recording can continue. A reference of the ``older`` baseline is not played
+    again if neither what it depends on nor the code that plays has changed. With ``fresh``, only
+    references from an earlier ``fresh`` recording are reused.
 
     Raises:
         TltlError: TLT0005, a file cannot be written; errors of :func:`record_baseline`.
@@ -90,9 +89,9 @@ def record_and_write_baseline(
 
 
 def partial_path(path: Path) -> Path | None:
-    """Return the path for the finished references of a recording: beside the file that ``path`` resolves to.
+    """Return the file that stores finished references until the baseline ``path`` is complete.
 
-    None if ``path`` is a device or a pipe.
+    It is beside the file that ``path`` resolves to. None if ``path`` is a device or a pipe.
     """
     if fileio.exists(path) and not fileio.is_file(path):
         return None
@@ -100,7 +99,7 @@ def partial_path(path: Path) -> Path | None:
 
 
 def verdict_if_unchanged(suite: Suite, case: Case, reference: Reference) -> Verdict:
-    """Return the verdict of a case if it played exactly the episodes of its reference."""
+    """Return the verdict that a case gets if it plays exactly the episodes of its reference."""
     summaries, error = summaries_of(reference.accounts), suite.error / len(suite.cases)
     for played in range(LEAST_EPISODES, case.episodes + 1):
         if judgement := judge(summaries[:played], summaries, case.episodes, case.thresholds, error):
@@ -109,7 +108,10 @@ def verdict_if_unchanged(suite: Suite, case: Case, reference: Reference) -> Verd
 
 
 def episodes_for_certainty(pass_rate: float, error: float) -> int:
-    """Return the least number of episodes after which the pass rate is certain at ``error``, if all succeed."""
+    """Return how many successes, without a failure, make it certain that ``pass_rate`` is reached.
+
+    The number is at least 25. ``error`` is the probability that a certain statement is wrong.
+    """
     return next(successes for successes in count(LEAST_EPISODES) if rate_interval(successes, 0, error)[0] >= pass_rate)
 
 
@@ -127,7 +129,7 @@ def _groups(suite: Suite) -> list[list[PreparedCase]]:
 
 
 def _prepare(case: Case, seed: int) -> PreparedCase:
-    """Set up a case to play its reference.  Errors name the case."""
+    """Set up a case to play its reference. Errors name the case."""
     try:
         return prepare_case(case, seed, case.reference)
     except TltlError as error:

@@ -1,10 +1,10 @@
 """The statistics of a verdict: anytime-valid tests of a pass rate and of means against a baseline.
 
-Both tests may be evaluated after each episode.  A test begins with a stake of 1 and bets it, episode
-by episode, against the hypothesis that it tries to refute.  The odds are fair if the hypothesis holds:
-the stake is never negative, and its mean does not grow.  So it exceeds 1/e at any time with
-probability e at most, and if it does, the hypothesis is refuted with error e (J. Ville 1939;
-H. Robbins, Ann. Math. Stat. 41 (1970), 1397-1409; G. Shafer, J. R. Stat. Soc. A 184 (2021), 407-431).
+Both tests may be evaluated after each episode. A test begins with a stake of 1 and bets it, episode
+by episode, against the hypothesis that it tries to refute. The odds are fair if the hypothesis
+holds: the stake is never negative, and its mean does not grow. So the probability that the stake
+ever exceeds 1/e is e at most. If it does, the hypothesis is refuted with error e (J. Ville 1939; H.
+Robbins, Ann. Math. Stat. 41 (1970), 1397-1409; G. Shafer, J. R. Stat. Soc. A 184 (2021), 407-431).
 """
 
 from __future__ import annotations
@@ -21,26 +21,32 @@ _POINTS: Final = 32
 """The number of alternative rates to bet on, between the rate to be refuted and 1."""
 
 _PLACES: Final = (np.arange(_POINTS) + 0.5) / _POINTS
-"""The positions of these rates between the two, from 0 to 1 on the scale arcsin(sqrt(rate))."""
+"""The positions of the alternative rates: 0 is the rate to be refuted, and 1 is the rate 1.
+
+They are equally spaced on the scale arcsin(sqrt(rate)).
+"""
 
 _SHARES: Final = (0.05, 0.2, 0.5, 0.9)
 """The shares of the largest safe stake that the bets on a mean risk.
 
-Large shares detect large changes sooner, small shares detect small changes.  The values were chosen
+Large shares detect large changes sooner, small shares detect small changes. The values were chosen
 by simulation, for figures with a threshold of 0.05.
 """
 
 _TINY: Final = 1e-6
-"""The least divisor of a bet: avoids division by 0 where a bound of the mean is also a bound of the values."""
+"""The least divisor of a bet.
+
+It avoids division by 0 where a bound of the mean is also a bound of the values.
+"""
 
 
 def rate_interval(successes: int, failures: int, error: float) -> tuple[float, float]:
-    """Return a confidence interval for a rate that may be evaluated after every episode.
+    """Return a confidence interval for a rate of success. It may be computed after every episode.
 
-    The episodes must be independent.  With probability 1 - ``error`` at least, the rate lies in all
-    intervals that are computed after the episodes of a sequence, whatever its length.  Each end of the
-    interval has half of the error.  The bet against a rate is spread evenly over the rates above it,
-    equally spaced on the scale arcsin(sqrt(rate)), and likewise below it.
+    The episodes must be independent. With probability 1 - ``error`` at least, the rate lies in all
+    intervals that are computed during a sequence of episodes, whatever its length. Each end of the
+    interval has half of the error. To refute a rate as too low, the bet is spread evenly over
+    higher rates, equally spaced on the scale arcsin(sqrt(rate)); likewise to refute it as too high.
 
     Raises:
         ValueError: a count is negative, or ``error`` is not in (0, 1).
@@ -53,11 +59,12 @@ def rate_interval(successes: int, failures: int, error: float) -> tuple[float, f
 def mean_p_value(values: Sequence[float], low: float, high: float, least: float = -1.0, most: float = 1.0) -> float:
     """Return the p-value of the hypothesis that the mean of the values is in [``low``, ``high``].
 
-    The values are in [``least``, ``most``].  If the conditional mean of each value, given the earlier
-    ones, is at least ``low``, a stake that is multiplied by 1 + share * (low - value) / (most - low)
-    does not grow on average; likewise for ``high``.  The mean of such stakes, over all shares and both
-    sides, does not grow either (I. Waudby-Smith, A. Ramdas, J. R. Stat. Soc. B 86 (2024), 1-27).  The
-    p-value is 1 over the greatest mean so far, so it may be evaluated after each value.
+    The values are in [``least``, ``most``]. For each value, a stake is multiplied by 1 + share *
+    (low - value) / (most - low). It does not grow on average if the conditional mean of each value,
+    given the earlier ones, is at least ``low``. A second stake does the same for ``high``. The mean
+    of the stakes for all shares and both sides does not grow on average either (I. Waudby-Smith, A.
+    Ramdas, J. R. Stat. Soc. B 86 (2024), 1-27). The p-value is 1 over the greatest such mean so
+    far, so it may be evaluated after each value.
 
     Raises:
         ValueError: ``low`` is above ``high``, or ``least`` is not below ``most``.
@@ -72,7 +79,10 @@ def mean_p_value(values: Sequence[float], low: float, high: float, least: float 
 
 @lru_cache(maxsize=1 << 16)
 def _lower_end(successes: int, failures: int, error: float) -> float:
-    """Return the greatest rate that is refuted as too low, by bisection.  All lower rates are refuted, too."""
+    """Return the greatest rate that is refuted as too low. All lower rates are refuted, too.
+
+    It is found by bisection. It is 0 if there are no successes.
+    """
     if successes == 0:
         return 0.0
     refuted, possible = 0.0, successes / (successes + failures)
@@ -86,7 +96,10 @@ def _lower_end(successes: int, failures: int, error: float) -> float:
 
 
 def _log_stake(successes: int, failures: int, rate: float) -> float:
-    """Return the logarithm of a stake, initially 1, that bets against ``rate``, in (0, 1), on the rates above it."""
+    """Return the logarithm of a stake that bets against ``rate``, in (0, 1), on the rates above it.
+
+    The stake is 1 before the first episode.
+    """
     start = asin(sqrt(rate))
     rates = np.sin(start + (pi / 2 - start) * _PLACES) ** 2
     stakes = successes * np.log(rates / rate) + failures * np.log((1.0 - rates) / (1.0 - rate))
@@ -94,7 +107,10 @@ def _log_stake(successes: int, failures: int, rate: float) -> float:
 
 
 def _log_means(logarithms: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the logarithms of the means over the first axis, given the logarithms of the values."""
+    """Return the logarithms of the means over the first axis.
+
+    ``logarithms`` are the logarithms of the values whose means are taken.
+    """
     greatest = logarithms.max(axis=0)
     # A sum and a division: `np.mean` takes much longer for a few values.
     means: NDArray[np.float64] = greatest + np.log(np.exp(logarithms - greatest).sum(axis=0) / len(logarithms))

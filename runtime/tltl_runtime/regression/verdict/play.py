@@ -26,7 +26,7 @@ from tltl_runtime.training.run.versions import versions
 from tltlc.api import Diagnostic, TltlError, fileio, record
 
 OnEpisode = Callable[[Case, int, ExplainedEpisode], None]
-"""A callback for each played episode: the case, the number of episodes so far, and the last episode."""
+"""A callback after each episode: the case, the number of episodes so far, and the last episode."""
 
 _PLAYER: Final = "policy"
 
@@ -35,9 +35,10 @@ _PLAYER: Final = "policy"
 class PreparedCase:
     """A case that is set up to be played.
 
-    ``setup`` describes the evaluation and ``played`` identifies what it depends on.  ``changes`` are
-    the descriptions of the variant's overlays.  ``outdated`` is a message if the spec of the level has
-    changed since the policy was trained; the old spec then judges the policy.  Otherwise it is None.
+    ``setup`` describes the evaluation and ``played`` identifies what it depends on. ``changes`` are
+    the descriptions of the variant's overlays. ``outdated`` is a message if the spec of the level
+    has changed since the policy was trained; the old spec then judges the policy. Otherwise it is
+    None.
     """
 
     case: Case
@@ -95,7 +96,7 @@ def prepare_case(case: Case, seed: int, variant: str | None = None) -> PreparedC
 
 
 def play_episodes(prepared: PreparedCase, pool: Pool) -> Generator[CaseEpisode]:
-    """Play the episodes of a case in order and yield each.  Closing the iterator ends the workers.
+    """Play the episodes of a case in order and yield each. Closing the iterator ends the workers.
 
     Raises:
         TltlError: TLT0905, the level was edited since the setup, or before the last episode ended;
@@ -104,7 +105,7 @@ def play_episodes(prepared: PreparedCase, pool: Pool) -> Generator[CaseEpisode]:
     tasks = [EpisodeRequest(index) for index in range(prepared.case.episodes)]
     with closing(results(prepared.setup, tasks, pool, replay_command=partial(_replay_command, prepared))) as playing:
         for count, result in enumerate(playing):
-            # Before it raises an error, `results` yields all finished episodes.  Skip those after a gap:
+            # Before it raises an error, `results` yields all finished episodes. Skip those after a gap:
             # counting them would favour fast episodes.
             if result.played.index != count:
                 continue
@@ -144,7 +145,7 @@ def judge_case(
     """Play a case until its verdict is settled.
 
     After each episode, ``on_episode`` is called with the number of episodes so far and the last
-    episode.  ``error`` is the case's share of the suite's error.
+    episode. ``error`` is the case's share of the suite's error.
     """
     played: list[CaseEpisode] = []
     before = summaries_of(reference.accounts)
@@ -170,9 +171,9 @@ def _check_unedited(prepared: PreparedCase, level: Level) -> None:
 
 
 def _outdated_message(case: Case, setup: Setup, level: Level) -> str | None:
-    """Return a message if the policy's own spec judges and the level's spec of that name has changed.
+    """Return a message if the policy's own spec judges, but the level's spec has changed.
 
-    None otherwise.
+    None if another spec judges or the specs of that name are the same.
 
     Raises:
         TltlError: the level's spec cannot be read.

@@ -1,4 +1,7 @@
-"""Run a suite: judge its cases one after the other.  Results are cached, so that a stopped run can continue."""
+"""Run a suite: judge its cases one after the other.
+
+Results are cached, so that a stopped run can continue.
+"""
 
 from __future__ import annotations
 
@@ -21,16 +24,16 @@ from tltl_runtime.support.record_json import to_json
 from tltlc.api import Diagnostic, TltlError, fileio, label_text, record, replace
 
 CASES: Final = "cases"
-"""The name of a folder in the folder of a run.  It has a folder for each case."""
+"""The name of the folder, in the folder of a run, that has a folder for each case."""
 
 _REPORT: Final = "case.json"
 _VERSION: Final = 3
 _RECORDINGS: Final = 3
-"""For each finding, this many recordings of its episodes are written."""
+"""At most this many episodes of each finding are stored as recordings."""
 
 _EDITED: Final = "TLT0905"
 WORKER_ERRORS: Final = frozenset({"TLT0730", "TLT0850", "TLT0852"})
-"""The codes of errors of worker processes.  They stop the run, because the case is not at fault."""
+"""The codes of errors of worker processes. They stop the run, because the case is not at fault."""
 
 WRITABLE: Final = "see that there is room, and that you may write there, or name another folder with --out"
 """The help if a file cannot be written to the folder of a run."""
@@ -40,9 +43,9 @@ WRITABLE: Final = "see that there is room, and that you may write there, or name
 class FinishedCase:
     """A case whose report is finished.
 
-    ``is_cached`` says that an earlier run played the case and nothing has changed since.  ``prepared``
-    and ``reference`` are what was played and what it was compared with, or None if the case could not
-    be played.
+    ``is_cached`` says that an earlier run played the case and nothing has changed since.
+    ``prepared`` and ``reference`` are what was played and what it was compared with, or None if the
+    case could not be played.
     """
 
     report: CaseReport
@@ -52,12 +55,16 @@ class FinishedCase:
 
     @property
     def case_to_train(self) -> PreparedCase | None:
-        """The case if it was played, did not pass, was not yet retrained, and training can help; else None."""
+        """The case if retraining its policy makes sense, else None.
+
+        It does if the case was played, did not pass, was not retrained yet, and has no
+        ``training_obstacle``.
+        """
         return None if self.report.retrained or self.training_obstacle else self._unpassed_case
 
     @property
     def training_obstacle(self) -> str | None:
-        """Why training cannot help a case that was played and did not pass; None if it can."""
+        """Why retraining cannot help; None if it can, or if the case passed or was not played."""
         prepared = self._unpassed_case
         if prepared is None:
             return None
@@ -83,7 +90,7 @@ def check_references(suite: Suite, cases: Sequence[Case], references: tuple[Refe
 
 
 def lock_run(folder: Path) -> AbstractContextManager[None]:
-    """Lock the folder of a run inside the block; create it if it is missing.
+    """Return a context that locks the folder of a run. The folder is created if it is missing.
 
     Raises:
         TltlError: TLT0904, another run uses the folder; TLT0005, it cannot be written.
@@ -106,15 +113,18 @@ def regress(
     """Judge some cases of a suite in order, and yield each as soon as it is finished.
 
     ``references`` are the references of the baseline, and ``pool`` says which processes play.
-    ``on_episode`` is called after each episode.  Results are cached below ``folder``; call this within
-    :func:`lock_run`.  A case is not played again if nothing has changed since, unless ``fresh``.  A case
-    that cannot be played fails.  A case whose level is edited while it is played gets the verdict
-    ``review``.  The other cases are judged all the same.
+    ``on_episode`` is called after each episode. Results are cached below ``folder``; call this
+    within :func:`lock_run`. A case is not played again if nothing has changed since, unless
+    ``fresh``.
+
+    A case that cannot be played gets the verdict ``fail``. A case whose level is edited while it is
+    played gets ``review``. After both, the run goes on with the next case.
 
     Raises:
-        TltlError: TLT0903, the baseline lacks a case, or a policy or its spec was replaced meanwhile;
-            TLT0902, the episodes of the baseline were in states that the spec does not have; TLT0730,
-            TLT0850 and TLT0852, errors of the workers; TLT0005, the folder cannot be written.
+        TltlError: TLT0903, the baseline lacks a case, or a policy or its spec was replaced
+            meanwhile; TLT0902, the episodes of the baseline were in states that the spec does not
+            have; TLT0730, TLT0850 and TLT0852, errors of the workers; TLT0005, the folder cannot be
+            written.
     """
     if fresh:
         _remove_cached(suite, cases, folder)
@@ -128,9 +138,9 @@ def regress(
 
 
 def _remove_cached(suite: Suite, cases: Sequence[Case], folder: Path) -> None:
-    """Remove the cached results of the cases.
+    """Remove the cached results of the cases, before a ``fresh`` run.
 
-    So if a ``fresh`` run is stopped, it continues with fresh results only.
+    If that run is stopped, its continuation then finds only fresh results.
     """
     for case in cases:
         fileio.remove_file(case_folder(suite, case.name, folder / CASES) / _REPORT, WRITABLE)
@@ -162,7 +172,7 @@ def _prepare(suite: Suite, case: Case, references: tuple[Reference, ...]) -> tup
 def _judge(
     suite: Suite, prepared: PreparedCase, reference: Reference, folder: Path, pool: Pool, on_episode: OnEpisode
 ) -> FinishedCase:
-    """Return the cached result of a case, or play it now.
+    """Return the cached result of a case, or play the case now.
 
     Raises:
         TltlError: an error that is no fault of the case.
@@ -209,13 +219,16 @@ def _inputs(prepared: PreparedCase, reference: Reference, error: float) -> str:
 
 
 def _cached_report(folder: Path, inputs: str) -> CaseReport | None:
-    """Return the cached report, if nothing has changed since and all of its recordings exist; else None."""
+    """Return the cached report if it is up to date and all of its recordings exist; else None."""
     report = read_cache(CaseReport, folder / _REPORT, inputs)
     return report if report and all((folder / name).is_file() for _, name in report.recordings) else None
 
 
 def _write(folder: Path, inputs: str, result: JudgedCase) -> CaseReport:
-    """Write the report on a case, and the recordings of the episodes that its findings name; return the report."""
+    """Write the report on a case and the recordings of example episodes; return the report.
+
+    The examples are the first episodes of each finding, and the first success.
+    """
     report = report_on(result)
     by_index = {episode.explained.summary.index: episode.recording for episode in result.episodes}
     successes = [episode.summary.index for episode in report.accounts if episode.summary.success]

@@ -1,7 +1,7 @@
 """The verdict of a case, by sequential statistics that are evaluated after every episode.
 
-The rule, where e is the case's share of the suite's ``error`` (the error divided by the number of
-cases):
+The first of these rules that applies decides. In the text below, e is the case's share of the
+suite's ``error``: the error divided by the number of cases.
 
 1. There is no verdict before 25 episodes.
 2. ``fail`` if the pass rate is certainly below ``thresholds.fail_rate``.
@@ -9,17 +9,19 @@ cases):
    below ``thresholds.pass_rate`` or progress or reward has certainly changed.
 4. ``pass`` if the pass rate is certainly at least ``thresholds.pass_rate``, and the means of
    progress and reward differ from the baseline by half of their thresholds at most.
-5. If all episodes of the case are played and nothing is certain: ``pass`` if the pass rate is
-   certainly at least ``thresholds.pass_rate`` and the means differ by less than their thresholds;
-   else ``review``.
+5. No verdict yet if episodes are left to play.
+6. ``pass`` if the pass rate is certainly at least ``thresholds.pass_rate``, and the means of
+   progress and reward differ from the baseline by less than their thresholds.
+7. ``review`` otherwise.
 
-A statement on the pass rate is certain if it follows from the confidence interval of the rate, whose
-error over all evaluations is e (:func:`~tltl_runtime.regression.verdict.confidence.rate_interval`).  Means
-are compared over equal seeds.  A figure has certainly changed if both of these hold: the means differ
-by its threshold at least; and the p-value of the hypothesis that the policy's mean is within the
-threshold of the recorded one is e/4 at most, over all evaluations
-(:func:`~tltl_runtime.regression.verdict.confidence.mean_p_value`).  So e bounds the probability of a
-certain verdict that is wrong, by the rate or by the figures, for every pass rate.
+A statement on the pass rate is certain if it follows from the confidence interval of the rate,
+whose error over all evaluations is e
+(:func:`~tltl_runtime.regression.verdict.confidence.rate_interval`). Means are compared over equal
+seeds. A figure has certainly changed if both of these hold: the means differ by its threshold at
+least; and the p-value of the hypothesis that the policy's mean is within the threshold of the
+recorded one is e/4 at most, over all evaluations
+(:func:`~tltl_runtime.regression.verdict.confidence.mean_p_value`). So the probability that a
+certain verdict is wrong, by the rate or by the figures, is e at most, whatever the pass rate is.
 """
 
 from __future__ import annotations
@@ -39,17 +41,17 @@ Verdict = Literal["pass", "review", "fail"]
 FIGURES: Final[Mapping[str, tuple[float, float]]] = {"progress": (0.0, 1.0), "reward": (-1.0, 1.0)}
 """The figures that are compared with the baseline, each with its range.
 
-The reward of an episode is its progress minus the share of the step limit that it used.  A violation
+The reward of an episode is its progress minus the share of the step limit that it used. A violation
 also costs the rest of the limit (Algorithm 1).
 """
 
 _EQUAL_SHARE: Final = 0.5
-"""If means differ by at most this share of the threshold, they count as equal."""
+"""Two means count as equal if they differ by at most this share of the threshold."""
 
 
 @record
 class FigureChange:
-    """A figure whose mean has certainly changed: the baseline's mean, the mean now, and the p-value."""
+    """A certain change of a figure: its mean in the baseline, its mean now, and the p-value."""
 
     figure: str
     before: float
@@ -59,10 +61,11 @@ class FigureChange:
 
 @record
 class Judgement:
-    """A verdict.
+    """A verdict, and the statistics that justify it.
 
     ``certain`` is False if the verdict was only given because all episodes were played.
-    ``rate_interval`` is the confidence interval of the pass rate.
+    ``rate_interval`` is the confidence interval of the pass rate. ``changes`` are the certain
+    changes of figures.
     """
 
     verdict: Verdict
@@ -76,8 +79,8 @@ def judge(
 ) -> Judgement | None:
     """Return the verdict on the episodes ``now``, or None if more episodes have to be played.
 
-    ``before`` are the baseline's episodes, with the same seeds in the same order.  ``episodes`` is the
-    most that may be played.  ``error`` is the case's share of the suite's error.
+    ``before`` are the baseline's episodes, with the same seeds in the same order. ``episodes`` is
+    the most that may be played. ``error`` is the case's share of the suite's error.
     """
     if len(now) < LEAST_EPISODES:
         return None
@@ -103,7 +106,10 @@ def judge(
 def differing_figures(
     now: Sequence[EpisodeSummary], before: Sequence[EpisodeSummary], thresholds: Thresholds
 ) -> tuple[str, ...]:
-    """Return the figures whose means over equal seeds differ by at least their thresholds, possibly by chance."""
+    """Return the figures whose means over equal seeds differ by at least their thresholds.
+
+    The differences may be due to chance.
+    """
     return _differing_figures(_differences(now, before), thresholds)
 
 
@@ -112,7 +118,10 @@ def _differing_figures(differences: Mapping[str, float], thresholds: Thresholds)
 
 
 def _differences(now: Sequence[EpisodeSummary], before: Sequence[EpisodeSummary]) -> dict[str, float]:
-    """Return the absolute differences of the means of each figure, over the seeds that both sides have."""
+    """Return the absolute differences between the means of each figure now and before.
+
+    The means are over the seeds that both sides have.
+    """
     count = min(len(now), len(before))
     pairs = {figure: (_values(now[:count], figure), _values(before[:count], figure)) for figure in FIGURES}
     return {figure: abs(fmean(new) - fmean(old)) for figure, (new, old) in pairs.items()}
@@ -125,7 +134,7 @@ def _changes(
     thresholds: Thresholds,
     error: float,
 ) -> Iterator[FigureChange]:
-    """Yield the changes of those figures that have certainly changed."""
+    """Yield the change of each of ``figures`` that has certainly changed."""
     for figure in figures:
         values, old, threshold = _values(now, figure), fmean(_values(before, figure)), getattr(thresholds, figure)
         p_value = mean_p_value(values, old - threshold, old + threshold, *FIGURES[figure])

@@ -1,1 +1,4 @@
-"""The report on a suite as a page: one self-contained HTML file."""
+"""The report on a suite as one self-contained HTML file.
+
+Begin with :mod:`~tltl_runtime.regression.report.page.page`.
+"""

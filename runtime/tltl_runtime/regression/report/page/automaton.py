@@ -33,9 +33,10 @@ _BADGE_HEIGHT: Final = 16.0
 
 @record
 class AutomatonPicture:
-    """The picture of an automaton, as SVG bytes, or None if the layout failed.
+    """The picture of an automaton.
 
-    ``notes`` describe what the picture does not show.
+    ``svg`` is the picture as SVG, or None if the layout failed. ``notes`` are sentences that say
+    what the picture does not show.
     """
 
     svg: bytes | None
@@ -43,7 +44,7 @@ class AutomatonPicture:
 
 
 def draw_automaton(fspa: Fspa) -> AutomatonPicture:
-    """Draw the automaton.  A separate process lays it out, with a time limit for each attempt."""
+    """Draw an automaton. A separate process lays it out, and each attempt may take 10 seconds."""
     diagnostics: list[Diagnostic] = []
     try:
         # The page already shows the description of the spec.
@@ -64,11 +65,12 @@ def draw_automaton(fspa: Fspa) -> AutomatonPicture:
 
 
 def picture(fspa: Fspa, svg: bytes, now: Traffic, before: Traffic) -> Markup:
-    """Add badges to the ``svg`` of an automaton: for each state, how many episodes visited it or failed in it.
+    """Add to the ``svg`` of an automaton how many episodes visited each state and failed in it.
 
-    The more episodes took an edge, the thicker the edge is.  The picture contains the badges and edge
-    widths for ``now`` and for ``before``; the style sheet shows one of the two.  The SVG may draw a
-    chain of states as one; the attribute ``data-states`` lists all states that a node shows.
+    Badges show these numbers. The more episodes took an edge, the thicker the edge is. The picture
+    contains the badges and edge widths for ``now`` and for ``before``, the baseline; the style
+    sheet shows one of the two. A node of the SVG may stand for a chain of states. Its attribute
+    ``data-states`` lists them.
     """
     root = ElementTree.fromstring(svg)
     for node in root.iter():
@@ -105,9 +107,10 @@ def picture(fspa: Fspa, svg: bytes, now: Traffic, before: Traffic) -> Markup:
 
 
 def _edge_counts(traffic: Traffic, runs: Collection[tuple[int, ...]], drawn_edges: Set[Ends]) -> Counter[Ends]:
-    """Count for each drawn edge the episodes that took it, or an edge that is drawn as part of it.
+    """Count the episodes that took each drawn edge.
 
-    ``runs`` are the states of each node; a node with several states draws a chain of them as one.
+    ``runs`` has the states of each node. A node with several states draws a chain of states as one.
+    An edge from or to a state of a chain counts as the edge that is drawn for it.
     """
     first = {state: run[0] for run in runs for state in run}
     folded = [run[0] for run in runs if len(run) > 1]
@@ -115,7 +118,7 @@ def _edge_counts(traffic: Traffic, runs: Collection[tuple[int, ...]], drawn_edge
     def drawn_edge(edge: Ends) -> Ends:
         source, target = (first[end] for end in edge)
         if source != target and (source, target) not in drawn_edges:
-            # The edge skips a run that is drawn as one state: count it at the edge into that run.
+            # The edge skips a chain that is drawn as one node: count it at the edge into that node.
             target = next(
                 (
                     run_start
@@ -148,9 +151,9 @@ def _mark_state(
 
 
 def _visits(traffic: Traffic, states: tuple[int, ...]) -> int:
-    """Return how many episodes visited a state, or any of the ``states`` that are drawn as one.
+    """Return how many episodes visited the ``states`` of a node.
 
-    Such a chain of states can be entered at any of its states.
+    If there are several, count the episodes that took an edge into any of them.
     """
     if len(states) == 1:
         return traffic.visited.get(states[0], 0)
@@ -160,9 +163,10 @@ def _visits(traffic: Traffic, states: tuple[int, ...]) -> int:
 def _mark_edge(
     group: ElementTree.Element, title: ElementTree.Element, ends: Ends, edge_counts: Sequence[tuple[int, int]]
 ) -> None:
-    """Set the thickness and the title of an edge.
+    """Set the thickness and the title of an edge; a self-loop gets neither.
 
-    ``edge_counts`` are pairs of how many episodes took the edge and of all episodes, now and before.
+    ``edge_counts`` has two pairs, one for now and one for the baseline: how many episodes took the
+    edge, and how many episodes there are.
     """
     if ends[0] == ends[1]:
         group.set("class", "edge loop")
@@ -180,7 +184,7 @@ def _mark_edge(
 
 
 def _name(group: ElementTree.Element, text: str, left: float, top: float, right: float) -> None:
-    """Add a badge with a state's name in its upper left corner.
+    """Add a badge with the name of a state at the state's upper left corner.
 
     If the badge would cover the distance mark, it is placed above the mark.
     """
@@ -199,7 +203,10 @@ def _width(text: str) -> float:
 
 
 def _badge(parent: ElementTree.Element, kind: str, text: str, x: float, y: float, grows: int) -> None:
-    """Add a pill-shaped badge that starts at ``x`` (``grows`` > 0) or ends there."""
+    """Add a pill-shaped badge that starts at ``x`` if ``grows`` is positive, else ends at ``x``.
+
+    ``kind`` is its CSS class.
+    """
     width = _width(text)
     left = x if grows > 0 else x - width
     group = ElementTree.SubElement(parent, "g", {"class": f"badge {kind}"})
@@ -215,14 +222,14 @@ def _badge(parent: ElementTree.Element, kind: str, text: str, x: float, y: float
 
 
 def _extent(group: ElementTree.Element) -> tuple[float, float, float, float]:
-    """Return the bounds of what a group draws: left, top, right, bottom."""
+    """Return the bounds of what an SVG group draws: left, top, right, bottom."""
     points = list(_points(group))
     xs, ys = [x for x, _ in points], [y for _, y in points]
     return min(xs), min(ys), max(xs), max(ys)
 
 
 def _remove_title(root: ElementTree.Element) -> float:
-    """Remove the name of the spec; return the top of the graph itself, in the units of the view box."""
+    """Remove the name of the spec. Return the top of what remains, in the units of the view box."""
     (graph,) = (child for child in root if child.get("class") == "graph")
     groups = [child for child in graph if child.get("class") is not None]
     for child in set(graph) - set(groups):
@@ -248,7 +255,7 @@ def _sentence(diagnostic: Diagnostic) -> str:
 
 
 def counts_table(fspa: Fspa, now: Traffic, before: Traffic) -> Markup:
-    """Return a table of the states: what remains to be done in each, and the numbers of episodes."""
+    """Return a table of the states: what remains to be done in each, and the counts of episodes."""
     rows = [
         (state.id, label_text(fspa, state.id), [*_counts(state.id, now), *_counts(state.id, before)])
         for state in fspa.states
@@ -257,6 +264,6 @@ def counts_table(fspa: Fspa, now: Traffic, before: Traffic) -> Markup:
 
 
 def _counts(state: int, traffic: Traffic) -> tuple[str, str]:
-    """Return how many episodes visited a state, and how many failed in it."""
+    """Return how many episodes visited a state and failed in it, such as ``3 of 25``."""
     visited, failed = (f"{counts.get(state, 0)} of {traffic.episodes}" for counts in (traffic.visited, traffic.failed))
     return visited, failed

@@ -1,4 +1,4 @@
-"""The maps of a case: the level as it is now and, if it looks different, the level of the baseline."""
+"""The maps of a case: the level as it is now and, if it looks different, as it was."""
 
 from __future__ import annotations
 
@@ -16,10 +16,11 @@ from tltlc.api import record, replace
 
 @record
 class _DrawnMap:
-    """A map and its key.
+    """A map and the key to its signs.
 
     ``when`` says with which episodes the page shows the map: ``now``, ``before`` (the baseline) or
-    ``both``.  ``is_of_unknown_baseline`` says that the level of the baseline's episodes is unknown.
+    ``both``. ``is_of_unknown_baseline`` says that the map also stands for the level of the
+    baseline, which is unknown.
     """
 
     when: str
@@ -30,10 +31,10 @@ class _DrawnMap:
 
 
 def case_maps(case: ReportedCase, level: Level) -> Markup:
-    """Return the map of ``level``, its key, and an empty legend that the page's script fills in.
+    """Return the map of ``level``, the key to its signs, and an empty legend.
 
-    If the level of the baseline looks different, its map is included, too; the page shows one of the
-    two.
+    The page's script fills in the legend. If the level of the baseline looks different, its map is
+    included, too; the page then shows one of the two maps.
     """
     return render("case_maps.html", maps=tuple(_maps(case, level)))
 

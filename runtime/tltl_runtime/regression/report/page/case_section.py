@@ -21,7 +21,10 @@ from tltlc.api import formula_text, record
 
 @record
 class _Reason:
-    """A reason of the verdict, and links to the recorded episodes that show it; None if there are none."""
+    """A reason of the verdict.
+
+    ``links`` lead to the recorded episodes that show it. None if there are no such episodes.
+    """
 
     text: str
     links: Markup | None = None
@@ -31,9 +34,10 @@ class _Reason:
 class _Drawings:
     """The pictures and tables in the section of a case with level and automaton.
 
-    ``automaton`` is None if its layout failed; ``notes`` say what it does not show.  ``curves`` are the
-    progress of the recorded episodes, or None without recordings.  ``distribution`` is the distribution
-    of progress over all episodes.  ``table`` has the numbers of episodes of each state.
+    ``automaton`` is None if its layout failed; ``notes`` say what it does not show. ``player`` is
+    the panel that plays recorded episodes. ``curves`` are the progress of the recorded episodes, or
+    None without recordings. ``distribution`` is the distribution of progress over all episodes.
+    ``table`` says how many episodes visited each state and failed in it.
     """
 
     automaton: Markup | None
@@ -48,8 +52,8 @@ class _Drawings:
 def case_section(case: ReportedCase, slug: str, automaton: AutomatonPicture | None) -> Markup:
     """Return the section of a case.
 
-    ``slug`` is the case's short name in addresses within the page.  Without level and automaton, the
-    section has only texts.  ``automaton`` is the picture of the case's automaton.
+    ``slug`` is the case's short name in addresses within the page. ``automaton`` is the picture of
+    the case's automaton. If the case has no level or no automaton, the section has only texts.
     """
     return render(
         "case_section.html",
@@ -81,7 +85,7 @@ def _facts(report: CaseReport) -> list[str]:
 
 
 def _reasons(case: ReportedCase, slug: str) -> Iterator[_Reason]:
-    """Yield the reasons of the verdict.  Findings have links to their recorded episodes."""
+    """Yield the reasons of the verdict. Findings have links to their recorded episodes."""
     report = case.report
     yield from map(_Reason, report.causes)
     for finding in report.explanation:

@@ -1,4 +1,4 @@
-"""The contents of the page."""
+"""What the HTML page of a suite shows."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from tltlc.api import EMPTY, Fspa, record
 class ReportedCase:
     """A case with the data that the page draws.
 
-    ``level`` and ``fspa`` are None for a case that cannot be played.  ``episodes`` are the recorded
-    episodes by index.  ``before`` are the episodes of the baseline.  ``baseline_level`` is the level
-    that the baseline was recorded on, or None if it is unknown.  ``curve`` is the plot of the
+    ``level`` and ``fspa`` are None for a case that cannot be played. ``episodes`` are the recorded
+    episodes by index. ``before`` are the episodes of the baseline. ``baseline_level`` is the level
+    that the baseline was recorded on, or None if it is unknown. ``curve`` is the plot of the
     retraining, as a PNG, or empty.
     """
 
@@ -33,9 +33,10 @@ class ReportedCase:
 
 @record
 class NotRun:
-    """A case that was not judged in this run: the ``reason``, as a sentence, and an ``earlier_verdict``.
+    """A case that was not judged in this run.
 
-    The earlier verdict is that of an earlier run; None if there is none.
+    ``reason`` says why, in a sentence. ``earlier_verdict`` is the verdict of an earlier run, or
+    None.
     """
 
     name: str
@@ -45,12 +46,13 @@ class NotRun:
 
 @record
 class SuiteReport:
-    """The contents of a suite's page.
+    """What the page of a suite shows.
 
-    ``suite`` is its name.  ``seed`` and ``error`` are those of the suite.  ``versions`` are the versions
-    of the software that played.  ``cases`` are the judged cases in order, and ``not_run`` the others.
-    ``complete`` says whether all requested cases were judged and retrained.  ``note`` is shown at the
-    top of the page.
+    ``suite`` is the name of the suite. ``seed`` and ``error`` are as in
+    :class:`~tltl_runtime.regression.suite.suite.Suite`. ``versions`` are the versions of the
+    software that played. ``cases`` are the judged cases in order, and ``not_run`` are the cases
+    that were not judged. ``complete`` says whether all requested cases were judged and retrained.
+    ``note`` is shown at the top of the page.
     """
 
     suite: str

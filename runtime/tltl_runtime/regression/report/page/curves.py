@@ -1,6 +1,6 @@
 """Diagrams as inline SVG: progress over time, and the distribution of progress now and before.
 
-Functions draw them, not templates: nearly every attribute is computed.
+Functions draw them instead of templates, because nearly every attribute is computed.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ _BINS: Final = 10
 """The number of bins for the progress of failed episodes."""
 
 _GAP: Final = 0.5
-"""The gap between these bins and the bar of the successful episodes, in widths of a bin."""
+"""The gap between the bins of failed episodes and the bar of successes, in widths of a bin."""
 
 
 def progress_curves(episodes: Mapping[int, RecordedEpisode]) -> Markup:
@@ -48,10 +48,10 @@ def progress_curves(episodes: Mapping[int, RecordedEpisode]) -> Markup:
 
 
 def progress_distribution(now: Sequence[ExplainedEpisode], before: Sequence[ExplainedEpisode]) -> Markup:
-    """Plot the shares of episodes by their best progress.
+    """Plot how the best progress is distributed over the episodes.
 
-    Failed episodes are in tenths of [0, 1]; the last bar shows the successful ones.  The bars of ``now``
-    are filled, the bars of the baseline are outlines around them.
+    Ten bins over [0, 1] show the shares of failed episodes; the last bar shows the share of
+    successes. The bars of ``now`` are filled. Those of ``before``, the baseline, are outlines.
     """
     frame = _CurveAxes(_BINS + _GAP + 1.0)
     bars = []
@@ -71,7 +71,10 @@ def progress_distribution(now: Sequence[ExplainedEpisode], before: Sequence[Expl
 
 
 def _left_end(bin_: int) -> float:
-    """Return the left end of a bin; the bin of the successful episodes is set apart."""
+    """Return the left end of a bin, in widths of a bin.
+
+    A gap sets the last bin, that of the successes, apart.
+    """
     return bin_ + _GAP * (bin_ == _BINS)
 
 
@@ -84,7 +87,8 @@ def _bin_text(bin_: int) -> str:
 def _shares(episodes: Sequence[ExplainedEpisode]) -> list[float]:
     """Return the share of episodes in each bin.
 
-    An episode that reached progress 1 and then broke the spec is in the last bin of the failed ones.
+    An episode that reached progress 1 and then broke the spec is in the last bin of the failed
+    ones.
     """
     counts = [0] * (_BINS + 1)
     for episode in episodes:
@@ -93,7 +97,7 @@ def _shares(episodes: Sequence[ExplainedEpisode]) -> list[float]:
 
 
 def _corners(frame: _CurveAxes, episode: RecordedEpisode) -> list[tuple[float, float]]:
-    """Return the points at which a curve starts, ends or changes its value; it is straight in between."""
+    """Return the points at which a curve starts, ends or bends. Between them it is straight."""
     values, times = episode.progress.tolist(), episode.times.tolist()
     rows = {0, len(values) - 1}
     for row, (value, next_value) in enumerate(pairwise(values)):

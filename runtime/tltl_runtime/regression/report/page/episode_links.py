@@ -15,12 +15,15 @@ from tltl_runtime.regression.suite.slugs import episode_link
 from tltlc.api import record
 
 _BEFORE_END_S: Final = 4.0
-"""A link opens a failed episode this many seconds before its end, to show what led to the failure."""
+"""A link opens a failed episode this many seconds before its end, to show what led to it."""
 
 
 @record
 class _Link:
-    """A link that plays an episode; ``description`` says so in words."""
+    """A link that plays an episode.
+
+    ``index`` is the index of the episode. ``description`` says in words what the link plays.
+    """
 
     index: int
     address: str
@@ -30,8 +33,8 @@ class _Link:
 def episode_links(finding: Finding, episodes: Mapping[int, RecordedEpisode], slug: str) -> Markup | None:
     """Return links that play the recorded ``episodes`` of a finding; None if it has none.
 
-    ``slug`` is the case's short name in addresses within the page.  The link to a failed episode starts
-    shortly before the end.
+    ``slug`` is the case's short name in addresses within the page. The link to a failed episode
+    starts 4 seconds before its end.
     """
     indices = [index for index in finding.episodes if index in episodes]
     if not indices:

@@ -12,18 +12,18 @@ from tltl_runtime.regression.explain.path_points import POSITION_INTERVAL_S, pos
 from tltlc.api import record
 
 TIME_CELL: Final = 0.5
-"""The side of a cell, in metres, for time spent."""
+"""The side, in metres, of the cells in which the time spent is measured."""
 
 ENDS_CELL: Final = 1.0
-"""The side of a cell, in metres, for ends of episodes."""
+"""The side, in metres, of the cells in which the ends of failed episodes are counted."""
 
 
 @record
 class Heat:
-    """A grid of cells of ``cell`` metres, with ``columns`` cells in a row.
+    """A grid of square cells, with ``columns`` cells in a row. ``cell`` is their side, in metres.
 
-    ``values`` are pairs of the index of a cell and its value, sorted; cells with value 0 are left out.
-    Indices count row by row from the north-west.
+    ``values`` are pairs of the index of a cell and its value, sorted. Cells with value 0 are left
+    out. Indices count row by row from the north-west.
     """
 
     cell: float
@@ -43,7 +43,10 @@ def failed_ends(bounds: Box, episodes: Sequence[ExplainedEpisode]) -> Heat:
 
 
 def _grid(bounds: Box, cell: float, positions: Iterable[tuple[float, float]], weight: float) -> Heat:
-    """Count the positions (x, y) in each cell, times ``weight``."""
+    """Return a grid in which a cell's value is ``weight`` times the number of ``positions`` in it.
+
+    ``cell`` is the side of the cells, in metres.
+    """
     (west, south, _), (east, north, _) = bounds.low, bounds.high
     columns, rows = (max(1, -int(-side // cell)) for side in (east - west, north - south))
     counts: Counter[int] = Counter()

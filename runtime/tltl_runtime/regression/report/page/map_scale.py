@@ -1,4 +1,7 @@
-"""Map coordinates: centimetres from the north-western corner of a level's bounds, x eastwards, y southwards."""
+"""The coordinates on the map of a level: centimetres from the north-western corner of its bounds.
+
+x points east, y south.
+"""
 
 from __future__ import annotations
 
@@ -7,13 +10,13 @@ from collections.abc import Iterable, Sequence
 from tltl_runtime.game.geometry import Box
 
 Rect = tuple[int, int, int, int]
-"""Left, top, right and bottom."""
+"""A rectangle on a map: left, top, right and bottom, in centimetres."""
 
 
 class MapScale:
     """Converts the metres of a level to the centimetres of its map.
 
-    ``size`` is the width and the height of the map.
+    ``size`` is the width and the height of the map, in centimetres.
     """
 
     def __init__(self, bounds: Box) -> None:

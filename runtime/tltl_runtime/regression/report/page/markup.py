@@ -16,8 +16,8 @@ _SCRIPT: Final = {"<": "\\u003c", ">": "\\u003e", "&": "\\u0026", "\u2028": "\\u
 def element(name: str, /, *contents: object, **attributes: object) -> Markup:
     """Build an SVG element.
 
-    Its contents are escaped one by one unless they are :class:`Markup`.  In names of attributes, ``_``
-    becomes ``-``, and a trailing ``_`` is dropped (``class_``).
+    Its contents are escaped one by one unless they are :class:`Markup`. In names of attributes,
+    ``_`` becomes ``-``, and a trailing ``_`` is dropped (``class_``).
     """
     attribute_text = "".join(_attribute(key, value) for key, value in attributes.items())
     return Markup(f"<{name}{attribute_text}>{''.join(map(_content, contents))}</{name}>")

@@ -12,14 +12,14 @@ T = TypeVar("T")
 
 _DIGITS: Final = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/"
 _CONTINUATION: Final = 32
-"""Added to each digit of a number except the last."""
+"""This is added to each digit of a number except the last, to mark that more digits follow."""
 
 
 def steps(values: Iterable[float], scale: float) -> str:
-    """Encode numbers as a short text: the first one, then the difference of each from the one before.
+    """Encode numbers as a short text: the first, then each difference from the number before.
 
-    Each number is first multiplied by ``scale`` and rounded to an integer.  Integers are encoded as in
-    source maps (base64 VLQ), so that a small difference takes a single character.
+    Each number is first multiplied by ``scale`` and rounded to an integer. Integers are encoded as
+    in source maps (base64 VLQ), so that a small difference takes a single character.
     """
     integers = [round(value * scale) for value in values]
     return "".join(_vlq(after - before) for before, after in zip([0, *integers], integers, strict=False))
@@ -50,6 +50,7 @@ def x_steps(bounds: Box, xs: Sequence[float], centimetres: int = 1) -> str:
 def y_steps(bounds: Box, ys: Sequence[float], centimetres: int = 1) -> str:
     """Encode y coordinates, given in metres, with :func:`steps`.
 
-    The encoded numbers are distances southwards from the northern bound, in units of ``centimetres``.
+    The encoded numbers are distances southwards from the northern bound, in units of
+    ``centimetres``.
     """
     return steps((bounds.high[1] - y for y in ys), 100 / centimetres)

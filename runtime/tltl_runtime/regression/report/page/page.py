@@ -25,7 +25,7 @@ _SCRIPTS: Final = ("packing.js", "level_map.js", "player.js", "report.js")
 
 
 def html_report(suite: SuiteReport) -> str:
-    """Render the page: verdicts, and for each case its automaton, map, curves and recorded episodes.
+    """Render the page: verdicts, and for each case its automaton, map, curves and recordings.
 
     Equal reports give equal pages, unless the layout of an automaton hits its time limit.
     """
@@ -64,8 +64,9 @@ def _file_text(name: str) -> str:
 
 
 def _digest(script: str) -> str:
-    """Return the hash of the page's script for the content security policy, which blocks other scripts.
+    """Return the hash of the page's script, so that a browser runs this script and no other.
 
-    The hash includes the line feeds around the script.
+    It is the SHA-256, in base64, that the page's content security policy names. The line feeds
+    around the script are part of what is hashed.
     """
     return base64.b64encode(hashlib.sha256(f"\n{script}\n".encode()).digest()).decode()

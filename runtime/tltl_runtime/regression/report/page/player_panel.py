@@ -1,4 +1,4 @@
-"""The panel that plays back recorded episodes: buttons, a slider, and the values at the current moment."""
+"""The panel that plays recorded episodes: buttons, a slider, and the values at the moment shown."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from tltl_runtime.regression.report.page.render import render
 from tltlc.api import Fspa
 
 _FAILED: Final = {"violation": "broke the spec", "limit": "ran out of time"}
-"""How episodes fail, as the map's legend says it."""
+"""How an episode failed, by its ``end``, in the words of the map's legend."""
 
 
 def player_panel(fspa: Fspa, episodes: Mapping[int, RecordedEpisode]) -> Markup:
     """Return the playback panel of a case; the page's script loads the ``episodes`` into it.
 
-    Without episodes, a note says so.
+    If there are no episodes, the panel says so.
     """
     return render(
         "player_panel.html",

@@ -1,6 +1,6 @@
 """Render the HTML templates of the page, in the folder ``templates``.
 
-The modules compute the values, and the templates lay them out.
+Templates contain layout only. The other modules of the page compute the values.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ _FOLDER: Final = Path(__file__).parent / "templates"
 def render(template: str, **context: object) -> Markup:
     """Fill in a template, given the name of its file and the values that it uses.
 
-    Values are escaped unless they are :class:`Markup`.  The filter ``prose`` formats sentences.
+    Values are escaped unless they are :class:`Markup`. The filter ``prose`` formats sentences.
 
     Raises:
         jinja2.UndefinedError: the template uses a name that is not in the context.

@@ -21,7 +21,10 @@ _VERDICTS: tuple[Verdict, ...] = ("pass", "review", "fail")
 
 @record
 class _Mean:
-    """The mean of a figure as text, now and in the baseline; ``before`` is empty without a baseline."""
+    """The mean of a figure as text, now and in the baseline.
+
+    ``before`` is empty if there is no baseline.
+    """
 
     now: str
     before: str
@@ -29,9 +32,10 @@ class _Mean:
 
 @record
 class _PassRateBar:
-    """A bar of a pass rate: its class, place and size, and the SVG path of its confidence interval's whiskers.
+    """A bar that shows a pass rate, in a drawing that is 100 units wide and 22 units high.
 
-    Horizontally, the drawing is 100 units wide, one for each percent.  It is 22 units high.
+    A unit of width is one percent. ``kind`` is the CSS class of the bar. ``whiskers`` is the SVG
+    path of the confidence interval.
     """
 
     kind: str
@@ -43,9 +47,9 @@ class _PassRateBar:
 
 @record
 class _PassRate:
-    """A pass rate as text, now and in the baseline, and as bars, with a ``description`` of the bars.
+    """A pass rate, now and in the baseline: as text, and as bars with a ``description``.
 
-    ``before`` is empty without a baseline.
+    ``before`` is empty if there is no baseline.
     """
 
     now: str
@@ -58,8 +62,9 @@ class _PassRate:
 class _Row:
     """The row of a judged case.
 
-    ``slug`` is the case's short name in addresses within the page.  ``retrained`` is the outcome of a
-    retraining, or None.  ``pass_rate``, ``progress`` and ``reward`` are None for a case without figures.
+    ``slug`` is the case's short name in addresses within the page. ``retrained`` is the outcome of
+    a retraining, or None. ``pass_rate``, ``progress`` and ``reward`` are None for a case without
+    figures.
     """
 
     name: str
@@ -73,10 +78,10 @@ class _Row:
 
 
 def summary(suite: SuiteReport, slugs: Sequence[str]) -> Markup:
-    """Return the suite, the counts of verdicts, the versions and the table of verdicts.
+    """Return the head of the page as HTML.
 
-    ``slugs`` are the short names of the cases in addresses within the page: first of the judged cases,
-    then of the others.
+    ``slugs`` are the short names of the cases in addresses within the page: first those of the
+    judged cases, then those of ``suite.not_run``.
     """
     reports = [case.report for case in suite.cases]
     verdicts = [report.verdict for report in reports]
@@ -116,7 +121,7 @@ def _mean(now: float, before: float | None) -> _Mean:
 
 
 def _pass_rate(now: Figures, before: Figures | None) -> _PassRate:
-    """Return the pass rate with its 95 % confidence interval, and that of the baseline below it."""
+    """Return the pass rate with its 95 % confidence interval; below it, the baseline's bar."""
     bar = _bar(now, "now", top=0, height=12)
     if before is None:
         return _PassRate(_pass_text(now), "", _rate_words(now), (bar,))
@@ -137,7 +142,7 @@ def _rate_words(figures: Figures) -> str:
 
 
 def _passed_text(figures: Figures) -> str:
-    """Return how many episodes met the spec, and how many there are."""
+    """Return how many of the episodes met the spec, for example ``12 of 25``."""
     return f"{round(figures.pass_rate * figures.episodes)} of {figures.episodes}"
 
 

@@ -1,4 +1,4 @@
-"""Count how many episodes visited each state of the automaton, took each edge, and failed in each state."""
+"""Count the episodes that visited each state of the automaton, failed in it, or took each edge."""
 
 from __future__ import annotations
 
@@ -12,11 +12,12 @@ from tltlc.api import record
 
 @record
 class Traffic:
-    """The traffic of ``episodes`` episodes through an automaton.
+    """How ``episodes`` episodes moved through an automaton.
 
-    ``visited`` and ``failed`` count, for each state, the episodes that visited it and that failed in it.
-    ``edges`` are the edges (source, target) that each episode took, without self-loops.  An episode fails
-    in the state that it could not leave, or in which the spec was broken.
+    ``visited`` and ``failed`` count, for each state, the episodes that visited it and the episodes
+    that failed in it. ``edges`` has, for each episode, the edges (source, target) that it took,
+    without self-loops. An episode fails in the state in which it ends, or in the state before a
+    violation.
     """
 
     episodes: int
@@ -26,7 +27,10 @@ class Traffic:
 
 
 def traffic(episodes: Sequence[ExplainedEpisode]) -> Traffic:
-    """Return the traffic of some episodes.  An episode counts once for each state and edge."""
+    """Count how episodes moved through their automaton.
+
+    An episode counts once for a state or an edge, even if it came there several times.
+    """
     visited: Counter[int] = Counter()
     edges = []
     for episode in episodes:

@@ -1,1 +1,1 @@
-"""The maps and the recorded episodes of the stealth game: the only part of the report that knows a game."""
+"""Maps and recorded episodes of the stealth game. The rest of the report knows no game."""

@@ -1,8 +1,8 @@
 """The map of a level as an inline SVG: everything that does not move.
 
-The page's script draws the rest onto the map.  The units are centimetres from the north-western
-corner of the level's bounds, x eastwards, y southwards.  Functions draw the map, not a template:
-nearly every attribute is computed.
+The page's script draws onto the map what moves, and trajectories. The units are centimetres from
+the north-western corner of the level's bounds, x eastwards, y southwards. Functions draw the map
+instead of a template, because nearly every attribute is computed.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ _SIGNS: Final = {
     "solid wall": "wall",
     "solid spoken": "a reason speaks of it",
 }
-"""The legend: the class of each sign on a map, and its meaning."""
+"""The signs on a map: the CSS class of each, and its meaning in the legend."""
 
 
 def level_map(level: Level, mentions: Mentions = NO_MENTIONS) -> Markup:
@@ -89,9 +89,9 @@ def map_key(level: Level, mentions: Mentions = NO_MENTIONS) -> Markup:
 def map_data(level: Level) -> dict[str, Any]:
     """Return the data that the page's script needs to draw onto the map of a level, as JSON.
 
-    ``blocks`` and ``movers`` block sight.  Each block is a rectangle on the map and two heights.
-    ``reach`` and ``angle`` describe an enemy's cone of sight, and ``eyes`` is the height of its eyes.
-    Lengths are in centimetres, angles in degrees.
+    ``blocks`` and ``movers`` block sight. Each block is a rectangle on the map and two heights.
+    ``reach`` and ``angle`` describe an enemy's cone of sight, and ``eyes`` is the height of its
+    eyes. Lengths are in centimetres, angles in degrees.
     """
     assert isinstance(level, StealthLevel)
     scale = MapScale(level.bounds)
@@ -112,7 +112,7 @@ def map_data(level: Level) -> dict[str, Any]:
 
 
 def _mover(mover: Mover) -> dict[str, list[int]]:
-    """Return the sides of a mover on the map, and the heights between which it blocks sight, in centimetres."""
+    """Return the sides of a mover and the heights between which it blocks sight, in centimetres."""
     low, high = box_around(mover.path[0], mover.size)
     return {
         "sides": [round(100 * side) for side in mover.size[:2]],
@@ -170,7 +170,7 @@ def _label(name: MapLabel) -> Markup:
 def _patrol_path(points: Sequence[tuple[int, int]]) -> str:
     """Return a patrol as an SVG path that draws each segment once.
 
-    Dashes that are drawn twice would fill their gaps.
+    If a dashed segment were drawn twice, the second dashes would fill the gaps of the first.
     """
     segments: dict[frozenset[tuple[int, int]], str] = {}
     for (x, y), (to_x, to_y) in pairwise(points):

@@ -26,7 +26,7 @@ _MARGIN: Final = 12
 """Centimetres between the western side of a region and its name."""
 
 _ROWS: Final = (0, -1, 2, 3, -2)
-"""The rows in which the name of a thing is tried, in lines below its default position."""
+"""The rows in which the name of a thing is tried, in order: as lines below its default position."""
 
 _STEP: Final = 50
 """Centimetres between the positions in which the name of a region is tried."""
@@ -36,7 +36,7 @@ _STEP: Final = 50
 class MapLabel:
     """A name on the map.
 
-    The foot of its first line is at ``x`` and ``y``, in centimetres.  ``kind`` is a CSS class: a
+    The foot of its first line is at ``x`` and ``y``, in centimetres. ``kind`` is a CSS class: a
     ``region-name`` starts at ``x``, a ``thing-name`` or ``enemy-name`` is centred there.
     ``is_mentioned`` says that the report mentions the name.
     """
@@ -51,8 +51,8 @@ class MapLabel:
 def map_labels(level: StealthLevel, scale: MapScale, mentions: Mentions) -> Iterator[MapLabel]:
     """Place the names of a level.
 
-    Switches, exits, barriers, enemies and regions always have names.  Solids and movers have names only
-    if the report ``mentions`` them.
+    Switches, exits, barriers, enemies and regions always have names. Solids and movers have names
+    only if the report ``mentions`` them.
     """
     occupied: list[Rect] = []
     for label in _thing_labels(level, scale, mentions):
@@ -90,9 +90,10 @@ def _thing_labels(level: StealthLevel, scale: MapScale, mentions: Mentions) -> I
 
 
 def _separated(label: MapLabel, occupied: Sequence[Rect], size: tuple[int, int]) -> MapLabel:
-    """Move a label, within a map of that size, to where it overlaps ``occupied`` least.
+    """Move a label to the position at which it overlaps the rectangles in ``occupied`` least.
 
-    Positions above and below come first, then positions beside them.
+    The label stays on the map, which has the width and height ``size``. Of equally good positions,
+    those straight above or below the label's own come first.
     """
     half = _LETTER_WIDTH * len(label.lines[0]) // 2
     right, lowest = max(half, size[0] - half), max(_LINE_HEIGHT, size[1])
@@ -113,7 +114,7 @@ def _region_label(
 ) -> MapLabel:
     """Place the name of a region in the rectangle ``inside``, near its north-western corner.
 
-    The name avoids ``earlier_regions`` and ``occupied`` if possible.
+    The name avoids the rectangles in ``earlier_regions`` and ``occupied`` if possible.
     """
     name = region.name.replace("_", " ")
     best, least = (

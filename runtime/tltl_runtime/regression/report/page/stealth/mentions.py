@@ -1,8 +1,8 @@
 """The things and regions of a level that the sentences of a report mention.
 
-The sentences are searched for names, because the authors of levels write some of them: the
-descriptions of overlays.  All sentences put names of things between backquotes, and call regions by
-their names.
+They are found by a search for their names, because authors of levels write some of the sentences:
+the descriptions of overlays. All sentences put names of things between backquotes, and call regions
+by their names.
 """
 
 from __future__ import annotations
@@ -18,7 +18,10 @@ from tltlc.api import record
 
 @record
 class Mentions:
-    """The names of the mentioned things, which are entities and solids, and of the mentioned regions."""
+    """The names that a report mentions.
+
+    ``things`` are entities and solids.
+    """
 
     things: frozenset[str] = frozenset()
     regions: frozenset[str] = frozenset()
@@ -30,8 +33,8 @@ NO_MENTIONS: Final = Mentions()
 def mentions(level: Level, sentences: Sequence[str]) -> Mentions:
     """Return the things and regions that sentences mention.
 
-    A thing is mentioned by its name (```far_wall```) or by a key of its table (```wall.far_wall.at```), a
-    region by *the* and its name (*the left part*).
+    A thing is mentioned by its name (```far_wall```) or by a key of its table in the level's file
+    (```wall.far_wall.at```). A region is mentioned by *the* and its name (*the left part*).
     """
     assert isinstance(level, StealthLevel)
     text = "\n".join(sentences)
@@ -46,7 +49,7 @@ def _mentions_thing(name: str, text: str) -> bool:
 def _regions(level: StealthLevel, text: str) -> frozenset[str]:
     """Return the names of the mentioned regions.
 
-    The longest name wins: *the left part* is not *the left*.
+    Where several names fit, only the longest counts: *the left part* does not mention ``left``.
     """
     names_by_text = {region.name.replace("_", " "): region.name for region in level.regions}
     alternatives = "|".join(map(re.escape, sorted(names_by_text, key=len, reverse=True)))

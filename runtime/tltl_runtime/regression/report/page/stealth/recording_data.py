@@ -18,10 +18,10 @@ from tltl_runtime.stealth.recordings.episode import Episode
 def recording_data(index: int, episode: RecordedEpisode) -> dict[str, Any]:
     """Return episode ``index`` of a case as JSON data.
 
-    An episode of n steps has n + 1 rows of each value, but n rows of atoms.  Lengths are in centimetres
-    on the map, angles in degrees, times in milliseconds, shares and robustness in hundredths, progress
-    in thousandths.  The functions of :mod:`~tltl_runtime.regression.report.page.packing` encode the
-    values.
+    An episode of n steps has n + 1 rows of each value, but n rows of atoms. Lengths are in
+    centimetres on the map, angles in degrees, times in milliseconds, shares and robustness in
+    hundredths, progress in thousandths. The functions of
+    :mod:`~tltl_runtime.regression.report.page.packing` encode the values.
     """
     assert isinstance(episode, Episode)
     snapshots, bounds = episode.snapshots, episode.level.bounds
@@ -59,14 +59,15 @@ def recording_data(index: int, episode: RecordedEpisode) -> dict[str, Any]:
 
 
 def _position_steps(points: Sequence[Point], bounds: Box) -> dict[str, str]:
-    """Encode points as steps of x and of y."""
+    """Encode the x and the y coordinates of points."""
     return {"x": x_steps(bounds, [x for x, _, _ in points]), "y": y_steps(bounds, [y for _, y, _ in points])}
 
 
 def _yaw_steps(yaws: Sequence[float]) -> str:
-    """Encode yaw angles, given in radians, as degrees.
+    """Encode yaw angles, given in radians, in degrees.
 
-    They never jump by a full turn, so that they can be interpolated.
+    Where the angles would jump by a full turn, whole turns are added, so that the page can
+    interpolate.
     """
     return steps((degrees(yaw) for yaw in np.unwrap(yaws).tolist()), 1)
 
