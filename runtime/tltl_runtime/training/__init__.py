@@ -1,1 +1,4 @@
-"""Train agents with rsl-rl's PPO."""
+"""Train agents with rsl-rl's PPO.
+
+Begin with :mod:`~tltl_runtime.training.run.train`.
+"""

@@ -25,9 +25,9 @@ from tltlc.api import Diagnostic, TltlError, record
 class Iteration:
     """The result of a rollout and the update after it.
 
-    ``number`` counts from 1.  ``steps`` counts the decisions of all environments.  ``finished`` are the
-    episodes that ended.  ``losses`` are the losses of rsl-rl's PPO by name, and ``imitation`` if there
-    was self-imitation.  ``collect_s`` and ``learn_s`` are wall-clock seconds.
+    ``number`` counts from 1. ``steps`` counts the decisions of all environments. ``finished`` are
+    the episodes that ended. ``losses`` are the losses of rsl-rl's PPO by name, and ``imitation`` if
+    there was self-imitation. ``collect_s`` and ``learn_s`` are wall-clock seconds.
     """
 
     number: int
@@ -41,9 +41,9 @@ class Iteration:
 class Runner(OnPolicyRunner):
     """An rsl-rl runner whose learning loop is a generator: it yields after each iteration.
 
-    It prints nothing.  Updates run in ``cfg["threads"]`` threads, because no environment steps
-    meanwhile.  In the first ``cfg["warm_up"]`` iterations only the critic learns.  If there are several
-    processes, each must use it within
+    The runner prints nothing. Updates run in ``cfg["threads"]`` threads, because no environment
+    steps meanwhile. In the first ``cfg["warm_up"]`` iterations only the critic learns. If there are
+    several processes, each must use the runner within
     :func:`~tltl_runtime.training.ppo.distributed.join_process_group`.
     """
 
@@ -55,7 +55,7 @@ class Runner(OnPolicyRunner):
         with redirect_stdout(io.StringIO()):
             super().__init__(env, train_cfg, log_dir, device)
         if not self.is_distributed:
-            # In the channels-last layout, convolutions of small maps take two thirds of the time.  rsl-rl cannot
+            # In the channels-last layout, convolutions of small maps take two thirds of the time. rsl-rl cannot
             # average gradients in this layout over processes.
             for model in (self.alg.actor, self.alg.critic):
                 model.to(memory_format=torch.channels_last)
@@ -74,7 +74,7 @@ class Runner(OnPolicyRunner):
             }
 
     def load_actor(self, weights: Mapping[str, Tensor]) -> None:
-        """Load weights, by name, into the actor.  The critic keeps its random weights."""
+        """Load weights, by name, into the actor. The critic keeps its random weights."""
         self.alg.actor.load_state_dict({name: tensor.float() for name, tensor in weights.items()})
 
     def scale_inverse_temperature(self, factor: float) -> None:
@@ -118,7 +118,10 @@ class Runner(OnPolicyRunner):
             )
 
     def _configure_multi_gpu(self) -> None:
-        """Configure distribution like rsl-rl's method, but for any device and an existing process group."""
+        """Configure several processes like rsl-rl's method, but for any device.
+
+        The process group must exist already.
+        """
         group = process_group()
         self.gpu_world_size, self.gpu_global_rank, self.gpu_local_rank = group.count, group.rank, group.local_rank
         self.is_distributed = group.count > 1
@@ -134,9 +137,10 @@ class Runner(OnPolicyRunner):
         return observation
 
     def _imitate(self) -> dict[str, float]:
-        """Take the steps of self-imitation; return the mean loss as ``imitation``, empty without a batch.
+        """Take the steps of self-imitation; return their mean loss as ``imitation``.
 
-        If any process has a batch, all take the step together, so that their weights stay equal.
+        Return nothing if there is nothing to imitate. If any process has a batch, all processes
+        take the step together, so that their weights stay equal.
         """
         self_imitation, losses = self.env.self_imitation, []
         for _ in range(self.cfg["imitation"] if self_imitation else 0):

@@ -1,8 +1,8 @@
-"""Begin a training episode at the level's start, or in the middle of an earlier one by replaying it.
+"""Begin a training episode at the level's start, or in the middle of an earlier episode.
 
 :class:`~tltl_runtime.training.exploration.reverse_curriculum.ReverseCurriculum` chooses the starts.
 
-Equal seeds and actions give equal episodes.  So replaying the first actions of an episode reaches
+Equal seeds and actions give equal episodes. So replaying the first actions of an episode reaches
 the same state again, and the agent continues from there.
 """
 
@@ -27,10 +27,10 @@ Actions = list[list[int]]
 class EpisodeStart:
     """The start of an episode: its seed, and ``actions`` [n, branches] to replay first.
 
-    For a start in a demonstration, ``segment`` is the atoms that were true when the demonstration
-    ended (see :func:`~tltl_runtime.training.exploration.search.end_of`) and the index of the segment,
-    from 0.  At the level's start it is None.  The episode is cut off after ``max_decisions``
-    decisions of the agent; None: never.
+    For a start in a demonstration, ``segment`` is a pair: the end of the demonstration, as
+    :func:`~tltl_runtime.training.exploration.search.end_of` returns it, and the index of the
+    segment, from 0. For the level's start it is None. The episode is cut off after
+    ``max_decisions`` decisions of the agent. If that is None, it is not cut off.
     """
 
     seed: int
@@ -42,10 +42,10 @@ class EpisodeStart:
 class ReplayedStartEnv(gymnasium.Wrapper[Any, Any, Any, Any]):
     """An environment whose episodes begin at ``next_start``: a seed, and actions to replay.
 
-    ``next_start`` keeps its value for all later episodes; setting it to None does nothing.  Until it
-    is first set, episodes begin as in the wrapped environment.  ``make`` is called twice: while the
-    agent plays in one environment, :meth:`prepare` replays the actions for the next episode in the
-    other.
+    ``next_start`` keeps its value for all later episodes; setting it to None does nothing. Until it
+    is first set, episodes begin as in the wrapped environment. ``make`` makes the wrapped
+    environment. It is called twice: while the agent plays in one environment, :meth:`prepare`
+    replays the actions for the next episode in the other.
     """
 
     def __init__(self, make: Callable[[], gymnasium.Env[Any, Any]]) -> None:
@@ -57,7 +57,10 @@ class ReplayedStartEnv(gymnasium.Wrapper[Any, Any, Any, Any]):
 
     @property
     def next_start(self) -> tuple[int, NDArray[np.int8]] | None:
-        """The seed of the next episodes and the actions to replay [n, branches]; None before it is set."""
+        """The seed of the next episodes and the actions [n, branches] to replay.
+
+        None before it is first set.
+        """
         return self._next_start
 
     @next_start.setter
@@ -68,11 +71,11 @@ class ReplayedStartEnv(gymnasium.Wrapper[Any, Any, Any, Any]):
             self._replay = self._replay_in_spare(*next_start)
 
     def prepare(self) -> bool:
-        """Take one step of the replay for the next episode; return False once it is complete."""
+        """Take one step of the replay for the next episode; return False if none is left."""
         return self._replay is not None and next(self._replay, self) is None
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
-        """Finish the replay; return the observation and the info at its end, where the episode begins.
+        """Finish the replay; return the observation and the info with which the episode begins.
 
         ``seed`` and ``options`` are used only before ``next_start`` is first set.
         """
@@ -102,12 +105,13 @@ class ReplayedStartEnv(gymnasium.Wrapper[Any, Any, Any, Any]):
 class Episodes:
     """The current episode of each environment of ``env``: its start and all actions so far.
 
-    The environments are :class:`ReplayedStartEnv`; ``draw`` draws the start of each next episode.
-    The constructor begins the first episodes; ``observation`` is their first observation.
-    ``replayed`` counts the replayed decisions.
+    The environments are :class:`ReplayedStartEnv`, and ``draw`` draws the start of each next
+    episode. The constructor begins the first episodes; ``observation`` is their first observation.
+    ``starts`` and ``actions`` are those of the current episodes. ``replayed`` counts the replayed
+    decisions.
 
     Raises:
-        WorkerError: from any method, a worker was lost; the error names the seeds of the starts.
+        WorkerError: from any method, a worker was lost; the error names the seeds of the episodes.
     """
 
     def __init__(self, env: WorkerVectorEnv, draw: Callable[[], EpisodeStart]) -> None:
@@ -123,7 +127,10 @@ class Episodes:
         self.start_next(np.ones(env.num_envs, dtype=np.bool_))
 
     def step(self, actions: NDArray[np.int64]) -> tuple[Any, ...]:
-        """Record actions [num_envs, branches] and step all environments; return the results of the step."""
+        """Record actions [num_envs, branches] and step all environments with them.
+
+        Return the results of the step, as the vector environment does.
+        """
         for past_actions, action in zip(self.actions, actions.tolist(), strict=True):
             past_actions.append(action)
         with self._starts_in_errors():
@@ -140,7 +147,10 @@ class Episodes:
             self._send_starts(rows)
 
     def cut_off(self, mask: NDArray[np.bool_]) -> Any:
-        """Cut off the episodes in ``mask`` [num_envs] and begin the next; return all observations."""
+        """Cut off the episodes in ``mask`` [num_envs] and begin the next ones.
+
+        Return the observations of all environments.
+        """
         rows = np.flatnonzero(mask).tolist()
         self._advance(rows)
         with self._starts_in_errors():
@@ -149,12 +159,15 @@ class Episodes:
         return observation
 
     def is_spent(self, row: int) -> bool:
-        """Whether the agent has used up the ``max_decisions`` of the episode in environment ``row``."""
+        """Whether the episode in environment ``row`` has used up its ``max_decisions``."""
         start = self.starts[row]
         return start.max_decisions is not None and len(self.actions[row]) - len(start.actions) >= start.max_decisions
 
     def _advance(self, rows: Iterable[int]) -> None:
-        """Make the next episodes of these environments the current ones; draw the starts after them."""
+        """Make the next episodes of these environments the current ones.
+
+        Draw the starts of the episodes after these.
+        """
         for row in rows:
             start = self.starts[row] = self._next[row]
             self.actions[row] = [list(action) for action in start.actions]

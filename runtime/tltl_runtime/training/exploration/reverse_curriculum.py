@@ -1,13 +1,13 @@
-"""The reverse curriculum: episodes begin at those points of demonstrations where the agent can learn.
+"""The reverse curriculum: episodes begin at points of demonstrations where the agent can learn.
 
-A demonstration is an episode that met the spec.  It is divided into segments of equal length.  The
-agent learns most in segments from which it sometimes succeeds.  As it learns, these move from the
-end of the demonstration to its beginning: Florensa et al., Reverse curriculum generation for
-reinforcement learning, CoRL 2017; Salimans and Chen, Learning Montezuma's Revenge from a single
-demonstration, 2018.
+A demonstration is an episode that met the spec. It is divided into segments of equal length. The
+agent learns most in segments from which it sometimes succeeds. As it improves, the useful segments
+move from the end of the demonstration to its beginning: Florensa et al., Reverse curriculum
+generation for reinforcement learning, CoRL 2017; Salimans and Chen, Learning Montezuma's Revenge
+from a single demonstration, 2018.
 
-The *end* of a demonstration is the set of atoms that are true in its last step, as the number that
-:func:`~tltl_runtime.training.exploration.search.end_of` returns.
+The *end* of a demonstration is the set of atoms that are true in its last step. The function
+:func:`~tltl_runtime.training.exploration.search.end_of` returns it as a number.
 """
 
 from __future__ import annotations
@@ -24,24 +24,27 @@ from tltl_runtime.training.exploration.replayed_starts import Actions, EpisodeSt
 from tltl_runtime.training.exploration.search import FailedEpisode, SuccessfulEpisode
 
 _MAX_DEMONSTRATIONS = 6
-"""For each end, at most this many demonstrations are kept: the shortest, one for each seed."""
+"""At most this many demonstrations are kept for each end: the shortest, with different seeds."""
 _MAX_ENDS = 8
 """At most this many ends are kept: the first that were found."""
 _START_SHARES = 0.2, 0.97
-"""How much is played from the level's start: at least this share of decisions, at most this one of episodes.
+"""The least share of decisions and the greatest share of episodes from the level's start.
 
-The first share counts decisions, because failed episodes differ in length: some last until the
+The least share counts decisions, because failed episodes differ in length: some last until the
 spec's limit, others end soon in a violation.
 """
 _MIN_WEIGHT = 0.005
-"""Added to the weight of each segment, because one that teaches nothing now may be useful later."""
+"""This is added to the weight of each segment.
+
+A segment that teaches nothing now may be useful later.
+"""
 _LEARNED_RATE = 0.2
-"""A segment counts as learned, at least partly, from this success rate on."""
+"""A segment counts as learned, at least partly, if its success rate is at least this."""
 _WEIGHTS_BEFORE = 0.1, 0.6
-"""The weight of the segment just before the first learned one, and the factor for each earlier segment.
+"""The weight of the segment before the first learned one, and the factor for each step back.
 
 Segments far from everything learned give long episodes without success, and PPO would learn only
-from their noise.
+from their noise. So their weights are small.
 """
 _STEP_SIZES = 0.1, 0.02
 """The step sizes of exponential moving averages.
@@ -50,11 +53,11 @@ The first is for the success rate of a segment, the second for the success rate 
 start and for mean lengths.
 """
 _MAX_FAILURES = 32
-"""The number of failed episodes from the level's start that are kept: the last ones."""
+"""At most this many failed episodes from the level's start are kept: the last ones."""
 _DECISION_LIMIT = 1.5, 20
-"""The most decisions of the agent from a start in a demonstration.
+"""How many decisions the agent may make from a start in a demonstration, in two numbers.
 
-They are the first number times the demonstration's remaining decisions, plus the second number.
+The limit is the first number times the demonstration's remaining decisions, plus the second number.
 """
 
 
@@ -62,12 +65,15 @@ class ReverseCurriculum:
     """Draws starts of episodes.
 
     Nothing else may draw from ``generator``, because equal seeds must give equal trainings.
+    ``segments`` is the number of segments of a demonstration.
+
     ``demonstrations`` maps each end to the shortest known demonstrations with that end, including
-    the agent's own successes.  They are kept by end because a spec may be met in several ways, and
-    the shortest of all demonstrations would hide the other ways.  ``rates`` maps each end to the
-    success rates [segments] from the segments of its demonstrations.  ``start_rate`` is the success
-    rate from the level's start.  All rates are in [0, 1].  ``lengths`` are the mean numbers of the
-    agent's decisions in episodes from the level's start and in episodes from demonstrations.
+    the agent's own successes. They are kept by end because a spec may be met in several ways, and
+    the shortest of all demonstrations would hide the other ways. ``rates`` maps each end to the
+    success rates [segments] from the segments of its demonstrations. ``start_rate`` is the success
+    rate from the level's start. All rates are in [0, 1]. ``lengths`` has two mean numbers of the
+    agent's decisions: in episodes from the level's start, and in episodes from demonstrations.
+    ``failures`` are the last failed episodes from the level's start.
     """
 
     def __init__(self, segments: int, generator: np.random.Generator) -> None:
@@ -115,10 +121,10 @@ class ReverseCurriculum:
         return EpisodeStart(demonstration.seed, demonstration.actions[:at], (demonstration.end, segment), max_decisions)
 
     def draw_decisions(self, count: int) -> list[tuple[SuccessfulEpisode, int]]:
-        """Draw up to ``count`` decisions to imitate, each as a demonstration and an index into its actions.
+        """Draw up to ``count`` decisions to imitate: demonstrations with indices of their actions.
 
-        Decisions are drawn like starts.  A decision is dropped with the probability that the agent
-        already succeeds from its segment.  A success from an earlier segment, or from the level's
+        Decisions are drawn like starts. A decision is dropped with the probability that the agent
+        already succeeds from its segment. A success from an earlier segment, or from the level's
         start, counts for all later segments.
         """
         if not self.demonstrations:
@@ -141,9 +147,9 @@ class ReverseCurriculum:
     def record_episode(self, start: EpisodeStart, actions: Actions, end: int | None, state: int | None = None) -> None:
         """Update the curriculum with the result of an episode that began at ``start``.
 
-        ``actions`` are all of its actions, including the replayed ones.  ``end`` is the end of a
+        ``actions`` are all of its actions, including the replayed ones. ``end`` is the end of a
         successful episode (see :func:`~tltl_runtime.training.exploration.search.end_of`), None for
-        a failed one.  ``state`` is the automaton state in which the episode failed, None if the
+        a failed one. ``state`` is the automaton state in which the episode failed, None if the
         episode was cut off.
         """
         segment_step, start_step = _STEP_SIZES
@@ -175,7 +181,7 @@ class ReverseCurriculum:
         }
 
     def load(self, state: Mapping[str, NDArray[Any]]) -> None:
-        """Restore what :meth:`state` returned.  Raises ValueError if the arrays are invalid."""
+        """Restore what :meth:`state` returned. Raises ValueError if the arrays are invalid."""
         for name in ("way", "failure"):
             _check_episodes(name, state)
         self.demonstrations, self.rates = {}, {}
@@ -204,7 +210,10 @@ class ReverseCurriculum:
 
 
 def _arrays(name: str, episodes: Sequence[tuple[int, Actions, int]]) -> dict[str, NDArray[Any]]:
-    """Return the seeds, actions and ends (or states) of episodes as arrays, by names that begin with ``name``."""
+    """Return the seeds, actions and ends (or states) of episodes as arrays.
+
+    The names of the arrays begin with ``name``.
+    """
     return {
         f"{name}_seeds": np.array([seed for seed, _, _ in episodes], dtype=np.int64),
         f"{name}_ends": np.array([end for _, _, end in episodes], dtype=np.int64),
@@ -214,7 +223,7 @@ def _arrays(name: str, episodes: Sequence[tuple[int, Actions, int]]) -> dict[str
 
 
 def _episodes(name: str, arrays: Mapping[str, NDArray[Any]]) -> Iterator[tuple[int, Actions, int]]:
-    """Yield the episodes of :func:`_arrays` again: seed, actions, and end or state."""
+    """Yield the episodes that :func:`_arrays` stored: seed, actions, and end or state."""
     seeds, ends, lengths = (arrays[f"{name}_{field}"].tolist() for field in ("seeds", "ends", "lengths"))
     actions = np.split(arrays[f"{name}_actions"], np.cumsum(lengths)[:-1]) if lengths else []
     for seed, episode_actions, end in zip(seeds, actions, ends, strict=True):
@@ -255,7 +264,10 @@ def _check_figures(arrays: Mapping[str, NDArray[Any]]) -> None:
 
 
 def _weights(rates: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the weights with which segments are drawn, given the success rates from them."""
+    """Return the weights with which segments are drawn, given the success rates from them.
+
+    From the first learned segment on, the weight is greatest at a success rate of one half.
+    """
     first = int(np.argmax(rates >= _LEARNED_RATE)) if rates.max() >= _LEARNED_RATE else len(rates) - 1
     weights: NDArray[np.float64] = rates * (1 - rates) + _MIN_WEIGHT
     most, factor = _WEIGHTS_BEFORE

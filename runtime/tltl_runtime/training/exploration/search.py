@@ -1,17 +1,18 @@
-"""Search for demonstrations, episodes that meet the spec, with random actions before learning begins.
+"""Search for demonstrations, which are episodes that meet the spec, with random actions.
 
-Robustness ignores walls: an agent that only follows it gets stuck where the distance is least, and
-random actions alone never crouch, climb and jump in the right order.  So the search returns to a
-cell that it has reached, by replaying the actions that led there, and takes random actions from
-there.  This is Go-Explore: Ecoffet et al., First return, then explore, Nature 590, 2021.  A cell of
-the search is a cell of the level's floor together with a state of the automaton.  So the search
-needs no knowledge about the level.
+The search runs before learning begins. Robustness ignores walls: an agent that only increases it
+gets stuck behind a wall, where the distance to its goal is least. Random actions alone never
+crouch, climb and jump in the right order. So the search returns to a cell that it has reached, by
+replaying the actions that led there, and takes random actions from there. This is Go-Explore:
+Ecoffet et al., First return, then explore, Nature 590, 2021. A cell of the search is a cell of the
+level's floor together with a state of the automaton. The search needs to know nothing else about
+the level.
 
-An episode from a cell keeps the seed of the episode that reached the cell first.  Everything that
-the level draws from the seed stays the same, for example which door opens.  So all cells of a seed
-are dropped as soon as the search has a demonstration with that seed.
+An episode from a cell keeps the seed of the episode that reached the cell. So everything that the
+level draws from the seed stays the same, for example which door opens. The search keeps one
+demonstration for each seed. As soon as it has one, it drops all cells of that seed.
 
-If learning comes to a standstill, another search begins in the agent's failed episodes.  If a
+If learning comes to a standstill, another search begins in the agent's failed episodes. If a
 training begins with a policy, that policy plays first, because it may already meet the spec.
 """
 
@@ -31,10 +32,10 @@ from tltlc.api import record
 _REPEAT_PROBABILITY = 0.9
 """The probability that a branch of the action repeats its choice in the next decision.
 
-Independent choices would lead nowhere.
+With independent choices, the player would hardly leave its place.
 """
 _RANDOM_DECISIONS = 60
-"""The number of random decisions from a cell."""
+"""The number of random decisions from a cell. If they reach a new cell, more decisions follow."""
 _START_SHARE = 0.05
 """The share of episodes that begin at the level's start if there are no failed episodes."""
 _FAILURE_SHARE = 0.3
@@ -46,7 +47,7 @@ _REPORT_INTERVAL_S = 0.5
 """The least time, in seconds, between two reports of progress."""
 
 Player = Callable[[Mapping[str, NDArray[Any]]], NDArray[np.int64]]
-"""Returns the action [branches] for the observation of one environment."""
+"""A function that returns the action [branches] for the observation of one environment."""
 
 
 @record
@@ -54,9 +55,9 @@ class SearchSettings:
     """The settings of the search before the training, and of how its demonstrations are used.
 
     The search ends when ``ways`` episodes with different seeds have met the spec (0: no search), or
-    after ``steps`` decisions, not counting replayed ones.  Each demonstration is divided into
-    ``parts`` segments, in which episodes of the training may begin.  Each update is followed by
-    ``imitation`` optimiser steps of self-imitation.
+    after ``steps`` decisions, not counting replayed ones. Each demonstration is divided into
+    ``parts`` segments, in which episodes of the training may begin. After each update, the agent
+    takes ``imitation`` optimiser steps of self-imitation.
     """
 
     ways: int
@@ -80,11 +81,12 @@ class SuccessfulEpisode:
 def end_of(infos: Mapping[str, Any], row: int) -> int:
     """Return which atoms were true at the end of an episode.
 
-    ``infos`` is the ``final_info`` of a vector environment, ``row`` the row of the episode.  The result
-    is a bit mask: bit i says whether the spec's i-th atom was true.
+    ``infos`` is the ``final_info`` of a vector environment, and ``row`` the row of the environment
+    in which the episode ended. The result is a bit mask: bit i says whether the spec's i-th atom
+    was true. It has the first 63 atoms only.
     """
     atoms = infos["atoms"]
-    # Gymnasium adds a mask `_name` for each name.  An int64 holds at most 63 bits.
+    # Gymnasium adds a mask `_name` for each name. An int64 holds at most 63 bits.
     names = [name for name in atoms if f"_{name}" in atoms][:63]
     return sum(1 << index for index, name in enumerate(names) if atoms[name][row] > 0)
 
@@ -93,10 +95,10 @@ def end_of(infos: Mapping[str, Any], row: int) -> int:
 class SearchProgress:
     """The progress of a search.
 
-    ``steps`` counts decisions without the ``replayed`` ones, ``places`` counts the cells that were
-    reached, and ``lengths`` are the lengths of the demonstrations, in decisions.  ``complete`` says
-    whether the search ended because it had enough demonstrations or had taken enough steps, not
-    because the training ran out of time.
+    ``steps`` counts decisions without the ``replayed`` ones. ``places`` counts the cells that were
+    reached. ``lengths`` are the lengths of the demonstrations, in decisions. ``complete`` is true
+    if the search ended because it had enough demonstrations or had taken enough steps. It is false
+    if the search goes on or the training ran out of time.
     """
 
     steps: int
@@ -108,7 +110,7 @@ class SearchProgress:
 
 
 def combined_progress(before: SearchProgress, later: SearchProgress) -> SearchProgress:
-    """Combine the progress of two searches of one training, whose demonstrations are all used.
+    """Combine the progress of two searches of one training: add up numbers and demonstrations.
 
     ``places`` and ``complete`` are those of the later search.
     """
@@ -124,7 +126,10 @@ def combined_progress(before: SearchProgress, later: SearchProgress) -> SearchPr
 
 @record
 class FailedEpisode:
-    """A failed episode from the level's start: its seed, all actions, and the state in which it failed."""
+    """A failed episode from the level's start: its seed and all actions.
+
+    ``state`` is the automaton's state at the end, or before a violation.
+    """
 
     seed: int
     actions: Actions
@@ -135,11 +140,12 @@ class TrajectorySearch:
     """A search for demonstrations in the environments of ``env``.
 
     The environments are
-    :class:`~tltl_runtime.training.exploration.replayed_starts.ReplayedStartEnv`.  ``demonstrations``
-    are those found so far.  Equal seeds give equal searches, whatever the number of workers.  With
-    ``failures``, the search starts in these episodes and explores only the states in which they
-    failed; without, it starts at the level's start.  A ``player`` plays the first episode of each
-    environment; random actions then continue from the cells that it reached.
+    :class:`~tltl_runtime.training.exploration.replayed_starts.ReplayedStartEnv`. ``demonstrations``
+    are those found so far. Equal seeds give equal searches, whatever the number of workers.
+
+    With ``failures``, the search starts in these episodes and explores only the states in which
+    they failed. Without ``failures``, it starts at the level's start. A ``player`` plays the first
+    episode of each environment; random actions then continue from the cells that it reached.
     """
 
     def __init__(
@@ -202,7 +208,10 @@ class TrajectorySearch:
         yield self._progress(steps, episodes.replayed, time.perf_counter() - began, complete=True)
 
     def _record_cell(self, episodes: Episodes, row: int, infos: dict[str, NDArray[np.int64]]) -> bool:
-        """Record the current cell of an environment; return whether it is new."""
+        """Record the current cell of an environment; return whether it is new.
+
+        A cell that the search does not explore is not recorded and counts as not new.
+        """
         state, cell, seed = int(infos["state"][row]), int(infos["cell"][row]), episodes.starts[row].seed
         is_done = any(demonstration.seed == seed for demonstration in self.demonstrations)
         if cell < 0 or is_done or (self._states and state not in self._states):
@@ -219,8 +228,8 @@ class TrajectorySearch:
     def _draw(self) -> EpisodeStart:
         """Draw the start of an episode.
 
-        Mostly it is a known cell.  Otherwise it is a point in the second half of a failed episode, or the
-        level's start with a new seed if there are no failures.
+        Mostly it is a known cell. Otherwise it is a point in the second half of a failed episode,
+        or the level's start with a new seed if there are no failures.
         """
         if self._archive and self._random.random() >= (_FAILURE_SHARE if self._failures else _START_SHARE):
             return self._archive.draw()
@@ -236,7 +245,7 @@ class TrajectorySearch:
 
 
 class _CellArchive:
-    """The cells that were reached: for each, the shortest actions to it and how often it was drawn."""
+    """The cells that were reached: the shortest actions to each, and how often each was drawn."""
 
     def __init__(self, random: np.random.Generator) -> None:
         self._random = random
@@ -258,7 +267,7 @@ class _CellArchive:
     def draw(self) -> EpisodeStart:
         """Draw a cell: first a state uniformly, then a cell with weight 1 / sqrt(1 + times drawn).
 
-        States are drawn uniformly so that later ones, which have few cells, count as much as the first.
+        So later states, which have few cells, count as much as the first ones.
         """
         state = list(self._starts)[self._random.integers(len(self._starts))]
         draw_counts = self._draw_counts[state]
@@ -268,7 +277,7 @@ class _CellArchive:
         return self._starts[state][cell]
 
     def remove(self, seed: int) -> None:
-        """Remove the cells that were reached in the episode with this seed."""
+        """Remove the cells that are reached by an episode with this seed."""
         for state in list(self._starts):
             remaining = {cell: start for cell, start in self._starts[state].items() if start.seed != seed}
             if remaining:

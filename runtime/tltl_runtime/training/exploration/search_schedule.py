@@ -14,7 +14,7 @@ from tltl_runtime.training.run.run_file import TrainingRun
 from tltl_runtime.vector import WorkerVectorEnv
 
 SearchCallback = Callable[[SearchProgress], None]
-"""Called from time to time with the progress of a search."""
+"""A function that is called from time to time with the progress of a search."""
 
 
 def search_before_training(
@@ -28,9 +28,10 @@ def search_before_training(
 ) -> SearchProgress | None:
     """Search for demonstrations before the training, and add them to ``curriculum``.
 
-    ``env`` are the environments of this process.  A ``player`` plays their first episodes.  Returns the
-    progress of the search, or None if no search is needed, because an earlier one is in the checkpoint.
-    A search that a limit broke off before it found a demonstration is repeated if there is time for it.
+    ``env`` are the environments of this process. A ``player`` plays their first episodes. Return
+    the progress of the search, or None if no search is needed. With a ``checkpoint``, a search is
+    needed only if a limit broke off the earlier one before it found a demonstration, and if time is
+    left.
     """
     iteration, seconds = 0, 0.0
     if checkpoint:
@@ -46,10 +47,10 @@ def search_before_training(
 def search_after_standstill(
     run: TrainingRun, group: ProcessGroup, env: TrainingEnv, state: Checkpoint, on_search: SearchCallback
 ) -> SearchProgress | None:
-    """Search for demonstrations from the agent's failed episodes, in a training in this ``state``.
+    """Search for demonstrations from the agent's failed episodes.
 
-    All environments begin new episodes after the search.  Returns the progress of the search, or None
-    if no failed episodes are known.
+    ``state`` is the state of the training. All environments begin new episodes after the search.
+    Return the progress of the search, or None if no failed episodes are known.
     """
     if env.curriculum is None or not env.curriculum.failures:
         return None
@@ -67,9 +68,10 @@ def _run_search(
     seconds_before: float,
     on_search: SearchCallback,
 ) -> SearchProgress:
-    """Run a search, at most to the training's limit of minutes; add its demonstrations to the curriculum.
+    """Run a search, add its demonstrations to the curriculum, and return its progress.
 
-    ``seconds_before`` is the time that the training has taken before the search.
+    The search ends early at the training's limit of minutes. ``seconds_before`` is the time that
+    the training has taken before the search.
     """
     for progress in search.run():
         on_search(progress)

@@ -1,9 +1,10 @@
 """Self-imitation of known demonstrations, where the agent does not succeed yet.
 
 The success of a demonstration may depend on a few decisions, for example a jump at the right place.
-A policy that has come to prefer other actions no longer tries these.  So the agent imitates the
+A policy that has come to prefer other actions no longer tries them. So the agent imitates the
 demonstrations that the search found, and its own successes, but only where it still fails: Oh et
-al., Self-imitation learning, ICML 2018.  The imitation baseline is another method: see ``gail.py``.
+al., Self-imitation learning, ICML 2018. The imitation baseline is another method: see
+:mod:`~tltl_runtime.training.imitation.gail`.
 """
 
 from __future__ import annotations
@@ -29,20 +30,23 @@ BATCH: Final = 256
 class SelfImitation:
     """Draws self-imitation batches from the demonstrations of ``curriculum``.
 
-    Observations come from replaying the demonstrations in an environment of ``make``.
+    To get the observations, it replays the demonstrations in an environment that ``make`` makes.
     """
 
     def __init__(self, make: Callable[[], gymnasium.Env[Any, Any]], curriculum: ReverseCurriculum) -> None:
         self._make, self._curriculum = make, curriculum
         self._env: gymnasium.Env[Any, Any] | None = None
         self._observed: dict[int, tuple[SuccessfulEpisode, Mapping[str, NDArray[Any]]]] = {}
-        """By ``id``: each demonstration, kept so that its ``id`` stays valid, and its observations."""
+        """The demonstrations and their observations, by the ``id`` of the demonstration.
+
+        The demonstrations are kept so that their ``id`` stays valid.
+        """
 
     def draw(self) -> tuple[TensorDict, Tensor] | None:
         """Draw up to ``BATCH`` decisions to imitate.
 
-        Returns observations, float32 tensors [n, ...] by key, and actions [n, branches]; None if there is
-        nothing to imitate.
+        Returns observations, float32 tensors [n, ...] by key, and actions [n, branches]; None if
+        there is nothing to imitate.
         """
         decisions = self._curriculum.draw_decisions(BATCH)
         if not decisions:
@@ -72,7 +76,10 @@ class SelfImitation:
             self._env.close()
 
     def _observations(self, demonstration: SuccessfulEpisode) -> Mapping[str, NDArray[Any]]:
-        """Return the observations before each decision of a demonstration, arrays [n, ...] by key."""
+        """Return the observations before the decisions of a demonstration: arrays by key.
+
+        The arrays are [n, ...] for n decisions.
+        """
         self._env = self._env or self._make()
         first, _ = self._env.reset(seed=demonstration.seed)
         observations = [first, *(self._env.step(action)[0] for action in demonstration.actions[:-1])]
@@ -80,11 +87,11 @@ class SelfImitation:
 
 
 def imitate(ppo: PPO, observations: TensorDict, actions: Tensor) -> float:
-    """Take an optimiser step that makes these actions likelier.
+    """Take an optimiser step that makes these actions likelier; return the loss.
 
-    ``observations`` [n, ...] and ``actions`` [n, branches] are a batch of decisions.  Returns the loss:
-    the sum of their negative log-likelihoods in nats, divided by ``BATCH``.  The divisor stays the same
-    for smaller batches, so that a small batch counts less.
+    ``observations`` [n, ...] and ``actions`` [n, branches] are a batch of decisions. The loss is
+    the sum of the actions' negative log-likelihoods in nats, divided by ``BATCH``. The divisor
+    stays the same for smaller batches, so that a small batch counts less.
     """
     ppo.actor(observations, stochastic_output=True)
     loss = -ppo.actor.get_output_log_prob(actions).sum() / BATCH

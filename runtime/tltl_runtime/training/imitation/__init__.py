@@ -1,1 +1,4 @@
-"""The imitation baseline: behavioural cloning and GAIL."""
+"""The imitation baseline: behavioural cloning and GAIL.
+
+Begin with :mod:`~tltl_runtime.training.imitation.gail`.
+"""

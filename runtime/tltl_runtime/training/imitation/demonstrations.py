@@ -30,7 +30,7 @@ class Attempt:
     """An episode that was played to record a demonstration.
 
     ``path`` is the file of its recording, or None if the episode does not meet the spec and was not
-    kept.  ``kept`` is the number of demonstrations in the folder after this attempt.
+    kept. ``kept`` is the number of demonstrations in the folder after this attempt.
     """
 
     episode: RecordedEpisode
@@ -40,7 +40,7 @@ class Attempt:
 
 @record
 class RejectedRecording:
-    """A recording in the folder that is not a demonstration, and the reason in words."""
+    """A recording that is not a demonstration, and the reason in words."""
 
     path: Path
     reason: str
@@ -49,9 +49,9 @@ class RejectedRecording:
 class Demonstrations:
     """The demonstrations on a level in ``folder``, which need not exist yet.
 
-    A recording in the folder is a demonstration if its level is ``level``, its spec and params are those
-    of ``task``, and it meets the spec.  ``rejected`` are the other recordings, including those that
-    cannot be read.
+    A recording in the folder is a demonstration if its level is ``level``, its spec and params are
+    those of ``task``, and it meets the spec. ``rejected`` are the recordings that are no
+    demonstrations or cannot be read.
     """
 
     def __init__(self, folder: Path, level: Level, task: Task) -> None:
@@ -74,7 +74,7 @@ class Demonstrations:
         return [seed for name, seed in self._players_and_seeds if name == player]
 
     def add(self, episode: RecordedEpisode) -> Attempt:
-        """Write an episode to the folder if it is a demonstration; return what became of it.
+        """Write an episode to the folder if it is a demonstration; return the attempt.
 
         Raises TltlError, TLT0005, if the file cannot be written.
         """
@@ -107,9 +107,9 @@ class Demonstrations:
 
 
 def recordings(folder: Path) -> list[Path]:
-    """Return the paths of the recordings in a folder, sorted by name; none if the folder does not exist.
+    """Return the paths of the recordings in a folder, sorted by name.
 
-    Pipes and devices are left out.
+    There are none if the folder does not exist. Pipes and devices are left out.
     """
     return sorted(filter(fileio.may_be_file, folder.glob(f"*{SUFFIX}")))
 
@@ -123,9 +123,9 @@ def error_text(error: TltlError) -> str:
 def expert_attempts(env: EpisodeRecorder[Any], store: Demonstrations, number: int, seed: int = 0) -> Iterator[Attempt]:
     """Let the scripted expert play until there are ``number`` demonstrations; yield each attempt.
 
-    An attempt that meets the spec is written to the folder of ``store``.  Seeds count up from
-    ``seed``, or from the seed after the expert's last demonstration, so that an interrupted recording
-    continues where it stopped.
+    An episode that meets the spec is written to the folder of ``store``. Seeds count up from
+    ``seed``, or from the seed after the expert's last demonstration, so that an interrupted
+    recording continues where it stopped.
 
     Raises:
         TltlError: TLT0920, the expert fails too often; TLT0005, a recording cannot be written.

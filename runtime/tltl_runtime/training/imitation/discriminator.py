@@ -18,10 +18,11 @@ Decisions = tuple[Mapping[str, Tensor], Tensor]
 
 @record
 class DiscriminatorLoss:
-    """The ``loss`` of a discriminator, and the mean probabilities of being demonstrated that it predicts.
+    """The ``loss`` of a discriminator, and the mean probabilities that it predicts.
 
-    ``demonstration_probability`` is the mean over decisions of demonstrations, ``agent_probability``
-    the mean over the agent's; both are in [0, 1].
+    It predicts the probability that a decision is from a demonstration.
+    ``demonstration_probability`` is the mean over decisions of demonstrations,
+    ``agent_probability`` the mean over the agent's decisions. Both are in [0, 1].
     """
 
     loss: Tensor
@@ -32,9 +33,10 @@ class DiscriminatorLoss:
 class Discriminator(nn.Module):
     """Predicts whether a decision is from a demonstration, as a logit.
 
-    Ho and Ermon, Generative adversarial imitation learning, NIPS 2016.  ``config`` is rsl-rl's
-    configuration of a model.  The network's inputs are observations (``observations`` is an example
-    batch) and one-hot actions (``branches`` gives the number of choices of each branch).
+    ``config`` is rsl-rl's configuration of a model. The network's inputs are observations and
+    one-hot actions. ``observations`` is an example of a batch, and ``branches`` gives the number of
+    choices of each branch. Source: Ho and Ermon, Generative adversarial imitation learning, NIPS
+    2016.
     """
 
     def __init__(self, observations: Mapping[str, Tensor], branches: Sequence[int], config: Mapping[str, Any]) -> None:
@@ -47,7 +49,7 @@ class Discriminator(nn.Module):
         self.network = model(inputs, {"discriminator": [*inputs]}, "discriminator", 1, **options)
 
     def forward(self, decisions: Decisions) -> Tensor:
-        """Return the logits [n] of the probabilities that these decisions are from demonstrations."""
+        """Return the logits [n] of the probabilities that decisions are from demonstrations."""
         logits: Tensor = self.network(self._inputs(decisions)).squeeze(-1)
         return logits
 
@@ -61,7 +63,8 @@ class Discriminator(nn.Module):
     def loss(self, demonstrations: Decisions, agent: Decisions, penalty: float) -> DiscriminatorLoss:
         """Return the loss: the cross entropy, plus ``penalty`` times the gradient penalty.
 
-        ``demonstrations`` and ``agent`` are equally many decisions of demonstrations and of the agent.
+        ``demonstrations`` and ``agent`` are equally many decisions of demonstrations and of the
+        agent.
         """
         demonstration_logits, agent_logits = self(demonstrations), self(agent)
         loss = softplus(-demonstration_logits).mean() + softplus(agent_logits).mean()
@@ -88,7 +91,7 @@ class Discriminator(nn.Module):
         return (norms - 1.0).square().mean()
 
     def _inputs(self, decisions: Decisions) -> dict[str, Tensor]:
-        """Return the network's inputs: the observations by key, and the one-hot actions as ``action``."""
+        """Return the network's inputs by key. The key ``action`` has the one-hot actions."""
         observations, actions = decisions
         one_hots = [one_hot(branch.long(), count) for branch, count in zip(actions.T, self._branches, strict=True)]
         inputs = {key: observations[key] for key in self._keys}

@@ -6,28 +6,28 @@ steps), and then run training using a GAIL-generated reward signal (learning rat
 size = 128, γ = 0.99) and adding a terminal reward at the end of each episode of +1 if the
 specification was successfully completed and -1 otherwise".
 
-The paper leaves some points open.  This implementation decides them as follows:
+The paper leaves some points open. This implementation decides them as follows:
 
 - The observations are the same as for the agent that learns from the automaton's rewards, and
-  include the automaton state, because the architecture is identical.  The agent gets none of the
-  automaton's rewards.  The success or failure of an episode is its only feedback about the spec.
+  include the automaton state, because the architecture is identical. The agent gets none of the
+  automaton's rewards. All that it learns about the spec is whether an episode succeeded.
 - The 5 % refer to the limit that is reached first, of steps or of minutes, so that every training
   has its share of cloning.
-- During cloning, the actor plays episodes with sampled actions.  These steps count.  The critic and
-  the discriminator learn from them, so that GAIL begins with a trained critic.  The actor learns
-  from the demonstrations alone.
+- During cloning, the actor plays episodes with sampled actions. These steps count towards the
+  limit. The critic and the discriminator learn from them, so that GAIL begins with a trained
+  critic. The actor learns from the demonstrations alone.
 - A cloning update makes as many passes over all demonstrations as PPO makes over a rollout, at
   PPO's learning rate.
-- The discriminator sees observations with actions, as in Ho and Ermon's paper.  It has its own
-  convolutions, with the policy's architecture, then two layers of the encoding's width.  It makes
+- The discriminator sees observations with actions, as in Ho and Ermon's paper. It has its own
+  convolutions, with the policy's architecture, then two layers of the encoding's width. It makes
   one pass over each rollout, against equally many decisions of demonstrations, with a gradient
   penalty as in ML-Agents, the toolkit of the paper.
-- The discriminator's reward is -log(1 - D), as in ML-Agents, which is never negative.  It is
-  multiplied by ``strength``, one hundredth by default.  One critic estimates the return of this
-  reward and the terminal reward together.  With gamma 0.99, the value of an endless episode is then
-  -log(1 - D).  This value is 0.69 if the discriminator cannot tell the agent's decisions from
-  demonstrated ones (D = 1/2).  It is less than the reward of a success, 1, until D exceeds
-  1 - 1/e = 0.63.  It is not clipped beyond that.
+- The discriminator's reward is -log(1 - D), as in ML-Agents, which is never negative. It is
+  multiplied by ``strength``, one hundredth by default. One critic estimates the return of this
+  reward and the terminal reward together. With gamma 0.99, the value of an endless episode is then
+  -log(1 - D). This value is 0.69 if the discriminator cannot tell the agent's decisions from
+  demonstrated ones (D = 1/2). It is less than the reward of a success, 1, until D exceeds
+  1 - 1/e = 0.63. The discriminator's reward is not clipped beyond that.
 - An episode that reaches the limit is a failure, and its return is not bootstrapped.
 """
 
@@ -53,14 +53,14 @@ class Gail(PPO):
     """rsl-rl's PPO with rewards from a discriminator, after behavioural cloning.
 
     ``gail`` is the entry of that name in :func:`~tltl_runtime.training.run.settings.rsl_config`.
-    The environment must have ``imitation_data``, and report under ``successes`` in the extras of a
-    step which episodes ended in success.  The losses are those of PPO and:
+    The environment must have ``imitation_data``. Under ``successes`` in the extras of a step, it
+    must say which episodes ended in success. The losses are those of PPO and:
 
     - ``cloning``: the mean negative log-likelihood of the demonstrations, in nats per decision;
     - ``discriminator``: the loss of the discriminator;
-    - ``discriminator_theirs`` and ``discriminator_agents``: the mean probability of being
-      demonstrated that the discriminator predicts for decisions of demonstrations and of the agent,
-      in [0, 1].
+    - ``discriminator_theirs``: the mean probability of being demonstrated, in [0, 1], that the
+      discriminator predicts for decisions of demonstrations;
+    - ``discriminator_agents``: the same for decisions of the agent.
     """
 
     imitation_data: ImitationData
@@ -76,7 +76,8 @@ class Gail(PPO):
         self.cloning_steps, self.cloning_s = int(gail["cloning_steps"]), float(gail["cloning_s"])
         """The actor is cloned until this many steps or seconds of the training are over.
 
-        Both are computed from the limits when the training begins, and stay if the limits change later.
+        Both are computed from the limits when the training begins, and stay if the limits change
+        later.
         """
         example = storage.observations[0].to("cpu")
         self.discriminator = Discriminator(example, gail["branches"], gail["discriminator"]).to(self.device)
@@ -97,9 +98,9 @@ class Gail(PPO):
         return self.steps < self.cloning_steps and self.seconds < self.cloning_s
 
     def process_env_step(self, obs: Any, rewards: Tensor, dones: Tensor, extras: dict[str, Tensor]) -> None:
-        """Record a step of the environments, with terminal rewards instead of ``rewards`` [num_envs].
+        """Record a step of the environments, with terminal rewards in place of ``rewards``.
 
-        Time-outs are not passed on, so that no return is bootstrapped.
+        ``rewards`` is [num_envs]. Time-outs are not passed on, so that no return is bootstrapped.
         """
         successes = extras["successes"].to(rewards.device)
         terminal_rewards = torch.where(successes, self._terminal, -self._terminal) * dones.to(torch.float32)
@@ -112,7 +113,11 @@ class Gail(PPO):
         super().compute_returns(obs)
 
     def update(self) -> _Losses:
-        """Train the discriminator, then clone the actor or update it by PPO; return the mean losses by name."""
+        """Train the networks on a rollout; return the mean losses by name.
+
+        Train the discriminator first. Then clone the actor and train the critic, or update both by
+        PPO.
+        """
         storage = self.storage
         discriminator_losses = self._train_discriminator()
         losses = {**self._train_critic(), **self._clone_actor()} if self.is_cloning else super().update()
@@ -132,7 +137,7 @@ class Gail(PPO):
         }
 
     def load(self, loaded_dict: dict[str, Any], load_cfg: dict[str, Any] | None, strict: bool) -> bool:
-        """Restore what :meth:`save` returned.  ``load_cfg`` selects among the parts of PPO only."""
+        """Restore what :meth:`save` returned. ``load_cfg`` selects among the parts of PPO only."""
         self.discriminator.load_state_dict(loaded_dict["discriminator_state_dict"], strict=strict)
         self._discriminator_optimizer.load_state_dict(loaded_dict["discriminator_optimizer_state_dict"])
         self.steps, self.cloning_steps = loaded_dict["steps"], loaded_dict["cloning_steps"]

@@ -32,7 +32,8 @@ _Observation = Mapping[str, NDArray[Any]]
 class ImitationSummary:
     """The numbers of ``episodes`` and ``decisions`` of the demonstrations, and who played them.
 
-    ``left_out`` are the file names of the other recordings in the folder, each with the reason.
+    ``left_out`` are the file names of the recordings that are no demonstrations, each with the
+    reason.
     """
 
     episodes: int
@@ -45,8 +46,8 @@ class ImitationSummary:
 class ImitationData:
     """All decisions of the demonstrations.
 
-    ``observations`` are those of the environment, float32 tensors [n, ...] by key, and ``actions`` is
-    [n, branches].
+    ``observations`` are those of the environment, float32 tensors [n, ...] by key, and ``actions``
+    is [n, branches].
     """
 
     observations: TensorDict
@@ -78,9 +79,10 @@ class ImitationData:
 
 
 def record_expert(folder: Path, number: int, make: Callable[[], TltlEnv], report: Callable[[Attempt], None]) -> None:
-    """Record demonstrations of the expert until ``folder`` has ``number``.
+    """Record demonstrations of the expert until ``folder`` contains ``number`` demonstrations.
 
-    ``report`` is called with each attempt.  Raises the errors of :func:`expert_attempts`.
+    ``make`` makes the environment. ``report`` is called with each attempt. Raises the errors of
+    :func:`~tltl_runtime.training.imitation.demonstrations.expert_attempts`.
     """
     env = registered_game().recorder(make(), PLAYER)
     try:
@@ -94,8 +96,8 @@ def record_expert(folder: Path, number: int, make: Callable[[], TltlEnv], report
 def read_demonstrations(folder: Path, make: Callable[[], TltlEnv]) -> ImitationData:
     """Read the demonstrations in a folder; replay each one in an environment from ``make``.
 
-    A recording is left out if it is of another level, does not meet the spec in the replay, or cannot
-    be read.
+    A recording is left out if it is of another level, does not meet the spec in the replay, or
+    cannot be read.
 
     Raises:
         TltlError: TLT0921, no demonstration remains.
@@ -150,7 +152,10 @@ def nothing_to_imitate(folder: Path, left_out: list[str]) -> TltlError:
 
 
 def _replayed_observations(env: TltlEnv, episode: RecordedEpisode) -> list[_Observation] | str:
-    """Replay an episode; return the observation before each decision, or why the episode does not count."""
+    """Replay an episode; return the observation before each decision.
+
+    If the episode does not count as a demonstration, return the reason instead.
+    """
     level_hash = registered_game().level_hash
     if level_hash(episode.level) != level_hash(env.get_wrapper_attr("level")):
         return f"it is of another level, `{episode.level.name}:{episode.level.variant}` as it was then"

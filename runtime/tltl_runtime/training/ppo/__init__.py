@@ -1,1 +1,4 @@
-"""PPO: environments, policies, penalty weights, random streams and the processes of a training."""
+"""What PPO needs: environments, policies, scheduled weights, random streams and processes.
+
+The learning loop is in :mod:`~tltl_runtime.training.runner`.
+"""

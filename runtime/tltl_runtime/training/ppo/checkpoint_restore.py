@@ -1,4 +1,4 @@
-"""Restore a checkpoint into new networks, optimisers and random generators; refuse one that does not fit."""
+"""Restore a checkpoint into new networks and optimisers; refuse a checkpoint that does not fit."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ def restore_checkpoint(checkpoint: Checkpoint, runner: Runner, states: int) -> N
     ``states`` is the number of states of the spec's automaton.
 
     Raises:
-        RecordJsonError: the checkpoint does not fit the runner, or the random generator of a process
-            cannot be restored.
+        RecordJsonError: the checkpoint does not fit the runner, or the random generator of a
+            process cannot be restored.
     """
     initial = runner.alg.save()
     for name, expected in initial.items():
@@ -49,9 +49,10 @@ def restore_checkpoint(checkpoint: Checkpoint, runner: Runner, states: int) -> N
 
 
 def _check_part(saved: object, expected: object, where: str) -> None:
-    """Raise RecordJsonError if a saved part of an algorithm does not fit the part of a new algorithm.
+    """Raise RecordJsonError unless a saved part of an algorithm fits the part of a new algorithm.
 
-    Networks, optimisers and numbers are checked.  Other parts of a user's algorithm are not.
+    Networks, optimisers and numbers are checked. Other parts of a user's algorithm are not.
+    ``where`` names the part in messages.
     """
     if isinstance(expected, Mapping) and expected.keys() == {"state", "param_groups"}:
         _check_optimizer(saved, expected, where)
@@ -63,7 +64,7 @@ def _check_part(saved: object, expected: object, where: str) -> None:
 
 
 def _is_limit(value: Any) -> bool:
-    """Whether a number is 0 or greater.  Infinity is allowed: it means no limit."""
+    """Whether a number is 0 or greater. Infinity is allowed: it means no limit."""
     return value == inf or _is_count(value)
 
 
@@ -72,7 +73,10 @@ def _is_count(value: Any) -> bool:
 
 
 def _check_optimizer(saved: object, expected: Mapping[str, Any], where: str) -> None:
-    """Raise RecordJsonError if an optimiser has other weights or options, or averages that are not tensors."""
+    """Raise RecordJsonError unless the saved state of an optimiser fits that of a new optimiser.
+
+    It must be for the same weights, its options must fit, and its averages must be tensors.
+    """
     if not isinstance(saved, Mapping) or saved.keys() != expected.keys():
         raise RecordJsonError(f"`{where}` is no state of an optimizer")
     state, groups = saved["state"], saved["param_groups"]
@@ -93,7 +97,8 @@ def _check_optimizer(saved: object, expected: Mapping[str, Any], where: str) -> 
 def _check_options(saved: Mapping[str, Any], expected: Mapping[str, Any]) -> None:
     """Raise RecordJsonError if an option is missing or does not fit.
 
-    A newer torch may have saved more options.
+    ``expected`` are the options of a new optimiser. Further saved options, from a newer torch, are
+    accepted.
     """
     for name, option in expected.items():
         if name not in saved or not _option_fits(saved[name], option):
@@ -129,7 +134,7 @@ def _is_moment(value: object) -> bool:
 
 
 def _check_weights(saved: object, expected: Mapping[str, Tensor], where: str) -> None:
-    """Raise RecordJsonError unless the saved weights are tensors of the expected names, shapes and types."""
+    """Raise RecordJsonError unless saved weights have the expected names, shapes and types."""
     if not isinstance(saved, Mapping) or saved.keys() != expected.keys():
         raise RecordJsonError(f"`{where}` is of another network")
     for name, tensor in expected.items():
@@ -186,7 +191,10 @@ def _check_moments(optimizer: Optimizer) -> None:
 
 
 def _moments(optimizer: Optimizer) -> set[str]:
-    """Return the names of the averages that an optimiser of this class, with these options, keeps for a weight."""
+    """Return the names of the averages that an optimiser keeps for a weight.
+
+    They depend on its class and its options.
+    """
     weight = nn.Parameter(torch.zeros(1))
     weight.grad = torch.zeros(1)
     make: Any = type(optimizer)

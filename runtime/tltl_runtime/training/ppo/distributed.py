@@ -1,4 +1,7 @@
-"""The processes of a training: a single one, or several of torchrun, each with its own environments."""
+"""The processes of a training: one, or several that torchrun starts.
+
+Each process has its own environments.
+"""
 
 from __future__ import annotations
 
@@ -18,11 +21,11 @@ T = TypeVar("T")
 
 @record
 class ProcessGroup:
-    """The rank of this process among the processes of a training, and the exchange of values with them.
+    """The place of this process among the processes of a training, which exchange values.
 
-    It is process ``rank`` of ``count``, and process ``local_rank`` of ``local_count`` on this machine;
-    ranks count from 0.  All processes must call the methods in the same order; otherwise they wait for
-    each other forever.
+    This is process ``rank`` of ``count``, and process ``local_rank`` of ``local_count`` on this
+    machine; ranks count from 0. All processes must call the methods in the same order. Otherwise
+    they wait for each other forever.
     """
 
     rank: int
@@ -48,9 +51,9 @@ class ProcessGroup:
 
 
 def process_group() -> ProcessGroup:
-    """Return the rank of this process and the number of processes, from torchrun's environment variables.
+    """Return the place of this process, from torchrun's environment variables.
 
-    Without these variables it is the only process.
+    Without these variables, it is the only process.
     """
     count, local_count = (torchrun_variable(name, 1) for name in ("WORLD_SIZE", "LOCAL_WORLD_SIZE"))
     rank, local_rank = (torchrun_variable(name, 0) for name in ("RANK", "LOCAL_RANK"))
@@ -64,7 +67,7 @@ def cores() -> int:
 
 @contextmanager
 def join_process_group(device: str) -> Iterator[tuple[ProcessGroup, str]]:
-    """Join torch's process group inside the block; yield this process's ranks, and ``device``.
+    """Join torch's process group inside the block; yield the place of this process and ``device``.
 
     A single process joins no group.
     """

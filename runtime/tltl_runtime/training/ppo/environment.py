@@ -28,17 +28,18 @@ class TrainingEnv(VecEnv):
     ``env`` has environments of :class:`~tltl_runtime.spec.wrapper.TltlEnv`, with ``SAME_STEP``
     autoreset.
 
-    Observation groups are the keys of the observation, float32 tensors [num_envs, ...] on ``device``.
-    ``shapes`` are the shapes of one environment's observation.  ``seed`` is the argument of the vector
-    environment's reset: a number, or one for each environment.
+    Observation groups are the keys of the observation, float32 tensors [num_envs, ...] on
+    ``device``. ``shapes`` are the shapes of one environment's observation. ``seed`` is the argument
+    of the vector environment's reset: a number, or one for each environment.
 
     With a ``curriculum``, episodes begin at the starts that it draws, and ``seed`` is not used.
     :meth:`pop_finished` then leaves out the episodes that do not begin at the level's start.
 
-    ``self_imitation`` draws decisions for the runner to imitate; ``imitation_data`` are decisions for
-    the algorithm to imitate.  ``extra_penalty`` maps the length of a failed episode, in steps, to the
-    greatest extra penalty.  ``penalty_weight``, in [0, 1] and initially 0, is the share of the extra
-    penalty that is subtracted from the reward.  ``limit_steps`` is the spec's limit, or None.
+    ``self_imitation`` draws decisions for the runner to imitate; ``imitation_data`` are decisions
+    for the algorithm to imitate. ``extra_penalty`` maps the length of a failed episode, in steps,
+    to the greatest extra penalty. ``penalty_weight``, in [0, 1] and initially 0, is the share of
+    the extra penalty that is subtracted from the reward. ``limit_steps`` is the spec's limit, or
+    None.
 
     Raises:
         TypeError: the spaces are not a Dict of Boxes and a MultiDiscrete.
@@ -89,9 +90,9 @@ class TrainingEnv(VecEnv):
     def step(self, actions: Tensor) -> tuple[TensorDict, Tensor, Tensor, dict[str, Any]]:
         """Step all environments with actions [num_envs, branches].
 
-        Returns observations, rewards [num_envs], bools [num_envs] that say which episodes are over, and
-        extras.  The extras are bools [num_envs]: ``time_outs`` says whether a limit ended the episode,
-        ``successes`` whether it met the spec.
+        Returns observations, rewards [num_envs], bools [num_envs] that say which episodes are over,
+        and extras. The extras are bools [num_envs]: ``time_outs`` says whether a limit ended the
+        episode, ``successes`` whether it met the spec.
         """
         choices = actions.to("cpu", torch.int64).numpy()
         step = self._episodes.step if self._episodes else self.env.step
@@ -168,8 +169,9 @@ def _update_curriculum(
 ) -> NDArray[np.bool_]:
     """Update the curriculum with the episodes that are over or have used up their decisions.
 
-    ``ends`` has the ends of the episodes that met the spec, by row; ``states`` the final states of all.
-    Returns the mask [num_envs] of the episodes that have used up their decisions: they must be cut off.
+    ``ends`` has the ends of the episodes that met the spec, by row. ``states`` has the states in
+    which the episodes ended, by row. Return the mask [num_envs] of the episodes that have used up
+    their decisions: they must be cut off.
     """
     used_up = np.array([episodes.is_spent(row) for row in range(len(is_over))]) & ~is_over
     for row in [*np.flatnonzero(is_over).tolist(), *np.flatnonzero(used_up).tolist()]:
@@ -180,7 +182,10 @@ def _update_curriculum(
 def _summaries(
     infos: Mapping[str, Any], rows: NDArray[np.int64], first_index: int, limit_steps: int | None
 ) -> dict[int, EpisodeSummary]:
-    """Return the summaries of the episodes in these rows, by row; their indices count from ``first_index``."""
+    """Return the summaries of the episodes in these rows, by row.
+
+    The indices of the episodes count from ``first_index``.
+    """
     lengths = infos["episode"]["l"]
     return {
         row: _summary(infos, row, index, int(lengths[row]), limit_steps)

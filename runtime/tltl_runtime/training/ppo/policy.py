@@ -18,8 +18,8 @@ from tltlc.api import Diagnostic, TltlError
 def card_of(run: TrainingRun, env: TrainingEnv) -> Card:
     """Return the card of a policy that ``run`` trains in ``env``.
 
-    Its field ``training`` is empty until the training ends.  The level is read from its file as it is
-    now.
+    The card's field ``training`` is empty until the training ends. The level is read from its file
+    as it is now.
     """
     game = registered_game()
     level = game.load_level(run.level, run.variant)

@@ -14,16 +14,19 @@ from tltl_runtime.training.runner import Iteration, Runner
 from tltlc.api import Diagnostic, TltlError, record, replace
 
 ProcessState = Mapping[str, Tensor]
-"""The state of a process: see ``processes`` of :class:`~tltl_runtime.training.run.checkpoint.Checkpoint`."""
+"""The state of a process, by name.
+
+It is an item of ``processes`` of :class:`~tltl_runtime.training.run.checkpoint.Checkpoint`.
+"""
 
 
 @record
 class GatheredIteration:
     """An iteration of all processes.
 
-    Its episodes and steps are those of all processes, its losses and times those of this process.
-    ``processes`` are the states of the processes, by rank.  ``replayed`` counts the replayed decisions
-    of all processes.
+    ``iteration`` has the episodes and steps of all processes, and the losses and times of this
+    process. ``processes`` are the states of the processes, by rank. ``replayed`` counts the
+    replayed decisions of all processes.
     """
 
     iteration: Iteration

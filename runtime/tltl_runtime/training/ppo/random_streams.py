@@ -27,7 +27,7 @@ class Purpose(IntEnum):
 def stream(run: TrainingRun, group: ProcessGroup, purpose: Purpose, iteration: int = 0) -> np.random.SeedSequence:
     """Return the seed of this process's random stream for a purpose.
 
-    A training that is resumed after another ``iteration`` has another stream, so that it does not
-    repeat random numbers.
+    Each ``iteration`` has a stream of its own. So a training that is resumed after an iteration
+    does not repeat random numbers.
     """
     return np.random.SeedSequence(run.seed, spawn_key=(group.rank, int(purpose), iteration))

@@ -10,18 +10,18 @@ from tltl_runtime.spec.episode_summary import EpisodeSummary, progress_return
 from tltl_runtime.training.run.report import EpisodeWindow
 
 Score = tuple[float, float, float]
-"""The score of a policy: pass rate, mean progress, mean reward.  Greater is better."""
+"""The score of a policy: pass rate, mean progress, mean reward. Greater is better."""
 
 _STANDSTILL_STEPS = 100_000
 """The training stands still if the pass rate has not risen for this many steps."""
 _MIN_EPISODES = 50
-"""The least number of episodes in a window whose pass rate can count as risen."""
+"""A pass rate counts as risen only if its window has at least this many episodes."""
 _RISE = 0.05
 """The least increase of the best pass rate that counts."""
 _BETWEEN = 0.1, 0.8
-"""A standstill is detected only if the best pass rate is at least the first and below the second number.
+"""A standstill is detected only if the best pass rate is between these numbers.
 
-Below the first, the reverse curriculum has not reached the level's start yet.  From the second on,
+Below the first, the reverse curriculum has not reached the level's start yet. From the second on,
 little is left to find.
 """
 
@@ -29,8 +29,9 @@ little is left to find.
 class RecentEpisodes:
     """The last ``windows * episodes`` episodes of a training, in windows of ``episodes`` each.
 
-    ``limit_steps`` is the spec's limit, or None.  ``unbroken`` is the number of successive episodes, up
-    to the last one, that met the spec.  A failed confirmation of the policy resets it.
+    ``limit_steps`` is the spec's limit, or None. ``unbroken`` is the number of successive episodes,
+    up to the last one, that met the spec, at most ``windows * episodes``. A failed confirmation of
+    the policy resets it.
     """
 
     def __init__(self, windows: int, episodes: int, limit_steps: int | None) -> None:
@@ -52,7 +53,10 @@ class RecentEpisodes:
 
     @property
     def all_met(self) -> bool:
-        """Whether the last ``windows * episodes`` episodes met the spec, all since the last failed confirmation."""
+        """Whether the last ``windows * episodes`` episodes all met the spec.
+
+        Only episodes since the last failed confirmation count.
+        """
         return self.unbroken == self._count
 
     @property
@@ -62,7 +66,7 @@ class RecentEpisodes:
 
     @property
     def score(self) -> Score | None:
-        """The score of the policy in the last window; None before enough episodes for one have ended."""
+        """The score of the policy in the last window; None until a window is full."""
         if len(self._episodes) < self._window_episodes:
             return None
         window = self._window(tuple(self._episodes)[-self._window_episodes :])
@@ -97,7 +101,10 @@ class RecentEpisodes:
     def _summary(
         self, index: int, success: bool, progress: float, steps: int, unmet: int, violated: bool
     ) -> EpisodeSummary:
-        """Return the episode at ``index``, from the plain values that :meth:`state` returns."""
+        """Return the summary of the episode ``index``.
+
+        The other arguments are its values as :meth:`state` returns them.
+        """
         return EpisodeSummary(
             index=index,
             seed=None,
@@ -113,17 +120,18 @@ class RecentEpisodes:
 class Standstill:
     """Detects a standstill: the agent succeeds sometimes, but its pass rate no longer rises.
 
-    ``best`` is the greatest pass rate so far, in [0, 1], and ``since`` the number of steps at which it
-    was reached.
+    ``best`` is the greatest pass rate so far, in [0, 1]. ``since`` is the number of steps at which
+    it was reached, or at which the last standstill was detected.
     """
 
     def __init__(self, best: float = 0.0, since: int = 0) -> None:
         self._best, self._since = best, since
 
     def add(self, window: EpisodeWindow, steps: int) -> bool:
-        """Add statistics after ``steps`` decisions of all environments; return whether there is a standstill.
+        """Add the statistics after ``steps`` decisions; return whether there is a standstill.
 
-        After a standstill, the count of steps begins again.
+        ``steps`` counts the decisions of all environments. After a standstill, the count of steps
+        begins again.
         """
         if window.count >= _MIN_EPISODES and window.pass_rate >= self._best + _RISE:
             self._best, self._since = window.pass_rate, steps

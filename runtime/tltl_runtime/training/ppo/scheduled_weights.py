@@ -13,9 +13,10 @@ from tltlc.api import monitors, record, replace
 class ScheduledWeights:
     """The weights that change during a training.
 
-    ``entropy`` is the weight of the entropy bonus, or None if it stays as it is.  ``penalty_weight``,
-    in [0, 1], is that of :class:`~tltl_runtime.training.ppo.environment.TrainingEnv`.
-    ``inverse_temperature``, at least 1, is the total factor on the actor's logits.
+    ``entropy`` is the weight of the entropy bonus, or None if it stays as it is.
+    ``penalty_weight``, in [0, 1], is that of
+    :class:`~tltl_runtime.training.ppo.environment.TrainingEnv`. ``inverse_temperature``, at least
+    1, is the total factor on the actor's logits.
     """
 
     entropy: float | None
@@ -26,10 +27,10 @@ class ScheduledWeights:
 def scheduled_weights(ppo: Ppo, pass_rate: float) -> ScheduledWeights:
     """Return the weights for a ``pass_rate`` of the last episodes, in [0, 1].
 
-    The entropy bonus fades as the spec is met more often, because less exploration is needed.  From a
-    pass rate of one half on, the penalty weight rises, because the discounted penalty of a failure costs
-    the agent less than a longer, safe trajectory.  The inverse temperature rises, too, because most
-    failures then come from unlikely actions that were sampled by chance.
+    The entropy bonus fades as the spec is met more often, because less exploration is needed. From
+    a pass rate of one half on, the penalty weight rises, because the discounted penalty of a
+    failure costs the agent less than a longer, safe trajectory. The inverse temperature rises, too,
+    because most failures then come from unlikely actions that were sampled by chance.
     """
     rise = max(0.0, 2 * pass_rate - 1)
     return ScheduledWeights(
@@ -42,8 +43,8 @@ def scheduled_weights(ppo: Ppo, pass_rate: float) -> ScheduledWeights:
 def penalty_rise(run: TrainingRun) -> Callable[[int], float] | None:
     """Return a function that maps the steps of a failed episode to its greatest extra penalty.
 
-    The extra penalty is the undiscounted penalty minus the one in the settings.  Returns None if the
-    violation penalty does not rise during the training.
+    The extra penalty is the undiscounted penalty minus the one in the settings. Return None if the
+    penalty does not rise during the training.
     """
     limit, options = run.fspa.limit_steps, run.settings.reward.options
     if limit is None or run.settings.imitates or not run.settings.reward.penalty_rises:

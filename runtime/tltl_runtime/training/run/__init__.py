@@ -1,1 +1,4 @@
-"""A whole training: settings, checkpoints, records."""
+"""A whole training: settings, checkpoints, records.
+
+Begin with :mod:`~tltl_runtime.training.run.train`.
+"""

@@ -23,12 +23,16 @@ from tltlc.api import Diagnostic, TltlError, fileio, record
 FORMAT: Final = "tltl-checkpoint"
 VERSION: Final = 5
 _MOST: Final = 2**53
-"""The largest number of steps or seconds: larger integers are not exact as floats."""
+"""The largest number of steps or seconds. Larger integers are not exact as floats."""
 
 
 @record
 class BestPolicy:
-    """The best policy: its score, its weights by name, and after how many steps it had these weights."""
+    """The best policy of a training, and its score.
+
+    ``actor`` has its weights, by name. ``steps`` is the number of steps after which the actor had
+    them.
+    """
 
     score: Score
     actor: Mapping[str, Tensor]
@@ -45,11 +49,12 @@ class Checkpoint:
       decisions.
     - ``searched`` is the progress of the searches so far.
     - ``algorithm`` is what rsl-rl's algorithm saves.
-    - ``processes`` has the state of each process, by rank: the states of torch's random generators by
-      device, and the arrays of its
+    - ``processes`` has the state of each process, by rank: the states of torch's random generators
+      by device, and the arrays of its
       :class:`~tltl_runtime.training.exploration.reverse_curriculum.ReverseCurriculum`.
-    - ``window`` and ``unbroken`` are from :class:`~tltl_runtime.training.ppo.recent_episodes.RecentEpisodes`,
-      ``standstill`` from :class:`~tltl_runtime.training.ppo.recent_episodes.Standstill`.
+    - ``window`` and ``unbroken`` are from
+      :class:`~tltl_runtime.training.ppo.recent_episodes.RecentEpisodes`, ``standstill`` from
+      :class:`~tltl_runtime.training.ppo.recent_episodes.Standstill`.
     - ``best`` is the best policy so far; ``met`` says whether it has met the spec in all windows
       and in its confirmation.
     """
@@ -75,18 +80,21 @@ class Checkpoint:
 
     @property
     def weights(self) -> Mapping[str, Tensor]:
-        """The weights, by name, of the best actor, or of the current actor if there is no best one."""
+        """The weights, by name, of the best actor, or of the current one if there is no best."""
         last: Mapping[str, Tensor] = self.algorithm["actor_state_dict"]
         return self.best.actor if self.best else last
 
 
 _RECORDS: Final[Mapping[str, Any]] = {"best": BestPolicy, "searched": SearchProgress}
-"""The fields that are records.  They are saved as dicts, because torch refuses to load other classes."""
+"""The fields that are records.
+
+They are saved as dicts, because torch refuses to load classes that it does not know.
+"""
 _FIELDS: Final[tuple[str, ...]] = Checkpoint.__match_args__
 
 
 def write_checkpoint(path: Path, checkpoint: Checkpoint) -> None:
-    """Write a checkpoint.  If that fails, even by a power cut, the older file stays.
+    """Write a checkpoint. If that fails, even by a power cut, the older file stays.
 
     Raises TltlError, TLT0005, if the file cannot be written.
     """
@@ -101,7 +109,7 @@ def write_checkpoint(path: Path, checkpoint: Checkpoint) -> None:
 
 @fileio.resource_limits()
 def read_checkpoint(path: Path, run: Mapping[str, str] | None = None) -> Checkpoint | None:
-    """Read a checkpoint; return None if there is no such file.  Nothing in the file is executed.
+    """Read a checkpoint; return None if there is no such file. Nothing in the file is executed.
 
     ``run`` is the identity of the expected training; None accepts any.
 
@@ -131,7 +139,7 @@ def read_checkpoint(path: Path, run: Mapping[str, str] | None = None) -> Checkpo
 
 
 def deep_copy(value: Any) -> Any:
-    """Return a deep copy of tensors, mappings and lists, so that further learning does not change it."""
+    """Return a deep copy of tensors, mappings and lists, which further learning does not change."""
     if isinstance(value, Tensor):
         return value.detach().clone()
     if isinstance(value, Mapping):
@@ -140,7 +148,10 @@ def deep_copy(value: Any) -> Any:
 
 
 def _content(data: bytes, path: Path) -> Mapping[str, Any]:
-    """Return the content of a checkpoint file.  Raises TltlError, TLT0864, if it is something else."""
+    """Return the content of a checkpoint file.
+
+    Raises TltlError, TLT0864, if the file is something else.
+    """
     try:
         content = read_torch(data)
     except TorchArchiveError as error:
@@ -204,7 +215,7 @@ def _object(value: object, where: str) -> Mapping[str, Any]:
 
 
 def _tensors(value: object, where: str) -> Mapping[str, Tensor]:
-    """Return ``value`` if it maps names to tensors.  Raises RecordJsonError otherwise."""
+    """Return ``value`` if it maps names to tensors. Raises RecordJsonError otherwise."""
     if isinstance(value, Mapping) and all(type(k) is str and isinstance(v, Tensor) for k, v in value.items()):
         return value
     raise RecordJsonError(f"`{where}` holds no tensors")

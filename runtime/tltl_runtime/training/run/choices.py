@@ -1,4 +1,7 @@
-"""Types of the settings that are one of a few words, except those of the network and the rewards."""
+"""Types of settings whose value is one of a few words.
+
+The settings of the network and of the rewards have their types elsewhere.
+"""
 
 from __future__ import annotations
 

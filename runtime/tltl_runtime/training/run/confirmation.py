@@ -1,8 +1,8 @@
 """The confirmation of a policy in fresh episodes, before a training ends.
 
-Success in all windows is not enough: the policies of several iterations played them, and windows
-without a failure also occur by chance.  A policy with a pass rate of 0.99 meets the spec in 300
-episodes in a row with probability 1/20.
+Success in all windows is not enough: the policies of several iterations play the episodes of the
+windows, and windows without a failure also occur by chance. A policy with a pass rate of 0.99 meets
+the spec in 300 episodes in a row with probability 1/20.
 """
 
 from __future__ import annotations

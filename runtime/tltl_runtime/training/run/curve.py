@@ -16,7 +16,7 @@ _DPI: Final = 100
 def draw_curve(title: str, curve: Sequence[Mapping[str, Any]]) -> bytes:
     """Return a learning ``curve`` as a PNG.
 
-    Each point has ``steps``, ``pass_rate`` and ``progress``.  The last two are None before the first
+    Each point has ``steps``, ``pass_rate`` and ``progress``. The last two are None before the first
     episode has ended.
     """
     picture = BytesIO()
@@ -25,7 +25,10 @@ def draw_curve(title: str, curve: Sequence[Mapping[str, Any]]) -> bytes:
 
 
 def curve_figure(title: str, curve: Sequence[Mapping[str, Any]]) -> Figure:
-    """Return the figure that :func:`draw_curve` draws.  If no episode has ended, it has a note."""
+    """Return the figure that :func:`draw_curve` draws.
+
+    If no episode has ended, the figure has a note instead of curves.
+    """
     points = [point for point in curve if point["pass_rate"] is not None]
     steps = [point["steps"] for point in points]
     figure = Figure(figsize=_SIZE, dpi=_DPI, layout="constrained")

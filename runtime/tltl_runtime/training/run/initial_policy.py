@@ -18,7 +18,10 @@ def initial_policy_of(path: Path, policy: Policy) -> InitialPolicy:
 
 
 def weights_hash(policy: Policy) -> str:
-    """Return the SHA-256, in hexadecimal, of a policy's weights, as its file stores them, and of their names."""
+    """Return the SHA-256, in hexadecimal, of a policy's weights and of their names.
+
+    The weights are as the policy's file stores them.
+    """
     digest = hashlib.sha256()
     for name, tensor in sorted(policy.weights().items()):
         digest.update(name.encode() + b"\0" + tensor.numpy().tobytes())

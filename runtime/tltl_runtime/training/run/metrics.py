@@ -20,20 +20,20 @@ METRICS: Final = "metrics.jsonl"
 
 _ADVICE: Final = "see that there is room, and that you may write there"
 WINDOW_MEANS: Final = ("pass_rate", "progress", "reward", "episode_steps")
-"""The fields of a line that are means over the last episodes."""
+"""The fields of a line of ``metrics.jsonl`` that are means over the last episodes."""
 _INTEGERS: Final = ("iteration", "steps", "episodes", "window")
-"""The fields of a line that are read back and must be integers."""
+"""The fields of a line of ``metrics.jsonl`` that are read back and must be integers."""
 _REQUIRED: Final = {*_INTEGERS, "seconds", "losses", *WINDOW_MEANS}
-"""The fields of a line that are read back."""
+"""The fields of a line of ``metrics.jsonl`` that are read back."""
 _ITERATION_VALUES: Final = ("steps_per_s", "collect_s", "learn_s", "episodes")
-"""The fields of a line that TensorBoard shows under ``time``."""
+"""The fields of a line of ``metrics.jsonl`` that TensorBoard shows under ``time``."""
 
 
 class Metrics:
     """Writes the metrics files in the folder of a training.
 
-    When a training is resumed, the metrics after iteration ``after``, which ended at ``steps``, are
-    removed, because the iterations after it run again.
+    When a training is resumed after iteration ``after``, which ended at ``steps``, the metrics of
+    later iterations are removed, because these iterations run again.
 
     Raises:
         TltlError: TLT0005, the folder cannot be written to, here or in ``add``; TLT0001, a file in
@@ -119,9 +119,10 @@ def read_metrics(path: Path) -> list[dict[str, Any]]:
 
 
 def truncate(path: Path, iteration: int) -> None:
-    """Remove the lines of ``metrics.jsonl`` after an iteration.
+    """Remove the lines of ``metrics.jsonl`` that belong to iterations after ``iteration``.
 
-    Raises the errors of :func:`read_metrics`, and TltlError, TLT0005, if the file cannot be written.
+    Raises the errors of :func:`read_metrics`, and TltlError, TLT0005, if the file cannot be
+    written.
     """
     remaining = [fields for fields in read_metrics(path) if fields["iteration"] <= iteration]
     fileio.write_file(path, "".join(map(_line_text, remaining)), _ADVICE, over_inputs=True)

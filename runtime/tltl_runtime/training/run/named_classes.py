@@ -29,7 +29,7 @@ def class_of(setting: str, name: str, base: type) -> Any:
 
 
 def device_of(device: str) -> str:
-    """Return the device of this process.  With several processes, "cuda" gives each its own GPU.
+    """Return the device of this process. With several processes, "cuda" gives each its own GPU.
 
     Raises TltlError, TLT0862, if the device does not exist.
     """

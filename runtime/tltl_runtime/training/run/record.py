@@ -33,8 +33,8 @@ _POINT: Final = ("iteration", "steps", "seconds", "pass_rate", "progress", "rewa
 def write_record(run: TrainingRun, last: TrainingReport) -> dict[str, Any]:
     """Write ``record.json``, ``curve.png`` and the record in the policy file; return the record.
 
-    ``last`` is the last report of the training.  The metrics have no lines after it, because the
-    training has removed those that a killed process left.
+    ``last`` is the last report of the training. The metrics have no lines after this report,
+    because the training has removed those that a killed process left.
 
     Raises:
         TltlError: TLT0005, a file cannot be written; the errors of ``read_policy``.
@@ -104,7 +104,7 @@ def _initial_policy(run: TrainingRun) -> dict[str, Any] | None:
 
 
 def record_so_far(folder: Path) -> dict[str, Any]:
-    """Return the fields of the record that are already known of the unfinished training in a folder.
+    """Return the known fields of the record of the unfinished training in a folder.
 
     Raises:
         TltlError: the files of the training cannot be read.
@@ -129,10 +129,10 @@ def _best_policy(pass_rate: float | None, steps: int | None, *, confirmed: bool)
 
 
 def finished_record(run: TrainingRun) -> dict[str, Any] | None:
-    """Return the record of a training that would end at once if resumed; None for any other training.
+    """Return the record of a training if it would end at once when it is resumed; else None.
 
-    Unless the spec was met, ``end`` is the limit of ``run`` that the training has reached, whichever
-    limit ended it.
+    In the record, ``end`` is ``met`` if the training met its goal. Otherwise it is the limit of
+    ``run`` that the training has reached, even if another limit ended the training.
     """
     document = _read_record(run.folder)
     if document is None or document["end"] == "met":
@@ -148,7 +148,7 @@ def recorded_end(folder: Path) -> StopReason | None:
 
 
 def _read_record(folder: Path) -> dict[str, Any] | None:
-    """Return the record in a folder; None if it is missing or damaged, so that it must be written again."""
+    """Return the record in a folder; None if it is missing or damaged."""
     try:
         document = fileio.load_json(folder / RECORD, fileio.limits.REPORT)
         from_json(_EndFields, {name: document[name] for name in ("end", "steps", "seconds")}, RECORD)

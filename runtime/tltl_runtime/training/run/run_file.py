@@ -48,7 +48,7 @@ class InitialPolicy:
     """A policy whose weights a training begins with.
 
     ``path`` is its file; the other fields describe what the file contained when it was read.
-    ``weights`` is the SHA-256, in hexadecimal, of its weights.  ``level``, ``variant`` and
+    ``weights`` is the SHA-256, in hexadecimal, of its weights. ``level``, ``variant`` and
     ``level_hash`` are from its card and say on which level it was trained.
     """
 
@@ -63,11 +63,11 @@ class InitialPolicy:
 class TrainingRun:
     """What to train, and the folder that stores it.
 
-    ``params`` are the values of the params of ``fspa`` in SI units.  ``level`` is the name of a level or the
-    path of its file, as for :meth:`~tltl_runtime.game.game.Game.load_level`.  ``demonstrations`` is the folder of the
-    demonstrations to imitate.  If it is None, they are in the folder of the training, and the expert's
-    are recorded there.  ``initial`` is the policy whose weights the actor begins with, None for random
-    weights.
+    ``params`` are the values of the params of ``fspa`` in SI units. ``level`` is the name of a
+    level or the path of its file, as for :meth:`~tltl_runtime.game.game.Game.load_level`.
+    ``demonstrations`` is the folder of the demonstrations to imitate. If it is None, tltlc records
+    demonstrations of the expert in the training's folder. ``initial`` is the policy whose weights
+    the actor begins with, None for random weights.
     """
 
     folder: Path
@@ -137,16 +137,16 @@ def read_run(folder: Path) -> TrainingRun:
 
 
 def read_level_and_variant(folder: Path) -> tuple[str, str]:
-    """Return level and variant of the training in a folder, even if other parts of its file are invalid.
+    """Return level and variant of the training in a folder.
 
-    Raises the errors of :func:`read_run`.
+    The rest of its file may be invalid. Raises the errors of :func:`read_run`.
     """
     values = _values(*_read_document(folder), ("level", "variant"))
     return values["level"], values["variant"]
 
 
 def read_level_hash(folder: Path) -> str | None:
-    """Return the hash of the level that the training in a folder began on; None if it is not stored.
+    """Return the hash of the level on which the training in a folder began; None if not stored.
 
     Raises the errors of :func:`read_run`.
     """
@@ -193,11 +193,11 @@ def _values(source: SourceFile, document: Mapping[str, Any], names: Sequence[str
 
 
 def identity(run: TrainingRun) -> dict[str, str]:
-    """Return everything that a checkpoint depends on, by name, so that a message can say what differs.
+    """Return what a checkpoint depends on, by name, so that a message can say what differs.
 
-    ``level`` and ``spec`` are hashes, ``seed`` is the seed.  ``settings`` is a SHA-256, in
+    ``level`` and ``spec`` are hashes, ``seed`` is the seed. ``settings`` is a SHA-256, in
     hexadecimal, of the observation version, the params, the sensors and all settings except
-    :data:`MAY_CHANGE`.  With imitation, ``demonstrations`` is a hash of the recordings.  With an
+    :data:`MAY_CHANGE`. With imitation, ``demonstrations`` is a hash of the recordings. With an
     initial policy, ``policy`` is the hash of its weights.
     """
     relevant = {
@@ -243,7 +243,7 @@ def resume_command(folder: Path) -> str:
 
 
 def named_trainings(folder: Path) -> str:
-    """Return a help text that names the trainings directly below a folder; empty if there are none."""
+    """Return a help text that names the trainings directly below a folder; empty without any."""
     trainings = sorted(path.parent for path in folder.glob(f"*/{RUN}"))
     return f"name one of them: {short_list([f'`{path}`' for path in trainings], _MOST_NAMED)}" if trainings else ""
 

@@ -1,4 +1,4 @@
-"""The settings of a training.  The defaults are in ``settings.toml`` beside this module."""
+"""The settings of a training. The defaults are in ``settings.toml`` beside this module."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ _SETTING: Final = re.compile(r"(?P<head>(?P<key>\w+) = [^#]*?)\s*(?P<comment>#.*
 class Ppo:
     """The settings of rsl-rl's PPO.
 
-    The default learning rate, entropy, clip, lambda and gamma are those of Gutiérrez-Sánchez et al.,
-    IEEE Trans. Games 2024, section VI.  As the pass rate rises from one half to 1, the inverse
-    temperature rises from 1 to ``sharpening``.  A training that begins with a policy has an untrained
-    critic, so only the critic learns in the first ``warm_up`` updates.  Otherwise the policy would
-    follow the critic's initial errors.
+    The default learning rate, entropy, clip, lambda and gamma are those of Gutiérrez-Sánchez et
+    al., IEEE Trans. Games 2024, section VI. As the pass rate rises from one half to 1, the inverse
+    temperature, which is a factor on the actor's logits, rises from 1 to ``sharpening``. A training
+    that begins with a policy has an untrained critic, so only the critic learns in the first
+    ``warm_up`` updates. Otherwise the policy would follow the critic's initial errors.
     """
 
     learning_rate: float
@@ -52,7 +52,7 @@ class Ppo:
 class Rollout:
     """The settings of rollouts.
 
-    Each of ``envs`` environments takes ``steps`` decisions between updates.  ``workers`` processes
+    Each of ``envs`` environments takes ``steps`` decisions between updates. ``workers`` processes
     step them (0: one per core), on this machine or on a Ray cluster.
     """
 
@@ -66,12 +66,12 @@ class Rollout:
 class Imitation:
     """The settings of the imitation baseline: behavioural cloning, then GAIL.
 
-    ``cloning`` is the share of behavioural cloning in the limit that is reached first, of steps or of
-    minutes.  If no demonstrations are given, ``demonstrations`` episodes of the expert are recorded.
-    The discriminator has two layers of width ``encoding``, the learning rate ``discriminator_rate`` and
-    the weight ``gradient_penalty`` of its gradient penalty.  Its reward is multiplied by ``strength``.
-    The terminal reward of an episode is plus or minus ``terminal``.  See
-    :mod:`tltl_runtime.training.imitation.gail`.
+    Behavioural cloning takes the share ``cloning`` of the limit of steps or of minutes, whichever
+    is reached first. If no demonstrations are given, ``demonstrations`` episodes of the expert are
+    recorded. The discriminator has two layers of width ``encoding``, the learning rate
+    ``discriminator_rate`` and the weight ``gradient_penalty`` of its gradient penalty. Its reward
+    is multiplied by ``strength``. The terminal reward of an episode is plus or minus ``terminal``.
+    See :mod:`tltl_runtime.training.imitation.gail`.
     """
 
     demonstrations: int
@@ -85,7 +85,7 @@ class Imitation:
 
 @record
 class RewardSettings:
-    """The settings of rewards: :class:`~tltlc.monitor.progress_and_reward.RewardOptions` and a schedule.
+    """The settings of rewards: the ``options`` of the environments, and a schedule of the penalty.
 
     With the ``penalty_schedule`` ``rising``, a ``discounted`` terminal penalty of mode ``progress``
     rises to the undiscounted one as the pass rate rises from one half to 1.
@@ -112,9 +112,9 @@ class RewardSettings:
 class Stop:
     """The settings that say when a training ends.
 
-    It ends when all episodes of ``windows`` successive windows of ``episodes`` each have met the spec,
-    and the policy then meets it in ``confirmation`` fresh episodes.  It also ends after ``steps``
-    decisions of all environments, or after ``minutes`` of training (0: no such limit).
+    It ends when all episodes of ``windows`` successive windows of ``episodes`` each have met the
+    spec, and the policy then meets it in ``confirmation`` fresh episodes. It also ends after
+    ``steps`` decisions of all environments, or after ``minutes`` of training (0: no such limit).
     """
 
     windows: int
@@ -147,8 +147,8 @@ class TrainingSettings:
     """All settings of a training except its seed.
 
     With the ``method`` ``imitation``, the settings ``imitation`` apply, and ``exploration`` and
-    ``reward`` do not.  A checkpoint is written after the first iteration that ends ``checkpoint_s``
-    seconds or more after the last checkpoint.  ``threads`` is the number of torch's threads during
+    ``reward`` do not. A checkpoint is written after the first iteration that ends ``checkpoint_s``
+    seconds or more after the last checkpoint. ``threads`` is the number of torch's threads during
     updates, ``device`` the device of the network.
     """
 
@@ -177,12 +177,15 @@ class TrainingSettings:
 
     @property
     def searches(self) -> bool:
-        """Whether the training first searches for demonstrations, in which its episodes may then begin."""
+        """Whether the training first searches for demonstrations.
+
+        Episodes of the training may then begin in them.
+        """
         return self.exploration.ways > 0 and not self.imitates
 
 
 def read_settings(path: Path | None = None) -> TrainingSettings:
-    """Return the default settings, with those that a TOML file overrides.
+    """Return the default settings. If ``path`` is given, its TOML file overrides some of them.
 
     Raises:
         TltlError: the file cannot be read (TLT0001 to TLT0004), is not TOML (TLT0860), has an
@@ -215,7 +218,7 @@ def default_text() -> str:
 
 
 def settings_text(settings: TrainingSettings) -> str:
-    """Return settings as TOML: the text of the defaults, with other values where they differ."""
+    """Return settings as TOML: the text of the defaults, with the values that differ replaced."""
     table, lines = "", []
     defaults = read_settings()
     for line in default_text().splitlines():
@@ -234,7 +237,7 @@ def settings_text(settings: TrainingSettings) -> str:
 def _toml(value: object) -> str:
     """Return the value of a setting as TOML.
 
-    No text among the settings has characters that TOML and JSON write differently.
+    The text is written as JSON: no setting has characters that TOML and JSON write differently.
     """
     # `ensure_ascii` off: JSON escapes characters beyond 16 bits as surrogate pairs, which TOML does not allow.
     return json.dumps(list(value) if isinstance(value, tuple) else value, ensure_ascii=False)
@@ -281,7 +284,7 @@ def rsl_config(settings: TrainingSettings, shapes: Shapes, branches: Sequence[in
             "entropy_coef": ppo.entropy,
             "learning_rate": ppo.learning_rate,
             "max_grad_norm": ppo.max_gradient,
-            # A constant learning rate, as in the paper.  rsl-rl's `adaptive` would change it.
+            # A constant learning rate, as in the paper. rsl-rl's `adaptive` would change it.
             "schedule": "fixed",
             **({"gail": gail} if settings.imitates else {}),
         },

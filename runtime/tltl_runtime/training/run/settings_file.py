@@ -164,7 +164,7 @@ KINDS: Final[Mapping[str, Mapping[str, Kind]]] = {
     },
     "classes": {"runner": _CLASS, "algorithm": _CLASS},
 }
-"""The kinds of values, by table and key.  The table ``""`` has the keys before the first table."""
+"""The kinds of values, by table and key. The table ``""`` has the keys before the first table."""
 
 _TOP: Final = "at the top, above the first `[...]`"
 _HELP: Final = 'values are written as in `envs = 32` and `device = "cpu"`'
@@ -173,7 +173,8 @@ _HELP: Final = 'values are written as in `envs = 32` and `device = "cpu"`'
 def read_values(source: SourceFile) -> dict[str, dict[str, Any]]:
     """Return the values in a settings text, by table and key.
 
-    Raises TltlError with all errors: TLT0860, TLT0861, TLT0862.
+    Raises TltlError with all errors: TLT0860, not TOML; TLT0861, an unknown key; TLT0862, an
+    invalid value.
     """
     log: list[Diagnostic] = []
     values: dict[str, dict[str, Any]] = {"": {}}

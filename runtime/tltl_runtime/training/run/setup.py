@@ -87,8 +87,8 @@ def load_imitation_data(
 ) -> ImitationData | None:
     """Return the data to imitate, None without imitation.
 
-    If no demonstrations are given, those of the expert are recorded first.  ``on_attempt`` is called
-    with each attempt.
+    If no demonstrations are given, demonstrations of the expert are recorded first. ``on_attempt``
+    is called with each attempt.
 
     Raises:
         TltlError: TLT0920, the expert fails; TLT0921, there is nothing to imitate; TLT0005, a
@@ -106,7 +106,9 @@ def load_imitation_data(
 
 
 def initial_policy(run: TrainingRun, group: ProcessGroup, checkpoint: Checkpoint | None) -> Policy | None:
-    """Return the policy that the training begins with; None if it begins with random weights or a checkpoint.
+    """Return the policy that the training begins with.
+
+    None if the training begins with random weights or goes on from a checkpoint.
 
     Raises:
         TltlError: TLT0940, the policy's file is missing or has changed; the errors of
@@ -127,13 +129,13 @@ def prepare_environment(
     imitation_data: ImitationData | None,
     initial: Policy | None,
 ) -> tuple[TrainingEnv, SearchProgress | None]:
-    """Search for demonstrations if needed; return the environment for rsl-rl and the search's progress.
+    """Search for demonstrations if needed; return the environment for rsl-rl and the progress.
 
-    New episodes have begun in the environment.  Their seeds depend on process and iteration, so that
-    they differ from episodes played before.  The progress is None if there is no search.  A search is
-    not repeated, unless a limit broke it off before it found a demonstration.  In the search,
-    ``initial``, the policy that the training begins with, plays first.  ``on_search`` is called with
-    the progress of the search.
+    The environment has begun new episodes. Their seeds depend on process and iteration, so that
+    they differ from those of episodes played before. The progress is that of the search, or None
+    without a search. A search is not repeated, unless a limit broke it off before it found a
+    demonstration. In the search, ``initial``, the policy that the training begins with, plays
+    first. ``on_search`` is called with the progress of the search.
     """
     progress, curriculum, self_imitation = None, None, None
     iteration = checkpoint.iteration if checkpoint else 0

@@ -1,8 +1,8 @@
 """Load files of ``torch.save`` that may be damaged or malicious, with bounded memory.
 
-``torch.load`` with ``weights_only`` executes nothing in the file.  But it unpacks compressed
-members of any size, makes tensors that are larger than their storage, and shares one list in many
-places.  This module refuses all three.
+``torch.load`` with ``weights_only`` executes nothing in the file. But it unpacks compressed members
+of any size, makes tensors that are larger than their storage, and lets one list occur in many
+places. This module refuses all three.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ _GLOBALS: Final = {
 """The only classes and functions that a file of plain data and tensors may name."""
 _PICKLE: Final = "data.pkl"
 _MARK, _TUPLE, _ORDERED, _OTHER = "mark", "tuple", "class OrderedDict", "other"
-"""The kinds of values on the stack of a pickle.  An empty tuple counts as ``_OTHER``."""
+"""The kinds of values on the stack of a pickle. An empty tuple counts as ``_OTHER``."""
 _PROTOCOL: Final = 2
 """The pickle protocol of ``torch.save``."""
 _OPCODES: Final = 20
@@ -58,7 +58,7 @@ def _checked_archive(data: bytes) -> bytes:
     """Check the members of an archive; return the archive written again.
 
     Members must be uncompressed and undamaged, and their pickles may call only functions that make
-    plain data.  The archive is written again, because in a malicious archive torch may find other
+    plain data. The archive is written again, because in a malicious archive torch may find other
     members than Python does.
     """
     # torch reads a file with another beginning in its older format, even if an archive follows.
@@ -96,7 +96,7 @@ def _archive(contents: Mapping[str, bytes]) -> bytes:
 def _check_calls(pickled: bytes) -> None:
     """Refuse a pickle that is too long, or does more than make plain data and tensors.
 
-    Tuples must not be keys of dicts.  If each of several nested tuples contains the next one twice,
+    Tuples must not be keys of dicts. If each of several nested tuples contains the next one twice,
     the time to hash them doubles with each level.
     """
     stack: list[str] = []
@@ -126,7 +126,8 @@ def _check_calls(pickled: bytes) -> None:
 def _pop_operands(stack: list[str], marks: list[int], opcode: pickletools.OpcodeInfo) -> list[str]:
     """Take the operands of an operation from the stack; return their kinds, without the mark.
 
-    ``marks`` are the positions at which marks were put on the stack.  Some marks may be gone.
+    ``marks`` are the positions at which marks were put on the stack. Some marks may have been taken
+    from it since.
     """
     if opcode.name in ("BINPUT", "LONG_BINPUT", "PUT"):
         return []

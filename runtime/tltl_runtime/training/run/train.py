@@ -49,23 +49,23 @@ def train(
     on_search: SearchCallback = lambda searched: None,
     on_attempt: Callable[[Attempt], None] = lambda attempt: None,
 ) -> Generator[TrainingReport]:
-    """Train in ``run.folder``; yield a report after each iteration.  The last report says why the training ends.
+    """Train in ``run.folder``; yield a report after each iteration.
 
-    The folder gets ``run.json``, ``checkpoint.pt``, ``policy.safetensors`` and the files of
-    :class:`~tltl_runtime.training.run.metrics.Metrics`, each before the report of its iteration.
-    Any end of the training, even by Ctrl-C or by closing the iterator, leaves a checkpoint of the
-    last complete iteration.  Only if the process is killed, the iterations after the last checkpoint
-    are lost.  With ``resume``, the training continues from the checkpoint; a training that is over
-    yields its last report again.
+    The last report says why the training ends. The folder gets ``run.json``, ``checkpoint.pt``,
+    ``policy.safetensors`` and the files of :class:`~tltl_runtime.training.run.metrics.Metrics`,
+    each before the report of its iteration. Any end of the training, even by Ctrl-C or by closing
+    the iterator, leaves a checkpoint of the last complete iteration. Only if the process is killed,
+    the iterations after the last checkpoint are lost. With ``resume``, the training continues from
+    the checkpoint; a training that is over yields its last report again.
 
-    First, a search finds demonstrations that meet the spec; ``on_search`` is called with its progress.
-    If the training begins with a policy, that policy plays first in the search.  With imitation, the
-    expert's demonstrations are recorded first if none are given; ``on_attempt`` is called with each
-    attempt.
+    First, a search finds demonstrations that meet the spec; ``on_search`` is called with its
+    progress. If the training begins with a policy, that policy plays first in the search. With
+    imitation, there is no search. If no demonstrations are given, demonstrations of the expert are
+    recorded first; ``on_attempt`` is called with each attempt.
 
-    Equal runs give equal numbers, and so do equal checkpoints that are resumed.  With torchrun,
-    each process trains with its own environments.  The reports of all processes are equal, except
-    for losses, times and searches, which each process has for itself, and for checkpoints, which only
+    Equal runs give equal numbers, and so do equal checkpoints that are resumed. With torchrun, each
+    process trains with its own environments. The reports of all processes are equal, except for
+    losses, times and searches, which each process has for itself, and for checkpoints, which only
     the first process writes.
 
     Raises:
@@ -208,7 +208,10 @@ class _Training:
         return report
 
     def _search_again(self) -> None:
-        """Search for demonstrations from the agent's failed episodes; each process searches from its own."""
+        """Search for demonstrations from failed episodes of the agent.
+
+        Each process searches from its own failed episodes.
+        """
         state = self._state
         searched = search_after_standstill(self._run, self._group, self._runner.env, state, self._on_search)
         processes = tuple(self._group.gather(process_state(self._runner)))
@@ -230,7 +233,7 @@ class _Training:
         return self._group.broadcast(self._seconds_before + time.perf_counter() - self._started)
 
     def _apply_weights(self) -> float:
-        """Set entropy bonus and penalty weight by the last episodes; return the inverse temperature."""
+        """Set entropy bonus and penalty weight by the pass rate; return the inverse temperature."""
         # A few successes say little, so episodes that have not been played yet count as failures.
         pass_rate = self._episodes.window.successes / (self._stop.windows * self._stop.episodes)
         weights = scheduled_weights(self._run.settings.ppo, pass_rate)
@@ -247,8 +250,9 @@ class _Training:
     def _best_policy(self) -> BestPolicy | None:
         """Return the best policy so far, None if there is none yet.
 
-        It is the policy that played the end of the last window, unless an older one has a better score.  If
-        all episodes of all windows met the spec, it is always the policy of the last window.
+        It is the policy that played the end of the last window, unless an older one has a better
+        score. If all episodes of all windows met the spec, it is always the policy of the last
+        window.
         """
         best, score = self._state.best, self._episodes.score
         if score is None or (best is not None and score < best.score and not self._episodes.all_met):
@@ -257,7 +261,7 @@ class _Training:
         return BestPolicy(score, self._state.algorithm["actor_state_dict"], self._state.steps)
 
     def _confirmation(self, best: BestPolicy, iteration: int) -> Confirmation:
-        """Confirm the policy that met the spec in all windows: the first process plays fresh episodes."""
+        """Let the first process confirm the policy that met the spec in all windows."""
         confirmation = None
         if self._group.rank == 0:
             policy = policy_of(self._card, best.actor)

@@ -17,11 +17,11 @@ from tltl_runtime.training.run.run_file import CHECKPOINT, CURVE, POLICY, RECORD
 class TrainingFiles:
     """Writes the files of a training into its folder; only the first process does so.
 
-    ``card`` is the card of its policies.  ``saved`` is the checkpoint in the folder, or None.
+    ``card`` is the card of its policies. ``saved`` is the checkpoint in the folder, or None.
 
     Raises:
-        TltlError: from any method: TLT0005, a file cannot be written; TLT0001, the metrics cannot be
-            read; TLT0866, a weight is too large for a policy.
+        TltlError: from any method: TLT0005, a file cannot be written; TLT0001, the metrics cannot
+            be read; TLT0866, a weight is too large for a policy.
     """
 
     def __init__(self, run: TrainingRun, card: Card, saved: Checkpoint | None) -> None:
@@ -34,8 +34,8 @@ class TrainingFiles:
     def restore(self, state: Checkpoint) -> None:
         """Make the files in the folder fit the ``state`` with which the training begins or resumes.
 
-        Removes ``record.json`` and ``curve.png``, which are written at the end.  Writes a checkpoint at
-        once, so that the search need not be repeated if the process is killed soon.
+        Remove ``record.json`` and ``curve.png``, which are written at the end. Write a checkpoint
+        at once, so that the search need not be repeated if the process is killed soon.
         """
         for name in (RECORD, CURVE):
             (self._run.folder / name).unlink(missing_ok=True)
@@ -55,7 +55,10 @@ class TrainingFiles:
         return time.perf_counter() - self._saved_at >= self._run.settings.checkpoint_s
 
     def save(self, state: Checkpoint) -> None:
-        """Write the checkpoint, and the policy if there is a new best one, unless the state is saved already."""
+        """Write the checkpoint, and the policy if the best policy has changed.
+
+        Do nothing if this state is saved already.
+        """
         if state is self._saved_state:
             return
         try:
@@ -65,7 +68,7 @@ class TrainingFiles:
             if policy:
                 self._write(policy, state)
         except Exception:
-            # Do not save this state again at the end.  After Ctrl-C, which is no Exception, it is saved again.
+            # Do not save this state again at the end. After Ctrl-C, which is no Exception, it is saved again.
             self._saved_state = state
             raise
         self._saved_state, self._saved_at = state, time.perf_counter()

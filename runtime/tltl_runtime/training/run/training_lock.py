@@ -11,7 +11,7 @@ from tltlc.api import Diagnostic
 
 
 def lock_training(folder: Path) -> AbstractContextManager[None]:
-    """Lock the folder inside the block, so that no other process trains in it.
+    """Return a context that locks the folder, so that no other process trains in it.
 
     The folder is created if it is missing.
 
