@@ -18,15 +18,15 @@ End = Literal["success", "violation", "limit", "stopped"]
 class EpisodeSummary:
     """How an episode went.
 
-    ``index`` numbers the episodes of an evaluation or a training, from 0.  ``seed`` is the seed of
+    ``index`` numbers the episodes of an evaluation or a training, from 0. ``seed`` is the seed of
     the environment's reset, or None if the episode continued the environment's random stream.
-    ``progress`` is the best value, in [0, 1].  ``reward`` is the sum of the rewards of the ``steps``.
-    Training may use other rewards, so it computes this sum by :func:`progress_return`.  ``unmet`` is
-    the automaton state at the end, or the state before a violation.
+    ``progress`` is the best value, in [0, 1]. ``reward`` is the sum of the rewards of the
+    ``steps``. Training may use other rewards, so it computes this sum by :func:`progress_return`.
+    ``unmet`` is the automaton state at the end, or the state before a violation.
 
-    ``verdict`` is the verdict of the last step.  ``seconds`` is the game time.  ``state`` is the
-    automaton state at the end.  ``label`` says in English what remained to be done in the state
-    ``unmet``.  These four are None in training and regression, because their files do not contain
+    ``verdict`` is the verdict of the last step. ``seconds`` is the game time. ``state`` is the
+    automaton state at the end. ``label`` says in English what remained to be done in the state
+    ``unmet``. These four are None in training and regression, because their files do not contain
     them.
     """
 
@@ -54,7 +54,7 @@ def settled_end(success: bool, verdict: str) -> End:
 def progress_return(success: bool, progress: float, steps: int, limit_steps: int | None) -> float:
     """Return the sum of the rewards in mode ``progress`` with the undiscounted terminal penalty.
 
-    ``limit_steps`` is the spec's limit, or None.  See semantics, section 4.
+    ``limit_steps`` is the spec's limit, or None. See ``docs/semantics.md``, section 4.
     """
     if limit_steps is None:
         return progress

@@ -13,9 +13,9 @@ def next_goals(
 ) -> tuple[str, ...]:
     """Return the entities to approach so that the automaton leaves ``state`` towards acceptance.
 
-    The player may approach any one of them. Entities that lead nearer to acceptance come first. Only
-    entities in ``places`` are returned; none if the state is accepting or a trap. An edge counts
-    only if its other atoms, which do not depend on a distance, have in ``sample`` the truth values
+    The player may approach any one of them. Entities that lead nearer to acceptance come first.
+    Only entities in ``places`` are returned; none if the state is accepting or a trap. An edge
+    counts only if its atoms that do not depend on a distance have, in ``sample``, the truth values
     that its guard requires. ``sample`` and ``params`` are in SI units.
     """
     current = fspa.states[state].distance
@@ -44,8 +44,8 @@ def _goals(implicant: Implicant, entities: list[str | None], settled: list[bool 
     """Return the entities that an implicant requires to be near.
 
     ``entities`` has, for each atom, the entity on whose distance it depends, or None. ``settled``
-    has, for each other atom, whether it holds now. If the implicant requires otherwise for one of
-    these, the list is empty.
+    says, for each atom without an entity, whether it holds now. The list is empty if such an atom
+    does not have the truth value that the implicant requires.
     """
     goals = []
     for atom, holds in implicant:

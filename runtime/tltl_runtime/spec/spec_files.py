@@ -11,7 +11,7 @@ from tltlc.api import SourceFile, TltlError, fileio, specs, syntax
 def spec_files(spec: Path) -> Iterator[Path]:
     """Yield the file of a spec and all files that it imports, directly or indirectly, each once.
 
-    The files need not compile.  Paths that do not exist are yielded, too, if a file there would be
+    The files need not compile. Paths that do not exist are yielded, too, if a file there would be
     imported instead of an existing one.
     """
     waiting, seen = [spec], {spec.resolve()}

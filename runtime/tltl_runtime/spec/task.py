@@ -28,7 +28,7 @@ _FILE: Final = re.compile(r"(?s:.+)\.(tltl|json)(:[A-Za-z_][A-Za-z0-9_]*)?\Z")
 
 @record
 class Task:
-    """What judges an episode: the automaton, the values of its params, and the options of its reward.
+    """What judges an episode: an automaton, the values of its params, and options of its reward.
 
     ``params`` are in SI units and override the defaults of the automaton. A task is plain data and
     can be pickled; a :class:`Monitor` cannot.
@@ -65,8 +65,8 @@ def load_task(
     set it.
 
     Raises:
-        TltlError: errors of reading and compiling; TLT0720, no spec has that name; TLT0721, there is
-            not exactly one spec; TLT0307 and TLT0308, a param has an invalid value or does not
+        TltlError: errors of reading and compiling; TLT0720, no spec has that name; TLT0721, there
+            is not exactly one spec; TLT0307 and TLT0308, a param has an invalid value or does not
             exist.
         TypeError: ``spec``, ``params`` or ``reward`` is of another type.
     """
@@ -81,9 +81,10 @@ def load_task(
 
 
 def read_spec(spec: str | Path | Fspa) -> tuple[Fspa, Spec | None]:
-    """Return the automaton that ``spec`` describes, and the resolved spec, or None without a source text.
+    """Return the automaton that ``spec`` describes, and the resolved spec.
 
-    ``spec`` and the errors are those of :func:`load_task`.
+    The resolved spec is None if there is no source text, only an automaton or an artefact. ``spec``
+    and the errors are those of :func:`load_task`.
     """
     if isinstance(spec, Fspa):
         return spec, None

@@ -1,4 +1,4 @@
-"""Add a spec to any Gymnasium environment: its automaton in the observation, its reward, its verdict."""
+"""Add a spec to any Gymnasium environment: its automaton's state, its reward and its verdict."""
 
 from __future__ import annotations
 
@@ -42,10 +42,10 @@ class TltlEnv(gymnasium.Wrapper[Observation, Any, Any, Any], RecordConstructorAr
     Reward: the reward of the chosen mode; the environment's own reward is ``info["env_reward"]``.
     The episode is ``terminated`` by success, by violation and by the environment, and ``truncated``
     at the spec's limit and by the environment. If the environment ends an episode before the spec
-    does, the episode is a success iff two things hold: the trace so far is accepted, and the spec is
-    not judged at a limit that is still ahead. With a limit, a failure costs the step penalties that
-    remained unspent, as a violation does. So every failed episode has a total reward of
-    progress - 1.
+    does, the episode is a success iff two things hold: the trace so far is accepted, and the spec
+    is not judged at a limit that is still ahead. If the spec has a limit, a failure costs the step
+    penalties that remained unspent, as a violation does. So every failed episode has a total reward
+    of progress - 1.
 
     ``info`` gains these keys, which replace entries of the environment with the same names:
 
@@ -59,7 +59,7 @@ class TltlEnv(gymnasium.Wrapper[Observation, Any, Any, Any], RecordConstructorAr
 
     ``sample`` is the last result of ``signals``. ``taken`` is the monitor's
     :class:`~tltlc.monitor.Step` for that sample, None after a reset. A recording of the episode
-    needs these two and ``task``, and nothing else of this wrapper.
+    needs ``sample``, ``taken`` and ``task``, and nothing else of this wrapper.
 
     Raises:
         TltlError: the errors of :func:`load_task`; TLT0617, the environment has a ``tltl_clock_s``
@@ -212,7 +212,7 @@ def _check_clock(fspa: Fspa, env: gymnasium.Env[Any, Any]) -> None:
 
 
 def _missing_signals(missing: list[str], returned: list[str], when: str) -> Diagnostic:
-    """Return TLT0611 for ``missing`` signals, with a list of the signals that ``signals`` returned."""
+    """Return TLT0611 for ``missing`` signals, with a list of those that the function returned."""
     names = ", ".join(f"`{name}`" for name in missing)
     listed = ", ".join(f"`{name}`" for name in returned[:_MOST_LISTED]) + (
         ", …" if len(returned) > _MOST_LISTED else ""

@@ -1,4 +1,7 @@
-"""Run many copies of one automaton at once, as torch tensors; tests check equality with :mod:`tltlc.monitor`."""
+"""Run many copies of one automaton at once, as torch tensors.
+
+Begin with :class:`BatchMonitor`. Tests check that its results equal those of :mod:`tltlc.monitor`.
+"""
 
 from __future__ import annotations
 

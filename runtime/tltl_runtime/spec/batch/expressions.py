@@ -25,7 +25,8 @@ from tltlc.api import expressions
 class TensorExpressions:
     """Expressions, compiled to one function of the signals of N environments, [signals, N].
 
-    ``source`` is the Python text of the function. ``params`` are in SI units.
+    ``signals`` are the names of the signals, in order. ``params`` are in SI units. ``source`` is
+    the Python text of the function.
     """
 
     def __init__(
@@ -55,9 +56,10 @@ class TensorExpressions:
         self._function: Callable[[Tensor], tuple[tuple[Tensor, ...], tuple[Tensor | None, ...]]] = space["values"]
 
     def run(self, columns: Tensor) -> tuple[Tensor, tuple[Tensor | None, ...]]:
-        """Return the values, shape [expressions, N], and a mask [N] of failures for each expression.
+        """Return the values [expressions, N], and for each expression a mask [N] of failures.
 
-        The mask is None for an expression that cannot fail.
+        ``columns`` are the values of the signals, [signals, N]. The mask is None for an expression
+        that cannot fail.
         """
         values, failures = self._function(columns)
         if not values:
@@ -66,7 +68,10 @@ class TensorExpressions:
 
 
 def _release_tensors(lines: Sequence[str], outputs: Collection[str]) -> list[str]:
-    """Return the lines with a ``del`` for each tensor after its last use, so that torch reuses its memory."""
+    """Return the lines with a ``del`` for each tensor after its last use.
+
+    So torch can use its memory again. The tensors in ``outputs`` are kept.
+    """
     seen: set[str] = set()
     lines_with_releases: list[str] = []
     for line in reversed(lines):

@@ -1,4 +1,4 @@
-"""Check whether numbers fit into a floating-point format, and convert values without losing their sign."""
+"""Floating-point formats: check that numbers fit, and convert values so that their sign stays."""
 
 from __future__ import annotations
 

@@ -15,15 +15,18 @@ Primes = tuple[Implicant, ...]
 
 _LETTER_ATOMS: Final = 12
 _LETTER_CELLS: Final = 1 << 22
-"""The lookup table of edges by state and letter is built only up to these numbers of atoms and cells."""
+"""The most atoms and cells for which the lookup table of edges is built.
+
+The table has a cell for each state and letter.
+"""
 
 
 class PrimeSets:
     """K sets of prime implicants, and their robustness for N environments.
 
     The robustness of a set is the greatest robustness of its primes, or ``empty`` if it has no
-    primes. ``values`` are the atoms' values, shape [atoms, N]. A choice is an int64 tensor [N] of
-    set numbers, one for each environment.
+    primes. In the methods, ``values`` are the atoms' values, shape [atoms, N]. A ``choice`` is an
+    int64 tensor [N]: the number of the set to use in each environment.
     """
 
     def __init__(self, sets: Sequence[Primes], atoms: int, device: torch.device, empty: float) -> None:
@@ -66,7 +69,10 @@ class PrimeSets:
         return atoms.gather(0, (best * self._width + least)[None])[0]
 
     def _distinct_robustness(self, values: Tensor) -> Tensor:
-        """Return the robustness of each distinct set, [distinct, N]; primes that sets share are computed once."""
+        """Return the robustness of each distinct set, [distinct, N].
+
+        Primes that several sets share are computed once.
+        """
         negated = -values if self._negates else values
         robustness_of: dict[Implicant, Tensor] = {}
         results = []
@@ -82,7 +88,7 @@ class PrimeSets:
         return torch.stack(results) if results else values.new_empty((0, values.shape[1]))
 
     def _literals_of(self, rows: Tensor, values: Tensor) -> Tensor:
-        """Return the literals of the chosen sets, shape [primes, literals, N]."""
+        """Return the values of the literals of the chosen sets, shape [primes, literals, N]."""
         ones, empty = (values.new_full((1, values.shape[1]), constant) for constant in (1.0, self._empty))
         signed = torch.cat([values, -values, ones, empty])
         literals = signed.gather(0, self._literals.index_select(1, rows))
@@ -113,9 +119,10 @@ class PrimeSets:
 
 
 class Transitions:
-    """Finds the edges that N automata take; of the edges that leave a state, exactly one has a true guard.
+    """Finds the edges that N automata take.
 
-    Unless ``checked``, exclusive atoms may hold at once. Then some edge of the state is taken.
+    Of the edges that leave a state, exactly one has a true guard. Unless ``checked``, exclusive
+    atoms may hold at once. Then some edge of the state is taken.
     """
 
     def __init__(self, fspa: Fspa, device: torch.device, checked: bool) -> None:
@@ -161,7 +168,10 @@ class Transitions:
         return taken
 
     def _leaving_table(self) -> Tensor:
-        """Return the edges that leave each state, padded with the first one: int64 [most edges, states]."""
+        """Return the edges that leave each state, int64 [most edges, states].
+
+        If a state has fewer edges, its first edge fills the remaining cells.
+        """
         leaving: list[list[int]] = [[] for _ in self._fspa.states]
         for number, edge in enumerate(self._fspa.edges):
             leaving[edge.source].append(number)
@@ -169,9 +179,10 @@ class Transitions:
         return torch.tensor([row + row[:1] * (most - len(row)) for row in leaving], dtype=torch.int64).t().contiguous()
 
     def _edge_table(self) -> Tensor:
-        """Return the edge for each state and letter, int64 [states * letters]; bit i of a letter is atom i.
+        """Return the edge for each state and letter, int64 [states * letters].
 
-        If checked, the edge is -1 for letters in which exclusive atoms hold at once.
+        Bit i of a letter says whether atom i holds. If checked, the edge is -1 for letters in which
+        exclusive atoms hold at once.
         """
         letters = torch.arange(self._letters)
         table = torch.zeros((len(self._fspa.states), self._letters), dtype=torch.int64)

@@ -19,9 +19,11 @@ _VIOLATED = VERDICTS.index("violated")
 
 
 class BatchStep:
-    """The result of one sample in each of N environments; every tensor has shape [N] and is never modified.
+    """The result of one sample in each of N environments.
 
-    - ``state``: int64.
+    Every tensor is [N], unless another shape is given, and is never modified.
+
+    - ``state``: int64, the state after the sample.
     - ``done``: bool, the episode has ended, in this step or before.
     - ``success``: bool, the episode has ended in success.
     - ``progress``: the best so far, in [0, 1].
@@ -77,18 +79,19 @@ class BatchStep:
 
 
 class BatchMonitor:
-    """Runs ``count`` copies of an automaton; the environments may be in different states and episodes.
+    """Runs ``count`` copies of an automaton, one for each environment.
 
-    The results equal those of ``count`` :class:`tltlc.monitor.Monitor` objects. On a CPU in float64
-    they are equal to the last bit, except for the sign of zeros, where torch computes an operation
-    as C does. The other operations (``exp``, ``tanh``, ``sqrt``, powers other than 2 and 3, the
-    discounted penalty) agree within 1e-12. An atom whose value is that close to 0, or to a border
-    between cases, may be true in one monitor and false in the other. In float32 all of this holds
-    within 1e-6. If a number of the spec, such as the end of a range, is too large or too small for
-    ``dtype``, atoms are computed in float64.
+    The environments may be in different states and episodes. The results equal those of ``count``
+    :class:`tltlc.monitor.Monitor` objects. On a CPU in float64 they are equal to the last bit,
+    except for the sign of zeros, where torch computes an operation as C does. The other operations
+    (``exp``, ``tanh``, ``sqrt``, powers other than 2 and 3, the discounted penalty) agree within
+    1e-12. An atom whose value is that close to 0, or to a border between cases, may be true in one
+    monitor and false in the other. In float32 all of this holds within 1e-6. If a number of the
+    spec, such as the end of a range, is too large or too small for ``dtype``, atoms are computed in
+    float64.
 
-    After the end of an episode, the automaton of its environment continues with reward 0 until it is
-    reset, as in the scalar monitor.
+    After the end of an episode, the automaton of its environment continues with reward 0 until it
+    is reset, as in the scalar monitor.
 
     ``state`` int64 [N], ``steps`` [N] and ``progress`` [N] are the values after the last step.
     ``clamped`` counts values out of range, by the names of signals and atoms. ``signal_names`` is
@@ -152,10 +155,11 @@ class BatchMonitor:
         self.state, self.steps, self.progress, self._done, self._success, self._memory = fresh
 
     def step(self, signals: Mapping[str, ArrayLike | Tensor] | ArrayLike | Tensor) -> BatchStep:
-        """Take one sample of each environment: a mapping of signal names to arrays [N], or one array [N, signals].
+        """Take one sample of each environment.
 
-        Tensors, NumPy arrays and lists are accepted. Numbers are in SI units; bools count as 0 and
-        1. The order in a single array is ``signal_names``. Names that no atom uses are ignored.
+        ``signals`` maps names to arrays [N], or is one array [N, signals] in the order of
+        ``signal_names``. Tensors, NumPy arrays and lists are accepted. Numbers are in SI units;
+        bools count as 0 and 1. Names that no atom uses are ignored.
 
         Raises:
             MonitorError: TLT0611 signals are missing; TLT0612 a signal has no usable value; TLT0613
@@ -165,7 +169,7 @@ class BatchMonitor:
         return self._take(self._samples.atom_values(signals))
 
     def step_atoms(self, values: ArrayLike | Tensor) -> BatchStep:
-        """Take one sample of each environment: the values of the atoms, [N, atoms], each in [-1, 1].
+        """Take one sample of each environment: the ``values`` of the atoms, [N, atoms], in [-1, 1].
 
         Raises:
             MonitorError: TLT0614 exclusive atoms hold at once. No environment changes.
@@ -207,7 +211,10 @@ class BatchMonitor:
         return (self.state, self.steps, self.progress, self._done, self._success, self._memory)
 
     def _start(self) -> tuple[Tensor, ...]:
-        """Return state, steps, progress, done, success and the mode's memory before the first sample."""
+        """Return the values before the first sample.
+
+        They are state, steps, progress, done, success and the memory of the reward mode.
+        """
         numbers = torch.zeros(self.count, dtype=self.dtype, device=self.device)
         flags = torch.zeros(self.count, dtype=torch.bool, device=self.device)
         memory = numbers if self._mode is None else self._mode.start(self.count)

@@ -1,7 +1,7 @@
-"""Algorithm 1 for N environments (semantics, section 4).
+"""Algorithm 1 for N environments (``docs/semantics.md``, section 4).
 
-The order of operations is the same as in :mod:`tltlc.monitor.progress_and_reward`, which lists the deviations
-from the paper. Lookup tables by edge store what depends only on states.
+The order of operations is the same as in :mod:`tltlc.monitor.progress_and_reward`, which lists the
+deviations from the paper. Lookup tables by edge store what depends only on states.
 """
 
 from __future__ import annotations
@@ -42,15 +42,14 @@ class Outcomes:
         verdicts = [states[e.target].verdict for e in edges]
         self._violated = numbers([float(verdict == "violated") for verdict in verdicts])
         self._base = numbers([scalar.base_progress[e.target] for e in edges])
-        # The progress of a spec judged at its limit: 1 if satisfied, the share of the limit that
-        # has
-        # passed if undecided, else 0.
+        # The progress of a spec that is judged at its limit: 1 if satisfied, the share of the limit
+        # that has passed if undecided, else 0.
         self._settled = numbers([float(verdict == "satisfied") for verdict in verdicts])
         self._open = numbers([float(verdict in ("holding", "pending")) for verdict in verdicts])
         staying = [scalar.improving[e.source] if e.source == e.target else () for e in edges]
         primes = [tuple(prime for edge in chosen for prime in edge.guard.primes) for chosen in staying]
         self.nearest = PrimeSets(primes, len(fspa.atoms), device, -1.0)
-        """For each edge that keeps the state: the primes of the edges towards acceptance."""
+        """For each self-loop, the primes of the edges from its state towards acceptance."""
         self._approaches = any(primes) and not self._by_share
         self._size = numbers([float(fspa.spec_size or 1)])
         self._limit_number = numbers([float(self._limit or 1)])
@@ -79,7 +78,11 @@ class Outcomes:
         return self._accepting.index_select(0, edge)
 
     def reward(self, edge: Tensor, rise: Tensor, steps: Tensor) -> Tensor:
-        """Return the rise of progress less the step penalty and, on a violation, the terminal penalty."""
+        """Return the reward of a step.
+
+        It is the ``rise`` of progress minus the step penalty and, on a violation, minus the
+        terminal penalty.
+        """
         if self._limit is None:
             return rise
         reward = rise - 1 / self._limit
@@ -90,7 +93,12 @@ class Outcomes:
         return reward.sub_(self._penalty(steps).mul_(violated))
 
     def _penalty(self, steps: Tensor) -> Tensor:
-        """Return the step penalties that a violation saves: ``(T - t) / T``, or their discounted sum."""
+        """Return the sum of the step penalties that a violation saves.
+
+        It is ``(T - t) / T``, or the discounted sum.
+
+        T is the spec's limit, and t are the ``steps`` so far.
+        """
         assert self._limit is not None
         remaining = self._limit - steps
         gamma = self._options.gamma
@@ -102,6 +110,6 @@ class Outcomes:
 def approach(nearest: Tensor, size: Tensor) -> Tensor:
     """Return what line 14 of Algorithm 1 adds, ``(1 + min(0, nearest)) / S``.
 
-    Modify ``nearest`` in place.
+    ``nearest`` is modified in place. ``size`` is S, the size of the spec.
     """
     return nearest.clamp_(max=0.0).add_(1.0).div_(size)

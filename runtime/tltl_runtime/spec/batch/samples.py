@@ -1,4 +1,4 @@
-"""Compute the values of the atoms from the signals of N environments: checks, clamping, predicates."""
+"""Compute the values of the atoms from the signals of N environments, with checks and clamping."""
 
 from __future__ import annotations
 
@@ -152,7 +152,10 @@ class BatchSamples:
                 self.clamped[name] = self.clamped.get(name, 0) + int(outside)
 
     def _atom_error(self, row: int, indices: Sequence[int], columns: Tensor) -> MonitorError:
-        """Return the error of an atom; the scalar monitor finds the reason at the sample of the first environment."""
+        """Return the error of an atom in the environments ``indices``.
+
+        The scalar monitor finds the reason, at the sample of the first of these environments.
+        """
         sample = dict(zip(self.names, columns[:, indices[0]].tolist(), strict=True))
         try:
             monitors.Samples(self._fspa, self._params, []).atom_values(sample, _environments(indices))
@@ -163,7 +166,7 @@ class BatchSamples:
 
 
 def _constants(fspa: Fspa, params: Mapping[str, float]) -> Iterator[float]:
-    """Yield the numbers in the expressions of the atoms, in the ranges of the signals, and of the params."""
+    """Yield the numbers in the expressions of the atoms, the ends of ranges, and the params."""
     for atom in fspa.atoms:
         yield from (node.value for node in expressions.nodes(atom.expression) if isinstance(node, expressions.Const))
     for signal in fspa.signals:
@@ -193,7 +196,7 @@ def _indices(mask: Tensor) -> list[int]:
 
 
 def _environments(indices: Sequence[int]) -> str:
-    """Return ``environment 3``, ``environments 3 and 7`` or ``environments 0, 1, 2, 3, 4 and 12 more``."""
+    """Name environments: ``environment 3`` or ``environments 0, 1, 2, 3, 4 and 12 more``."""
     if len(indices) == 1:
         return f"environment {indices[0]}"
     left_out = len(indices) - _NAMED

@@ -15,11 +15,11 @@ _FAILURES: Final = (ZeroDivisionError, OverflowError, ValueError)
 
 @record
 class TensorTerm:
-    """The code for an expression: the name of a tensor or the text of a constant (``name``).
+    """The code for an expression.
 
-    ``constant`` is the value of the constant, a number or a truth value; None for a tensor.
-    ``fails`` is the name of a mask of the environments for which the expression has no value; None
-    if it always has one.
+    ``name`` is the name of a tensor or the text of a constant. ``constant`` is the value of the
+    constant, a number or a truth value; None for a tensor. ``fails`` is the name of a mask of the
+    environments in which the expression has no value; None if it always has one.
     """
 
     name: str
@@ -120,7 +120,7 @@ class TensorWriter:
         return TensorTerm(result, None, self._any_of([fails, own_failure]))
 
     def _extreme(self, op: str, first: TensorTerm, second: TensorTerm) -> TensorTerm:
-        """Return ``min`` or ``max`` as in Python: of two equal terms, the first."""
+        """Return the term of ``min`` or ``max`` as in Python: of two equal terms, the first."""
         if first.constant is not None and second.constant is not None:
             return self._constant((min if op == "min" else max)(first.constant, second.constant))
         if second.constant is not None:
@@ -206,7 +206,8 @@ class TensorWriter:
     def _operand(self, term: TensorTerm) -> str:
         """Return the name of the term's tensor.
 
-        Constants are tensors, too: torch is slower with numbers, and divides by numbers less exactly.
+        Constants are tensors, too: torch is slower with numbers, and divides by numbers less
+        exactly.
         """
         return term.name if term.constant is None else self._constant_tensor(term.constant)
 

@@ -18,9 +18,9 @@ from tltlc.api import Fspa, RewardOptions
 class BatchTransition(NamedTuple):
     """One step of N automata.
 
-    - ``source`` and ``target``: the states before and after it, int64 [N].
+    - ``source`` and ``target``: the states before and after the step, int64 [N].
     - ``values``: the values of the atoms, [atoms, N], in [-1, 1].
-    - ``done`` and ``success``: whether the episode ends with it, and in success, bool [N].
+    - ``done`` and ``success``: whether the step ends the episode, and whether in success, bool [N].
     """
 
     source: Tensor
@@ -33,7 +33,8 @@ class BatchTransition(NamedTuple):
 class RewardMode(Protocol):
     """A reward of N environments.
 
-    Its memory is what it keeps from step to step: a tensor whose last dimension has size N.
+    The memory of a mode is what it keeps from step to step: a tensor whose last dimension has size
+    N.
     """
 
     def __init__(self, fspa: Fspa, options: RewardOptions, device: torch.device, dtype: torch.dtype) -> None: ...
@@ -43,14 +44,18 @@ class RewardMode(Protocol):
         ...
 
     def reward(self, step: BatchTransition, memory: Tensor) -> tuple[Tensor, Tensor]:
-        """Return the reward, shape [N], which the caller may modify, and the memory after the step."""
+        """Return the reward, shape [N], and the memory after the step.
+
+        The caller may modify the reward.
+        """
         ...
 
 
 def reward_mode(fspa: Fspa, options: RewardOptions, device: torch.device, dtype: torch.dtype) -> RewardMode:
     """Return the mode that the options name.
 
-    There is none for ``progress``: :class:`~tltl_runtime.spec.batch.progress_and_reward.Outcomes` computes it.
+    Mode ``progress`` has no module: :class:`~tltl_runtime.spec.batch.progress_and_reward.Outcomes`
+    computes it.
     """
     mode: RewardMode = importlib.import_module(f"{__name__}.{options.mode}").Reward(fspa, options, device, dtype)
     return mode

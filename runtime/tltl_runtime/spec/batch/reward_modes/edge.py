@@ -1,4 +1,7 @@
-"""Reward the robustness of leaving the state, at every step; see :mod:`tltlc.monitor.reward_modes.edge`."""
+"""Reward the robustness of leaving the state, at every step.
+
+See :mod:`tltlc.monitor.reward_modes.edge`.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +14,10 @@ from tltlc.api import Fspa, Implicant, RewardOptions
 
 
 class Reward:
-    """The greatest robustness of an edge out of the state, except into a trap; 0 without one."""
+    """The greatest robustness of an edge that leads to another state, except into a trap.
+
+    It is 0 if there is no such edge.
+    """
 
     def __init__(self, fspa: Fspa, _: RewardOptions, device: torch.device, dtype: torch.dtype) -> None:
         self._device, self._dtype = device, dtype

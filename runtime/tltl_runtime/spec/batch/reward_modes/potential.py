@@ -1,4 +1,7 @@
-"""Reward success, shaped with progress as the potential; see :mod:`tltlc.monitor.reward_modes.potential`."""
+"""Reward success, shaped with progress as the potential.
+
+See :mod:`tltlc.monitor.reward_modes.potential`.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +15,10 @@ from tltlc.api import Fspa, RewardOptions, monitors
 
 
 class Reward:
-    """Success, shaped with progress as the potential. The memory is the potential before the step, [N]."""
+    """A reward for success, shaped with progress as the potential.
+
+    The memory is the potential before the step, [N].
+    """
 
     def __init__(self, fspa: Fspa, options: RewardOptions, device: torch.device, dtype: torch.dtype) -> None:
         scalar = monitors.tables(fspa)

@@ -1,4 +1,7 @@
-"""Reward the robustness of the whole trace at its end; see :mod:`tltlc.monitor.reward_modes.sparse`."""
+"""Reward the robustness of the whole trace at its end.
+
+See :mod:`tltlc.monitor.reward_modes.sparse`.
+"""
 
 from __future__ import annotations
 
