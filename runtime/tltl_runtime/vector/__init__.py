@@ -1,4 +1,7 @@
-"""Many environments at once, stepped by worker processes."""
+"""Many environments at once, stepped by worker processes.
+
+Begin with :class:`WorkerVectorEnv`.
+"""
 
 from __future__ import annotations
 

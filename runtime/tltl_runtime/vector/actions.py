@@ -1,4 +1,4 @@
-"""Check that a batch of actions has one for each environment, before any action is sent."""
+"""Check that a batch of actions has one action for each environment, before any action is sent."""
 
 from __future__ import annotations
 

@@ -17,7 +17,7 @@ def check_arguments(
     autoreset: AutoresetMode,
     on_death: str,
 ) -> None:
-    """Raise ValueError or TypeError for invalid arguments."""
+    """Raise ValueError or TypeError if the arguments of a ``WorkerVectorEnv`` are invalid."""
     if not functions:
         raise ValueError("there is no function that makes an environment")
     if not all(map(callable, functions)):
@@ -37,10 +37,10 @@ def check_arguments(
 
 
 def split_mask(options: dict[str, Any] | None, count: int) -> tuple[NDArray[np.bool_], dict[str, Any] | None]:
-    """Return the mask ``options["reset_mask"]``, by default all environments, and the other options.
+    """Return the mask ``options["reset_mask"]``, and ``options`` without it.
 
-    Raises ValueError unless the mask is an array of one bool per environment, at least one of them
-    true.
+    By default, the mask chooses all environments. Raises ValueError unless the mask is an array of
+    one bool per environment, at least one of them true.
     """
     if options is None or "reset_mask" not in options:
         return np.ones(count, dtype=np.bool_), options

@@ -18,7 +18,7 @@ from tltlc.api import Diagnostic, TltlError
 _TO_ANSWER_S: Final = 10.0
 """How many seconds a cluster may take to answer."""
 _AFTER_THE_FIRST_S: Final = 30.0
-"""How many seconds other actors may take to start after the first one."""
+"""How many seconds further actors may take to start after the first one."""
 _REPORT_INTERVAL_S: Final = 10.0
 """Seconds between two reports that no actor has started."""
 
@@ -27,8 +27,8 @@ _REPORT_INTERVAL_S: Final = 10.0
 def cluster() -> Iterator[Any]:
     """Connect to a Ray cluster and yield the module ``ray``.
 
-    An existing connection is used as it is. Otherwise the function connects to a running cluster: to
-    that of the environment variable ``RAY_ADDRESS``, or to one that ``ray start`` began on this
+    An existing connection is used as it is. Otherwise the function connects to a running cluster:
+    to that of the environment variable ``RAY_ADDRESS``, or to one that ``ray start`` began on this
     machine. If no cluster is running, the function starts one on this machine. A connection that it
     made is closed at the end of the context.
 
@@ -89,9 +89,9 @@ def wait_for_actors(
 ) -> list[int]:
     """Wait until actors have started; return their indices, in order.
 
-    The first actor may take ``patience`` seconds. Until it starts, ``waiting`` is called now and then
-    with the seconds left. The other actors then have up to 30 seconds more. Those that do not start,
-    because other programs use the cores, are missing in the result.
+    The first actor may take ``patience`` seconds. Until it starts, ``waiting`` is called now and
+    then with the seconds left. The remaining actors then have up to 30 seconds more. Actors that do
+    not start, because other programs use the cores, are missing in the result.
 
     Raises:
         TltlError: TLT0852, no actor starts in time.
@@ -114,7 +114,8 @@ def wait_for_actors(
 def no_worker_error(ray: Any, waited_s: float) -> TltlError:
     """Return the error TLT0852: no worker started within ``waited_s`` seconds.
 
-    Ray gives no reason: other programs may use all cores, or the process of a worker may start slowly.
+    Ray gives no reason: other programs may use all cores, or the process of a worker may start
+    slowly.
     """
     cores = int(ray.cluster_resources().get("CPU", 0))
     size = "1 core" if cores == 1 else f"{cores} cores"
@@ -124,7 +125,10 @@ def no_worker_error(ray: Any, waited_s: float) -> TltlError:
 
 
 def _check_address(address: str) -> None:
-    """Raise OSError if nothing answers at the address HOST:PORT; Ray itself would try for minutes."""
+    """Raise OSError if nothing answers at the address HOST:PORT.
+
+    Ray itself would try for minutes.
+    """
     host, _, port = address.removeprefix("ray://").rpartition(":")
     if host and port.isdecimal():
         socket.create_connection((host, int(port)), _TO_ANSWER_S).close()

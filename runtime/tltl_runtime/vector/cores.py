@@ -13,7 +13,7 @@ def cores() -> int:
 
 
 def torchrun_variable(variable: str, default: int) -> int:
-    """Return the integer in an environment variable that torchrun sets, or ``default`` if it is not set.
+    """Return the integer in an environment variable that torchrun sets, by default ``default``.
 
     Raises:
         TltlError: TLT0862, the value is not an integer from ``default`` on.

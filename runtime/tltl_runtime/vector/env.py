@@ -35,7 +35,7 @@ TLTL_INFO: Final[Mapping[str, DTypeLike]] = {
 }
 """The keys of a TltlEnv's ``info`` that each step returns, and their types in NumPy.
 
-The other keys are only returned with a reset and at the end of an episode.
+Further keys are returned only with a reset and at the end of an episode.
 """
 
 _ALL: Final = slice(None)
@@ -45,29 +45,31 @@ _log = logging.getLogger(__name__)
 
 
 class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
-    """A vector environment of the environments that ``functions`` make, with equal spaces, in ``workers`` processes.
+    """A vector environment whose environments are stepped by ``workers`` processes.
 
-    A worker steps its share of the environments one after the other. Observations, actions and
-    numbers are in shared memory. By default there are as many ``workers`` as cores, but never more
-    than environments. The same seeds and actions give the same episodes, bit for bit, for any
-    number of workers and in this process. With ``workers="ray"`` the workers are actors of a Ray
-    cluster (see :func:`~tltl_runtime.vector.cluster.cluster`), one on each free core; processes of
-    torchrun share these cores.
+    ``functions`` make the environments, which must have equal spaces. A worker steps its share of
+    the environments one after the other. Observations, actions and numbers are in shared memory. By
+    default there are as many ``workers`` as cores, but never more than environments. The same seeds
+    and actions give the same episodes, bit for bit, for any number of workers and in this process.
+    With ``workers="ray"`` the workers are actors of a Ray cluster (see
+    :func:`~tltl_runtime.vector.cluster.cluster`), one on each free core; processes of torchrun
+    share these cores.
 
     ``autoreset`` is ``SAME_STEP`` (the observation is that of the new episode; ``final_obs`` and
-    ``final_info`` describe the old one) or ``NEXT_STEP``, as Gymnasium defines them. ``infos`` has
-    the keys ``info`` at every step, with an array each; by default those of a
+    ``final_info`` describe the old one) or ``NEXT_STEP``, as Gymnasium defines them. At every step,
+    ``infos`` has an array for each key of ``info``. By default these are keys of a
     :class:`~tltl_runtime.spec.wrapper.TltlEnv`: ``verdict``, ``state``, ``progress``, ``success``.
-    Other entries of an environment's info are returned with a reset and with the end of an episode.
-    The end of an episode also has ``episode``: the sum of rewards ``r`` and the length ``l``.
+    Further entries of an environment's info are returned with a reset and with the end of an
+    episode. The end of an episode also has ``episode``: the sum of rewards ``r`` and the length
+    ``l``.
 
     A worker is lost if it ends, raises or is silent for ``timeout`` seconds. The report says what
-    happened, and the name (``names``, one for each environment), seed, episode and step of each of the
-    worker's environments. With ``on_death="stop"``, a :class:`WorkerError` with this report is raised,
-    and this environment is closed. With ``"replace"``, another worker takes over, the report goes to
-    this module's logger, and the affected environments begin episodes with new seeds. Their step is
-    ``truncated`` with reward 0, ``final_obs`` is their last observation, and ``infos["lost"]`` is True
-    for them.
+    happened, and the name (``names``, one for each environment), seed, episode and step of each of
+    the worker's environments. With ``on_death="stop"``, a :class:`WorkerError` with this report is
+    raised, and this environment is closed. With ``"replace"``, a new worker takes over, the report
+    goes to this module's logger, and the affected environments begin episodes with new seeds. Their
+    step is ``truncated`` with reward 0, ``final_obs`` is their last observation, and
+    ``infos["lost"]`` is True for them.
 
     If an environment has a method ``prepare``, its worker calls the method while idle, until it
     returns False. So the environment can prepare the next reset in small steps.
@@ -139,8 +141,9 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         seed, or with None, an environment continues with its random generator. The first reset
         without a seed draws a seed for each environment.
 
-        ``options["reset_mask"]``, one bool per environment, chooses the environments to reset. The
-        others continue their episodes. The mask is not passed on to the environments.
+        ``options["reset_mask"]``, one bool per environment, chooses the environments to reset.
+        Environments that it does not choose continue their episodes. The mask is not passed on to
+        the environments.
         """
         self._check_open()
         if self._workers.is_waiting:
@@ -199,7 +202,11 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         return self.call(name)
 
     def set_attr(self, name: str, values: Any) -> None:
-        """Set an attribute of each environment: to the items of a list or tuple, or to one value for all."""
+        """Set an attribute of each environment.
+
+        If ``values`` is a list or tuple, it has a value for each. Otherwise it is the value for
+        all.
+        """
         env_values = list(values) if isinstance(values, (list, tuple)) else [values] * self.num_envs
         if len(env_values) != self.num_envs:
             raise ValueError(f"{self.num_envs} values are needed, not {len(env_values)}")
@@ -219,7 +226,10 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         return tuple(self._workers.pid(worker) for worker in range(len(self._workers.shares)))
 
     def _ask_all(self, command: str, arguments: Sequence[tuple[Any, ...]]) -> tuple[Any, ...]:
-        """Return the results of all environments, in order; a lost worker is not replaced but stops everything."""
+        """Return the results of all environments, in order.
+
+        A lost worker is not replaced: this vector environment is closed, and WorkerError is raised.
+        """
         self._check_ready()
         answers = self._workers.ask(command, arguments)
         for answer in answers:
@@ -263,7 +273,7 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
     # --- lost workers -----------------------------------------------------------------------------
 
     def _continue(self, loss: Loss) -> list[tuple[int, dict[str, Any]]]:
-        """Replace a worker in the middle of a step; return the infos of its environments, by row."""
+        """Replace a worker in the middle of a step; return its environments' infos, by row."""
         share = self._workers.shares[loss.worker]
         resets = self._replace(loss)
         self._rows.truncated[share] = True
@@ -274,7 +284,11 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         return infos
 
     def _replace(self, loss: Loss) -> list[tuple[int, dict[str, Any]]]:
-        """Replace the lost worker and begin episodes in its environments; return their infos, by row."""
+        """Replace the lost worker, begin episodes in its environments, and return their infos.
+
+        If workers are not to be replaced, or if the new worker takes no step, raise WorkerError
+        instead.
+        """
         if not self._replaces or loss.worker in self._unproven:
             self._stop(loss)
         share = self._workers.shares[loss.worker]

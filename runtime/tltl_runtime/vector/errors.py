@@ -11,7 +11,10 @@ _NO_MAIN_GUARD: Final = (
     "it ended before it made them: a worker begins by importing the program, so what the program does stands under",
     '`if __name__ == "__main__":`, and the program in a file (python program.py, not python < program.py)',
 )
-"""The likely cause if a worker ends before it has made its environments: it cannot import the main module."""
+"""A hint for the report on a worker that ended before it had made its environments.
+
+The likely cause is that the worker could not import the main module.
+"""
 
 
 @record
@@ -19,9 +22,9 @@ class Playing:
     """What an environment was playing when its worker was lost.
 
     To get the same episode, reset the environment with ``seed``, then ``episode`` - 1 times without
-    a seed. ``env`` is the number of the environment, ``name`` its name. A ``seed`` of None means that
-    the environment was not reset yet. ``step`` is the step of the episode that was in progress, or
-    the last step that was finished. ``busy`` means that the environment was at work.
+    a seed. ``env`` is the number of the environment, ``name`` its name. A ``seed`` of None means
+    that the environment was not reset yet. ``step`` is the step of the episode that was in
+    progress, or the last step that was finished. ``busy`` means that the environment was at work.
     """
 
     env: int
@@ -40,9 +43,10 @@ class Playing:
 class Loss:
     """How a worker was lost.
 
-    It ended with the exit status ``status``, or by the signal ``-status`` if that is negative. Or it
-    was ``silent`` for that many seconds and was killed. ``traceback`` is that of the exception that
-    ended the worker, if any. ``starting`` means that it had not made its environments yet.
+    ``status`` is its exit status. If it is negative, the signal ``-status`` ended the worker.
+    ``silent`` is the number of seconds for which it was silent before it was killed; None if it
+    ended by itself. ``traceback`` is that of the exception that ended the worker, if any.
+    ``starting`` means that the worker had not made its environments yet.
     """
 
     worker: int
@@ -70,7 +74,10 @@ class WorkerError(RuntimeError):
 
 
 def report(loss: Loss, playing: tuple[Playing, ...]) -> str:
-    """Return a loss as text: a line for the worker, one for each environment, and the traceback or a likely cause."""
+    """Return a loss as text.
+
+    It has a line for the worker, a line for each environment, and the traceback or a likely cause.
+    """
     lines = [f"{loss}; it had", *(f"  {env}" for env in playing), *loss.traceback.splitlines()]
     if loss.starting and loss.status and not loss.traceback:
         lines += _NO_MAIN_GUARD

@@ -32,11 +32,11 @@ def make_vec(
     wrapper: Callable[[Callable[[], TltlEnv]], gymnasium.Env[Any, Any]] | None = None,
     **options: Any,
 ) -> WorkerVectorEnv:
-    """Return ``num_envs`` environments of :meth:`~tltl_runtime.game.game.Game.make_env`, stepped by ``workers``.
+    """Make a vector environment of ``num_envs`` environments of a level, stepped by ``workers``.
 
-    ``wrapper`` receives the function that makes an environment, and returns the environment to use.
-    The wrapper must be importable. ``options`` are those of
-    :class:`~tltl_runtime.vector.WorkerVectorEnv`.
+    :meth:`~tltl_runtime.game.game.Game.make_env` makes the environments. ``wrapper`` receives the
+    function that makes an environment, and returns the environment to use. The wrapper must be
+    importable. ``options`` are those of :class:`~tltl_runtime.vector.WorkerVectorEnv`.
 
     Raises:
         ValueError: the render mode is ``human`` and there are several environments, each of which

@@ -20,11 +20,12 @@ from tltlc.api import replace
 
 
 class RayWorkers:
-    """Actors that step environments, one on each free core; actor w has the w-th slice of ``shares``.
+    """Actors that step environments, one on each free core; actor w has slice w of ``shares``.
 
-    Actors share no memory. So actions are sent with each command, and the new rows that come back are
-    copied to ``rows``. Everything else is as in :class:`~tltl_runtime.vector.workers.Workers`. ``info``
-    has the types of the info columns of ``rows``, by name.
+    Actors share no memory. So actions are sent with each command, and the new rows that come back
+    are copied to ``rows``. In all else, the actors are like the processes of
+    :class:`~tltl_runtime.vector.workers.Workers`. ``info`` has the types of the info columns of
+    ``rows``, by name.
 
     Raises:
         TltlError: TLT0730, Ray is not installed; TLT0852, there is no cluster, or no worker starts.
@@ -63,7 +64,9 @@ class RayWorkers:
         return None
 
     def start(self, workers: Sequence[int]) -> list[Loss]:
-        """Start these workers, wait until they have made their environments, and return the losses.
+        """Start these workers and wait until they have made their environments.
+
+        Return how workers were lost meanwhile; an empty list if none was.
 
         Raises:
             TltlError: TLT0852, a new actor does not start in time.
@@ -90,8 +93,8 @@ class RayWorkers:
     def answers(self, patience: float | None = None) -> list[Any]:
         """Wait for the pending answers and return them in order of the workers.
 
-        A worker that is silent for ``patience`` seconds, by default ``timeout``, is killed; its answer
-        is a :class:`Loss`.
+        A worker that is silent for ``patience`` seconds, by default ``timeout``, is killed; its
+        answer is a :class:`Loss`.
         """
         patience = self._timeout if patience is None else patience
         deadline = time.monotonic() + patience
@@ -118,7 +121,7 @@ class RayWorkers:
         self._stack.close()
 
     def _start_actors(self, most: int) -> list[Any]:
-        """Start ``most`` actors; return those that get a core, and end the others."""
+        """Start ``most`` actors; return those that get a core, and end those that do not."""
         # Ray would restart a lost actor and continue silently, with its environments back at their beginning.
         actors = [self._ray.remote(num_cpus=1, max_restarts=0)(_EnvironmentActor).remote() for _ in range(most)]
         started: list[Any] = []
@@ -161,6 +164,6 @@ class _EnvironmentActor:
         return None, None
 
     def do(self, command: str, arguments: tuple[Any, ...], actions: NDArray[Any]) -> tuple[Any, NDArray[Any]]:
-        """Carry out a command, after storing ``actions``; return its result and the environments' rows after it."""
+        """Store ``actions`` and carry out a command; return its result and the rows after it."""
         self._table["action"] = actions
         return getattr(self._share, command)(*arguments), self._table

@@ -1,8 +1,8 @@
 """Memory that processes share: one row for each environment.
 
 A row stores an observation, an action, the results of a step and the episode being played. The rows
-are a structured NumPy array over one anonymous block, which the system frees when the processes end,
-however they end.
+are a structured NumPy array over one anonymous block, which the system frees when the processes
+end, however they end.
 """
 
 from __future__ import annotations
@@ -16,7 +16,10 @@ from gymnasium import Space, spaces
 from numpy.typing import DTypeLike, NDArray
 
 Columns = Any
-"""The values of all rows for a space: an array, or for a Dict or Tuple space a dict or tuple of columns."""
+"""The values of all rows for a space.
+
+This is an array. For a Dict or Tuple space, it is a dict or tuple of columns.
+"""
 
 
 class Rows:
@@ -94,7 +97,10 @@ def write(columns: Columns, row: int, value: Any) -> None:
 
 
 def write_batch(columns: Columns, batch: Any) -> None:
-    """Write a value into each row; ``batch`` has passed :func:`tltl_runtime.vector.actions.check_batch`."""
+    """Write a value into each row.
+
+    ``batch`` has passed :func:`tltl_runtime.vector.actions.check_batch`.
+    """
     if isinstance(columns, dict):
         for key, column in columns.items():
             write_batch(column, batch[key])

@@ -26,9 +26,9 @@ def work(connection: Connection, functions: Any, rows: Rows, first: int, autores
 
     ``functions`` is a ``CloudpickleWrapper`` of the functions that make the environments. The first
     environment uses row ``first`` of ``rows``, the next one the next row, and so on. A command is a
-    pair: the name of a method of :class:`Share`, and its arguments. The answer is a pair, too: ``done``
-    and the result, or ``failed`` and a traceback. After ``failed`` the worker ends. The first answer
-    comes without a command, when all environments are made.
+    pair: the name of a method of :class:`Share`, and its arguments. The answer is a pair, too:
+    ``done`` and the result, or ``failed`` and a traceback. After ``failed`` the worker ends. The
+    first answer comes without a command, when all environments are made.
     """
     # The parent process handles Ctrl-C.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
@@ -79,7 +79,10 @@ class Share:
         return infos
 
     def step(self) -> list[tuple[int, Info]]:
-        """Take the actions in the rows; return the rows and infos of the environments whose episodes ended or began."""
+        """Take a step with the actions in the rows.
+
+        Return pairs of a row and an info for the environments whose episodes ended or began.
+        """
         actions = read(self._rows.action, slice(self._first, self._first + len(self._envs)))
         infos = []
         for index, env in enumerate(self._envs):
@@ -107,7 +110,10 @@ class Share:
         return infos
 
     def prepare(self) -> bool:
-        """Let an environment with a method ``prepare`` do a little work ahead of time; return whether one did."""
+        """Let one environment with a method ``prepare`` do a little work ahead of time.
+
+        Return False if none has work to do.
+        """
         return any(prepare() for prepare in self._preparing)
 
     def call(self, name: str, args: tuple[Any, ...], kwargs: dict[str, Any]) -> list[Any]:
@@ -138,7 +144,10 @@ class Share:
         return observation, info
 
     def _statistics(self, row: int) -> dict[str, Any]:
-        """Return the sum of rewards ``r`` and the length ``l`` of the episode, as Gymnasium's statistics call them."""
+        """Return the sum of rewards ``r`` and the length ``l`` of the episode.
+
+        The names are those of Gymnasium's statistics.
+        """
         return {"r": float(self._rows.total[row]), "l": int(self._rows.step[row])}
 
     def _write_row(

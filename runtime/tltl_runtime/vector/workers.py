@@ -29,9 +29,9 @@ class Workers:
     """Processes that step environments; worker w has the w-th slice of ``shares``.
 
     Processes are spawned, not forked: forking while threads of torch or OpenBLAS exist is unsafe. A
-    command to all workers returns their answers in order of the workers. A worker is lost if it ends,
-    raises, or is silent for ``timeout`` seconds. Its answer is then a :class:`Loss`, and ``start``
-    starts a new process in its place.
+    command to all workers returns their answers in order of the workers. A worker is lost if it
+    ends, raises, or is silent for ``timeout`` seconds. Its answer is then a :class:`Loss`, and
+    ``start`` starts a new process in its place.
     """
 
     def __init__(
@@ -62,7 +62,10 @@ class Workers:
         return self._processes[worker].pid
 
     def start(self, workers: Sequence[int]) -> list[Loss]:
-        """Start these workers, wait until they have made their environments, and return the losses."""
+        """Start these workers and wait until they have made their environments.
+
+        Return how workers were lost meanwhile; an empty list if none was.
+        """
         for worker in workers:
             ours, theirs = self._context.Pipe()
             share = self.shares[worker]
@@ -97,8 +100,8 @@ class Workers:
     def answers(self, patience: float | None = None) -> list[Any]:
         """Wait for the pending answers and return them in order of the workers.
 
-        A worker that is silent for ``patience`` seconds, by default ``timeout``, is killed; its answer
-        is a :class:`Loss`.
+        A worker that is silent for ``patience`` seconds, by default ``timeout``, is killed; its
+        answer is a :class:`Loss`.
         """
         patience = self._timeout if patience is None else patience
         deadline = time.monotonic() + patience
@@ -135,7 +138,10 @@ class Workers:
         self._pending.discard(worker)
 
     def _ready(self, deadline: float) -> set[int]:
-        """Return the workers with pending answers that answered or ended; empty once the deadline has passed."""
+        """Return the workers that have answered or ended, among those with pending answers.
+
+        The set is empty once the deadline has passed.
+        """
         left = max(0.0, deadline - time.monotonic())
         return {key.data for key, _ in self._selector.select(left)}
 
@@ -173,6 +179,9 @@ class Workers:
 
 
 def split_evenly(count: int, workers: int) -> Iterator[slice]:
-    """Yield a slice of ``count`` environments for each worker; the lengths of the slices differ by at most one."""
+    """Yield a slice of ``count`` environments for each worker.
+
+    The lengths of the slices differ by at most one.
+    """
     for worker in range(workers):
         yield slice(worker * count // workers, (worker + 1) * count // workers)
