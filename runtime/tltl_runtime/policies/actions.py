@@ -13,7 +13,7 @@ from torch import Tensor, nn
 class MultiCategorical(Distribution):
     """Independent categorical distributions, one per branch of a ``MultiDiscrete(branches)`` space.
 
-    The network outputs ``sum(branches)`` logits, the first branch first.  An action is a row of
+    The network outputs ``sum(branches)`` logits, the first branch first. An action is a row of
     ``len(branches)`` numbers, one choice per branch, stored as floats like all actions in rsl-rl.
     Log probabilities, entropies and divergences are sums over the branches, in nats.
 
@@ -61,9 +61,9 @@ class MultiCategorical(Distribution):
 
     @property
     def std(self) -> Tensor:
-        """The entropy of each branch [..., branches], in place of a standard deviation, which does not exist.
+        """The entropy of each branch [..., branches], in place of a standard deviation.
 
-        rsl-rl only reports this value.
+        A categorical distribution has no standard deviation. rsl-rl only reports this value.
         """
         return torch.stack([_entropy(log) for log in self._logs], -1)
 

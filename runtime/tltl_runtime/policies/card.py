@@ -10,7 +10,7 @@ from tltl_runtime.policies.network import Network
 from tltlc.api import Fspa, RewardOptions, record
 
 OBSERVATION: Final = 1
-"""The version of the observations.  It changes whenever the same numbers get another meaning."""
+"""The version of the observations. It changes whenever the same numbers get another meaning."""
 
 
 @record
@@ -18,10 +18,10 @@ class Card:
     """What a policy was trained for, and how.
 
     ``level`` and ``variant`` name the level of the training; ``level_hash`` is its
-    :meth:`~tltl_runtime.game.game.Game.level_hash`.  ``fspa`` is the automaton of the spec, with
-    ``params`` in SI units.  ``sensors`` are all sensors of the policy.  ``shapes`` maps the keys of
-    the observation to shapes, in the order of the network's inputs.  An action has several
-    branches; ``branches`` has the number of choices of each.  ``training`` is the record of the
+    :meth:`~tltl_runtime.game.game.Game.level_hash`. ``fspa`` is the automaton of the spec, with
+    ``params`` in SI units. ``sensors`` are all sensors of the policy. ``shapes`` maps the keys of
+    the observation to shapes, in the order of the network's inputs. An action has several
+    branches; ``branches`` has the number of choices of each. ``training`` is the record of the
     training as JSON data.
     """
 

@@ -1,6 +1,6 @@
 """Read and write policy files.
 
-The format is safetensors; ``docs/policy-file.md`` describes it.  Nothing in a file is executed.
+The format is safetensors; ``docs/policy-file.md`` describes it. Nothing in a file is executed.
 """
 
 from __future__ import annotations
@@ -35,7 +35,10 @@ _RECORD_BYTES: Final = 1 << 20
 
 _PREFIX: Final = "actor."
 _KEY: Final = "card"
-"""The only metadata key; with several keys, their order could differ between the files of equal policies."""
+"""The only metadata key.
+
+The order of several keys could differ between the files of equal policies.
+"""
 
 _ERRORS: Final = LoadErrors("a", "policy", "TLT0840", "TLT0841", "TLT0842", again="train the policy again")
 _HASH: Final = re.compile(r"[0-9a-f]{64}\Z")
@@ -44,7 +47,7 @@ _HASH: Final = re.compile(r"[0-9a-f]{64}\Z")
 def write_policy(path: str | os.PathLike[str], policy: Policy, advice: str = "name another place") -> None:
     """Write a policy to a file, so that even a power failure leaves no partial file.
 
-    Equal policies give equal bytes.  ``advice`` is the help of the error if the system refuses.
+    Equal policies give equal bytes. ``advice`` is the help of the error if the system refuses.
 
     Raises:
         TltlError: TLT0005, the system refuses to write; TLT0862, the file would be larger than
@@ -154,7 +157,7 @@ def _card(header: dict[str, Any], name: str) -> Card:
 
 
 def _fault(card: Card) -> str | None:
-    """Return a description of what is wrong with a card whose fields have the right types, or None."""
+    """Return what is wrong with a card whose fields have the right types, or None."""
     shapes = dict(card.shapes)
     expected = _observation_shapes(card.fspa, card.sensors)
     if len(shapes) < len(card.shapes) or shapes != expected or max(map(prod, shapes.values())) > MAX_BYTES:
@@ -177,7 +180,10 @@ def _observation_shapes(fspa: Fspa, sensors: Sensors) -> dict[str, tuple[int, ..
 
 
 def _check_tensors(header: dict[str, Any], card: Card, name: str) -> None:
-    """Raise an error unless the header lists exactly the weights of the network; nothing is loaded yet."""
+    """Raise TLT0842 unless the header lists exactly the weights of the network.
+
+    Nothing is loaded yet.
+    """
     try:
         expected = {f"{_PREFIX}{key}": list(tensor.shape) for key, tensor in blank_actor(card).state_dict().items()}
     except (ValueError, RuntimeError, OverflowError) as error:

@@ -17,10 +17,11 @@ _MOST: Final = 3
 
 
 def check_policy(card: Card, level: Level, fspa: Fspa | None = None) -> None:
-    """Check that a policy can play ``level`` by the spec ``fspa``, by default the spec of its training.
+    """Check that a policy can play ``level`` by the spec ``fspa``, by default its own spec.
 
-    Any variant of its level fits.  Another level fits if it has everything that the policy
-    observes. Another spec fits if it judges episodes in the same way; its name does not matter.
+    Any variant of the policy's own level fits. Another level fits if it has everything that the
+    policy observes. Another spec fits if it judges episodes in the same way; its name does not
+    matter.
 
     Raises:
         TltlError: TLT0843, the policy does not fit; the message says what differs.
@@ -46,9 +47,10 @@ def check_policy(card: Card, level: Level, fspa: Fspa | None = None) -> None:
 
 
 def differences(own: Fspa, fspa: Fspa) -> str:
-    """Describe how the spec ``fspa`` differs from the spec ``own``, which judges episodes differently.
+    """Describe how the spec ``fspa`` differs from the spec ``own``.
 
-    Differences in what a designer wrote come before differences in the automaton.
+    The two judge episodes differently. Differences in what a designer wrote come before differences
+    in the automaton.
     """
     return short_list([*_differences(own, fspa)], _MOST)
 
@@ -87,7 +89,7 @@ def _differing(kind: str, before: Mapping[str, Any], after: Mapping[str, Any]) -
 
 
 def _states(before: Fspa, after: Fspa) -> Iterator[str]:
-    """Yield the states whose verdict or edges differ, and whether the exclusive atoms differ."""
+    """Yield a sentence for each state whose verdict or edges differ, and one on exclusive atoms."""
     for old, new in zip(before.states, after.states, strict=True):
         judged = (old.accepting, old.verdict, old.distance) == (new.accepting, new.verdict, new.distance)
         primes = [[(edge.target, edge.guard.primes) for edge in fspa.edges_from(new.id)] for fspa in (before, after)]

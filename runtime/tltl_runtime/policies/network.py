@@ -1,7 +1,7 @@
 """The network of a policy: Gutiérrez-Sánchez et al., IEEE Trans. Games 2024, section V.
 
 The inputs are the automaton state (one-hot), progress, entities, variables and the semantic map
-after its convolutions.  Two fully connected layers follow.  Three points differ from the paper:
+after its convolutions. Two fully connected layers follow. Three points differ from the paper:
 progress is an input; the map has a channel for each type, where the paper's cells hold a number;
 and there are two convolutions instead of one.
 """
@@ -29,7 +29,7 @@ class Network:
     """The layers of a network.
 
     ``channels`` are the output channels of the convolutions of each map, ``hidden`` the widths of
-    the fully connected layers after them.  ``activation`` is a name that rsl-rl knows.  ``kernel``
+    the fully connected layers after them. ``activation`` is a name that rsl-rl knows. ``kernel``
     and ``stride`` are in cells and hold for all convolutions.
 
     Raises:

@@ -27,9 +27,9 @@ _OPSET: Final = 18
 
 
 def to_onnx(policy: Policy) -> bytes:
-    """Return the policy as an ONNX model.  Equal policies give equal bytes.
+    """Return the policy as an ONNX model. Equal policies give equal bytes.
 
-    The inputs are the parts of an observation, named by their keys, float32 [batch, ...].  The
+    The inputs are the parts of an observation, named by their keys, float32 [batch, ...]. The
     outputs are ``logits``, float32 [batch, sum(branches)], the first branch first; and ``action``,
     int64 [batch, branches], the likeliest choice of each branch, the first one on ties.
     ``docs/policy-file.md`` describes the metadata.
@@ -54,7 +54,7 @@ def to_onnx(policy: Policy) -> bytes:
 
 
 class _PolicyModule(nn.Module):
-    """The policy as a module: maps the parts of observations to logits and the likeliest actions."""
+    """The policy as a module: it maps parts of observations to logits and likeliest actions."""
 
     def __init__(self, policy: Policy) -> None:
         super().__init__()
@@ -67,7 +67,7 @@ class _PolicyModule(nn.Module):
 
 
 def _metadata(card: Card) -> dict[str, str]:
-    """Return the metadata of the model.  All values but ``spec_hash`` are JSON."""
+    """Return the metadata of the model. All values but ``spec_hash`` are JSON."""
     game = registered_game()
     names = list(game.choices.items()) if card.branches == game.branches else []
     texts = {
@@ -108,7 +108,10 @@ def _forget_source(model: ModelProto) -> None:
 
 @contextmanager
 def _silence_exporter() -> Iterator[None]:
-    """Silence the messages of torch's exporter within this context; tests check the exported model instead."""
+    """Silence the messages of torch's exporter within this context.
+
+    Tests check the exported model instead.
+    """
     log = logging.getLogger("torch.onnx")
     before = log.level
     log.setLevel(logging.ERROR)

@@ -24,9 +24,9 @@ class NotFiniteError(ValueError):
 class Policy:
     """The weights of an actor with their card.
 
-    ``weights``, by name, are copied and rounded to half precision.  So a policy plays with exactly
-    the weights in its file, and a training that continues does not change the policy.  An action
-    depends only on the observation, and on the generator if the action is sampled.  Observations are
+    ``weights``, by name, are copied and rounded to half precision. So a policy plays with exactly
+    the weights in its file, and a training that continues does not change the policy. An action
+    depends only on the observation, and on the generator if the action is sampled. Observations are
     never batched, because the batch size would change the last bits of the logits.
 
     Raises:
@@ -50,7 +50,7 @@ class Policy:
 
     def logits(self, observation: Mapping[str, NDArray[Any]]) -> NDArray[np.float32]:
         """Return the logits [sum(branches)] for the observation of one environment."""
-        # The model accepts a plain dict.  Making a TensorDict takes as long as running the network.
+        # The model accepts a plain dict. Making a TensorDict takes as long as running the network.
         batch = {key: torch.from_numpy(np.asarray(observation[key], np.float32)[None]) for key, _ in self.card.shapes}
         with torch.inference_mode():
             return self.actor.mlp(self.actor.get_latent(batch))[0].numpy()  # type: ignore[no-any-return]
