@@ -1,1 +1,4 @@
-"""Evaluations of policies: reproducible episodes and their statistics."""
+"""Evaluations of policies: reproducible episodes and their statistics.
+
+Begin with :mod:`~tltl_runtime.evaluation.evaluate`.
+"""

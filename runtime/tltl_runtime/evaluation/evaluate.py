@@ -35,11 +35,11 @@ def evaluate(
     sampled: bool = True,
     spec: str | Path | Fspa | None = None,
 ) -> Iterator[EpisodeSummary]:
-    """Play ``episodes`` episodes with a policy; yield their summaries in order, as soon as possible.
+    """Play ``episodes`` episodes with a policy; yield their summaries in order.
 
     ``level``, ``variant`` and ``spec`` default to those that the policy was trained for; on another
-    level, the variant defaults to ``v0``.  If ``sampled``, actions are sampled; otherwise the
-    likeliest action is taken.  The episodes do not depend on ``workers``.  Worker processes import
+    level, the variant defaults to ``v0``. If ``sampled``, actions are sampled; otherwise the
+    likeliest action is taken. The episodes do not depend on ``workers``. Worker processes import
     the main module, so put the code of a script under ``if __name__ == "__main__"``.
 
     Raises:
@@ -96,11 +96,11 @@ def results(
     waiting: Callable[[float], None] = lambda left: None,
     replay_command: ReplayCommand | None = None,
 ) -> Generator[PlayedEpisode]:
-    """Play the requested episodes and yield them in order.  Closing the iterator ends the workers.
+    """Play the requested episodes and yield them in order. Closing the iterator ends the workers.
 
     While no core of a Ray cluster is free, ``waiting`` is called with the seconds that are left to
-    wait.  If a worker is lost, the error shows the command that plays its episode alone:
-    ``replay_command`` returns it; by default it is ``tltlc evaluate``.
+    wait. If a worker is lost, the error shows a command that plays only the lost episode.
+    ``replay_command`` returns that command; by default it is ``tltlc evaluate``.
 
     Raises:
         TltlError: TLT0850, a worker was lost; TLT0730, Ray is requested and not installed; TLT0852,
@@ -126,7 +126,7 @@ def local_results(
 ) -> Generator[PlayedEpisode]:
     """Play the requested episodes on this machine and yield them in order, like :func:`results`.
 
-    ``make`` returns the player for a process.  It must be picklable if there are worker processes.
+    ``make`` returns the player for a process. It must be picklable if there are worker processes.
 
     Raises:
         TltlError: TLT0850, a worker was lost; the message names its episode and the evaluation's

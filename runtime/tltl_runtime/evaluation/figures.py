@@ -13,9 +13,9 @@ from tltlc.api import record
 class FailureGroup:
     """Failed episodes with the same end.
 
-    ``state`` is the automaton state at the end, or before the violation.  ``label`` says what
-    remained to be done in that state.  ``share`` is the share among all episodes that were played, in
-    [0, 1].  ``episodes`` are the indices of the failed episodes, and ``count`` is their number.
+    ``state`` is the automaton state at the end, or before the violation. ``label`` says what
+    remained to be done in that state. ``share`` is the share among all episodes that were played,
+    in [0, 1]. ``episodes`` are the indices of the failed episodes, and ``count`` is their number.
     """
 
     state: int
@@ -28,11 +28,11 @@ class FailureGroup:
 
 @record
 class Figures:
-    """The statistics of this number of ``episodes``.
+    """The statistics of ``episodes`` episodes.
 
-    ``pass_rate`` is in [0, 1]; ``pass_interval`` is its 95 % Wilson interval.  For each episode,
-    ``progress`` is the best value, in [0, 1], ``reward`` the undiscounted return, and ``steps`` the
-    number of decisions.
+    ``pass_rate`` is in [0, 1]; ``pass_interval`` is its 95 % Wilson interval. ``progress``,
+    ``reward`` and ``steps`` are means and deviations over the episodes: of the best progress of
+    each, in [0, 1], of its undiscounted return, and of its number of decisions.
     """
 
     episodes: int
@@ -53,7 +53,7 @@ class Evaluation:
 
 
 def figures_of(episodes: Sequence[EpisodeSummary]) -> Figures:
-    """Return the figures over episodes.  Raises ValueError if there are none."""
+    """Return the figures of some episodes. Raises ValueError if there are none."""
     passed = sum(episode.success for episode in episodes)
     # First: without episodes, this raises the error with a clear message.
     interval = wilson(passed, len(episodes))
@@ -68,7 +68,7 @@ def figures_of(episodes: Sequence[EpisodeSummary]) -> Figures:
 
 
 def evaluation_of(episodes: Sequence[EpisodeSummary]) -> Evaluation:
-    """Return the evaluation of episodes.  Raises ValueError if there are none."""
+    """Return the evaluation with these episodes. Raises ValueError if there are none."""
     return Evaluation(figures_of(episodes), _failure_groups(episodes), tuple(episodes))
 
 

@@ -19,9 +19,9 @@ def play(policy: Policy, env: gymnasium.Env[Any, Any], seed: int, index: int, sa
     """Play episode ``index`` of the evaluation with ``seed`` to its end, and return its summary.
 
     ``env`` is a :class:`~tltl_runtime.spec.wrapper.TltlEnv`, possibly wrapped, whose spec has a
-    limit.  If ``sampled``, actions are sampled, otherwise the likeliest action is taken.  The episode
-    depends only on the policy, the environment, ``seed``, ``index`` and ``sampled``.  The seed of the
-    environment does not depend on ``sampled``.
+    limit. If ``sampled``, actions are sampled, otherwise the likeliest action is taken. The episode
+    depends only on the policy, the environment, ``seed``, ``index`` and ``sampled``. The seed of
+    the environment does not depend on ``sampled``.
 
     Raises:
         TltlError: TLT0854, the environment or the policy gives values that are not finite.

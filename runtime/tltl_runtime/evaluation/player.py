@@ -26,9 +26,9 @@ CHOICES: Final = {True: "sampled", False: "arg-max"}
 class Setup:
     """What an evaluation plays: ``policy`` on a level with a spec, with the default reward options.
 
-    ``level`` is an argument of :meth:`~tltl_runtime.game.game.Game.load_level`.  ``params`` are in
-    SI units.  ``recorded`` says which episodes to record.  Unless it is None, the results also have
-    the trajectories of all episodes.  ``player`` is the name of the policy in recordings.
+    ``level`` is an argument of :meth:`~tltl_runtime.game.game.Game.load_level`. ``params`` are in
+    SI units. ``recorded`` says which episodes to record. Unless it is None, the results also have
+    the trajectories of all episodes. ``player`` is the name of the policy in recordings.
     """
 
     policy: Policy
@@ -54,9 +54,10 @@ class EpisodeRequest:
 
 @record
 class PlayedEpisode:
-    """A played episode: its request, its summary ``played``, and its trajectory and recording if requested.
+    """A played episode: its request, and its summary ``played``.
 
-    ``recording`` has the bytes of the file.
+    If the setup asks for them, there are also its ``trajectory`` and its ``recording``, which has
+    the bytes of the file.
     """
 
     task: EpisodeRequest
@@ -76,7 +77,10 @@ class EpisodePlayer(Protocol):
 
 
 class Player:
-    """Plays the episodes of an evaluation with its policy, one after the other, in an environment of its own."""
+    """Plays the episodes of an evaluation with its policy, one after the other.
+
+    Each player has an environment of its own.
+    """
 
     def __init__(self, setup: Setup) -> None:
         self._setup = setup

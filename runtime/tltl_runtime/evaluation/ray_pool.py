@@ -17,9 +17,10 @@ PATIENCE_S: Final = 120.0
 
 @contextmanager
 def ray_workers(setup: Setup, most: int, waiting: Callable[[float], None]) -> Iterator[list[RayWorker]]:
-    """Start a worker on each free core of the cluster, up to ``most``; end the workers after the context.
+    """Start a worker on each free core of the cluster, up to ``most``.
 
-    ``waiting`` is called now and then with the seconds that are left to wait for the first worker.
+    The workers end after the context. ``waiting`` is called now and then with the seconds that are
+    left to wait for the first worker.
 
     Raises:
         TltlError: the errors of :func:`cluster`; TLT0852, no worker starts in time.
@@ -44,7 +45,10 @@ class RayWorker:
         self.actor = ray.remote(num_cpus=1, max_restarts=0)(_EvaluationActor).remote()
 
     def play(self, task: EpisodeRequest) -> Future[PlayedEpisode]:
-        """Start to play an episode; the future raises :class:`WorkerLostError` if the actor ends."""
+        """Start to play an episode; return a future of its result.
+
+        The future raises :class:`WorkerLostError` if the actor ends.
+        """
         future: Future[PlayedEpisode] = Future()
         playing = self.actor.play.remote(self._setup, task).future()
         playing.add_done_callback(lambda done: self._pass_on(done, future))
@@ -67,9 +71,10 @@ class RayWorker:
 
 
 class _EvaluationActor:
-    """An actor that makes its player in the first call of ``play``, where an error is reported.
+    """An actor that makes its player in the first call of ``play``.
 
-    If the constructor of an actor fails, Ray reports only that it failed.
+    If that call fails, Ray reports the error. If a constructor failed, Ray would report only that
+    it failed.
     """
 
     def __init__(self) -> None:

@@ -19,7 +19,10 @@ class EpisodeWorker(Protocol):
     """Plays one episode at a time, for example in another process."""
 
     def play(self, task: EpisodeRequest) -> Future[PlayedEpisode]:
-        """Start an episode; the future raises the exception of the game, or :class:`WorkerLostError`."""
+        """Start an episode; return a future of its result.
+
+        The future raises the exception of the game, or :class:`WorkerLostError`.
+        """
 
     def close(self) -> None:
         """Free the resources."""

@@ -22,16 +22,19 @@ class Spread:
 
 
 def spread_of(values: Sequence[float]) -> Spread:
-    """Return the mean and the sample standard deviation.  Raises ValueError if there are no values."""
+    """Return the mean and the sample standard deviation.
+
+    Raises ValueError if there are no values.
+    """
     if not values:
         raise ValueError("there are no values")
     return Spread(fmean(values), stdev(values) if len(values) > 1 else 0.0)
 
 
 def wilson(successes: int, count: int) -> tuple[float, float]:
-    """Return the low and high end of the 95 % score interval for the share ``successes / count``, in [0, 1].
+    """Return the 95 % score interval for the share ``successes / count``.
 
-    Source: E. B. Wilson, J. Am. Stat. Assoc. 22 (1927), 209-212.
+    Both ends are in [0, 1]. Source: E. B. Wilson, J. Am. Stat. Assoc. 22 (1927), 209-212.
 
     Raises ValueError unless 0 <= ``successes`` <= ``count`` and 0 < ``count``.
     """

@@ -20,9 +20,10 @@ _ENDS: Final[Mapping[End, str]] = {"violation": "violated", "limit": "out of tim
 
 
 def report_text(evaluations: Mapping[str, Evaluation]) -> str:
-    """Return a table of the figures and of how failed episodes ended, with a column for each evaluation.
+    """Return the figures of evaluations as a table, and how failed episodes ended.
 
-    The keys of ``evaluations`` say how actions were chosen: ``sampled`` or ``arg-max``.
+    The table has a column for each evaluation. The keys of ``evaluations`` say how actions were
+    chosen: ``sampled`` or ``arg-max``.
     """
     columns = [evaluation.figures for evaluation in evaluations.values()]
     lines = [

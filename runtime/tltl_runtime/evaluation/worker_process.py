@@ -22,15 +22,18 @@ from tltl_runtime.support.child_processes import block_interrupts
 class WorkerProcess:
     """A worker process.
 
-    It has an executor of its own, so that if the process ends, it is known which episode was lost.
-    ``make`` returns the player; it is called in the process, so it must be picklable.
+    Each worker has an executor of its own. So if the process ends, it is known which episode was
+    lost. ``make`` returns the player; it is called in the process, so it must be picklable.
     """
 
     def __init__(self, make: Callable[[], EpisodePlayer]) -> None:
         self._executor = ProcessPoolExecutor(1, _context(), initializer=_begin, initargs=(make,))
 
     def play(self, task: EpisodeRequest) -> Future[PlayedEpisode]:
-        """Start to play an episode; the future raises :class:`WorkerLostError` if the process ends."""
+        """Start to play an episode; return a future of its result.
+
+        The future raises :class:`WorkerLostError` if the process ends.
+        """
         future: Future[PlayedEpisode] = Future()
         try:
             with block_interrupts():
@@ -47,12 +50,12 @@ class WorkerProcess:
 
 
 def _context() -> BaseContext:
-    """Return the context that starts workers.
+    """Return the context of :mod:`multiprocessing` that starts workers.
 
-    On Linux it is a fork server, which loads torch and the game once for all workers.  A forked
-    process inherits the locks of all threads, but not the threads.  Forking is safe here: the fork
-    server computes nothing, so torch starts no threads in it, and OpenBLAS ends its threads before a
-    fork.
+    On Linux it is a fork server, which loads torch and the game once for all workers. A forked
+    process inherits the locks of all threads, but not the threads, and may hang. Forking is safe
+    here: the fork server computes nothing, so torch starts no threads in it, and OpenBLAS ends its
+    threads before a fork.
     """
     if sys.platform != "linux":
         return multiprocessing.get_context("spawn")
@@ -77,7 +80,10 @@ def _begin(make: Callable[[], EpisodePlayer]) -> None:
 
 
 def _end_with_parent() -> None:
-    """End this process when its parent has ended; otherwise it would wait forever if the parent is killed."""
+    """End this process when its parent has ended.
+
+    Otherwise it would wait forever if the parent is killed.
+    """
     parent = multiprocessing.parent_process()
     if parent is not None:
         parent.join()
