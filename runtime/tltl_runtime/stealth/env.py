@@ -1,4 +1,4 @@
-"""Gymnasium environments of the game, without and with a spec."""
+"""Gymnasium environments of the stealth game: one without a spec, and one with a spec."""
 
 from __future__ import annotations
 
@@ -33,21 +33,23 @@ from tltl_runtime.stealth.world.player import DECISION
 from tltlc.api import Diagnostic, Fspa, RewardOptions, TltlError
 
 _CELL: Final = 0.5
-"""The width of the cells of ``info["cell"]``, in metres."""
+"""The side of a cell, in metres; ``info["cell"]`` is the number of the player's cell."""
 
 
 class GameEnv(gymnasium.Env[dict[str, Any], Any]):
-    """A level without a spec: observations, but no reward and no end.
+    """A level without a spec: it gives observations, but no reward, and no episode ends.
 
-    Action: MultiDiscrete([3, 3, 2, 2, 2]), see :data:`~tltl_runtime.stealth.snapshot.BRANCHES`;
-    ``action`` is the last one that was played. Observation: see
-    :class:`~tltl_runtime.stealth.observation.observation.Observer`. ``level`` is the name of a
-    shipped level or a ``.toml`` file. ``sensors`` is passed to
-    :func:`~tltl_runtime.stealth.observation.sensors.choose_sensors`.
+    ``level`` is the name of a shipped level or the path of a ``.toml`` file. ``sensors`` chooses
+    what the agent observes, see :func:`~tltl_runtime.stealth.observation.sensors.choose_sensors`.
+
+    An action has a number for each of :data:`~tltl_runtime.stealth.snapshot.BRANCHES`: it is an
+    element of MultiDiscrete([3, 3, 2, 2, 2]). The attribute ``action`` is the last action played.
+    :class:`~tltl_runtime.stealth.observation.observation.Observer` describes the observations.
 
     ``reset(seed=...)`` reproduces an episode bit for bit. ``game.seed`` is the seed of the current
-    episode; a reset without a seed draws one. ``info["cell"]`` is the number of the cell in which
-    the player stands, or -1 in the air. A cell is half a metre wide in each direction.
+    episode; a reset without a seed draws one. A cell is a cube with sides of half a metre.
+    ``info["cell"]`` is the number of the cell that contains the player's feet, or -1 while the
+    player is in the air.
 
     With ``render_mode`` ``rgb_array``, :meth:`render` returns pictures of ``render_size`` (width,
     height), each from 16 to 4096 pixels. With ``human``, a window shows the episode in real time.
@@ -55,8 +57,9 @@ class GameEnv(gymnasium.Env[dict[str, Any], Any]):
 
     Raises:
         TltlError: the errors of :func:`~tltl_runtime.stealth.levels.file.load_level`; TLT0815,
-            ``sensors`` names something that the level does not have.
-        ValueError: the render mode, view or size is unknown; from ``step``: the action is invalid.
+            ``sensors`` is invalid, or names something that the level does not have.
+        ValueError: the render mode or view is unknown, or the size is invalid; from ``step``: the
+            action is invalid.
         TypeError: an argument has a wrong type; also when a running game is copied or pickled.
         ClosedEnvironmentError: ``reset``, ``step`` or ``render`` is called after ``close``.
     """
@@ -87,7 +90,7 @@ class GameEnv(gymnasium.Env[dict[str, Any], Any]):
         self._closed = False
 
     def tltl_params(self) -> dict[str, float]:
-        """Return the params of specs that the level defines, in SI units.
+        """Return the values that the level defines for params of specs, in SI units, by name.
 
         See :func:`tltl_runtime.stealth.capabilities.vocabulary.params`.
         """
@@ -100,7 +103,10 @@ class GameEnv(gymnasium.Env[dict[str, Any], Any]):
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[dict[str, Any], dict[str, Any]]:
-        """Begin an episode; without a seed, draw one from the generator of the last seed."""
+        """Begin an episode.
+
+        Without a ``seed``, draw one from the random generator that the last ``seed`` began.
+        """
         self._check_open()
         super().reset(seed=seed)
         self.game.reset(int(self.np_random.integers(2**31)) if seed is None else seed)
@@ -108,7 +114,7 @@ class GameEnv(gymnasium.Env[dict[str, Any], Any]):
         return self._observer.look(self.game), {"cell": self._cell()}
 
     def step(self, action: Any) -> tuple[dict[str, Any], float, bool, bool, dict[str, Any]]:
-        """Play one decision."""
+        """Play one decision. The reward is always 0, and the episode never ends."""
         self._check_open()
         self.action = _action_list(action)
         self.game.step(self.action)
@@ -116,9 +122,10 @@ class GameEnv(gymnasium.Env[dict[str, Any], Any]):
         return self._observer.look(self.game), 0.0, False, False, {"cell": self._cell()}
 
     def render(self) -> NDArray[np.uint8] | None:
-        """Return the current picture, (height, width, 3), or None if a window shows it.
+        """Return the current picture, (height, width, 3), or show it in the window and return None.
 
-        If there is no screen for the window, warn once.
+        Without a render mode, warn and return None. If no window can be opened, warn once and show
+        nothing.
 
         Raises:
             TltlError: TLT0730, pygame is missing.
@@ -154,7 +161,10 @@ class GameEnv(gymnasium.Env[dict[str, Any], Any]):
 
 
 def _action_list(action: Any) -> list[int]:
-    """Return an action as a list; raises ValueError unless it has a valid number for each branch."""
+    """Return an action as a list.
+
+    Raises ValueError unless the action has a valid number for each branch.
+    """
     array = np.asarray(action)
     numbers: list[int] = array.tolist()
     if array.dtype.kind not in "iub" or array.shape != (len(BRANCHES),) or tuple(numbers) not in ACTIONS:
@@ -175,13 +185,13 @@ def make_env(
 ) -> TltlEnv:
     """Make an environment of a level with a spec, by default the spec that the level is made for.
 
-    The function takes the options of :class:`GameEnv` and :class:`TltlEnv` and raises their errors.
+    The arguments are those of :class:`GameEnv` and :class:`TltlEnv`, which also raise their errors.
     ``render`` takes the ``render_mode``, ``render_view`` and ``render_size`` of :class:`GameEnv`.
 
     Raises:
         TltlError: the spec needs something that the level does not supply, see
-            :func:`~tltl_runtime.stealth.capabilities.capabilities.check_supply`; TLT0721, there is
-            no spec.
+            :func:`~tltl_runtime.stealth.capabilities.capabilities.check_supply`; TLT0721, ``spec``
+            is None, and the level is made for no spec.
     """
     game = GameEnv(level, variant, sensors, **render)
     try:
@@ -195,9 +205,10 @@ def make_env(
 
 
 def check_fit(level: StealthLevel, fspa: Fspa, spec: str | Path | Fspa) -> None:
-    """Raise one TltlError for everything that a spec needs and a level lacks.
+    """Raise a TltlError if a spec needs something that a level lacks.
 
-    ``fspa`` is the automaton of ``spec``. The labels of the error point into the spec's source.
+    The error lists everything that is lacking, with the places in the source of ``spec``. ``fspa``
+    is the automaton of ``spec``.
     """
     if _supply_errors(level, fspa, SpecPlaces(None)):
         raise TltlError(_supply_errors(level, fspa, SpecPlaces(read_spec(spec)[1])))

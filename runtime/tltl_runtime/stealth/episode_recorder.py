@@ -22,15 +22,15 @@ from tltlc.api import Diagnostic, Step, TltlError, fileio
 
 
 class RecordEpisode(EpisodeRecorder[Episode], RecordConstructorArgs):
-    """Records the current episode; observations, rewards and infos pass through unchanged.
+    """Records the current episode. Observations, rewards and infos pass through unchanged.
 
     ``env`` is a :class:`TltlEnv` over a :class:`GameEnv`, or wrappers around one. ``player`` is the
-    name of the player in the recording. If ``folder`` is given, each finished episode is written
-    into it as ``LEVEL-VARIANT-SEED.episode.npz``. If that file exists, a number follows the seed. A
+    player's name in the recording. If there is a ``folder``, each finished episode is written into
+    it as ``LEVEL-VARIANT-SEED.episode.npz``. If that file exists, a number follows the seed. A
     missing folder is created.
 
     Raises:
-        TypeError: ``env`` has no spec or is not the game.
+        TypeError: ``env`` has no spec, or does not contain a :class:`GameEnv`.
         TltlError: TLT0005, the folder is not writable.
     """
 
@@ -87,7 +87,10 @@ class RecordEpisode(EpisodeRecorder[Episode], RecordConstructorArgs):
 
 
 class _EpisodeRows:
-    """The data of an episode that is still being played."""
+    """The data of an episode that is still being played, with a row for each decision.
+
+    ``snapshots`` and ``signals`` have one more row: the first is for the moment of the reset.
+    """
 
     def __init__(self, level: StealthLevel, seed: int, snapshot: Snapshot, signals: list[float]) -> None:
         self.level, self.seed = level, seed
@@ -106,7 +109,7 @@ class _EpisodeRows:
         step: Step,
         success: bool,
     ) -> None:
-        """Append one decision."""
+        """Append a decision: its ``action``, and the state of the game and of the spec after it."""
         self.actions.append(action)
         self.snapshots.append(snapshot)
         self.signals.append(signals)
@@ -153,7 +156,7 @@ def _unwrapped_game(env: gymnasium.Env[Any, Any]) -> GameEnv:
 
 
 def _judge(env: gymnasium.Env[Any, Any]) -> TltlEnv:
-    """Return the wrapper with the spec, the outermost one; raises TypeError if there is none."""
+    """Return the outermost wrapper with a spec; raises TypeError if there is none."""
     layer: gymnasium.Env[Any, Any] = env
     while not isinstance(layer, TltlEnv):
         if not isinstance(layer, gymnasium.Wrapper):
@@ -170,10 +173,12 @@ def _write(folder: Path, episode: Episode) -> None:
 
 
 def writable_folder(folder: Path) -> Path:
-    """Return the folder, after creating it if it is missing and writing a file into it as a test.
+    """Create ``folder`` if it is missing, test that files can be written into it, and return it.
+
+    Call this before play begins: a player should not learn after an hour that nothing is recorded.
 
     Raises:
-        TltlError: TLT0005, the folder is not writable, which the player should know before an hour of play.
+        TltlError: TLT0005, the folder is not writable.
     """
     try:
         folder.mkdir(parents=True, exist_ok=True)

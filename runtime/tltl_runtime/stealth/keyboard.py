@@ -20,10 +20,10 @@ from tltl_runtime.stealth.world.player import DECISION
 
 
 class Recordings(Protocol):
-    """Where the episodes are stored."""
+    """A store for the episodes that a person plays."""
 
     def keep(self, episode: Episode) -> None:
-        """Write an unfinished episode, in place of its last version."""
+        """Write an unfinished episode, in place of the version that was written before."""
 
     def save(self, episode: Episode) -> str:
         """Write a finished episode and return the name of its file."""
@@ -39,14 +39,14 @@ _FRAME_TIME: Final = 1 / 60
 
 
 class KeyboardPlayer:
-    """Plays episodes of ``env`` in ``window`` and passes them to ``recordings``.
+    """Lets a person play episodes of ``env`` in ``window``, and passes them to ``recordings``.
 
-    ``renderer`` draws the frames, from ``view`` at first. Play ends when the player stops, or when
+    ``renderer`` draws the frames, from ``view`` at first. Play ends when the person stops, or when
     ``enough()`` is true after an episode.
 
-    Each episode is saved once: at its end, when the player restarts, or when play stops for any
-    reason, including an exception such as KeyboardInterrupt. An unfinished episode is also kept
-    every few seconds.
+    ``recordings.save`` gets each episode once: at its end, when the person restarts, or when play
+    stops for any reason, including an exception such as KeyboardInterrupt. ``recordings.keep`` gets
+    an unfinished episode every few seconds.
     """
 
     def __init__(
@@ -66,7 +66,7 @@ class KeyboardPlayer:
         self._unsaved = False
 
     def play(self, seed: int | None) -> None:
-        """Play until the player stops; the first episode begins with ``seed``."""
+        """Play until the person stops; ``seed`` is the seed of the first episode."""
         going = True
         try:
             while going:
@@ -76,7 +76,7 @@ class KeyboardPlayer:
             self._save()
 
     def _episode(self, seed: int | None) -> bool:
-        """Play one episode; return whether the player wants another."""
+        """Play one episode; return whether the person wants another."""
         _, info = self._env.reset(seed=seed)
         snapshot, fspa = self._game.snapshot(), self._env.episode.fspa
         keys = self._show_still(snapshot, start_screen(hud(snapshot, info, fspa), self._game.level, fspa), begins=True)
@@ -89,7 +89,7 @@ class KeyboardPlayer:
             if self._game.steps % _KEEP_INTERVAL == 0 and not over:
                 self._recordings.keep(self._env.episode)
             keys = self._animate(before, snapshot, hud(snapshot, info, fspa), due)
-            # After a short delay the game catches up. If the machine is too slow, the delay is dropped.
+            # The game catches up with a delay of up to one decision. A longer delay is dropped.
             due = max(due + DECISION, monotonic() - DECISION)
         if over:
             keys = self._end(snapshot, info)
@@ -99,8 +99,8 @@ class KeyboardPlayer:
     def _animate(self, before: Snapshot, after: Snapshot, display: Hud, start: float) -> Keys:
         """Draw the motion between two snapshots until the current decision is over.
 
-        The decision started at the time ``start``. Return the keys that the player holds at its
-        end. At least one frame is drawn, however long that takes.
+        The decision started at ``start``, a time of ``monotonic()``. Draw at least one frame, even
+        if the decision is over by then. Return the keys that the person holds at the end.
         """
         while True:
             self._show(interpolate(before, after, min(1.0, (monotonic() - start) / DECISION)), display)
@@ -109,15 +109,16 @@ class KeyboardPlayer:
                 return self._keys()
 
     def _end(self, snapshot: Snapshot, info: dict[str, Any]) -> Keys:
-        """Show the end screen until the player stops or plays again."""
+        """Show the end screen until the person stops or restarts; return the keys then held."""
         episode = self._env.episode
         file = self._save() or ""
         return self._show_still(snapshot, end_screen(hud(snapshot, info, episode.fspa), cause(episode), file))
 
     def _show_still(self, snapshot: Snapshot, display: Hud, begins: bool = False) -> Keys:
-        """Show a still frame until the player stops or restarts; return the keys of that moment.
+        """Show a still frame until the person stops or restarts; return the keys of that moment.
 
-        If ``begins``, the key of any action also ends the still frame.
+        If ``begins``, the episode has not begun: the key of any action also ends the frame, and the
+        returned keys contain no restart.
         """
         view = None
         while True:
@@ -144,6 +145,6 @@ class KeyboardPlayer:
         if not self._unsaved:
             return None
         file = self._recordings.save(self._env.episode)
-        # Only now: if saving is interrupted, it must be repeated.
+        # Set this last: if saving is interrupted, the next call must save again.
         self._unsaved = False
         return file

@@ -1,8 +1,8 @@
-"""The data of a level: frozen records of what stands where. No code depends on a level's name.
+"""The data of a level: frozen records of what stands where.
 
 Lengths are in metres, times in seconds, speeds in metres per second, angles in radians. x points
 east, y north, z up. A yaw of 0 looks along x; the yaw grows towards y. Boxes are parallel to the
-axes.
+axes. No code depends on the name of a level.
 """
 
 from __future__ import annotations
@@ -42,10 +42,11 @@ class Switch:
 
 @record
 class Barrier:
-    """A barrier; it stays shut until all switches in ``opened_by`` are active.
+    """A barrier, which stays shut until all switches in ``opened_by`` are active.
 
-    A ``solid`` barrier stops bodies. A ``laser`` takes ``damage`` health per second from a player
-    who touches it, and does not stop sight.
+    If ``opened_by`` is empty, an :class:`Unlock` opens the barrier. A shut ``solid`` barrier stops
+    bodies and sight. A shut ``laser`` stops neither the player nor sight, but takes ``damage``
+    health per second from a player who touches it. Enemies do not walk into lasers.
     """
 
     name: str
@@ -57,9 +58,9 @@ class Barrier:
 
 @record
 class Unlock:
-    """A rule: when ``switch`` becomes active, one of ``barriers`` opens at random.
+    """A rule: when ``switch`` becomes active, one of ``barriers`` opens, chosen at random.
 
-    All barriers are equally likely. They have no switches of their own.
+    All ``barriers`` are equally likely, and their ``opened_by`` is empty.
     """
 
     switch: str
@@ -70,8 +71,8 @@ class Unlock:
 class Mover:
     """A box of ``size`` whose centre moves along ``path``.
 
-    It moves there and back, or in a loop if ``closed``. It starts ``offset`` seconds into its cycle
-    and rests ``pause`` seconds at each point.
+    It moves to the end of the path and back, or in a loop if ``closed``. It rests ``pause`` seconds
+    at each point. An episode begins ``offset`` seconds into this cycle.
     """
 
     name: str
@@ -87,21 +88,22 @@ class Mover:
 class EnemyKind:
     """The parameters of a kind of enemy.
 
-    It is a shared asset: an edit changes all levels that use it. ``branches`` names the branches of
-    its behaviour tree in addition to patrol, chase, search and return.
+    A kind is an asset that levels share: an edit changes all levels that use it. All kinds have the
+    branches patrol, chase, search and return in their behaviour tree; ``branches`` names further
+    ones.
     """
 
     name: str
     sight_range: float
     sight_angle: float
-    """The full opening angle of the cone of sight."""
+    """The full opening angle of the cone of sight, in radians."""
     walk_speed: float
     chase_speed: float
     turn_speed: float
     reaction_time: float
     """Seconds that the player must be in sight before the chase begins."""
     memory_time: float
-    """Seconds that the enemy still knows the player's position after losing sight of the player."""
+    """Seconds for which the enemy knows the player's position after it lost sight of the player."""
     search_time: float
     search_radius: float
     attack_range: float
@@ -121,7 +123,7 @@ class Enemy:
 
 @record
 class Exit:
-    """An exit, where the level ends."""
+    """An exit, which specs can ask the player to reach."""
 
     name: str
     position: Point
@@ -165,9 +167,12 @@ class StealthLevel:
     """The spec that the level is made for, as ``FILE.tltl:NAME``."""
     files: tuple[tuple[str, str], ...]
     signals: tuple[tuple[str, str], ...] = ()
-    """Aliases of signals, for specs that use other names, such as (``open_right``, ``open(right)``)."""
+    """Pairs of an alias and its signal, such as (``open_right``, ``open(right)``).
+
+    A spec may use either name.
+    """
     regions: tuple[Region, ...] = ()
-    """The regions that the level names, followed by one region for each part that it uses."""
+    """The regions that the level names, then a region for each part (``[[use]]``) in it."""
 
 
 def entity_names(level: StealthLevel) -> tuple[str, ...]:
@@ -182,7 +187,7 @@ def entity_names(level: StealthLevel) -> tuple[str, ...]:
 
 
 def fixed_places(level: StealthLevel) -> dict[str, Point]:
-    """Return the positions of the entities that do not move, by name.
+    """Return the positions of the entities that never move: switches, exits and barriers, by name.
 
     The position of a barrier is the middle of its base.
     """

@@ -24,7 +24,10 @@ AXES: Final = {"position.x": 0, "position.y": 1, "position.z": 2}
 
 @record
 class LevelSignal:
-    """A signal of a level: its name, its arguments, and the function that reads its value from a simulation."""
+    """A signal of a level.
+
+    It has a name, arguments, and a function that reads its value from a simulation.
+    """
 
     base: str
     arguments: tuple[str, ...]
@@ -34,9 +37,11 @@ class LevelSignal:
 class Signals(Mapping[str, float]):
     """The current signals of a simulation, by name.
 
-    ``health stamina time position.x position.y position.z visible seen crouching grounded``; for
-    each entity ``distance bearing line_of_sight``; ``active(SWITCH)``, ``open(BARRIER)``; and the
-    aliases that the level declares.
+    - Of the player and the game: ``health stamina time position.x position.y position.z visible
+      seen crouching grounded``.
+    - Of each entity: ``distance(ENTITY) bearing(ENTITY) line_of_sight(ENTITY)``.
+    - Of each switch ``active(SWITCH)``, and of each barrier ``open(BARRIER)``.
+    - The aliases that the level declares.
     """
 
     __slots__ = ("_game", "_readers")
@@ -89,7 +94,7 @@ def level_signals(level: StealthLevel) -> dict[str, LevelSignal]:
 
 
 def signal_list(level: StealthLevel) -> str:
-    """List the names of a level's signals in words, for messages."""
+    """Return one text that lists the names of a level's signals, for messages."""
     aliases = dict(level.signals)
     plain = [name for name, signal in level_signals(level).items() if name in aliases or not signal.arguments]
     plain_names = ", ".join(f"`{name}`" for name in plain)
@@ -106,7 +111,8 @@ def signal_list(level: StealthLevel) -> str:
 def position_readers(level: StealthLevel) -> dict[str, _PositionReader]:
     """Return the functions that read the positions of the entities, by the names of the entities.
 
-    Enemies are located at their feet, barriers at the middle of their base.
+    The position of an enemy is at its feet, that of a barrier in the middle of its base, and that
+    of a mover at its centre.
     """
     places: dict[str, _PositionReader] = {name: _fixed_position(place) for name, place in fixed_places(level).items()}
     places |= {enemy.name: _enemy_position(index) for index, enemy in enumerate(level.enemies)}
@@ -146,7 +152,10 @@ def _mover_position(index: int) -> _PositionReader:
 
 
 def _bearing(game: Simulation, place: Point) -> float:
-    """Return the angle from the player's yaw to a place, in [-pi, pi); 0 if the player stands there."""
+    """Return the angle from the player's yaw to a place, in [-pi, pi).
+
+    It is 0 if the player stands at the place.
+    """
     player = game.world.player
     x, y = place[0] - player.position[0], place[1] - player.position[1]
     if x == y == 0.0:

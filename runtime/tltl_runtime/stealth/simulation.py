@@ -44,9 +44,9 @@ class Simulation:
         self.world.close()
 
     def reset(self, seed: int) -> None:
-        """Begin the episode that ``seed`` determines."""
+        """Begin an episode. ``seed`` determines everything in it that is random."""
         self.seed = seed
-        # Separate random streams: the barrier that opens must not depend on how often the guards drew.
+        # Separate random streams: how many numbers the enemies draw must not decide which barrier opens.
         start, patrols, self._unlocking = np.random.default_rng(seed).spawn(3)
         self.world.reset(start)
         self.enemies.reset(patrols)
@@ -58,8 +58,8 @@ class Simulation:
     def step(self, action: Sequence[int]) -> None:
         """Play one decision, :data:`~tltl_runtime.stealth.world.player.DECISION` seconds long.
 
-        ``action`` has the index of the choice for each branch, see
-        :data:`~tltl_runtime.stealth.snapshot.CHOICES`.
+        For each branch of :data:`~tltl_runtime.stealth.snapshot.CHOICES`, ``action`` has the index
+        of a choice.
         """
         self.world.step(action)
         self.enemies.step(DECISION, player_view(self.world.player), self.world.mover_boxes())
@@ -73,7 +73,10 @@ class Simulation:
         return self.steps * DECISION
 
     def signals(self) -> Signals:
-        """Return the signals for specs, by name; they are valid until the next step."""
+        """Return the current signals, by name.
+
+        A signal is computed when it is read, so read it before the next step.
+        """
         return Signals(self)
 
     def snapshot(self) -> Snapshot:

@@ -1,4 +1,7 @@
-"""The actions and the visible state of the game; importing this module does not load the physics."""
+"""The actions and the visible state of the game.
+
+Importing this module does not load the physics.
+"""
 
 from __future__ import annotations
 
@@ -18,27 +21,27 @@ CHOICES: Final[Mapping[str, tuple[str, ...]]] = {
     "crouch": ("no", "yes"),
     "sprint": ("no", "yes"),
 }
-"""The branches of an action and the names of their choices.
+"""The branches of an action, each with the names of its choices.
 
-``greater`` means towards greater coordinates.
+``greater`` moves the player towards greater coordinates, ``smaller`` towards smaller ones.
 """
 
 BRANCHES: Final = tuple(map(len, CHOICES.values()))
 """The number of choices of each branch: (3, 3, 2, 2, 2)."""
 
 ACTIONS: Final = frozenset(product(*map(range, BRANCHES)))
-"""All valid actions."""
+"""All valid actions: for each branch, the index of a choice."""
 
 
 @record
 class Snapshot:
-    """The visible state at one moment, for recordings and pictures; tuples are in the order of the level.
+    """The visible state at one moment, for recordings and pictures.
 
-    ``time`` is in seconds since the reset, ``health`` in [0, 1]. ``enemies`` are the positions of
-    the enemies' feet, ``yaws`` their yaws, ``modes`` their modes (``patrol``, ``chase``,
-    ``search``, ``return``), and ``sees`` says which of them see the player. ``movers`` are the
-    centres of the movers. ``active`` and ``open`` say which switches are active and which barriers
-    are open.
+    ``time`` is in seconds since the reset, ``health`` in [0, 1]. All tuples are in the order of the
+    level. ``enemies`` are the positions of the enemies' feet, ``yaws`` their yaws in radians,
+    ``modes`` their modes (``patrol``, ``chase``, ``search``, ``return``), and ``sees`` says which
+    of them see the player. ``movers`` are the centres of the movers. ``active`` and ``open`` say
+    which switches are active and which barriers are open.
     """
 
     time: float
@@ -67,6 +70,10 @@ def player_view(player: PlayerState) -> PlayerView:
 
 
 def touches(feet: Point, radius: float, height: float, box: Box) -> bool:
-    """Whether the upright bounding box of a body overlaps ``box``."""
+    """Whether the upright bounding box of a body overlaps ``box``.
+
+    The body stands at ``feet``. It is ``height`` metres tall and extends ``radius`` metres to each
+    side.
+    """
     (x, y, z), (x0, y0, z0), (x1, y1, z1) = feet, box.low, box.high
     return x0 - radius < x < x1 + radius and y0 - radius < y < y1 + radius and z0 - height < z < z1

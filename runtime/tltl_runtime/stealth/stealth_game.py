@@ -1,7 +1,7 @@
 """The stealth game as a :class:`~tltl_runtime.game.game.Game`.
 
-Modules that play or draw are imported only when they are used. So levels and recordings can be read
-without pybullet.
+This module imports the modules that play or draw only when it needs them. So it can read levels and
+recordings without pybullet.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 
 
 class StealthLevelFiles(LevelFiles[StealthLevel]):
-    """The ``.toml`` files of the levels."""
+    """Finds and reads the ``.toml`` files of levels."""
 
     def names(self) -> tuple[str, ...]:
         """Return the names of the levels that come with the package."""
@@ -53,7 +53,7 @@ class StealthLevelFiles(LevelFiles[StealthLevel]):
         return file.level_path(name)
 
     def variants(self, name: str) -> tuple[str, ...]:
-        """Return the variants of a level."""
+        """Return the names of a level's variants, in the order of its file."""
         return file.variants(name)
 
     def overlays(self, name: str) -> tuple[str, ...]:
@@ -65,11 +65,14 @@ class StealthLevelFiles(LevelFiles[StealthLevel]):
         return file.level_and_changes(name, variant)
 
     def dependencies(self, name: str, variant: str) -> Iterator[Path]:
-        """Yield the files of a level, its assets and overlays, and its spec."""
+        """Yield the files that a level depends on: its own, assets, overlays, and its spec."""
         return level_dependencies(file.level_path(name), variant)
 
     def candidates(self, name: str, variant: str, file_name: str) -> Iterator[Path]:
-        """Yield the possible paths of a level's file."""
+        """Yield the paths at which one of a level's files may be.
+
+        ``file_name`` is the name of the file in the ``files`` of the level.
+        """
         return file_candidates(file.level_path(name), variant, file_name)
 
 
@@ -90,17 +93,20 @@ class StealthGame(Game[StealthLevel, Episode]):
         return level_hash(level)
 
     def params(self, level: StealthLevel) -> dict[str, float]:
-        """Return a level's params."""
+        """Return the values that a level defines for params of specs, in SI units, by name."""
         return params(level)
 
     def check_fit(self, level: StealthLevel, fspa: Fspa, spec: str | Path | Fspa) -> None:
-        """Raise one TltlError for everything that a spec needs and a level lacks."""
+        """Raise a TltlError that lists everything that a spec needs and a level lacks.
+
+        ``fspa`` is the automaton of ``spec``.
+        """
         from tltl_runtime.stealth.env import check_fit
 
         check_fit(level, fspa, spec)
 
     def missing_sensors(self, level: StealthLevel, sensors: Sensors) -> Iterator[str]:
-        """Yield the entities and signals that the sensors refer to and a level does not have."""
+        """Yield the entities and signals that ``sensors`` names and the level does not have."""
         return missing_sensors(level, sensors)
 
     def landmarks(self, level: StealthLevel) -> dict[str, Point]:
@@ -116,15 +122,15 @@ class StealthGame(Game[StealthLevel, Episode]):
         return {barrier.name: barrier.box for barrier in level.barriers}
 
     def reach_warnings(self, level: StealthLevel, fspa: Fspa) -> list[Diagnostic]:
-        """Return warnings for the entities of a spec that no player can reach."""
+        """Return a warning for each entity of a spec that no player can reach."""
         return reach_warnings(level, fspa)
 
     def is_infeasible(self, level: StealthLevel, fspa: Fspa) -> bool:
-        """Return whether no player can meet the spec."""
+        """Return whether no player can meet the spec; False if that is unknown."""
         return is_infeasible(level, fspa)
 
     def level_fault(self, error: RuntimeError) -> TltlError | None:
-        """Return TLT0806 if the player has left the level, else None."""
+        """Return TLT0806 if ``error`` says that the player has left the level, else None."""
         return player_fault(error)
 
     def make_env(
@@ -144,7 +150,7 @@ class StealthGame(Game[StealthLevel, Episode]):
         return make_env(level, variant, spec, sensors=sensors, reward=reward, params=params, render_mode=render_mode)
 
     def recorder(self, env: gymnasium.Env[Any, Any], player: str = "unknown") -> RecordEpisode:
-        """Return an environment that records its episodes."""
+        """Wrap an environment to record its episodes, with ``player`` as the player's name."""
         from tltl_runtime.stealth.episode_recorder import RecordEpisode
 
         return RecordEpisode(env, player)
@@ -152,7 +158,10 @@ class StealthGame(Game[StealthLevel, Episode]):
     def expert_episodes(
         self, env: EpisodeRecorder[Episode], seeds: Iterable[int], *, careful: bool = True
     ) -> Iterator[Episode]:
-        """Yield an episode of the scripted expert for each seed."""
+        """Yield an episode of the scripted expert for each seed.
+
+        An expert that is not ``careful`` plays as if no enemy could see it.
+        """
         from tltl_runtime.stealth.expert.expert import expert_episodes
 
         return expert_episodes(env, seeds, careful=careful)
@@ -162,15 +171,15 @@ class StealthGame(Game[StealthLevel, Episode]):
         return read_episode(path)
 
     def episode_from_bytes(self, data: bytes, name: str) -> Episode:
-        """Return the episode in the bytes of a file."""
+        """Return the episode in the bytes of a file; messages call the file ``name``."""
         return from_bytes(data, name)
 
     def episode_bytes(self, episode: Episode) -> bytes:
-        """Return the bytes of the file of an episode."""
+        """Return the bytes that a file of the episode contains."""
         return to_bytes(episode)
 
     def summary(self, episode: Episode, index: int = 0) -> EpisodeSummary:
-        """Return the summary of an episode."""
+        """Return the summary of an episode; ``index`` is its number in an evaluation."""
         return summary_of(episode, index)
 
     def cause(self, episode: Episode) -> Cause:
@@ -178,16 +187,19 @@ class StealthGame(Game[StealthLevel, Episode]):
         return cause(episode)
 
     def observers(self, episode: Episode, begin_s: float, end_s: float) -> tuple[str, ...]:
-        """Return the enemies that saw the player between two times, in seconds since the reset."""
+        """Return the names of the enemies that saw the player between two times.
+
+        The times are in seconds since the reset.
+        """
         shots = [shot for shot in episode.snapshots if begin_s <= shot.time <= end_s]
         enemies = enumerate(episode.level.enemies)
         return tuple(enemy.name for row, enemy in enemies if any(shot.sees[row] for shot in shots))
 
     def shut_barriers(self, episode: Episode) -> tuple[str, ...]:
-        """Return the solid barriers that were shut at the end."""
+        """Return the names of the solid barriers that were shut at the end of an episode."""
         barriers = zip(episode.level.barriers, episode.snapshots[-1].open, strict=True)
         return tuple(barrier.name for barrier, is_open in barriers if barrier.kind == "solid" and not is_open)
 
 
 GAME: Final = StealthGame()
-"""The game, as :mod:`tltl_runtime.game.registry` looks it up."""
+"""The stealth game. :mod:`tltl_runtime.game.registry` finds it by this name."""
