@@ -16,7 +16,7 @@ from tltl_runtime.support.suggestion import suggestion
 from tltlc.api import Diagnostic, Fspa, Signal, TltlError, monitors, specs
 
 _KIND_OF: Final = {"active": "switch", "open": "barrier"}
-"""The kind of entity that each of these signals is about; entities of other kinds do not have it."""
+"""The signals that only one kind of entity has, and that kind."""
 
 _ARTICLE: Final = {"angle": "an angle"}
 
@@ -24,10 +24,16 @@ _ARTICLE: Final = {"angle": "an angle"}
 def check_supply(level: StealthLevel, fspa: Fspa, places: SpecPlaces) -> list[Diagnostic]:
     """Return diagnostics for everything that a spec uses and a level does not supply.
 
-    Errors: TLT0810, an entity is missing; TLT0811, a signal is missing; TLT0812, a signal has
-    another type; TLT0617, the spec has another clock; TLT0307, the level's value of a param is
-    outside the param's range. Warnings: TLT0812, a signal has another range; TLT0813, the spec is
-    made for another level.
+    ``fspa`` is the automaton of the spec. ``places`` finds the labels of the diagnostics in its
+    source.
+
+    - TLT0810, error: the level has no such entity.
+    - TLT0811, error: the level has no such signal.
+    - TLT0812: the level's signal has another type than the spec declares (error), or values outside
+      the declared range (warning).
+    - TLT0617, error: the spec's clock differs from the game's.
+    - TLT0307, error: the level's value of a param is outside the range that the spec declares.
+    - TLT0813, warning: the spec names another level.
     """
     diagnostics = [*_check_signals(level, fspa, places)]
     if fspa.level is not None and fspa.level != level.name:
@@ -58,7 +64,7 @@ def params_from_level(level: StealthLevel, fspa: Fspa) -> dict[str, float]:
 
 
 def used_entities(level: StealthLevel, fspa: Fspa) -> tuple[str, ...]:
-    """Return the entities of the level that the signals of a spec name, in the spec's order."""
+    """Return the names of the level's entities that occur in a spec's signals, in their order."""
     entities = entity_names(level)
     return tuple(dict.fromkeys(name for signal in fspa.signals for name in signal.arguments if name in entities))
 
@@ -85,7 +91,11 @@ def _check_signals(level: StealthLevel, fspa: Fspa, places: SpecPlaces) -> Itera
 def _check_declaration(
     signal: Signal, offer: OfferedSignal, level: StealthLevel, places: SpecPlaces
 ) -> Iterator[Diagnostic]:
-    """Yield TLT0812 if the level supplies a signal with another type or range than the spec declares."""
+    """Yield TLT0812 if the level's signal does not fit its declaration in the spec.
+
+    ``offer`` describes the level's signal, and ``signal`` is the declaration. Another type is an
+    error; values outside the declared range are a warning.
+    """
     needs_bool = signal.type == "bool" and offer.type != "bool"
     if needs_bool or specs.TYPES[signal.type] != specs.TYPES[offer.type]:
         title = (

@@ -16,14 +16,17 @@ from tltl_runtime.stealth.world.player import PlayerKind
 from tltlc.api import Diagnostic, Fspa, Severity, TltlError, expressions, fileio, ranges, replace
 
 _LIFT_STEP: Final = 0.25
-"""The search for an obstacle that is too high raises the jumps in steps of this height, in metres."""
+"""How much higher each jump is than the one before, in metres.
+
+:class:`_ObstacleSearch` tries ever higher jumps to find a solid that is too high.
+"""
 
 
 def check_reach(level: StealthLevel, reach: Reach, fspa: Fspa, places: SpecPlaces) -> list[Diagnostic]:
     """Return TLT0814 for each entity of a spec that no player can reach.
 
-    The diagnostics are errors if the spec cannot be met for this reason, else warnings. The level
-    must supply everything that the spec uses.
+    All of them are errors if nobody can meet the spec without these entities, else warnings. The
+    level must supply everything that the spec uses.
     """
     unreachable = [name for name in used_entities(level, fspa) if not reach.reaches(name)]
     if not unreachable:
@@ -40,7 +43,10 @@ def check_reach(level: StealthLevel, reach: Reach, fspa: Fspa, places: SpecPlace
 
 
 def check_height(level: StealthLevel, reach: Reach) -> list[Diagnostic]:
-    """Return a warning, TLT0806, if a jump may lead out of a level, which ends an episode with an error."""
+    """Return a warning, TLT0806, if a jump may lead out of a level, else an empty list.
+
+    Leaving the level ends an episode with an error.
+    """
     jump = reach.highest + highest_jump(PlayerKind())
     top = level.bounds.high[2]
     if jump <= top:
@@ -52,9 +58,10 @@ def check_height(level: StealthLevel, reach: Reach) -> list[Diagnostic]:
 
 
 def reach_warnings(level: StealthLevel, fspa: Fspa) -> list[Diagnostic]:
-    """Return the results of :func:`check_reach` as warnings, because one may play a level whose spec cannot be met.
+    """Return the diagnostics of :func:`check_reach`, all as warnings.
 
-    If the level is too large to search, return TLT0006 as a warning.
+    They are no errors here, because one may play a level whose spec nobody can meet. If the level
+    is too large to search, return TLT0006 as a warning.
     """
     try:
         diagnostics: Iterable[Diagnostic] = check_reach(level, compute_reach(level), fspa, SpecPlaces(None))
@@ -76,7 +83,10 @@ def is_infeasible(level: StealthLevel, fspa: Fspa) -> bool:
 
 
 def _impossible_atoms(level: StealthLevel, reach: Reach, fspa: Fspa) -> frozenset[int]:
-    """Return the indices of the atoms that cannot hold at any reachable place."""
+    """Return the indices of the atoms that hold at no reachable place.
+
+    The result may miss some of these atoms, but contains no others.
+    """
     offered = offered_signals(level)
     box: dict[ranges.Variable, ranges.Interval] = {}
     for signal in fspa.signals:
@@ -101,7 +111,7 @@ def _ends(low: float | None, high: float | None) -> ranges.Interval:
 def _upper_bound(expression: expressions.Expression, box: Mapping[ranges.Variable, ranges.Interval]) -> float:
     """Return an upper bound of an expression whose variables are in the intervals of ``box``.
 
-    The bound is infinite if it is unknown.
+    Return infinity if no bound is known.
     """
     highest = -inf
     try:
@@ -135,9 +145,10 @@ def _may_accept(fspa: Fspa, impossible: frozenset[int]) -> bool:
 
 
 class _ObstacleSearch:
-    """Finds the obstacle in the way to an entity.
+    """Finds the obstacle that keeps the player from an entity.
 
-    It removes obstacles, or makes jumps higher, and checks whether the player then reaches the entity.
+    It removes an obstacle, or lets the player jump higher, and checks whether the player then
+    reaches the entity.
     """
 
     def __init__(self, level: StealthLevel, reach: Reach) -> None:
@@ -147,7 +158,10 @@ class _ObstacleSearch:
         self._budget = Budget(fileio.limits.WORK["cells of reachable space"])
 
     def describe(self, entity: str) -> str:
-        """Describe what blocks the way to an unreachable entity; if the budget is spent, how near the player gets."""
+        """Describe what blocks the way to ``entity``, which is unreachable.
+
+        If no single obstacle does, or the budget is spent, say how near the player gets.
+        """
         nearest = f"one gets no nearer to it than {self._reach.distances[entity]:.1f} m"
         try:
             return self._describe_barrier(entity) or self._describe_high_solid(entity) or nearest
@@ -155,7 +169,10 @@ class _ObstacleSearch:
             return nearest
 
     def _describe_barrier(self, entity: str) -> str:
-        """Describe the barrier in the way and why it stays shut; return an empty text if there is none."""
+        """Describe the barrier that blocks the way, and why it stays shut.
+
+        Return an empty text if no barrier does.
+        """
         shut = [barrier for barrier in self._level.barriers if barrier.name not in self._reach.barriers]
         unlocked_by = {name: (unlock.switch,) for unlock in self._level.unlocks for name in unlock.barriers}
         for barrier in shut:
@@ -167,9 +184,9 @@ class _ObstacleSearch:
         return ""
 
     def _describe_high_solid(self, entity: str) -> str:
-        """Describe the solid that is too high to jump over; return an empty text if there is none.
+        """Describe the solid that blocks the way because it is too high to jump onto.
 
-        The search tries ever higher jumps.
+        The search tries ever higher jumps. Return an empty text if there is no such solid.
         """
         lift = normal = highest_lift(PlayerKind())
         while lift < self._level.bounds.high[2] and not self._reach_with_lift(lift).reaches(entity):
@@ -187,7 +204,10 @@ class _ObstacleSearch:
         return self._by_lift[lift]
 
     def _is_behind(self, entity: str, obstacle: str) -> bool:
-        """Whether an entity could be reached if a solid or barrier were removed."""
+        """Whether the player could reach ``entity`` if ``obstacle`` were removed.
+
+        ``obstacle`` is the name of a solid or a barrier.
+        """
         if obstacle not in self._by_removed:
             self._by_removed[obstacle] = compute_reach(self._level, without=[obstacle], budget=self._budget)
         return self._by_removed[obstacle].reaches(entity)

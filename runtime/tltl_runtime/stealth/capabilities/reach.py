@@ -1,22 +1,23 @@
 """Compute which places of a level a player can reach.
 
-The result is an over-approximation, so that "unreachable" is a proof. These assumptions about the
-physics and :class:`~tltl_runtime.stealth.world.player.PlayerKind` err on the side of reaching too
-much (tests check some of them in the physics):
+The result may contain places that no player reaches, but it misses none that a player reaches. So
+"unreachable" is a proof. These assumptions about the physics and
+:class:`~tltl_runtime.stealth.world.player.PlayerKind` err on the side of reaching too much (tests
+check some of them in the physics):
 
 - The body is always crouched, 0.9 m high, and extends 0.25 m to each side, not 0.3 m.
-- The top of any box is ground. So is the space up to 0.28 m beside the top and 0.16 m below it, where
-  contact with the edge of the box counts as ground.
+- The top of any box is ground. So is the space up to 0.28 m beside the top and 0.16 m below it,
+  where contact with the edge of the box counts as ground.
 - From ground, the feet can get to tops that are at most 1.27 m higher. A jump lifts them by 0.97 m,
   computed in steps of 1/60 s. The round end of the body then slides up the last 0.3 m of an edge; a
-  higher edge hits the side of the body. (In tests, the player reaches a top of 1.1 m nearly always, a
-  top of 1.2 m in one of a hundred tries, and a top of 1.24 m never.)
+  higher edge hits the side of the body. (In tests, the player reaches a top of 1.1 m nearly always,
+  a top of 1.2 m in one of a hundred tries, and a top of 1.24 m never.)
 - In the air, the player moves at most at the speed of a sprint, 5 m/s, whatever the stamina. A fall
   gets no faster than 8 m/s, so it lasts longer than in the physics.
 - Movers block nothing. Their tops are ground along their whole path, and they throw a player who
   stands on them upwards with their own speed plus 3 m/s.
-- Lasers and enemies stop nobody. Barriers are shut until their switches have been reached; if one
-  of several barriers opens at random, all of them do.
+- Lasers and enemies stop nobody. Barriers are shut until their switches have been reached. If a
+  switch opens one of several barriers at random, it opens all of them here.
 """
 
 from __future__ import annotations
@@ -45,12 +46,12 @@ NEAR: Final = 1.0
 """An entity counts as reached within this distance of its position, in metres."""
 
 _EDGE: Final = 0.28
-"""How far beside a top the ground extends, in metres.
+"""How far the ground extends beside the top of a box, in metres.
 
 A contact counts as ground if it points upwards by more than 30 degrees.
 """
 _EDGE_DEPTH: Final = 0.16
-"""How far below a top the feet are when the body touches the edge of the top from the side, in metres."""
+"""How far the feet are below a top when the body touches the top's edge, in metres."""
 _TOUCH: Final = 0.02
 _THROW: Final = 3.0
 _PHYSICS_STEP: Final = 1 / 60
@@ -61,11 +62,13 @@ _ROUNDING: Final = 1e-5
 class Reach:
     """The reachable part of a level.
 
-    ``switches`` names the switches that can be reached, ``barriers`` those barriers that open.
-    ``distances`` has the least distance, in metres, from the feet to each entity that does not
-    move; for moving entities it is 0. ``ground`` [rows, columns] marks the cells with ground to
-    stand on; they are ``cell`` metres wide and start at ``origin`` (west, south); rows go north.
-    ``highest`` is the height of the highest ground, in metres.
+    - ``switches``: the switches that can be reached.
+    - ``barriers``: the barriers that these switches open.
+    - ``distances``: by entity, the least distance from the feet to it, in metres; 0 for enemies and
+      movers.
+    - ``ground`` [rows, columns]: the cells with ground to stand on. They are ``cell`` metres wide
+      and start at ``origin`` (west, south). Rows go north.
+    - ``highest``: the height of the highest ground, in metres.
     """
 
     switches: tuple[str, ...]
@@ -77,7 +80,7 @@ class Reach:
     highest: float
 
     def reaches(self, entity: str) -> bool:
-        """Whether the player can get within a metre of an entity."""
+        """Whether the player can get within :data:`NEAR`, a metre, of an entity."""
         return self.distances[entity] <= NEAR
 
 
@@ -86,12 +89,12 @@ def compute_reach(
 ) -> Reach:
     """Compute everything that a player may reach from any start of an episode.
 
-    ``lift`` is how much higher than the last ground the next ground may be, in metres, by default
+    ``lift`` is the greatest rise from one ground to the next, in metres, by default
     :func:`highest_lift`. ``without`` names solids and barriers that are removed before the search.
 
     Raises:
-        TltlError: TLT0006, the level is too large or too complex to search.
-        SpaceBudgetError: the search exceeds ``budget``; only if one is given, in place of TLT0006.
+        TltlError: TLT0006, ``budget`` is None, and the level is too large or too complex to search.
+        SpaceBudgetError: the search exceeds ``budget``.
     """
     if budget is not None:
         return _compute_reach(level, lift, without, budget)
@@ -138,7 +141,10 @@ def _compute_reach(level: StealthLevel, lift: float | None, without: Collection[
 
 
 def highest_lift(kind: PlayerKind) -> float:
-    """Return the greatest rise from ground to ground, in metres: a jump plus the radius of the capsule's end."""
+    """Return the greatest rise from ground to ground, in metres.
+
+    It is a jump plus the radius of the capsule's round end, which slides up an edge.
+    """
     return highest_jump(kind) + kind.radius
 
 
@@ -152,7 +158,7 @@ def highest_jump(kind: PlayerKind) -> float:
 
 
 class _Search:
-    """The reached ground, by height, and the space around it."""
+    """A search: the ground that is reached so far, by height, and the space around it."""
 
     def __init__(
         self, level: StealthLevel, kind: PlayerKind, lift: float, without: Collection[str], budget: Budget
@@ -172,7 +178,7 @@ class _Search:
         cuts = [z for height in heights for z in (height - _EDGE_DEPTH, height + _TOUCH, height + lift)]
         self.grid = SpaceGrid(level.bounds, [*self._solids, *barriers], cuts, kind, budget)
         self._tops: dict[tuple[float, float], Field] = {}
-        """The cells from which the feet can touch a top, by the top's lowest and highest height."""
+        """The cells from which the feet can touch a top, by its ``lowest`` and its ``height``."""
         for top in tops:
             if top.lowest < level.bounds.high[2] - _TOUCH:
                 key = round(top.lowest, 6), round(top.height, 6)
@@ -193,7 +199,10 @@ class _Search:
         return max(height for height, ground in self._ground.items() if ground.any())
 
     def spread(self, opened: Collection[str]) -> Space:
-        """Extend the reached ground while these barriers are open; return the space of the feet."""
+        """Extend the reached ground as far as possible while the barriers ``opened`` are open.
+
+        Return the space in which the feet can be.
+        """
         shut = [box for name, box in self._barriers.items() if name not in opened]
         free = self.grid.free_space([*self._solids, *shut])
         pending = {height: ground.copy() for height, ground in self._ground.items() if ground.any()}
@@ -215,17 +224,18 @@ class _Search:
         return self._space
 
     def _walk(self, free: Space, height: float, fresh: Field) -> None:
-        """Extend the ``fresh`` ground by connected ground at the same height."""
+        """Add to the ``fresh`` ground all ground at its height that is connected with it."""
         same = np.logical_or.reduce([near for (_, top), near in self._tops.items() if top == height] or [fresh])
         same &= free[self.grid.slabs(height - _EDGE_DEPTH, height + _TOUCH)].any(axis=0)
         fresh |= flood((same | fresh)[None], fresh[None], self.grid.budget)[0] & ~self._ground[height]
         self._ground[height] |= fresh
 
     def _flight(self, free: Space, height: float, ground: Field) -> tuple[tuple[slice, slice], Space]:
-        """Return the window of rows and columns, and the space in it, that a flight can reach.
+        """Return the part of the space that a flight from ``ground`` at ``height`` can reach.
 
-        A flight is a jump, a leap or a fall from some ground. The space has the slabs from the
-        lowest one to the greatest height of a jump.
+        A flight is a jump, a leap or a fall. The result is a window of rows and columns, and the
+        space in this window. The space has the slabs from the lowest one up to the greatest height
+        of a jump.
         """
         grid = self.grid
         times = np.array([self._time(height - low) for low in grid.lows[grid.highs <= height + self._lift + _ROUNDING]])
@@ -240,7 +250,7 @@ class _Search:
         return (rows, columns), flood(allowed, seeds, grid.budget)
 
     def _time(self, drop: float) -> float:
-        """Return the longest time, in seconds, from ground to ``drop`` metres below it.
+        """Return the longest time, in seconds, of a flight from ground to ``drop`` metres below it.
 
         The flight starts with a jump that lifts the feet by the full lift.
         """
@@ -254,7 +264,11 @@ class _Search:
 
 @record
 class _Top:
-    """A surface to stand on; a player at ``lowest`` or above is carried up to ``height``."""
+    """The top of a box, on which a player can stand.
+
+    A mover carries or throws a player from ``lowest`` up to ``height``. For other boxes, both are
+    the height of the top.
+    """
 
     box: Box
     lowest: float
@@ -262,7 +276,7 @@ class _Top:
 
 
 def _mover_top(mover: Mover, gravity: float) -> _Top:
-    """Return the top of a mover, swept along its whole path."""
+    """Return the top of a mover for all positions on its path."""
     lows = [min(point[axis] for point in mover.path) - mover.size[axis] / 2 for axis in range(3)]
     highs = [max(point[axis] for point in mover.path) + mover.size[axis] / 2 for axis in range(3)]
     swept = Box((lows[0], lows[1], lows[2]), (highs[0], highs[1], highs[2]))

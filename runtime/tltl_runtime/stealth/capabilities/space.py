@@ -1,9 +1,9 @@
 """The space of a level where the player's feet can be, cut into boxes.
 
-The level is cut into square cells and, by height, into slabs. A slab ends at every height where an
-obstacle begins or ceases to be in the way, so that heights are exact. A box of space counts as free
-unless it is certain that the body fits nowhere in it, so no free space is left out. The body is the
-crouched one, 5 cm narrower than in the game, with two round ends.
+The ground plan is cut into square cells, and the height into slabs. A slab ends at every height
+where an obstacle begins or ceases to be in the way, so heights are exact. A box of space is one
+cell in one slab. It counts as free unless the body certainly fits nowhere in it, so no free space
+is left out. The body is the crouched one, 5 cm narrower than in the game, with two round ends.
 """
 
 from __future__ import annotations
@@ -19,40 +19,46 @@ from tltl_runtime.stealth.level import Box, Point
 from tltl_runtime.stealth.world.player import PlayerKind
 
 CELL: Final = 0.25
-"""The side of a cell, in metres; it is doubled until there are at most ``_MOST_BOXES`` boxes."""
+"""The side of a cell, in metres.
+
+:class:`SpaceGrid` doubles it until the level has at most ``_MOST_BOXES`` boxes of space.
+"""
 
 _MOST_BOXES: Final = 30_000_000
 """The most boxes of space, over all slabs."""
 
 _WIDTHS: Final = (0.25, 0.15)
-"""Distances from the body's axis within which a box is in the way, in metres.
+"""Distances from the body's axis within which an obstacle is in the way, in metres.
 
 The body is 5 cm narrower here, because no contact in the physics is deeper. Its ends are round, so
-the body is shorter farther from its axis, and nearer boxes are in the way at more heights. Two widths
-approximate this well enough.
+it is shorter farther from its axis: an obstacle near the axis is in the way at more heights. Two
+distances approximate this well enough.
 """
 
 _ROUNDING: Final = 1e-5
 
 Field = NDArray[np.bool_]
-"""A mask of cells, [rows, columns]; rows run along y."""
+"""A mask of cells, [rows, columns]; rows go north."""
 
 Space = NDArray[np.bool_]
 """A mask of boxes of space, [slabs, rows, columns]."""
 
 
 class SpaceBudgetError(Exception):
-    """A search would examine more cells of space than its budget allows."""
+    """A search examines more cells of space than its budget allows."""
 
 
 class Budget:
-    """Counts the cells of space that a search examines; raises SpaceBudgetError beyond ``most``."""
+    """Counts the cells of space that a search examines.
+
+    Raises SpaceBudgetError if there are more than ``most``.
+    """
 
     def __init__(self, most: int) -> None:
         self._remaining = most
 
     def spend(self, cells: int) -> None:
-        """Count cells as examined."""
+        """Count ``cells`` more cells as examined."""
         self._remaining -= cells
         if self._remaining < 0:
             raise SpaceBudgetError
@@ -61,11 +67,11 @@ class Budget:
 class SpaceGrid:
     """The cells and slabs of a level.
 
-    ``cuts`` are heights at which slabs must end, in addition to those of the boxes. ``origin`` is
-    the south-west corner, ``cell`` the side of a cell. ``west`` [columns] and ``south`` [rows] are
-    the low edges of the cells, ``lows`` and ``highs`` [slabs] the ends of the slabs, upwards. All
-    are in metres. ``shape`` is the shape of a space: slabs, rows, columns. Operations on cells are
-    counted in ``budget``.
+    Slabs end where ``boxes`` begin or cease to block the body of ``kind``, and at the heights
+    ``cuts``. ``origin`` is the south-west corner, ``cell`` the side of a cell. ``west`` [columns]
+    and ``south`` [rows] are the low edges of the cells, ``lows`` and ``highs`` [slabs] the ends of
+    the slabs, upwards. All are in metres. ``shape`` is the shape of a space: slabs, rows, columns.
+    ``budget`` counts the cells that each method examines.
     """
 
     def __init__(
@@ -75,7 +81,7 @@ class SpaceGrid:
         (x0, y0, z0), (x1, y1, z1) = bounds.low, bounds.high
         self.origin = (x0, y0)
         self._widths = [(width, kind.radius - sqrt(kind.radius**2 - width**2)) for width in _WIDTHS]
-        """Distances from the body's axis, each with how much shorter the body is there at each end, in metres."""
+        """For each of ``_WIDTHS``, how much shorter each end of the body is there, in metres."""
         self._height = kind.crouched_height
         ends = {z for box in boxes for _, shorter in self._widths for z in self._blocked_heights(box, shorter)}
         inside = sorted({round(z, 6) for z in (*ends, *cuts) if z0 < z < z1})
@@ -88,7 +94,7 @@ class SpaceGrid:
         self.shape = (len(self.lows), len(self.south), len(self.west))
 
     def free_space(self, boxes: Iterable[Box]) -> Space:
-        """Return where the player's feet can be, given the boxes that stop the body."""
+        """Return the space where the player's feet can be if ``boxes`` stop the body."""
         self.budget.spend(prod(self.shape))
         free: Space = np.ones(self.shape, dtype=np.bool_)
         for box in boxes:
@@ -114,12 +120,15 @@ class SpaceGrid:
         return cells
 
     def slabs(self, low: float, high: float) -> NDArray[np.bool_]:
-        """Return the slabs that overlap an interval of heights."""
+        """Return a mask of the slabs that overlap the heights from ``low`` to ``high``."""
         overlapping: NDArray[np.bool_] = (self.lows < high - _ROUNDING) & (self.highs > low + _ROUNDING)
         return overlapping
 
     def distance(self, space: Space, point: Point, most: float = inf) -> float:
-        """Return the least distance from a space to a point, in metres; infinite if more than ``most``."""
+        """Return the least distance from a space to a point, in metres.
+
+        Return infinity if it is more than ``most``.
+        """
         offsets_by_axis = [
             _interval_distances(lows, highs, value)
             for (lows, highs), value in zip(self._ends(), point[::-1], strict=True)
@@ -144,21 +153,21 @@ class SpaceGrid:
         return [(self.lows, self.highs), rows, columns]
 
     def _blocked_heights(self, box: Box, shorter: float) -> tuple[float, float]:
-        """Return the least and greatest height of the feet at which a box near the body's axis blocks it.
+        """Return the least and greatest height of the feet at which ``box`` blocks the body.
 
-        The body is shortened by ``shorter`` metres at both ends.
+        The box is near the body's axis. The body is shortened by ``shorter`` metres at both ends.
         """
         return box.low[2] - self._height + shorter, box.high[2] - shorter
 
 
 def _interval_distances(lows: NDArray[np.float64], highs: NDArray[np.float64], value: float) -> NDArray[np.float64]:
-    """Return the distance of a value from each interval; 0 inside."""
+    """Return the distance of ``value`` from each interval; 0 inside the interval."""
     offsets_by_axis: NDArray[np.float64] = np.maximum(np.maximum(lows - value, value - highs), 0.0)
     return offsets_by_axis
 
 
 def flood(free: Space, seeds: Space, budget: Budget) -> Space:
-    """Return the part of ``free`` that is connected with the seeds through shared faces.
+    """Return the part of ``free`` that is connected with ``seeds`` through shared faces.
 
     Each round spreads along whole lines of each axis in turn, so few rounds go around many corners.
     """
@@ -177,9 +186,9 @@ def flood(free: Space, seeds: Space, budget: Budget) -> Space:
 
 
 def _runs(free: Space) -> tuple[NDArray[np.int32], int]:
-    """Number the runs of free boxes along the last axis, so that free neighbours have the same number.
+    """Number the runs of free boxes along the last axis: neighbours in a run have the same number.
 
-    Return the numbers and their count.
+    Return the numbers, in the shape of ``free``, and their count.
     """
     starts = ~free
     starts[..., 0] = True
@@ -190,8 +199,8 @@ def _runs(free: Space) -> tuple[NDArray[np.int32], int]:
 def distances(field: Field, most: int) -> NDArray[np.float64]:
     """Return the distance, in cells, from each cell to the nearest cell of a field.
 
-    It is measured between the nearest points of the two cells. A distance of ``most`` or more is
-    infinite in the result.
+    It is the distance between the nearest points of the two cells. The result is infinite where the
+    distance is ``most`` or more.
     """
     rows, columns = field.shape
     places = np.arange(columns, dtype=np.float64)
@@ -208,6 +217,6 @@ def distances(field: Field, most: int) -> NDArray[np.float64]:
 
 
 def span(mask: NDArray[np.bool_]) -> slice:
-    """Return the slice from the first true element to the last."""
+    """Return the slice from the first true element to the last; an empty slice if none is true."""
     indices = np.flatnonzero(mask)
     return slice(int(indices[0]), int(indices[-1]) + 1) if len(indices) else slice(0, 0)

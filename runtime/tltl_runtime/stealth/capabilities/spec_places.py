@@ -8,11 +8,11 @@ from tltlc.api import Label, Span, Spec, expressions, syntax
 
 
 class SpecPlaces:
-    """The labels of things in the source of a spec, for diagnostics.
+    """Finds the labels of entities, signals and clauses in the source of a spec, for diagnostics.
 
-    A thing that the source does not mention has the label of the spec's name. An artefact has no
-    source: then ``spec`` is None, and there are no labels. Each method returns a tuple with the label of
-    what it finds, or an empty tuple.
+    Each method returns a tuple with one label. If the source does not contain what it looks for,
+    the label is that of the spec's name. If ``spec`` is None, all methods return an empty tuple: an
+    artefact has no source.
     """
 
     def __init__(self, spec: Spec | None) -> None:
@@ -25,7 +25,7 @@ class SpecPlaces:
         ]
 
     def entity(self, name: str) -> tuple[Label, ...]:
-        """Return the first use of an entity in the spec, else its first use in another declaration.
+        """Return the first use of an entity in the spec, else its first use anywhere in the file.
 
         If nothing uses the entity, return its declaration.
         """
@@ -44,14 +44,14 @@ class SpecPlaces:
     def signal(self, name: str) -> tuple[Label, ...]:
         """Return the first use of a signal in the spec, directly or through an atom.
 
-        If the spec does not use the signal, return its declaration.
+        If the spec does not use the signal, return the declaration of the signal.
         """
         users = [self._base_name(name), *self._atoms_of(name)]
         spans = (_first_use(self._declarations_of_spec, user) for user in users)
         return self._label(self._text_span(name) or next(filter(None, spans), None) or self._declaration_span(name))
 
     def declaration(self, signal: str) -> tuple[Label, ...]:
-        """Return the declaration of a signal if it is in the spec's file, else its first use."""
+        """Return the declaration of a signal. If it is in another file, return :meth:`signal`."""
         place = self._declaration_span(signal)
         return self._label(place) if place else self.signal(signal)
 
@@ -85,7 +85,10 @@ class SpecPlaces:
         )
 
     def _text_span(self, text: str) -> Span | None:
-        """Return the span of the first part of the spec's expressions with this text, ignoring blanks."""
+        """Return the span of the first expression in the spec that has this text, or None.
+
+        Blanks do not count.
+        """
         if self._spec is None:
             return None
         source, bare = self._spec.source, "".join(text.split())
@@ -98,7 +101,7 @@ class SpecPlaces:
 
 
 def _first_use(declarations: Iterable[syntax.Declaration], name: str) -> Span | None:
-    """Return the span of the first name or call of that name in the expressions of some declarations."""
+    """Return the span of the first use of a name in declarations, alone or in a call; else None."""
     for part in _parts(declarations):
         if isinstance(part, syntax.CallExpr) and part.name == name:
             return part.name_span

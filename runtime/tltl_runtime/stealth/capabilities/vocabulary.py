@@ -11,7 +11,10 @@ from tltlc.api import record, specs
 
 @record
 class OfferedSignal:
-    """What a level says about one of its signals: the type, and the range in SI units; None is an open end."""
+    """The type and the range of one of a level's signals, in SI units.
+
+    ``low`` or ``high`` is None if that end of the range is open.
+    """
 
     type: specs.ValueType
     low: float | None
@@ -19,12 +22,15 @@ class OfferedSignal:
 
 
 def offered_signals(level: StealthLevel) -> dict[str, OfferedSignal]:
-    """Return the signals of a level, by name, including aliases."""
+    """Return the type and range of each signal of a level, by name; aliases are included."""
     return {name: _offered_signal(signal.base, level) for name, signal in level_signals(level).items()}
 
 
 def params(level: StealthLevel) -> dict[str, float]:
-    """Return a level's params: ``level_size``, the diagonal of its bounds in metres."""
+    """Return the values that a level defines for params of specs, by name.
+
+    There is one, ``level_size``: the length of the diagonal of the bounds, in metres.
+    """
     return {"level_size": dist(level.bounds.low, level.bounds.high)}
 
 
