@@ -1,1 +1,1 @@
-"""The enemies: their perception, their behaviour and their motion."""
+"""The enemies: what they see, decide and do. Begin with `enemy`."""

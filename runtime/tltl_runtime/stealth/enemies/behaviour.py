@@ -1,7 +1,8 @@
 """Behaviour trees made of closures.
 
-A node is a function from an actor to a status; a tick of the whole tree costs about a microsecond.
-Nodes are stateless: the actor keeps all state, so all enemies of a kind share one tree.
+A node is a function from an actor to a status: FAILURE, SUCCESS or RUNNING. A *tick* calls the root
+of the tree once and takes about a microsecond. Nodes have no state, so actors can share them: the
+actor keeps all state.
 """
 
 from __future__ import annotations
@@ -10,16 +11,19 @@ from collections.abc import Callable
 from typing import Any, Final
 
 FAILURE: Final = 0
-"""The node cannot run now: a selector tries its next child."""
+"""The node cannot run in this tick: a selector then tries its next child."""
 SUCCESS: Final = 1
 RUNNING: Final = 2
-"""The node continues at the next tick."""
+"""The node has begun, and continues in the next tick."""
 
 Node = Callable[[Any], int]
 
 
 def selector(*children: Node) -> Node:
-    """At each tick, run the children from the left until one does not fail."""
+    """Make a node that runs its children from the left, at each tick, until one does not fail.
+
+    It has the status of that child; it fails if all children fail.
+    """
 
     def tick(actor: Any) -> int:
         for child in children:
@@ -32,7 +36,10 @@ def selector(*children: Node) -> Node:
 
 
 def sequence(*children: Node) -> Node:
-    """At each tick, run the children from the left as long as they succeed."""
+    """Make a node that runs its children from the left, at each tick, as long as they succeed.
+
+    It has the status of the first child that does not succeed; it succeeds if all children succeed.
+    """
 
     def tick(actor: Any) -> int:
         for child in children:
@@ -45,7 +52,7 @@ def sequence(*children: Node) -> Node:
 
 
 def condition(test: Callable[[Any], bool]) -> Node:
-    """Succeed if the test holds, else fail."""
+    """Make a node that succeeds if ``test`` holds for the actor, else fails."""
 
     def tick(actor: Any) -> int:
         return SUCCESS if test(actor) else FAILURE
@@ -54,7 +61,10 @@ def condition(test: Callable[[Any], bool]) -> Node:
 
 
 def action(act: Callable[[Any], bool]) -> Node:
-    """Run until ``act`` returns True."""
+    """Make a node that calls ``act`` at each tick and succeeds when ``act`` returns True.
+
+    Until then, its status is RUNNING.
+    """
 
     def tick(actor: Any) -> int:
         return SUCCESS if act(actor) else RUNNING

@@ -1,6 +1,7 @@
-"""The branches of the enemies' behaviour: chase, search, return and patrol, and optional branches.
+"""The branches of the enemies' behaviour tree.
 
-A branch only sets where its enemy, the *guard*, goes. The guard moves after the tick of the tree.
+All enemies have chase, search, return and patrol; some have optional branches as well. A branch
+only sets where its enemy, the *guard*, goes. The guard moves after the tick of the tree.
 """
 
 from __future__ import annotations
@@ -16,17 +17,23 @@ if TYPE_CHECKING:
     from tltl_runtime.stealth.enemies.enemy import EnemyGuard
 
 _CLOSE: Final = 0.55
-"""A chase stops at this fraction of the attack range, so that a player who walks away stays in reach."""
+"""In a chase, the guard stops at this fraction of its attack range from the player.
+
+So a player who walks away stays in reach.
+"""
 
 
 @record
 class Branch:
-    """A branch of the behaviour tree; of the branches that can run, the one with the lowest ``rank`` runs."""
+    """A branch of the behaviour tree.
+
+    Of the branches that can run, the one with the lowest ``rank`` runs.
+    """
 
     name: str
     rank: int
     added: bool
-    """Whether only the enemy kinds that name the branch have it; otherwise all have it."""
+    """Whether the branch is optional: only enemy kinds that name an optional branch have it."""
     node: Node
 
 
@@ -34,9 +41,9 @@ _BRANCHES: Final[dict[str, Branch]] = {}
 
 
 def branch(name: str, *, rank: int, added: bool = False) -> Callable[[Callable[[], Node]], Callable[[], Node]]:
-    """Register the decorated function, which makes the node of a branch. A new branch needs nothing else.
+    """Return a decorator that adds a branch to the tree: decorate the function that makes its node.
 
-    ``rank`` and ``added`` are those of :class:`Branch`. Raises ValueError for a name that is taken.
+    ``rank`` and ``added`` are those of :class:`Branch`. Raises ValueError if the name is taken.
     """
 
     def register(make: Callable[[], Node]) -> Callable[[], Node]:
@@ -49,14 +56,14 @@ def branch(name: str, *, rank: int, added: bool = False) -> Callable[[Callable[[
 
 
 def added_branches() -> tuple[str, ...]:
-    """Return the names of the optional branches, which an enemy kind's ``branches`` may list."""
+    """Return the names of the optional branches, which an enemy kind's ``branches`` can list."""
     return tuple(sorted(branch.name for branch in _BRANCHES.values() if branch.added))
 
 
 def tree(branches: tuple[str, ...]) -> Node:
-    """Build the tree from the branches that all enemies have and the named optional ones.
+    """Build a tree from the branches that all enemies have and the optional ``branches``.
 
-    Raises ValueError for a name that is not an optional branch.
+    Raises ValueError if ``branches`` contains a name that is not an optional branch.
     """
     for name in branches:
         if name not in added_branches():
@@ -67,7 +74,7 @@ def tree(branches: tuple[str, ...]) -> Node:
 
 @branch("chase", rank=10)
 def chase() -> Node:
-    """Run to the player while the guard knows the player's position, and stop within reach."""
+    """While the guard knows the player's position, run to it, and stop within the attack range."""
 
     def knows(guard: EnemyGuard) -> bool:
         return guard.knows
@@ -140,8 +147,8 @@ def return_to_route() -> Node:
 def check_gaps() -> Node:
     """After each leg of the patrol, run to a narrow place off the route.
 
-    Every place is visited once before any is visited again. The speed is between walking and
-    chasing: at walking speed, the route would stay unwatched for too long.
+    :meth:`EnemyGuard.next_gap` chooses the place. The speed is the mean of the speeds of a walk and
+    of a chase: at walking speed, the guard would leave its route unwatched for too long.
     """
 
     def is_due(guard: EnemyGuard) -> bool:

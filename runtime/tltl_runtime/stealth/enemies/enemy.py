@@ -1,7 +1,8 @@
 """The enemies of a level: their perception, memory and motion, without physics.
 
-In each step an enemy looks, its behaviour tree sets a target, and the enemy turns and walks towards
-it. It walks on free straight lines of the floor only, so it cannot enter a solid or a shut barrier.
+In each step an enemy looks, its behaviour tree sets a goal, and the enemy turns and walks towards
+the goal. It walks only along straight lines that are free, so it cannot enter a solid or a shut
+barrier.
 """
 
 from __future__ import annotations
@@ -26,12 +27,12 @@ EYES: Final = 1.6
 """The height of an enemy's eyes above its feet, in metres."""
 STANDING_HEAD: Final = 1.5
 CROUCHED_HEAD: Final = 0.7
-"""The height of the player's head above its feet, in metres; enemies look for the head."""
+"""The heights of the player's head above its feet, standing and crouched, in metres."""
 
 CHEST: Final = 0.7
 """The height of the player's chest, as a fraction of the height of the head.
 
-Enemies look for head and chest.
+An enemy sees the player if it sees the head or the chest.
 """
 _ARRIVED: Final = 0.05
 _TURNED: Final = pi / 4
@@ -40,14 +41,14 @@ _MOST_LEGS: Final = 16
 
 @record
 class PlayerView:
-    """The part of the player that enemies can perceive: its feet, and the height of its head."""
+    """What enemies perceive of the player: the position of the feet, the height of the head."""
 
     position: Point
     head: float = STANDING_HEAD
 
 
 class Enemies:
-    """All enemies of a level. ``reset`` begins an episode, ``step`` advances it."""
+    """All enemies of a level. Call ``reset`` to begin an episode, then ``step`` repeatedly."""
 
     def __init__(self, level: StealthLevel, grid: Grid | None = None) -> None:
         self.level = level
@@ -69,7 +70,10 @@ class Enemies:
         self.damage = 0.0
 
     def set_open(self, barrier: int, opened: bool) -> None:
-        """Open or shut the barrier with this index. The caller must not shut it where an enemy stands."""
+        """Open or shut the barrier with this index.
+
+        The caller must not shut a barrier in which an enemy stands.
+        """
         if opened == (barrier not in self._shut):
             return
         (self._shut.discard if opened else self._shut.add)(barrier)
@@ -79,7 +83,7 @@ class Enemies:
             guard.forget_path()
 
     def step(self, dt: float, player: PlayerView, movers: Sequence[Bounds] = ()) -> None:
-        """Advance by ``dt`` seconds; ``movers`` are further boxes that block sight."""
+        """Advance by ``dt`` seconds. ``movers`` are their current boxes, which block sight, too."""
         self._boxes[self._standing :] = [(*low, *high) for low, high in movers]
         self.damage = 0.0
         for guard in self.guards:
@@ -134,7 +138,10 @@ class EnemyGuard:
         self.sees = False
         self.knows = False
         self.in_reach = False
-        """Whether the enemy could hit the player: near enough, with nothing between them."""
+        """Whether the guard can hit the player.
+
+        It must know the player's position and be near enough, with nothing between them.
+        """
         self.last_known: Point = (self.x, self.y, 0.0)
         self.search_left = 0.0
         self.searching = False
@@ -153,9 +160,9 @@ class EnemyGuard:
         self._facing: Place | None = None
         self._waypoint: Place | None = None
         self._anchor: Place = (self.x, self.y)
-        """The last position from which a path was found.
+        """The last position from which the guard found a path.
 
-        The guard can walk back there in a straight line, if it is stuck in a narrow corner.
+        If it is stuck in a narrow corner, it can walk back there in a straight line.
         """
         self._half_angle_cosine = cos(min(enemy.kind.sight_angle, 2 * pi) / 2)
 
@@ -167,7 +174,10 @@ class EnemyGuard:
         return copy_of_guard
 
     def step(self, dt: float, player: PlayerView, boxes: Sequence[Corners]) -> float:
-        """Look, decide and move; return the health that the player loses."""
+        """Look, decide and move for ``dt`` seconds; return the health that the player loses.
+
+        ``boxes`` block the guard's sight.
+        """
         self.dt = dt
         self._look(player, boxes)
         self._facing = None
@@ -190,14 +200,17 @@ class EnemyGuard:
         return (self.x, self.y, 0.0)
 
     def go(self, goal: Place, speed: float) -> None:
-        """Walk to a place, or to the nearest reachable one, at a speed in m/s from now on."""
+        """Set the goal and the speed, in m/s, at which the guard walks in this and later steps.
+
+        If the goal cannot be reached, the guard walks to the reachable place nearest to it.
+        """
         if goal != self._goal:
             self._goal = goal
             self._waypoint = None
         self._speed = speed
 
     def face(self, x: float, y: float) -> None:
-        """Look towards a point in this step, after arrival."""
+        """Turn towards a point in this step if the guard does not walk."""
         self._facing = (x, y)
 
     @property
@@ -212,7 +225,10 @@ class EnemyGuard:
         return min(range(len(self.route)), key=lambda i: hypot(self.route[i][0] - self.x, self.route[i][1] - self.y))
 
     def next_gap(self) -> Place | None:
-        """Pick at random one of the three nearest unvisited narrow places off the route; None if there is none."""
+        """Pick a narrow place off the route, at random among the three nearest unvisited ones.
+
+        When all have been visited, all count as unvisited again. Return None if there is none.
+        """
         if self._gaps_of is not self.floor:
             self._gaps_of = self.floor
             gaps = self.floor.gaps(self.floor.area((self.x, self.y)))
@@ -238,7 +254,7 @@ class EnemyGuard:
     def _look(self, player: PlayerView, boxes: Sequence[Corners]) -> None:
         """Update what the guard sees and knows, and whether the player is in reach.
 
-        A guard that knows the player's position turns its head: its sight is not limited to a cone.
+        A guard that knows the player's position turns its head: it sees in all directions.
         """
         dt, kind = self.dt, self.kind
         px, py, pz = player.position
@@ -283,7 +299,7 @@ class EnemyGuard:
     def _move(self, dt: float) -> None:
         """Walk towards the goal for ``dt`` seconds, around corners.
 
-        If the way there is more than 45 degrees to the side, only turn.
+        If the way is still more than 45 degrees to the side after the turn, do not walk.
         """
         left = self._speed * dt
         turned = False
@@ -312,7 +328,7 @@ class EnemyGuard:
                 self._turn(atan2(y - self.y, x - self.x), dt)
 
     def _turn(self, yaw: float, dt: float) -> float:
-        """Turn towards a yaw; return the remaining angle, in radians."""
+        """Turn towards ``yaw`` for ``dt`` seconds; return the angle that is left, in radians."""
         missing = remainder(yaw - self.yaw, 2 * pi)
         most = self.kind.turn_speed * dt
         turn = min(max(missing, -most), most)

@@ -1,4 +1,4 @@
-"""Neighbours, shortest paths, nearest cells and narrow places for all cells of a floor."""
+"""Arrays over all cells of a floor: neighbours, shortest paths, nearest cells, narrow places."""
 
 from __future__ import annotations
 
@@ -8,16 +8,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 GOALS: Final = 512
-"""The number of goals for which paths are searched at once."""
+"""The number of goals to which :func:`steps_to` searches paths at once."""
 ARRIVED: Final = 8
-"""The code that replaces a move, 0 to 7, if the cell is the goal; a greater code means that there is no path."""
+"""The code of a cell that is the goal, in place of a move, 0 to 7.
+
+A greater code means that no path leads to the goal.
+"""
 
 _MOVES: Final = ((1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (1, -1), (-1, 1), (-1, -1))
 _NO_PATH: Final = 255
 
 
 def neighbours(number: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Return the cell that each move leads to from each cell, int64 [8, cells].
+    """Return the cell to which each of the 8 moves leads from each cell, int64 [8, cells].
 
     ``number`` [rows, columns] numbers the cells row by row; it is -1 where there is no cell. For a
     move that is impossible, the result is ``cells``, one more than the greatest number.
@@ -35,9 +38,10 @@ def neighbours(number: NDArray[np.int64]) -> NDArray[np.int64]:
 def steps_to(neighbours: NDArray[np.int64], first: int) -> NDArray[np.uint8]:
     """Return the first move of a shortest path from each cell to each of up to 512 goals.
 
-    The goals are the cells from number ``first`` on. The result is uint8 [512 or fewer, cells]. One
-    breadth-first search runs from all goals at once, with one bit per goal. Among equally short
-    paths, straight moves are preferred.
+    ``neighbours`` is the result of :func:`neighbours`. The goals are the cells from number
+    ``first`` on. The result is uint8 [512 or fewer, cells]; :data:`ARRIVED` explains the codes
+    above 7. One breadth-first search runs from all goals at once, with one bit per goal. Among
+    equally short paths, it prefers straight moves.
     """
     cells = neighbours.shape[1]
     goals = np.arange(first, min(first + GOALS, cells))
@@ -70,8 +74,8 @@ def _unpack_bits(words: NDArray[np.uint64]) -> NDArray[np.uint8]:
 def nearest_numbers(number: NDArray[np.int64]) -> NDArray[np.int64]:
     """Return for each cell the number of the nearest numbered cell, int64 [rows, columns].
 
-    In ``number`` [rows, columns], -1 marks cells without a number. Numbers spread by one cell per round,
-    straight before diagonal, so the result is approximate.
+    In ``number`` [rows, columns], -1 marks cells without a number. Numbers spread by one cell per
+    round, straight before diagonal, so the result is approximate.
     """
     number = number.copy()
     while (number < 0).any():
@@ -86,9 +90,10 @@ def nearest_numbers(number: NDArray[np.int64]) -> NDArray[np.int64]:
 
 
 def middles(cells: NDArray[np.bool_], most: int) -> NDArray[np.bool_]:
-    """Return a mask of the middles of narrow runs of cells, such as passages.
+    """Return a mask of the middle cell of each narrow run of cells, such as a passage.
 
-    A run is a sequence of true cells in a row of ``cells``. It is narrow if it has at most ``most`` cells.
+    A run is a sequence of true cells in a row of ``cells``. It is narrow if it has at most ``most``
+    cells.
     """
     middle = np.zeros_like(cells)
     for row, line in enumerate(cells):

@@ -6,10 +6,10 @@ neighbouring cell can jump over it: a step that crosses the obstacle has an end 
 is diagonal, a cell beside it. Therefore a step between walkable neighbours is free along its whole
 length, provided that a diagonal step passes between two walkable cells.
 
-The next step from every cell to a goal is computed when the goal is first needed, for 512 goals at
-once, with one bit per goal. This takes 10 to 100 ms. A cache of at most 64 MB per level keeps the most
-recently used results; all pairs of 8,000 cells fit. Processes that fork after ``Floor.prepare`` share
-the cache.
+:class:`Grid` computes the next steps from all cells to a goal when the goal is first needed, for
+512 goals at once, with one bit per goal. This takes 10 to 100 ms. A cache of at most 64 MB per
+level keeps the results that were used last; all pairs of 8,000 cells fit. Processes that fork after
+``Floor.prepare`` share the cache.
 """
 
 from __future__ import annotations
@@ -33,11 +33,11 @@ RADIUS: Final = 0.35
 """The radius of an enemy, including the distance that it keeps from walls, in metres."""
 HEIGHT: Final = 1.8
 STEP: Final = 0.1
-"""Enemies walk over boxes that are no higher than this, in metres."""
+"""Boxes that are no higher than this do not stop enemies, in metres."""
 NARROW: Final = 2.0
-"""The greatest width of a passage that counts as a gap, in metres."""
+"""The greatest width of a passage that counts as narrow, a *gap*, in metres."""
 GAP_SPACING: Final = 2.0
-"""The least distance between two gaps, in metres."""
+"""The least distance between the middles of two gaps, in metres."""
 
 Place = tuple[float, float]
 
@@ -52,7 +52,7 @@ def grid_of(level: StealthLevel) -> Grid:
 
 
 def is_too_large(bounds: Box) -> bool:
-    """Whether a floor is so large that its shortest paths would take minutes and gigabytes."""
+    """Whether ``bounds`` are so large that the shortest paths would take minutes and gigabytes."""
     columns, rows = (int((bounds.high[axis] - bounds.low[axis]) / CELL + 1e-9) for axis in (0, 1))
     return columns * rows > fileio.limits.WORK["cells of floor"]
 
@@ -68,7 +68,7 @@ class Grid:
     def floor(self, shut: Collection[int]) -> Floor:
         """Return the floor while the barriers with these indices are shut.
 
-        Lasers count as barriers: no enemy walks into one.
+        Lasers count as barriers here: no enemy walks into a laser.
         """
         key = frozenset(shut)
         if key not in self._floors:
@@ -79,7 +79,11 @@ class Grid:
         return self._floors[key]
 
     def steps_to_goals(self, floor: Floor, chunk: int) -> NDArray[np.uint8]:
-        """Return the first steps from all cells to the 512 goals from ``chunk * 512`` on, uint8 [512, cells]."""
+        """Return the first steps from all cells of a floor to up to 512 goals.
+
+        The goals are the cells from number ``chunk * 512`` on. The result is that of
+        :func:`steps_to`, uint8 [512 or fewer, cells].
+        """
         key = (floor.key, chunk)
         if key in self._steps_to_goals:
             self._steps_to_goals.move_to_end(key)
@@ -93,9 +97,9 @@ class Grid:
 
 
 class Floor:
-    """The walkable cells that enemies can reach from their starts.
+    """The walkable cells that enemies can reach from their ``starts``.
 
-    They are numbered row by row from the south-west.
+    They are numbered row by row from the south-west. ``key`` has the indices of the shut barriers.
     """
 
     def __init__(
@@ -125,7 +129,10 @@ class Floor:
         self._gaps: dict[int, tuple[Place, ...]] = {}
 
     def is_free(self, x: float, y: float) -> bool:
-        """Whether an enemy can stand at x, y: in the bounds, its radius clear of all obstacles."""
+        """Whether an enemy can stand at x, y.
+
+        Its body must be inside the bounds and clear of all obstacles.
+        """
         (x0, y0, _), (x1, y1, _) = self._bounds.low, self._bounds.high
         if not (x0 + RADIUS <= x <= x1 - RADIUS and y0 + RADIUS <= y <= y1 - RADIUS):
             return False
@@ -135,15 +142,18 @@ class Floor:
         return not any(a < x < c and b < y < d for a, b, c, d in self.obstacles)
 
     def is_clear(self, a: Place, b: Place) -> bool:
-        """Whether an enemy can walk straight from a to b; both are inside the bounds."""
+        """Whether an enemy can walk straight from a to b; both must be inside the bounds."""
         return not crosses(*a, *b, self.obstacles)
 
     def next_point(self, a: Place, b: Place) -> Place | None:
-        """Return the next point to walk to, in a straight line, on the path from a to b.
+        """Return the point to which an enemy first walks straight on its path from a to b.
 
         An enemy must be able to stand at a. If b cannot be reached, the path leads to the reachable
-        place nearest to b. The result is b if the straight line to b is free, and a if no path leads
-        nearer. It is None if no cell's centre can be reached straight from a.
+        place nearest to b.
+
+        - The result is b if the straight line to b is free.
+        - It is a if no path leads nearer to b.
+        - It is None if no cell's centre can be reached from a in a straight line.
         """
         entry = self.entry(a)
         if entry is None:
@@ -161,9 +171,9 @@ class Floor:
         return [self.centres[cell] for cell in self._cell_path(entry, goal)]
 
     def entry(self, place: Place) -> int | None:
-        """Return the nearest cell whose centre can be reached straight from a place, or None.
+        """Return the nearest cell whose centre can be reached from a place in a straight line.
 
-        The cell is at most two columns and rows away.
+        The cell is at most two columns and two rows away. Return None if there is no such cell.
         """
         x, y = place
         column, row = self._cell(x, y)
@@ -180,7 +190,7 @@ class Floor:
         return next((cell for _, cell in near if self.is_clear(place, self.centres[cell])), None)
 
     def nearest(self, place: Place, area: int = 0) -> int:
-        """Return the cell of an area that is approximately nearest to a place.
+        """Return the cell of an area that is nearest to a place, approximately.
 
         An area is a set of cells that are connected by steps.
         """
@@ -190,7 +200,7 @@ class Floor:
     def standing_place(self, place: Place) -> Place:
         """Return the place if an enemy can stand and move there, else the nearest cell's centre.
 
-        Raises ValueError if there is no cell.
+        Raises ValueError if the floor has no cell.
         """
         if self.is_free(*place) and self.entry(place) is not None:
             return place
@@ -199,12 +209,15 @@ class Floor:
         return min(self.centres, key=lambda centre: hypot(centre[0] - place[0], centre[1] - place[1]))
 
     def prepare(self) -> None:
-        """Compute the steps between all pairs of cells now, as far as the cache can hold them."""
+        """Compute the steps between all pairs of cells now, as many as the cache can hold."""
         for chunk in range(-(-len(self.centres) // GOALS)):
             self._grid.steps_to_goals(self, chunk)
 
     def gaps(self, area: int = 0) -> tuple[Place, ...]:
-        """Return the middles of an area's passages that are at most 2 m wide; they are at least 2 m apart."""
+        """Return the middles of the gaps in an area: passages at most 2 m wide.
+
+        They are at least 2 m apart.
+        """
         if area not in self._gaps:
             self._gaps[area] = self._find_gaps(area)
         return self._gaps[area]
@@ -229,7 +242,10 @@ class Floor:
         return 0 if entry is None else self._area[entry]
 
     def _cell_path(self, entry: int, goal: int) -> list[int]:
-        """Return the cells from entry to goal, both included; only the entry if there is no path."""
+        """Return the cells from ``entry`` to ``goal``, both included.
+
+        Return only ``entry`` if there is no path.
+        """
         if self._last[0] != goal:
             steps = self._grid.steps_to_goals(self, goal // GOALS)
             self._last = (goal, steps[goal % GOALS].tobytes())
@@ -242,9 +258,9 @@ class Floor:
         return path
 
     def _furthest_straight(self, a: Place, path: Sequence[int]) -> Place:
-        """Return the centre of a cell far along a path that can be reached straight from a.
+        """Return the centre of a cell on ``path``, as far along as an enemy at a can walk straight.
 
-        The search doubles its stride, so it needs few tests.
+        The search doubles its stride, so it makes few tests and may miss the last such cell.
         """
         reach, stride = 0, 1
         while stride and reach < len(path) - 1:
@@ -278,7 +294,10 @@ class Floor:
         return free
 
     def _areas(self, free: NDArray[np.bool_], starts: Sequence[Place]) -> NDArray[np.int64]:
-        """Return the number of each cell's area [rows, columns]; -1 if no enemy can reach the cell."""
+        """Return the number of each cell's area, int64 [rows, columns].
+
+        It is -1 for a cell that no enemy can reach from its start.
+        """
         areas = np.full(free.shape, -1, dtype=np.int64)
         rows, columns = np.nonzero(free)
         if not len(rows):
@@ -303,10 +322,10 @@ class Floor:
         return areas
 
     def _roomy_cells(self, rows: NDArray[Any], columns: NDArray[Any]) -> list[bool]:
-        """Return for each cell whether no obstacle overlaps it.
+        """Return for each cell whether no obstacle overlaps it, and then a last element, False.
 
-        The last element, for the index -1, which is no cell, is False. Cells of the last row and
-        column are also False, because positions beyond them, up to the bounds, count as in them.
+        The index -1, which stands for "no cell", finds this last element. Cells of the last row and
+        column are also False: a position between them and the bounds counts as inside them.
         """
         x, y = self._bounds.low[0] + columns * CELL, self._bounds.low[1] + rows * CELL
         roomy = (columns < self._columns - 1) & (rows < self._rows - 1)

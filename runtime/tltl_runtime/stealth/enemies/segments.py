@@ -1,8 +1,7 @@
 """Test exactly whether a straight line meets a box, for sight and for walking.
 
-With the 27 boxes of a level, slab tests with early exits take 2 to 4 µs for a line of sight of up
-to 8 m. Marching the same line through cells of 0.25 m takes 9 to 10 µs and is wrong by up to a
-cell, so sight uses no grid.
+Sight uses no grid. For a line of up to 8 m and the 27 boxes of a level, the tests here take 2 to 4
+µs. Marching the line through cells of 0.25 m takes 9 to 10 µs and is wrong by up to a cell.
 """
 
 from __future__ import annotations
@@ -13,10 +12,10 @@ from math import hypot
 from tltl_runtime.stealth.level import Box, Point
 
 Rectangle = tuple[float, float, float, float]
-"""x0, y0, x1, y1, with x0 < x1 and y0 < y1; the border is excluded."""
+"""x0, y0, x1, y1, with x0 < x1 and y0 < y1. The border does not belong to the rectangle."""
 
 Corners = tuple[float, float, float, float, float, float]
-"""x0, y0, z0, x1, y1, z1 of a box; the surface is excluded."""
+"""x0, y0, z0, x1, y1, z1 of a box. The surface does not belong to the box."""
 
 
 def corners(box: Box) -> Corners:
@@ -67,10 +66,10 @@ def distance_to_segment(p: tuple[float, float], a: tuple[float, float], b: tuple
 
 
 def _overlap(start: float, delta: float, low: float, high: float, enter: float, leave: float) -> tuple[float, float]:
-    """Return the part of a time interval in which ``start + time * delta`` is between low and high.
+    """Return the times at which ``start + time * delta`` is between low and high, as an interval.
 
-    If ``delta`` is 0, that is the whole interval: the callers have already excluded boxes beside the
-    line.
+    The times are limited to those from ``enter`` to ``leave``. If ``delta`` is 0, all of them
+    count: the callers have already excluded boxes beside the line.
     """
     if delta > 0.0:
         return max(enter, (low - start) / delta), min(leave, (high - start) / delta)
