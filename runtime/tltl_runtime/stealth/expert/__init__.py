@@ -1,1 +1,1 @@
-"""The scripted expert."""
+"""A scripted player that finishes levels. Begin with `expert`."""

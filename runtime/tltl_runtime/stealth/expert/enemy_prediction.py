@@ -1,9 +1,9 @@
 """Predict what the enemies will do, from what a player can see of them.
 
-The belief about each enemy is a set of models. A model is one of the game's own guards, with the
-enemy's route and parameters, but with a random generator of the watcher. Only models that have done
-what the enemy did are kept. If the enemy does what none of its models did, all models are moved to
-its pose, and their intentions are guessed again.
+There is a set of models for each enemy. A model is one of the game's own guards with the enemy's
+route and parameters, but with other random numbers. Only the models that have done what the enemy
+did are kept. If no model has, all models are moved to the enemy's pose, and where they are going is
+guessed again.
 """
 
 from __future__ import annotations
@@ -26,20 +26,20 @@ from tltlc.api import record
 _MODELS: Final = 12
 """The number of models of each enemy."""
 _SAME: Final = 0.02
-"""The greatest difference between a model and its enemy, in metres and in radians."""
+"""A model is right if it differs from its enemy by less than this, in metres and in radians."""
 _GUESSED: Final = 0.7
-"""The probability that a model gets a new intention if no model was right."""
+"""If no model was right, the probability that a patrolling model gets a new goal."""
 _BURIED: Final = -1000.0
 """The height of the feet of a player whom no enemy can see, in metres."""
 
 
 @record
 class Outlook:
-    """The predictions for an enemy: ``poses`` float64 [models, decisions, 4].
+    """The predictions of all models for one enemy.
 
-    A pose is x, y and yaw, and 1 while the enemy knows the player's position, otherwise 0. An enemy
-    that knows the position sees in all directions. ``shares`` [models] are the probabilities of the
-    models.
+    ``poses`` are float64 [models, decisions, 4]: x, y, yaw, and whether the enemy knows the
+    player's position (1 or 0). An enemy that knows it sees in all directions. ``shares`` [models]
+    are the probabilities of the models.
     """
 
     poses: NDArray[np.float64]
@@ -47,7 +47,7 @@ class Outlook:
 
 
 class Watch:
-    """Watches the enemies of a level from the reset on; pass each snapshot to ``see`` once."""
+    """Watches the enemies of a level, to predict them. Pass each snapshot to ``see`` once."""
 
     def __init__(self, level: StealthLevel, seed: int = 0) -> None:
         self.level = level
@@ -66,7 +66,7 @@ class Watch:
         self._player = self.level.start.position
 
     def see(self, snapshot: Snapshot) -> bool:
-        """Update the models from a snapshot; return whether an enemy surprised all its models."""
+        """Update the models from a snapshot; return whether all models of an enemy were wrong."""
         surprised = False
         if snapshot.time > self._time:
             player = player_view(snapshot.player)
@@ -92,7 +92,7 @@ class Watch:
         return surprised
 
     def outlook(self, decisions: int) -> list[Outlook]:
-        """Predict how each enemy moves on if it does not see the player from now on."""
+        """Predict each enemy for the next ``decisions``, in which it does not see the player."""
         x, y, _ = self._player
         unseen = PlayerView((x, y, _BURIED))
         return [self._outlook(models, decisions, unseen) for models in self.models]
@@ -115,7 +115,7 @@ class Watch:
         return Outlook(poses, shares / shares.sum())
 
     def _put(self, model: EnemyGuard, pose: tuple[float, float, float], mode: Mode) -> EnemyGuard:
-        """Move a model to its enemy's pose, with a task that fits the enemy's mode."""
+        """Move a model to its enemy's ``pose``; give it a task that fits the enemy's ``mode``."""
         before = model.mode
         model.x, model.y, model.yaw = pose
         model.forget_path()
@@ -135,7 +135,7 @@ class Watch:
         return model
 
     def _guess(self, model: EnemyGuard) -> None:
-        """Guess the point of the route, or the narrow place beside it, that the model walks to."""
+        """Guess where a patrolling model goes: a point of its route, or a narrow place off it."""
         model.leg = int(self._rng.integers(len(model.route)))
         model.gap = model.next_gap() if model.kind.branches and self._rng.random() < _GUESSED else None
 

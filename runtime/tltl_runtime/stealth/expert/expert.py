@@ -22,16 +22,17 @@ from tltl_runtime.stealth.snapshot import Snapshot, places
 from tltl_runtime.stealth.world.player import Action
 
 _ROOM: Final = 0.5
-"""A route passes a mover if it comes within this distance of the mover's path, in metres."""
+"""A route counts as passing a mover if it comes this near to the mover's path, in metres."""
 
 
 class Expert:
     """A scripted player of ``env``, which is a TltlEnv over a GameEnv, or wrappers around one.
 
     Call ``reset`` after each reset of the environment, then ``act`` for each action. The expert
-    reads its goal from the automaton, and finds its route with the level and the snapshot. If a shut
-    barrier is in the way, the expert goes to a switch first. A ``careful`` expert avoids the sight
-    of enemies while its route is on the floor; elsewhere it ignores enemies.
+    reads its goal from the automaton, and finds its route with the level and the snapshot. If a
+    shut barrier is in the way, the expert goes to a switch first. A ``careful`` expert avoids the
+    sight of enemies while its route is on the floor and passes no mover; elsewhere it ignores
+    enemies.
     """
 
     def __init__(self, env: gymnasium.Env[Any, Any], careful: bool = True) -> None:
@@ -66,7 +67,7 @@ class Expert:
         return (self._sneaker if self._sneaks else self._walker).act(snapshot, self._destination)
 
     def goal(self, snapshot: Snapshot) -> Point | None:
-        """Return the position to reach next, according to the automaton; None if there is none."""
+        """Return the position to reach next, according to the automaton; None if it names none."""
         taken, sample = (self._env.get_wrapper_attr(name) for name in ("taken", "sample"))
         state = 0 if taken is None else taken.state
         positions = places(self.level, snapshot)
@@ -74,7 +75,11 @@ class Expert:
         return positions[goals[0]] if goals else None
 
     def _next_place(self, snapshot: Snapshot, goal: Point) -> Point:
-        """Return the goal if it can be reached, else the nearest useful switch that can be reached."""
+        """Return ``goal`` if a route leads there, else the nearest switch that helps.
+
+        A switch helps if it opens a shut barrier and a route leads to it. Return ``goal`` if no
+        switch does.
+        """
         here, routes = snapshot.player.position, routes_of(self.level, shut_barriers(snapshot))
         if routes.leads(here, goal):
             return goal
@@ -111,7 +116,7 @@ def expert_episodes(
 def play_episode(env: gymnasium.Env[Any, Any], expert: Expert, seed: int) -> dict[str, Any]:
     """Play one episode to its end and return its last ``info``.
 
-    To get the episode itself, pass an ``env`` that is a ``RecordEpisode``.
+    If ``env`` is a ``RecordEpisode``, its ``episode`` is then the episode itself.
     """
     _, info = env.reset(seed=seed)
     expert.reset()

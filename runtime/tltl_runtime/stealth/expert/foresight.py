@@ -1,8 +1,8 @@
-"""Plan the next seconds: a beam search over decisions, with a prediction of the resulting motion.
+"""Plan the next seconds: a beam search over decisions, with a prediction of the motion.
 
 A *body* is a predicted state of the player. The search compares bodies that stand on the ground, by
-the time that has passed and the time left on their route. A jump or a fall is one move, which is
-simulated until the body lands.
+the time that has passed and the time that is left on their route. A jump or a fall is one move: the
+search simulates it until the body lands.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ from tltl_runtime.stealth.world.player import DECISION, Action, PlayerState
 from tltlc.api import record
 
 LONGEST_FALL: Final = 9
-"""A body that is still falling after this many decisions is given up."""
+"""The search drops a body that is still in the air after this many decisions."""
 _STAMINA: Final = 0.3
-"""A full stamina counts as much as a route that is this many seconds shorter."""
+"""In the score, a full stamina is worth as much as a route that is this many seconds shorter."""
 _TOUCHED: Final = 3.0
 """The cost of touching a mover, in seconds."""
 _ARRIVED: Final = 0.1
@@ -32,7 +32,10 @@ _ARRIVED: Final = 0.1
 
 @record
 class HeldAction:
-    """An action that a body repeats in the air, for ``hold`` decisions in all; then it falls straight down."""
+    """An action that a body in the air repeats, for ``hold`` decisions in all.
+
+    Afterwards the body falls straight down.
+    """
 
     action: Action
     hold: int = LONGEST_FALL
@@ -48,28 +51,28 @@ class ActionPlan:
 
 @record
 class _Bodies:
-    """Bodies [n] that stand on the ground at the same time, their costs, and the moves that led to them."""
+    """Bodies [n] that stand on the ground at the same time, and how they got there."""
 
     poses: Poses
     costs: Floats
-    """The costs of touching movers, in seconds."""
+    """What they pay for touching movers, in seconds."""
     left: Floats
     """The time left on the route to the goal, in seconds."""
     began: NDArray[np.int64]
-    """When their last move began, in decisions from now."""
+    """When the last move of each body began, in decisions from now."""
     parents: NDArray[np.int64]
-    """The indices of the bodies at that time from which they come."""
+    """The index of the body that made each last move, among the bodies at ``began``."""
     moves: NDArray[np.int64]
-    """The indices of their last moves."""
+    """The indices of the last moves, among the moves to choose from."""
     trails: Floats
-    """The positions of the feet after each decision of that move, [n, LONGEST_FALL, 3]."""
+    """The positions of the feet after each decision of the last moves, [n, LONGEST_FALL, 3]."""
 
     def take(self, indices: NDArray[np.intp]) -> _Bodies:
         """Return the bodies with these indices."""
         return _Bodies(self.poses.take(indices), *(getattr(self, name)[indices] for name in _COLUMNS))
 
     def scores(self) -> Floats:
-        """Return the score of each body, in seconds; among bodies of the same time, less is better."""
+        """Return the score of each body, in seconds; of bodies at the same time, less is better."""
         return self.costs + self.left - _STAMINA * self.poses.stamina
 
 
@@ -77,10 +80,11 @@ _COLUMNS: Final = ("costs", "left", "began", "parents", "moves", "trails")
 
 
 class Foresight:
-    """The search over the next ``ahead`` decisions; after each decision, the ``kept`` best bodies continue.
+    """A search over the next ``ahead`` decisions.
 
-    ``field`` has the routes to the goal, ``moves`` are the moves to choose from. ``movers`` are the
-    boxes that movers sweep in each decision, for ``ahead + LONGEST_FALL`` decisions.
+    After each decision, the search continues from the ``kept`` best bodies. ``field`` has the
+    routes to the goal, ``moves`` are the moves to choose from. ``movers`` are the boxes that movers
+    sweep in each decision, for ``ahead + LONGEST_FALL`` decisions.
     """
 
     def __init__(
@@ -118,7 +122,11 @@ class Foresight:
         return self._trace(passed, *end)
 
     def _apply_moves(self, bodies: _Bodies, time: int) -> list[tuple[int, _Bodies]]:
-        """Apply every move to every body; return the bodies that land, grouped by the number of decisions."""
+        """Apply every move to every body, and return the bodies that land.
+
+        They are in groups, each with the number of decisions until it lands. ``time`` is when the
+        moves begin, in decisions from now.
+        """
         count, choices = bodies.costs.size, len(self._moves)
         parents, moves = np.repeat(np.arange(count), choices), np.tile(np.arange(choices), count)
         poses, costs = bodies.poses.take(parents), bodies.costs[parents]
@@ -147,7 +155,10 @@ class Foresight:
         return landed
 
     def _best(self, bodies: _Bodies) -> _Bodies:
-        """Keep the best body of each quarter of a metre, and of these the ``kept`` best."""
+        """Keep the best body in each quarter of a metre, and of these the ``kept`` best.
+
+        Standing and crouching bodies count separately.
+        """
         poses = bodies.poses
         order = bodies.scores().argsort(kind="stable")
         cells = np.floor(np.stack([poses.x * 4, poses.y * 4, poses.z * 4 + 0.5, poses.crouching], axis=1))[order]
@@ -155,7 +166,7 @@ class Foresight:
         return bodies.take(order[np.sort(first)[: self._kept]])
 
     def _trace(self, passed: Mapping[int, _Bodies], time: int, row: int) -> ActionPlan:
-        """Return the plan that led to the body in this row of ``passed[time]``."""
+        """Return the plan that leads to the body in this ``row`` of ``passed[time]``."""
         actions: list[Action] = []
         places: list[Point] = []
         while time:
@@ -172,7 +183,7 @@ class Foresight:
 
 
 def _root_body(player: PlayerState) -> _Bodies:
-    """Return the body of the player now, from which all others descend."""
+    """Return the player's present state as a body, from which all other bodies descend."""
     none, zero = np.array([-1]), np.zeros(1)
     return _Bodies(poses_of(player), zero, np.array([inf]), none, none, none, np.zeros((1, LONGEST_FALL, 3)))
 

@@ -1,8 +1,8 @@
 """The floor as a lattice of places, and the effect of each action in one decision.
 
 Places are 0.4 m apart, where the player fits between the things on the floor. An action moves the
-player by its exact displacement. The displacement ends between places, so values there are
-interpolated from the four places around.
+player by an exact displacement, which ends between places. The value there is interpolated from the
+four places around.
 """
 
 from __future__ import annotations
@@ -52,12 +52,18 @@ SPRINTS: Final = np.array([sprint == 1 for *_, sprint in ACTIONS])
 
 @lru_cache(maxsize=64)
 def lattice_of(level: StealthLevel, shut: frozenset[int]) -> Lattice:
-    """Return the lattice of a level while the barriers with these indices are shut, cached per process."""
+    """Return the lattice of a level while the barriers with these indices are shut.
+
+    It is cached per process.
+    """
     return Lattice(level, shut)
 
 
 class Lattice:
-    """The places of a floor. ``places`` float64 [n, 2] are their x and y, in metres."""
+    """The places of the floor of a level while the barriers with the indices ``shut`` are shut.
+
+    ``places`` float64 [n, 2] are their x and y, in metres.
+    """
 
     def __init__(self, level: StealthLevel, shut: Collection[int]) -> None:
         boxes = [solid.box for solid in level.solids] + [level.barriers[index].box for index in sorted(shut)]
@@ -86,7 +92,7 @@ class Lattice:
         self._forbidden[self._shares.sum(-1) == 0] = FAR
 
     def feasible(self, places: NDArray[Any]) -> NDArray[np.bool_]:
-        """Whether each action can be executed from each of the places [n, 2]: bool [actions, n]."""
+        """Return whether each action is possible at ``places`` [n, 2]: bool [actions, n]."""
         feasible = np.zeros((len(ACTIONS), len(places)), dtype=bool)
         for crouched in (0, 1):
             actions = np.flatnonzero(crouched == CROUCHED)
@@ -96,9 +102,9 @@ class Lattice:
         return feasible
 
     def values(self, value: Costs, places: NDArray[Any]) -> Costs:
-        """Interpolate values [n] of the lattice's places at any places [m, 2].
+        """Interpolate ``value`` [n], which belongs to the lattice's places, at ``places`` [m, 2].
 
-        The value is FAR where no place of the lattice is near.
+        The result is FAR where no place of the lattice is near.
         """
         corners, shares = self._interpolation(places)
         values: Costs = (value[corners] * shares).sum(-1)
@@ -106,10 +112,11 @@ class Lattice:
         return values
 
     def least_costs(self, standing: Costs, crouched: Costs, extra: Costs) -> Costs:
-        """Return the least cost over all actions at each place [places].
+        """Return the cost of the cheapest action at each place of the lattice.
 
-        The cost of an action is the value at the point where the action ends, plus ``extra``
-        [actions]. The value is that of ``standing`` or ``crouched`` [places], by the action's stance.
+        The cost of an action is the value at the point where the action ends, plus its ``extra``
+        [actions]. The value comes from ``standing`` or ``crouched`` [places], by the action's
+        stance.
         """
         both = np.concatenate((standing, crouched))
         costs: Costs = np.einsum("anc,anc->an", both[self._corners], self._shares)
@@ -119,9 +126,9 @@ class Lattice:
         return least
 
     def decisions_to(self, goal: Point, within: float) -> Costs:
-        """Return the number of decisions of a walk from each place to within ``within`` metres of the goal.
+        """Return how many decisions a walk from each place to the goal takes.
 
-        The value is FAR where there is no path.
+        It ends at most ``within`` metres from the goal. The value is FAR where there is no path.
         """
         at_goal = np.hypot(*(self.places - goal[:2]).T) <= within
         decisions: Costs = np.where(at_goal, np.float32(0), FAR)
@@ -138,7 +145,7 @@ class Lattice:
     def _interpolation(self, ends: NDArray[Any]) -> tuple[NDArray[np.int64], Costs]:
         """Return the four places around each point [m, 2], and their weights, [m, 4] each.
 
-        Free places are weighted by nearness; the others have the weight 0.
+        Free places have weights by their nearness. All other places have the weight 0.
         """
         position = (ends - self._low) / _SPACING
         base = np.floor(position).astype(np.int64)
@@ -165,7 +172,10 @@ def _grow(boxes: list[Box], grow: float, step: float, height: float) -> list[Rec
 
 
 def _crosses(starts: NDArray[Any], ends: NDArray[Any], rectangles: list[Rectangle]) -> NDArray[np.bool_]:
-    """Return for each segment between points [m, 2] whether it passes through the inside of a rectangle."""
+    """Return for each segment whether it passes through the inside of a rectangle.
+
+    Segment i leads from ``starts[i]`` to ``ends[i]``; both arrays are [m, 2].
+    """
     crossed: NDArray[np.bool_] = np.zeros(len(starts), dtype=bool)
     enter: Any
     leave: Any

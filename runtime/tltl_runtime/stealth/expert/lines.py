@@ -14,15 +14,18 @@ from tltl_runtime.stealth.expert.lattice import lattice_of
 from tltl_runtime.stealth.level import StealthLevel
 
 ROUNDED: Final = 0.2
-"""The positions of enemies are rounded to multiples of this, in metres."""
+"""The positions of enemies are rounded to multiples of this, in metres, for the cache."""
 _MOST_CACHED: Final = 4096
 _ASIDE: Final = 0.15
-"""A place is tested at five points: its middle, and this far to each side, in metres."""
+"""Each place is tested at five points: its middle, and this far to each side, in metres."""
 
 
 @lru_cache(maxsize=64)
 def lines_of(level: StealthLevel, shut: frozenset[int]) -> LinesOfSight:
-    """Return the lines of sight while the barriers with these indices are shut, cached per process."""
+    """Return the lines of sight of a level while the barriers with these indices are shut.
+
+    They are cached per process.
+    """
     return LinesOfSight(level, shut)
 
 
@@ -40,9 +43,10 @@ class LinesOfSight:
         self._cache: OrderedDict[tuple[int, int], NDArray[np.float32]] = OrderedDict()
 
     def visible_shares(self, x: float, y: float) -> NDArray[np.float32]:
-        """Return at which share of the five points of each place, in [0, 1], eyes at x, y see the player.
+        """Return how much of each place an enemy with its eyes at x, y sees.
 
-        The result is float32 [2, places], for a standing and a crouched player.
+        The result is float32 [2, places], for a standing and for a crouched player: the share, in
+        [0, 1], of the five points of the place at which the enemy would see the player.
         """
         key = (round(x / ROUNDED), round(y / ROUNDED))
         shares = self._cache.get(key)

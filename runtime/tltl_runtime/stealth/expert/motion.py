@@ -1,7 +1,7 @@
 """A prediction of :mod:`~tltl_runtime.stealth.world.physics` for thousands of bodies at once.
 
 A body is a capsule, which boxes push out. Its motion agrees with the physics to within a few
-centimetres. A mover counts as touched if it passes the capsule in the same decision.
+centimetres. A body touches a mover if the mover passes the capsule in the same decision.
 """
 
 from __future__ import annotations
@@ -22,14 +22,18 @@ Truths = NDArray[np.bool_]
 _TOUCH: Final = 0.02
 """A body at most this far from a surface stands on it, in metres."""
 _COARSE: Final = 3
-"""Physics steps simulated per decision if all bodies walk."""
+"""How many physics steps a decision is simulated in if all bodies walk."""
 _BERTH: Final = 0.06
 """The distance to keep from movers, in metres."""
 
 
 @record
 class Poses:
-    """Bodies [n]: position of the feet in metres, upward speed ``vz``, stance, contact, stamina."""
+    """The states of bodies [n].
+
+    ``x``, ``y`` and ``z`` are the positions of the feet in metres, ``vz`` the upward speeds in m/s,
+    ``stamina`` is in [0, 1].
+    """
 
     x: Floats
     y: Floats
@@ -68,7 +72,7 @@ class _Boxes:
 
 
 class Motion:
-    """Predicts the motion of bodies among static boxes."""
+    """Predicts the motion of bodies of this ``kind`` among ``boxes`` that stand still."""
 
     def __init__(self, kind: PlayerKind, boxes: Sequence[Box]) -> None:
         self.kind = kind
@@ -78,7 +82,7 @@ class Motion:
     def step(self, poses: Poses, actions: NDArray[np.int64], movers: Sequence[Box] = ()) -> tuple[Poses, Truths]:
         """Return the bodies after one decision, and which of them touched a mover.
 
-        ``actions`` is [n, 5]. ``movers`` are the boxes swept by movers in this decision.
+        ``actions`` is [n, 5]. ``movers`` are the boxes that the movers sweep in this decision.
         """
         kind = self.kind
         boxes = self._boxes_near(poses)
@@ -107,7 +111,10 @@ class Motion:
         return Poses(x, y, z, vz, crouching, grounded, stamina), touched
 
     def _wish(self, poses: Poses, actions: NDArray[np.int64], crouching: Truths) -> tuple[Floats, Floats, Floats]:
-        """Return the requested speeds along x and y, and the stamina left (see ``player.control``)."""
+        """Return the speeds along x and y that the actions request, and the stamina that is left.
+
+        See :func:`tltl_runtime.stealth.world.player.control`.
+        """
         kind = self.kind
         sign = np.array(SIGN)
         dx, dy = sign[actions[:, 0]], sign[actions[:, 1]]
@@ -176,7 +183,7 @@ class Motion:
         for axis, place in enumerate((x, y, z)):
             push = deep * normal[axis]
             place[touched] += push.max(axis=1, initial=0.0) + push.min(axis=1, initial=0.0)
-        # Remove the speed into the contact that it opposes most, then the rest of it against the others.
+        # Remove the speed into the box that it points into most; then do the same with the remaining speed.
         speed = np.stack([vx[touched], vy[touched], vz[touched]])
         rows = np.arange(touched.size)
         for _ in range(2):
@@ -187,9 +194,10 @@ class Motion:
         vx[touched], vy[touched], vz[touched] = speed
 
     def _contacts(self, x: Floats, y: Floats, z: Floats, height: Floats, boxes: _Boxes) -> tuple[Floats, Floats]:
-        """Return the overlap of each capsule with each box, in metres, and the unit vectors out of the boxes.
+        """Return how far each capsule overlaps each box, and the unit vectors out of the boxes.
 
-        The shapes are [n, boxes] and [3, n, boxes].
+        The overlap is in metres, negative if they are apart. The shapes are [n, boxes] and [3, n,
+        boxes].
         """
         radius = self.kind.radius
         low, high = boxes.low, boxes.high

@@ -1,4 +1,4 @@
-"""Predict where movers will be: their paths are known, and their clocks follow from snapshots."""
+"""Predict where movers will be: their paths are known, and snapshots show their clocks."""
 
 from __future__ import annotations
 
@@ -13,11 +13,14 @@ from tltl_runtime.stealth.world.mover_path import MoverPath
 from tltl_runtime.stealth.world.player import DECISION, SUBSTEPS
 
 _TOLERANCE: Final = 1e-6
-"""A mover may be this far from its predicted position, in metres; otherwise the prediction is wrong."""
+"""A predicted position is right if the mover is less than this far from it, in metres."""
 
 
 class Clocks:
-    """The clocks of the movers: how long each has moved, in seconds, without the time that the player blocked it."""
+    """The clocks of the movers: how far each is in its cycle, in seconds.
+
+    A clock stands still while the player blocks the mover.
+    """
 
     def __init__(self, level: StealthLevel) -> None:
         self._movers = level.movers
@@ -39,7 +42,7 @@ class Clocks:
     def swept_boxes(self, first: int, last: int | None = None) -> list[Box]:
         """Return the box that each mover sweeps from decision ``first`` to the end of ``last``.
 
-        Decisions are counted from now.
+        Decisions are counted from now. By default, ``last`` is ``first``.
         """
         boxes = []
         for mover, path, clock in zip(self._movers, self._paths, self._clocks, strict=True):

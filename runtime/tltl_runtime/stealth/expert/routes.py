@@ -1,8 +1,8 @@
 """Route times from everywhere to a goal: walking, crouching, climbing, leaping and dropping.
 
-The places of :class:`~tltl_runtime.stealth.expert.surfaces.Surfaces` are connected by what a player
-can do; movers and enemies are ignored. Times are approximate, but routes are safe: an edge exists
-only if the body passes with room to spare.
+Edges connect the places of :class:`~tltl_runtime.stealth.expert.surfaces.Surfaces` by what a player
+can do, as if there were no movers and no enemies. Times are approximate, but routes are safe: an
+edge exists only if the body passes with room to spare.
 """
 
 from __future__ import annotations
@@ -30,11 +30,11 @@ _CLIMB: Final = 1.0
 _CLIMB_REACH, _DROP_REACH, _LEAP_REACH = 1.0, 1.0, 3.0
 """The greatest lengths of a climb, a drop and a leap, in metres from centre to centre."""
 _JUMP_TIME: Final = 0.3
-"""The extra time of a jump, in seconds, on top of the time for its distance."""
+"""The seconds that a jump takes in addition to a walk over the same distance."""
 _GOAL: Final = 0.6
 """A place within this distance of a goal counts as the goal, in metres."""
 _CLOSE_TO_WALL: Final = 1.25
-"""The factor on the time of a walk past a wall with hardly any room."""
+"""A walk past a wall with hardly any room counts as this many times as long."""
 
 Kind = Literal["walk", "crouch", "climb", "drop", "leap"]
 
@@ -43,7 +43,7 @@ _KINDS: Final[tuple[Kind, ...]] = ("walk", "crouch", "climb", "drop", "leap")
 
 @record
 class Leg:
-    """A piece of a route: how to get to ``place``."""
+    """A piece of a route: ``kind`` says how to get to ``place``."""
 
     kind: Kind
     place: Point
@@ -51,10 +51,12 @@ class Leg:
 
 @record
 class Field:
-    """The seconds from each place to a goal [layers, rows, columns]; infinite if there is no route.
+    """The routes to a goal from all places; an index of a place is flat.
 
-    ``towards`` [places] is the next place on the route, or -1 at the goal and where there is no
-    route; ``kinds`` [places] is how to get there, an index into ``_KINDS``.
+    ``seconds`` [layers, rows, columns] is the time from each place to the goal; it is infinite if
+    there is no route. ``towards`` [places] is the index of the next place on the route, or -1 at
+    the goal and where there is no route. ``kinds`` [places] is how to get there, an index into
+    ``_KINDS``.
     """
 
     surfaces: Surfaces
@@ -63,7 +65,10 @@ class Field:
     kinds: NDArray[np.uint8]
 
     def legs(self, start: Point, metres: float = inf) -> tuple[Leg, ...]:
-        """Return the legs of the route from the place nearest to ``start``, up to about ``metres`` long."""
+        """Return the legs of the route from the place nearest to ``start``.
+
+        Stop after about ``metres``.
+        """
         place = self.surfaces.nearest(start)
         legs = []
         point, length = self.surfaces.point(place), 0.0
@@ -76,7 +81,10 @@ class Field:
         return tuple(legs)
 
     def seconds_from(self, x: Seconds, y: Seconds, z: Seconds) -> Seconds:
-        """Return the seconds [n] to the goal from points [n] on the ground, by the best of the places nearby."""
+        """Return the seconds to the goal from points on the ground: all arrays are [n].
+
+        The route from a point begins at the best of the places nearby.
+        """
         surfaces, speed = self.surfaces, self.surfaces.kind.walk_speed
         _, rows, columns = self.seconds.shape
         column = np.floor((x - surfaces.origin[0]) / CELL).astype(np.intp)
@@ -94,7 +102,7 @@ class Field:
 
 
 class Routes:
-    """The routes of a level while some barriers are shut."""
+    """The routes of a level while the barriers with the indices ``shut`` are shut."""
 
     def __init__(self, level: StealthLevel, shut: Collection[int]) -> None:
         self.surfaces = Surfaces(level, shut)
@@ -117,9 +125,10 @@ class Routes:
         return bool(np.isfinite(self.field(goal).seconds.flat[self.surfaces.nearest(start)]))
 
     def field_from(self, start: Point, goal: Point) -> Field:
-        """Return the routes to ``goal``, or to the reachable place nearest to it.
+        """Return the routes to ``goal`` if one leads there from ``start``.
 
-        Reachable means reachable from ``start``.
+        Otherwise return the routes to the place nearest to ``goal`` that can be reached from
+        ``start``.
         """
         field = self.field(goal)
         place = self.surfaces.nearest(start)
@@ -134,7 +143,7 @@ class Routes:
         return self._fields[key]
 
     def _field(self, goals: NDArray[np.intp]) -> Field:
-        """Return the shortest times to any of ``goals``, by Dijkstra's algorithm from the goals backwards."""
+        """Return the fastest routes to any of ``goals``, by Dijkstra's algorithm from the goals."""
         seconds: Any = [inf] * self.surfaces.places.size
         towards, kinds = [-1] * len(seconds), [0] * len(seconds)
         queue = [(0.0, goal) for goal in goals.tolist()]
@@ -153,7 +162,7 @@ class Routes:
         return Field(self.surfaces, *columns)
 
     def _reachable_places(self, start: int) -> set[int]:
-        """Return the places that can be reached from the place ``start``, as flat indices."""
+        """Return the places to which routes lead from the place ``start``, all as flat indices."""
         successors: dict[int, list[int]] = {}
         for target, sources in enumerate(self._into):
             for source, _, _ in sources:
@@ -234,10 +243,10 @@ class Routes:
     def _place_pairs(
         self, layer: int, target: int, direction: tuple[int, int], begin: Cells, steps: int = 1
     ) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-        """Return the flat indices of pairs of places: the first of each pair, then the second.
+        """Return the first places of pairs, and the second places, as flat indices.
 
-        The first is in ``layer``, within the mask ``begin`` [rows, columns]; the second is in the
-        layer ``target``, ``steps`` cells away in ``direction``.
+        The first place of a pair is in ``layer``, within the mask ``begin`` [rows, columns]. The
+        second is in the layer ``target``, ``steps`` cells away in ``direction``.
         """
         _, rows, columns = self.surfaces.places.shape
         places = begin & _shift(self.surfaces.places[target], direction, steps)
@@ -256,7 +265,10 @@ class Routes:
 
 @lru_cache(maxsize=32)
 def routes_of(level: StealthLevel, shut: frozenset[int]) -> Routes:
-    """Return the routes of a level while the barriers with these indices are shut, cached per process."""
+    """Return the routes of a level while the barriers with these indices are shut.
+
+    They are cached per process.
+    """
     return Routes(level, shut)
 
 
@@ -266,7 +278,7 @@ def shut_barriers(snapshot: Snapshot) -> frozenset[int]:
 
 
 def _reaches(direction: tuple[int, int], least: int, reach: float) -> Iterator[tuple[int, float]]:
-    """Yield the numbers of steps from ``least`` up to ``reach`` metres, with their lengths."""
+    """Yield the numbers of steps from ``least`` up to ``reach`` metres, each with its length."""
     length = CELL * hypot(*direction)
     for steps in range(least, int(reach / length + 1e-6) + 1):
         yield steps, steps * length
@@ -278,7 +290,10 @@ def _clamp(index: NDArray[np.intp], count: int) -> NDArray[np.intp]:
 
 
 def _shift(cells: Cells, direction: tuple[int, int], steps: int) -> Cells:
-    """Return a mask in which each cell has the value of the cell ``steps`` away; False beyond the border."""
+    """Return a mask in which each cell has the value of the cell ``steps`` away in ``direction``.
+
+    It is False where that cell is beyond the border.
+    """
     dy, dx = direction[0] * steps, direction[1] * steps
     rows, columns = cells.shape
     shifted = np.zeros_like(cells)

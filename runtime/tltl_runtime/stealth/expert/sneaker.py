@@ -1,9 +1,9 @@
 """Walk to a place on the floor, unseen.
 
-Every few decisions, ``watch.py`` predicts the poses of the enemies. Dynamic programming backwards from
-the end of that time then gives the cost of the best route from each place. The cost is the number of
-decisions, plus a price for each decision in sight. The player takes the action whose exact
-displacement leads to the least remaining cost.
+Every few decisions, :mod:`~tltl_runtime.stealth.expert.enemy_prediction` predicts the poses of the
+enemies. Dynamic programming backwards from the end of the predicted time then gives the cost of the
+best route from each place: the number of decisions, plus a price for each decision in sight. The
+player takes the action whose exact displacement leads to the least remaining cost.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ from tltl_runtime.stealth.snapshot import Snapshot
 from tltl_runtime.stealth.world.player import DECISION, Action, PlayerKind
 
 _HORIZON: Final = 80
-"""The number of decisions that are predicted."""
+"""How many decisions ahead the enemies are predicted."""
 _REPLAN: Final = 5
 """The plan is computed again after this many decisions."""
 _PRICE: Final = 12.0
@@ -41,9 +41,9 @@ _PRICE: Final = 12.0
 _ARRIVED: Final = 0.8
 """A place within this distance of a goal counts as the goal, in metres."""
 _WIDER: Final = 0.15
-"""Safety margin of the cones of sight, in radians to each side."""
+"""The cones of sight are widened by this, in radians to each side, as a safety margin."""
 _FURTHER: Final = 0.4
-"""Safety margin of the range of sight, in metres."""
+"""The range of sight is lengthened by this, in metres, as a safety margin."""
 _NEAR: Final = 1.6
 """Being within this distance of an enemy, in metres, is as bad as being seen."""
 _EXTRA: Final = np.where(SPRINTS, np.float32(1.3), np.float32(1.0))
@@ -82,7 +82,7 @@ class Sneaker:
         return self._choose(lattice, snapshot)
 
     def _choose(self, lattice: Lattice, snapshot: Snapshot) -> Action:
-        """Return the best action by the plan, from the player's exact position."""
+        """Return the action that is best by the plan, from the player's exact position."""
         player, kind = snapshot.player, PlayerKind()
         place = np.array([player.position[:2]])
         free = lattice.feasible(place)[:, 0]
@@ -95,9 +95,12 @@ class Sneaker:
         return ACTIONS[int(costs.argmin())]
 
     def _make_plan(self, lattice: Lattice, lines: LinesOfSight, decisions: Costs) -> list[tuple[Costs, Costs]]:
-        """Return, for each decision, the cost of ending it at each place, standing and crouched.
+        """Return, for each decision, the costs of being at each place at its end.
 
-        The cost includes the rest of the route.
+        There is one cost for standing there, and one for crouching.
+
+        A cost includes the rest of the route. ``decisions`` is the length of the route from each
+        place if no enemy is there.
         """
         seen = self._sight_prices(lattice, lines, self._watch.outlook(_HORIZON))
         at_goal = decisions <= 0.0
@@ -110,7 +113,7 @@ class Sneaker:
         return plan[::-1]
 
     def _sight_prices(self, lattice: Lattice, lines: LinesOfSight, outlooks: Sequence[Outlook]) -> NDArray[np.float32]:
-        """Return the price of being at each place at the end of each decision, standing and crouched.
+        """Return the prices of standing and of crouching at each place at the end of each decision.
 
         The result is float32 [decisions, 2, places].
         """
@@ -130,7 +133,7 @@ class Sneaker:
         return price
 
     def _decisions_to(self, lattice: Lattice, shut: frozenset[int], goal: Point) -> Costs:
-        """Return the number of decisions from each place to the goal, ignoring enemies."""
+        """Return how many decisions a walk from each place to the goal takes, ignoring enemies."""
         key = (shut, goal)
         if key not in self._decisions_to_goals:
             if len(self._decisions_to_goals) >= _MOST_CACHED:

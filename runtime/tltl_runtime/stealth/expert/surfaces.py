@@ -1,8 +1,8 @@
 """The places where a player can stand: the tops of all boxes, cell by cell.
 
-A level is cut into square cells. Each height at which a box ends is a layer. A place is a layer and
-a cell whose centre lies on such a top, with room for the body above it. The body is approximated by
-an upright cylinder.
+The ground plan of a level is cut into square cells. Each height at which a box ends is a layer. A
+place is a cell in a layer: a box ends at this height below the centre of the cell, and there is
+room for the body above it. An upright cylinder approximates the body.
 """
 
 from __future__ import annotations
@@ -27,13 +27,18 @@ _TOUCH: Final = 1e-6
 
 
 class Surfaces:
-    """The places of a level while the barriers with the indices ``shut`` are shut, lasers included.
+    """The places of a level while the barriers with the indices ``shut`` are shut.
 
     ``heights`` [layers] are the heights of the tops, upwards; ``xs`` [columns] and ``ys`` [rows]
-    are the centres of the cells, all in metres. ``places`` marks the places. ``standing`` marks where
-    the room above is free for a body that stands, ``crouched`` for a crouched body, and ``leaping``
-    for a body that jumps upright, each with ``margin`` metres to all sides. Boxes no higher than a
-    stair are not obstacles.
+    are the centres of the cells, all in metres. These masks say for each cell in each layer:
+
+    - ``places``: whether it is a place.
+    - ``standing``: whether a standing body has room above it.
+    - ``crouched``: whether a crouched body has room above it.
+    - ``leaping``: whether a body that jumps upright has room above it.
+
+    Room includes ``margin`` metres to all sides. Shut lasers count as obstacles, but boxes no
+    higher than a stair do not.
     """
 
     def __init__(self, level: StealthLevel, shut: Collection[int] = (), *, margin: float = 0.04) -> None:
@@ -84,7 +89,11 @@ class Surfaces:
         return supported
 
     def _free(self, boxes: list[Box], height: float, margin: float) -> Cells:
-        """Return a mask of where no box touches a cylinder of this height, above the height of a stair."""
+        """Return a mask of the cells above which an upright cylinder of this ``height`` is free.
+
+        It is free if no box comes within ``margin`` of it. Boxes no higher than a stair do not
+        count.
+        """
         taken = self._no_cells()
         radius = self.kind.radius + margin
         for box in boxes:
@@ -98,7 +107,7 @@ class Surfaces:
         return ~taken
 
     def _buried_cells(self, boxes: list[Box]) -> Cells:
-        """Return a mask of where the centre of the cell is inside a box, however low the box is."""
+        """Return a mask of the cells whose centres are inside a box, however low the box is."""
         buried = self._no_cells()
         for box in boxes:
             rows, columns = self._over(box)
@@ -107,7 +116,7 @@ class Surfaces:
         return buried
 
     def _over(self, box: Box) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-        """Return masks of the rows and columns whose centres are above a box."""
+        """Return masks of the rows and of the columns whose centres are above a box."""
         rows = (self.ys >= box.low[1]) & (self.ys <= box.high[1])
         columns = (self.xs >= box.low[0]) & (self.xs <= box.high[0])
         return rows, columns

@@ -25,15 +25,18 @@ _DIRECTIONS: Final = tuple((x, y) for x, y in product(range(3), range(3)) if x o
 _WALKS: Final = (STAY, *((x, y, 0, 0, sprint) for x, y in _DIRECTIONS for sprint in (0, 1)))
 _CROUCHES: Final = ((0, 0, 0, 1, 0), *((x, y, 0, 1, 0) for x, y in _DIRECTIONS))
 _HOLDS: Final = (2, 3, LONGEST_FALL)
-"""The numbers of decisions that a jump may keep its direction, before it falls straight down."""
+"""For how many decisions a jump may keep its direction; then the player falls straight down."""
 
 _NEAR: Final = 3.0
-"""Jumps, drops and movers are considered up to this distance ahead, in metres."""
+"""The search considers jumps, drops and movers up to this distance from the player, in metres."""
 _BOXES: Final = 5.0
-"""Boxes within this distance can be touched during the search, in metres."""
+"""The search considers boxes up to this distance from the player, in metres."""
 _SHORT: Final = (8, 16)
 _LONG: Final = (14, 32)
-"""Decisions searched ahead, and bodies kept after each, in simple and in difficult places."""
+"""How many decisions to search ahead, and how many bodies to keep after each.
+
+``_LONG`` is for places where more moves than walks are possible, ``_SHORT`` for all others.
+"""
 _REPLAN: Final = 6
 """The search is repeated after this many decisions."""
 _ASTRAY: Final = 0.08
@@ -41,7 +44,7 @@ _ASTRAY: Final = 0.08
 
 
 class Walker:
-    """Walks to a goal, ignoring enemies; ``act`` returns the next action, decision by decision."""
+    """Walks to a goal as if there were no enemies; ``act`` returns the next action."""
 
     def __init__(self, level: StealthLevel) -> None:
         self.level = level
@@ -84,7 +87,7 @@ class Walker:
         return Foresight(motion, field, moves, swept, ahead, kept).plan(snapshot.player)
 
     def _moves(self, field: Field, snapshot: Snapshot) -> list[HeldAction]:
-        """Return the moves to choose from at the player's position."""
+        """Return the moves that the player can choose from, for the next part of the route."""
         player = snapshot.player
         legs = field.legs(player.position, _NEAR)
         movers = any(_horizontal_distance(box, player.position) <= _NEAR for box in self._clocks.swept_boxes(0, 8))
@@ -103,7 +106,8 @@ class Walker:
 def _headings(start: Point, legs: list[tuple[bool, Point]]) -> set[tuple[int, int]]:
     """Return the directions of actions that are within 45 degrees of a leg.
 
-    ``legs`` are pairs: whether the leg counts, and its end. Legs that do not count are ignored.
+    The legs begin at ``start``. Each is a pair: whether the leg counts, and its end. The function
+    ignores legs that do not count.
     """
     headings = set()
     for (counts, place), before in zip(legs, [start, *(place for _, place in legs)], strict=False):
