@@ -1,1 +1,1 @@
-"""Read level files, check them, and apply overlays."""
+"""Read level files, check them, and apply overlays. Begin with `file`."""

@@ -22,7 +22,7 @@ _Boxes = list[tuple[str, Box]]
 def check_room(level: StealthLevel, places: NamedParts, start: Label) -> list[Diagnostic]:
     """Return TLT0806 for things outside the bounds, and TLT0807 for things inside an obstacle.
 
-    ``start`` is the label of the player's start.
+    ``places`` has the labels of the things, and ``start`` is the label of the player's start.
     """
     solids = [(solid.name, solid.box) for solid in level.solids]
     barriers = [(barrier.name, barrier.box) for barrier in level.barriers]
@@ -56,7 +56,10 @@ def _check_bounds(
 
 
 def _check_start(level: StealthLevel, boxes: _Boxes, places: NamedParts, start: Label) -> Iterator[Diagnostic]:
-    """Yield TLT0807 for each thing that overlaps the player's start, also movers at their initial positions."""
+    """Yield TLT0807 for each thing that overlaps the player's start.
+
+    Movers count at their initial positions.
+    """
     begins = [
         (mover.name, Box(*box_around(MoverPath(mover).position_at(mover.offset), mover.size))) for mover in level.movers
     ]
@@ -67,7 +70,7 @@ def _check_start(level: StealthLevel, boxes: _Boxes, places: NamedParts, start: 
 
 
 def _check_goals(goals: list[tuple[str, Point]], solids: _Boxes, places: NamedParts) -> Iterator[Diagnostic]:
-    """Yield TLT0807 for each goal that is inside a solid; it names the first such solid."""
+    """Yield TLT0807 for each switch or exit that is inside a solid, with the first such solid."""
     for goal, point in goals:
         if name := _first_overlap(_body_box(point, 0.01, 0.1), solids):
             title = f"`{goal}` is inside `{name}`, where nobody reaches it"
@@ -75,7 +78,7 @@ def _check_goals(goals: list[tuple[str, Point]], solids: _Boxes, places: NamedPa
 
 
 def _check_routes(level: StealthLevel, solids: _Boxes, places: NamedParts) -> Iterator[Diagnostic]:
-    """Yield TLT0807 for each point of a route that is blocked; it names the first solid there."""
+    """Yield TLT0807 for each point of an enemy's route at which a solid leaves it no room."""
     for enemy in level.enemies:
         for point in enemy.route:
             if name := _first_overlap(_body_box(point, RADIUS), solids):
@@ -95,7 +98,10 @@ def _player_box(level: StealthLevel) -> Box:
 
 
 def _body_box(feet: Point, radius: float, height: float = _PLAYER.height) -> Box:
-    """Return the bounding box of a body, raised by 1 cm, so that standing on something is no overlap."""
+    """Return the bounding box of a body.
+
+    It begins 1 cm above the feet, so that a body does not overlap the ground under it.
+    """
     x, y, z = feet
     return Box((x - radius, y - radius, z + 0.01), (x + radius, y + radius, z + height))
 

@@ -1,4 +1,4 @@
-"""Check the names in a level: specs must be able to use them, and each must refer to something."""
+"""Check the names in a level: specs can use them, and what refers to a thing finds it."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tltlc.api import Diagnostic, SourceFile, replace
 
 
 def check_names(names: Iterable[str], places: NamedParts) -> list[Diagnostic]:
-    """Return TLT0804 for each name that a spec could not declare as an entity."""
+    """Return TLT0804 for each name that a spec cannot declare as an entity."""
     from tltlc.api import syntax
 
     diagnostics = []
@@ -31,7 +31,10 @@ def check_names(names: Iterable[str], places: NamedParts) -> list[Diagnostic]:
 
 
 def check_references(level: StealthLevel, places: NamedParts) -> list[Diagnostic]:
-    """Return TLT0805 for names that refer to nothing, and for barriers that nothing or two things open."""
+    """Return TLT0805 for each reference to something that the level does not have.
+
+    Also return TLT0805 for each barrier that nothing opens, or that two things open.
+    """
     # Leave out the aliases: their targets are among the names to check.
     signals = readers(replace(level, signals=()))
     known = {

@@ -1,4 +1,4 @@
-"""The folders of levels, and the specs that levels are made for."""
+"""The folder of the shipped levels, and the specs that levels are made for."""
 
 from __future__ import annotations
 
@@ -18,11 +18,12 @@ SPECS: Final = (LEVELS.parent / "examples", LEVELS.parents[2] / "examples")
 
 
 def read_default_spec(table: CheckedTable, level: Path) -> str:
-    """Return the spec under the key ``spec`` of a level as ``FILE:NAME``.
+    """Return the spec that the key ``spec`` of a level names, as ``FILE:NAME``.
 
-    ``level`` is the path of the level's file. The spec is beside that file or in the package. Return
-    an empty text if the level names no spec, or if it names one that does not exist; then TLT0803
-    or TLT0805 is logged.
+    ``level`` is the path of the level's file. FILE is the path of the spec's file, which is beside
+    the level or in the package. Return an empty text if there is no key, if its value is wrong
+    (this logs TLT0803), or if the file does not exist (this logs TLT0805). If the file does not
+    contain the spec, log TLT0805, too.
     """
     text = table.text("spec", "")
     file, _, name = text.rpartition(":")
@@ -45,7 +46,7 @@ def read_default_spec(table: CheckedTable, level: Path) -> str:
 
 
 def is_packaged(spec: str) -> bool:
-    """Whether a spec file is one that shipped levels are made for."""
+    """Whether the path ``spec`` is in a folder of the shipped levels' specs."""
     return Path(spec).resolve().parent in [folder.resolve() for folder in SPECS]
 
 

@@ -19,9 +19,8 @@ _SPEC: Final = re.compile(r"(.+\.tltl)(?::\w+)?\Z")
 def level_dependencies(level: Path, variant: str) -> Iterator[Path]:
     """Yield the files of the level, the assets and overlays of the variant, and the level's spec.
 
-    The files need not load: from a file with errors, everything readable counts.  If a file at
-    another path would be used instead of an existing one, that path is included, although it does
-    not exist.
+    The files need not load: if the level's file is not TOML, every quoted text in it counts as a
+    possible name. Also yield each path where a new file would be used instead of an existing one.
     """
     yield level
     base, added = split_overlays(variant)
@@ -50,8 +49,8 @@ def level_dependencies(level: Path, variant: str) -> Iterator[Path]:
 def file_candidates(level: Path, variant: str, name: str) -> Iterator[Path]:
     """Yield the paths at which one of a level's files may be.
 
-    ``name`` is the name of the file in the ``files`` of the level. The file is the level's own, one
-    beside it or in the package, or an added overlay.
+    ``name`` is the name of the file in the ``files`` of the level. It may be the level's own file,
+    a file beside it or in the package, or an overlay that ``variant`` adds.
     """
     if name == level.name:
         yield level
@@ -64,7 +63,8 @@ def file_candidates(level: Path, variant: str, name: str) -> Iterator[Path]:
 def _shared_files(names: Iterable[str], folder: str, places: Sequence[Path], *, sure: bool) -> Iterator[Path]:
     """Yield the files of the assets or overlays with these names.
 
-    Unless ``sure``, a name may be something else. Then it counts only if a file of that name exists.
+    ``folder`` is ``assets`` or ``overlays``; ``places`` are the folders that contain it. Unless
+    ``sure``, a name may be something else: then skip it if no file has that name.
     """
     for name in names:
         paths = [place / folder / f"{name}.toml" for place in places]

@@ -1,7 +1,7 @@
 """Read level files: TOML files written by designers (``docs/levels.md`` describes every key).
 
-A level is a file ``NAME.toml`` with the folders ``assets/`` and ``overlays/`` beside it. Files that
-are missing there are looked up among the levels that come with the package.
+A level is a file ``NAME.toml`` with the folders ``assets/`` and ``overlays/`` beside it. Assets and
+overlays that are missing there are looked up among the levels that come with the package.
 """
 
 from __future__ import annotations
@@ -38,7 +38,10 @@ def level_names() -> tuple[str, ...]:
 
 @fileio.resource_limits()
 def variants(name_or_path: str) -> tuple[str, ...]:
-    """Return the variants of a level, in the order of its file; errors as in :func:`load_level`."""
+    """Return the names of a level's variants, in the order of its file.
+
+    Raises the errors of :func:`load_level`.
+    """
     loading = _Loading(level_path(name_or_path))
     loading.check()
     return tuple(loading.variants)
@@ -48,14 +51,14 @@ def variants(name_or_path: str) -> tuple[str, ...]:
 def changes(name_or_path: str, variant: str) -> tuple[str, ...]:
     """Return the descriptions of a variant's overlays, in their order.
 
-    Errors are as in :func:`load_level`.
+    Raises the errors of :func:`load_level`.
     """
     return level_and_changes(name_or_path, variant)[1]
 
 
 @fileio.resource_limits()
 def level_and_changes(name_or_path: str, variant: str) -> tuple[StealthLevel, tuple[str, ...]]:
-    """Return a level and the descriptions of its overlays: the results of :func:`load_level` and :func:`changes`."""
+    """Return the results of :func:`load_level` and :func:`changes`."""
     loading = _Loading(level_path(name_or_path))
     return loading.level(variant), tuple(loading.changes)
 
@@ -64,29 +67,29 @@ def level_and_changes(name_or_path: str, variant: str) -> tuple[StealthLevel, tu
 def load_level(name_or_path: str, variant: str = "v0") -> StealthLevel:
     """Load a shipped level, by name, or one from a ``.toml`` file, in one of its variants.
 
-    ``VARIANT+OVERLAY`` is a variant with one more overlay, ``VARIANT+A+B`` with two more. An overlay
-    is a name, as in the list of a variant, or the path of a ``.toml`` file
+    ``VARIANT+OVERLAY`` is a variant with one more overlay, ``VARIANT+A+B`` with two more. An
+    overlay is a name, as in the list of a variant, or the path of a ``.toml`` file
     (:func:`~tltl_runtime.game.level_name.split_overlays`).
 
     :func:`read_level` also returns warnings.
 
     Raises:
-        TltlError: all errors that can be found in one pass. TLT0006, too many things or overlays;
-            TLT0800, unknown level, variant or added overlay; TLT0801, a file is not TOML; TLT0802,
-            an unknown key; TLT0803, a missing key, or a value of a wrong type or out of range;
-            TLT0804, a name that is taken or that specs cannot use; TLT0805, a name that refers to
-            nothing; TLT0806, outside the bounds; TLT0807, inside a solid; TLT0808, an overlay
-            changes something that does not exist; and the errors of
-            :func:`tltlc.io.files.read_source`.
+        TltlError: all errors that can be found in one pass. TLT0006, too many things or overlays,
+            or bounds that are too large for enemies; TLT0800, unknown level, variant or added
+            overlay; TLT0801, a file is not TOML; TLT0802, an unknown key; TLT0803, a missing key,
+            or a value of a wrong type or out of range; TLT0804, a name that is taken or that specs
+            cannot use; TLT0805, a name that refers to nothing; TLT0806, outside the bounds;
+            TLT0807, inside a solid; TLT0808, an overlay changes something that does not exist; and
+            the errors of :func:`tltlc.io.files.read_source`.
     """
     return _Loading(level_path(name_or_path)).level(variant)
 
 
 @fileio.resource_limits()
 def read_level(name_or_path: str, variant: str = "v0") -> tuple[StealthLevel, tuple[Diagnostic, ...]]:
-    """Return a level as :func:`load_level` does, and warnings.
+    """Return the result of :func:`load_level`, and warnings.
 
-    The warnings are TLT0809: the path of a mover or an enemy looks like a mistake.
+    A warning, TLT0809, says that the path of a mover or an enemy looks like a mistake.
     """
     loading = _Loading(level_path(name_or_path))
     level = loading.level(variant)
@@ -114,7 +117,10 @@ def level_path(name_or_path: str) -> Path:
 
 
 def shared_names(level: Path, folder: str) -> tuple[str, ...]:
-    """Return the names of ``assets`` or ``overlays`` beside a level's file and in the package."""
+    """Return the names of the files in ``folder`` beside a level's file and in the package.
+
+    ``folder`` is ``assets`` or ``overlays``.
+    """
     places = (level.parent / folder, LEVELS / folder)
     return tuple(sorted({path.stem for place in places for path in place.glob("*.toml")}))
 
@@ -133,7 +139,7 @@ class _Loading:
         self.variants = self._variants()
 
     def level(self, variant: str) -> StealthLevel:
-        """Return the level in a variant, with the overlays that are added to it."""
+        """Return the level in a variant; ``variant`` may add overlays, as in :func:`load_level`."""
         base, added = split_overlays(variant)
         if base not in self.variants:
             title = f"the level `{self.path.stem}` has no variant `{base}`"
@@ -191,12 +197,12 @@ class _Loading:
         return level
 
     def check(self) -> None:
-        """Raise the diagnostics that are logged so far."""
+        """Raise a TltlError with all diagnostics logged so far, if there are any."""
         if self.log:
             raise TltlError(self.log)
 
     def _check_count(self, *groups: Sequence[object]) -> None:
-        """Raise TltlError, TLT0006, if a level has too many things.
+        """Raise TltlError, TLT0006, if a level has too many things and points of paths.
 
         The limit is :data:`tltlc.io.limits.LEVEL`.
         """
@@ -245,7 +251,10 @@ class _Loading:
         return box
 
     def _assets(self, variant: str, added: Sequence[str]) -> tuple[list[CheckedTable], dict[str, CheckedTable]]:
-        """Return the level's uses of parts, and its assets by name, with all overlays applied."""
+        """Return the level's uses of parts, and its assets by name.
+
+        The overlays of ``variant`` and the ``added`` ones are applied to the assets.
+        """
         uses = self.table.tables("use")
         references = [(use, "asset") for use in uses]
         references += [(CheckedTable(enemy, "`[[enemy]]`", []), "kind") for enemy in self._tables_under("enemy")]
@@ -283,14 +292,18 @@ class _Loading:
         return [item for item in items if isinstance(item, Entry)]
 
     def _overlay_path(self, name: str) -> Path | None:
-        """Return the file of an overlay that an argument adds to a variant; log TLT0800 if there is none."""
+        """Return the path of an overlay that an argument adds to a variant.
+
+        Log TLT0800 if there is no overlay of this name.
+        """
         return Path(name) if name.endswith(".toml") else self._find_shared("overlays", name)
 
     def _find_shared(self, folder: str, name: str, label: Label | None = None) -> Path | None:
-        """Find the file of an asset or overlay, beside the level or in the package; log an error if there is none.
+        """Find the file of an asset or overlay, beside the level or in the package.
 
-        ``label`` is the label of the name in a file: the error is TLT0805. Without a label, the name
-        is part of an argument: the error is TLT0800.
+        If there is none, log an error and return None. The error is TLT0805 at ``label``, where a
+        file names the asset or overlay. Without a label, an argument names it, and the error is
+        TLT0800.
         """
         for place in (self.path.parent / folder, LEVELS / folder):
             if fileio.is_file(path := place / f"{name}.toml") and path.parent == place:
@@ -328,7 +341,7 @@ class _Loading:
             solids += still
             movers += moving
             self._check_count(solids, movers)
-            # Each use of an asset repeats its faults.
+            # Each use of an asset logs its faults again, so there may be very many.
             if len(self.log) > _MOST_FAULTS:
                 self.check()
             regions += part_regions(prefix[:-1], still, moving)

@@ -1,4 +1,4 @@
-"""Check that a level that does not come from a level file can be drawn and played."""
+"""Check that a level can be drawn and played, even if it was not read from a level file."""
 
 from __future__ import annotations
 
@@ -19,7 +19,8 @@ _THINNEST: Final = 1e-3
 def fault(level: StealthLevel) -> str | None:
     """Return a description of the first fault of a level, or None if it can be drawn and played.
 
-    Whether names are valid, and whether things have enough room, is checked for level files only.
+    Invalid names, and things without enough room, are no faults here: only level files are checked
+    for them.
     """
     return next(_faults(level), None)
 

@@ -1,6 +1,6 @@
-"""Overlays: small changes to the shared assets of levels.
+"""Overlays: small changes to the assets that levels share.
 
-They are stored beside the levels, and variants list them.
+They are files in the folder ``overlays`` beside a level, and variants list them by name.
 """
 
 from __future__ import annotations
@@ -15,9 +15,12 @@ from tltlc.api import Diagnostic, Label
 def apply(overlay: Tree, assets: dict[str, Tree], log: list[Diagnostic]) -> dict[str, Tree]:
     """Return the assets, by name, with the changes of an overlay.
 
-    ``[change.ASSET]`` replaces the values of keys of an asset, ``[change.ASSET.THING]`` those of a
-    thing in the asset. ``[add.ASSET]`` appends to lists of the asset. Neither creates a key that the
-    asset does not have, so that a misspelled change cannot pass unnoticed: ``log`` gets TLT0808.
+    - ``[change.ASSET]`` replaces values of an asset.
+    - ``[change.ASSET.THING]`` replaces values of a thing in the asset.
+    - ``[add.ASSET]`` appends to lists of the asset.
+
+    All keys must exist in the asset, so that a misspelled change cannot pass unnoticed: otherwise
+    ``log`` gets TLT0808. For an unknown key of the overlay itself, it gets TLT0802.
     """
     changed = dict(assets)
     for key, entry in overlay.items():

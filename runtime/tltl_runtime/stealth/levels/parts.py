@@ -31,7 +31,10 @@ _MAX_RISE: Final = 0.25
 """The highest step of stairs that the player can walk up, in metres."""
 
 CELL_TYPES: Final = ("floor", "platform", "low", "wall", "switch", "exit", "barrier", "laser", "mover", "enemy")
-"""The types of the cells of a semantic map; a cell with several types has the last one in this order."""
+"""The types of the cells of a semantic map.
+
+A cell that could have several types has the last of them in this order.
+"""
 
 _SOLIDS: Final[tuple[Literal["wall", "low", "platform"], ...]] = ("wall", "low", "platform")
 
@@ -39,20 +42,27 @@ CELL_WIDTH: Final = (0.1, 5.0)
 """The least and greatest width of a cell of the semantic map, in metres."""
 
 MAP_EXTENT: Final = (3, 63)
-"""The least and greatest number of cells along a side of the semantic map; the number is odd."""
+"""The least and greatest number of cells along a side of the semantic map.
+
+The number must be odd.
+"""
 
 _VARIABLES: Final = ("health", "stamina", "crouching", "grounded", "visible", "seen")
-"""The variables that the agent observes if the level does not list any."""
+"""The signals that the agent observes if the level does not list any."""
 
 
 @record
 class NamedParts:
-    """Labels of names, positions and references in the level's files, for later checks."""
+    """The labels of things in the level's files, for later checks.
+
+    ``names`` has the label of each thing's name, ``positions`` that of its position; both are by
+    name.
+    """
 
     names: dict[str, Label]
     positions: dict[str, Label]
     references: list[tuple[str, str, Label]]
-    """The kind of thing that a reference names, the name, and the label of the reference."""
+    """Each reference: the kind of thing that it names, the name, and the reference's label."""
 
     def add(self, name: str, table: CheckedTable, position_key: str) -> None:
         """Record the labels of a thing's name and position; log TLT0804 if the name is taken.
@@ -67,20 +77,29 @@ class NamedParts:
         self.positions.setdefault(name, table.label_of(position_key))
 
     def name_labels(self, name: str) -> tuple[Label, ...]:
-        """Return the label of a thing's name, or an empty tuple if the name is not in a file."""
+        """Return the label of a thing's name; an empty tuple if no file contains the name."""
         return (self.names[name],) if name in self.names else ()
 
     def position_labels(self, *names: str) -> tuple[Label, ...]:
-        """Return the labels of the positions of things, except the outer walls, which have none."""
+        """Return the labels of the positions of the things with these names.
+
+        The outer walls have no labels.
+        """
         return tuple(self.positions[name] for name in names if name in self.positions)
 
     def refer(self, kind: str, table: CheckedTable, key: str, names: tuple[str, ...]) -> None:
-        """Record that the value of ``key`` names things of a ``kind``, for a later check of the names."""
+        """Record that the value of ``key`` in ``table`` names these things of a ``kind``.
+
+        :func:`~tltl_runtime.stealth.levels.check.check_references` checks later that they exist.
+        """
         self.references.extend((kind, name, table.label_of(key)) for name in names)
 
 
 def solids(table: CheckedTable, places: NamedParts, shift: Point = (0.0, 0.0, 0.0), prefix: str = "") -> list[Solid]:
-    """Read the walls, low obstacles, platforms and stairs of a level or a part."""
+    """Read the walls, low obstacles, platforms and stairs of a level or a part.
+
+    ``shift`` is the position of a part in the level; ``prefix`` begins the names of its things.
+    """
     solids = []
     for kind in _SOLIDS:
         for number, item in enumerate(table.tables(kind), 1):
@@ -134,7 +153,10 @@ def _stairs(table: CheckedTable, name: str, shift: Point) -> list[Solid]:
 
 
 def movers(table: CheckedTable, places: NamedParts, shift: Point = (0.0, 0.0, 0.0), prefix: str = "") -> list[Mover]:
-    """Read the movers of a level or a part; in files, a path is that of the middle of the base."""
+    """Read the movers of a level or a part; ``shift`` and ``prefix`` are as in :func:`solids`.
+
+    In files, the points of a path are for the middle of the mover's base, not for its centre.
+    """
     movers = []
     for item in table.tables("mover"):
         name, size = prefix + item.text("name"), item.size()
@@ -175,7 +197,7 @@ def barriers(table: CheckedTable, places: NamedParts) -> list[Barrier]:
 
 
 def unlocks(table: CheckedTable, places: NamedParts) -> list[Unlock]:
-    """Read the random unlocks of a level."""
+    """Read the unlocks of a level, each of which opens a random barrier."""
     unlocks = []
     for item in table.tables("unlock"):
         unlock = Unlock(item.text("switch"), item.names("barriers"))
@@ -214,7 +236,7 @@ def enemies(table: CheckedTable, kinds: dict[str, EnemyKind], places: NamedParts
 
 
 def enemy_kind(table: CheckedTable, name: str) -> EnemyKind:
-    """Read an asset of type ``enemy``; angles are in degrees in files."""
+    """Read an asset of type ``enemy``. In files, angles are in degrees."""
     kind = EnemyKind(
         name=name,
         sight_range=table.number("sight_range", low=0.0, high=100.0),
@@ -240,7 +262,7 @@ def enemy_kind(table: CheckedTable, name: str) -> EnemyKind:
 
 
 def start(table: CheckedTable) -> Start:
-    """Read the player's start."""
+    """Read the player's start. In files, its yaw is in degrees."""
     start = Start(
         table.point("at"),
         math.radians(table.number("yaw", 0.0, low=-360.0, high=360.0, unit="degrees")),
@@ -251,7 +273,10 @@ def start(table: CheckedTable) -> Start:
 
 
 def sensors(table: CheckedTable | None, entities: tuple[str, ...], places: NamedParts) -> Sensors:
-    """Read the agent's sensors; by default all ``entities``, ``_VARIABLES`` and no map."""
+    """Read the agent's sensors.
+
+    The defaults are all ``entities``, the signals in ``_VARIABLES``, and no map.
+    """
     if table is None:
         return Sensors(entities, _VARIABLES, None)
     map_sensor = None
@@ -293,6 +318,6 @@ def _shift(point: Point, shift: Point) -> Point:
 
 
 def _round(point: list[float] | Point) -> Point:
-    """Round to the micrometre, so that boxes that should touch do touch."""
+    """Round coordinates to the micrometre, so that boxes that should touch do touch."""
     x, y, z = (round(value, 6) + 0.0 for value in point)
     return (x, y, z)

@@ -20,11 +20,12 @@ _MOST_WARNINGS: Final = 10
 
 
 def check_paths(level: StealthLevel, places: NamedParts) -> tuple[Diagnostic, ...]:
-    """Return warnings about movers and enemies (TLT0809).
+    """Return warnings, TLT0809, about paths that look like mistakes:
 
-    There is a warning if two neighbouring points of a mover's path are equal, or if the mover passes
-    through a solid. There is one if an enemy begins within reach of the player, or cannot reach a
-    point of its route.
+    - Two neighbouring points of a mover's path are equal.
+    - A mover passes through a solid.
+    - An enemy begins where it can hit the player at once.
+    - An enemy cannot reach a point of its route, at all or until a barrier opens.
     """
     warnings = [
         warning for mover in level.movers for warning in islice(_mover_warnings(mover, level, places), _MOST_WARNINGS)
@@ -70,7 +71,7 @@ def _enemy_warnings(enemy: Enemy, level: StealthLevel, places: NamedParts) -> It
 
 
 def _can_walk(level: StealthLevel, start: Point, end: Point, *, shut: bool) -> bool:
-    """Whether an enemy can walk between two points, with all barriers shut or all open."""
+    """Whether an enemy can walk from ``start`` to ``end``, with all barriers shut or all open."""
     floor = grid_of(level).floor(range(len(level.barriers)) if shut else ())
     stands = floor.entry(start[:2]) is not None and floor.entry(end[:2]) is not None
     return stands and floor.area(start[:2]) == floor.area(end[:2])

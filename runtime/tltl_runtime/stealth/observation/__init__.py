@@ -1,1 +1,1 @@
-"""The observations of the agent."""
+"""The observations of the agent. Begin with `observation`."""

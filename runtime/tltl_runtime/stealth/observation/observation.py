@@ -1,4 +1,4 @@
-"""The agent's observation: vectors to entities, values of variables, the semantic map."""
+"""The agent's observation: vectors to entities, values of signals, and the semantic map."""
 
 from __future__ import annotations
 
@@ -18,25 +18,26 @@ if TYPE_CHECKING:
     from tltl_runtime.stealth.simulation import Simulation
 
 _HALF_TIME_S: Final = 60.0
-"""The time that is observed as 0.5; time is unbounded, but the observation must be bounded."""
+"""The time, in seconds, that is observed as 0.5: the scale keeps the unbounded time below 1."""
 
 
 class Observer:
-    """Computes the observations of the sensors that a level declares, or that ``sensors`` selects instead.
+    """Computes the agent's observations.
 
-    Call ``look`` with a simulation of that level. ``space`` is a Dict with these keys; a key is
-    missing if its sensors are empty:
+    The sensors are those that the level declares, or those that ``sensors`` selects instead. Call
+    ``look`` with a simulation of that level. ``space`` is a Dict with these keys; a key is missing
+    if there are no sensors for it:
 
-    - ``entities`` float32 (3 n,), the vectors from the player's feet, divided by the diagonal of
-      the bounds, in [-1, 1];
-    - ``variables`` float32 (n,), all in [-1, 1]: truth values as 0 or 1, lengths divided by the
-      diagonal, positions as a fraction of the bounds, angles divided by pi, the time t as
-      t / (t + 60 s), the others unchanged;
-    - ``map`` uint8 (types, extent, extent), 1 where a cell is of that type; rows run north, columns
+    - ``entities`` float32 (3 n,): the vectors from the player's feet to the entities, divided by
+      the diagonal of the bounds, in [-1, 1].
+    - ``variables`` float32 (n,), in [-1, 1]: truth values as 0 or 1, lengths divided by the
+      diagonal, positions as a fraction of the bounds, angles divided by pi, the time t as t / (t +
+      60 s). All other signals and all aliases are unchanged, but cut off at -1 and 1.
+    - ``map`` uint8 (types, extent, extent): 1 where a cell is of that type; rows go north, columns
       east.
 
     Raises:
-        TltlError: TLT0815, ``sensors`` names something that the level does not have.
+        TltlError: TLT0815, ``sensors`` is invalid, or names something that the level does not have.
     """
 
     def __init__(self, level: StealthLevel, sensors: SensorChoice | None = None) -> None:
@@ -101,10 +102,7 @@ class Observer:
 
 
 def _scaled_reader(signal: LevelSignal, level: StealthLevel) -> Reader:
-    """Return a reader that scales a signal to [-1, 1].
-
-    The time t, which is unbounded, becomes t / (t + 60 s).
-    """
+    """Return a reader that scales a signal to [-1, 1], as :class:`Observer` describes."""
     low, high, read = level.bounds.low, level.bounds.high, signal.read
     if signal.base == "time":
         return lambda game: game.time / (game.time + _HALF_TIME_S)

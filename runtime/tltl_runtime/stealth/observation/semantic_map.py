@@ -1,8 +1,8 @@
 """The semantic map: the cell types around the agent at the height of its body.
 
-Cutting the static part out of the level's voxels takes 2 µs. Each mover or enemy in the map takes
-about as long again. The map does not turn with the agent: its first axis runs north (y), its second
-east (x), and the agent is in the middle cell.
+The map does not turn with the agent: its first axis goes north (y), its second east (x), and the
+agent is in the middle cell. It takes 2 µs to cut the part that stands still out of the level's
+voxels, and about 2 µs for each mover or enemy in the map.
 """
 
 from __future__ import annotations
@@ -27,8 +27,8 @@ _TOUCH: Final = 1e-6
 class SemanticMap:
     """The semantic map of a level; ``sensor`` describes it, by default the level's own map sensor.
 
-    Raises ValueError if the level declares no map and ``sensor`` is None, or if a cell type is
-    unknown.
+    Raises ValueError if there is neither a ``sensor`` nor a map sensor of the level, or if a cell
+    type is unknown.
     """
 
     def __init__(self, level: StealthLevel, sensor: MapSensor | None = None) -> None:
@@ -71,8 +71,8 @@ class SemanticMap:
 
         The result is uint8 [extent, extent]: 0 for no type, else 1 + the index of the type in
         ``sensor.types``. ``movers`` are the current corners of the movers' boxes, ``enemies`` the
-        positions of the enemies' feet. For a position outside the bounds, the map of the nearest cell
-        inside is returned.
+        positions of the enemies' feet. A position outside the bounds counts as in the nearest cell
+        inside.
         """
         x, y, z = position
         x0, y0, z0 = self._origin
@@ -106,9 +106,10 @@ class SemanticMap:
         return layers
 
     def _stamp(self, ids: NDArray[np.uint8], a: float, b: float, c: float, d: float, number: int) -> None:
-        """Mark the cells that overlap a rectangle.
+        """Write ``number`` into the cells that overlap a rectangle.
 
-        The rectangle is in metres from the map's south-west corner.
+        Its west, south, east and north sides are ``a``, ``b``, ``c`` and ``d``, in metres from the
+        map's south-west corner.
         """
         if a < self._side and b < self._side and c > 0.0 and d > 0.0:
             scale = self._per_metre

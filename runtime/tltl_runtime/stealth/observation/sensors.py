@@ -1,4 +1,4 @@
-"""Choose an agent's sensors: those that a level declares, or others in place of all or some of them."""
+"""Choose an agent's sensors: those that the level declares, or replacements for some or all."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tltl_runtime.support.suggestion import suggestion
 from tltlc.api import Diagnostic, TltlError
 
 DEFAULT_MAP: Final = MapSensor(CELL_TYPES, 0.5, 15)
-"""Defaults for the keys that a mapping leaves out, if the level has no map of its own."""
+"""The values of the keys that a mapping leaves out, if the level has no map of its own."""
 
 _CELL: Final = f"give a width from {CELL_WIDTH[0]:g} to {CELL_WIDTH[1]:g} m"
 _EXTENT: Final = f"give an odd number of cells from {MAP_EXTENT[0]} to {MAP_EXTENT[1]}, so that one is in the middle"
@@ -23,8 +23,9 @@ _EXTENT: Final = f"give an odd number of cells from {MAP_EXTENT[0]} to {MAP_EXTE
 def choose_sensors(level: StealthLevel, choice: SensorChoice | None = None) -> Sensors:
     """Return the sensors that the agent uses: ``choice``, or those of the level for None.
 
-    A mapping may leave out what the level's own sensors should decide. ``{"map": None}`` removes the
-    map; ``{"map": {"cell": 1.0}}`` keeps the level's map but changes its cells.
+    ``choice`` is a record or a mapping. The level's own sensors decide what a mapping leaves out.
+    ``{"map": None}`` removes the map; ``{"map": {"cell": 1.0}}`` keeps the level's map but changes
+    its cells.
 
     Raises:
         TltlError: one TLT0815 for each mistake.
@@ -43,7 +44,10 @@ def choose_sensors(level: StealthLevel, choice: SensorChoice | None = None) -> S
 
 
 def missing_sensors(level: StealthLevel, sensors: Sensors) -> Iterator[str]:
-    """Yield the entities and signals that the sensors name and a level does not have, such as "the entity `exit`"."""
+    """Yield the entities and signals that ``sensors`` names and a level does not have.
+
+    They are texts such as "the entity `exit`".
+    """
     entities, signals = entity_names(level), readers(level)
     yield from (f"the entity `{name}`" for name in sensors.entities if name not in entities)
     yield from (f"the signal `{name}`" for name in sensors.variables if name not in signals)
@@ -52,7 +56,7 @@ def missing_sensors(level: StealthLevel, sensors: Sensors) -> Iterator[str]:
 def _read(level: StealthLevel, choice: Mapping[str, Any], log: list[Diagnostic]) -> Sensors:
     """Build the record from a mapping.
 
-    Values of a wrong type are logged and replaced by the level's own.
+    A value of a wrong type is logged, and the level's own value takes its place.
     """
     declared = level.sensors
     _check_names(map(str, choice), Sensors.__match_args__, "sensors have no key", log)

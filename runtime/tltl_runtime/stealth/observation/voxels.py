@@ -1,11 +1,11 @@
-"""The static cells that semantic maps are cut from.
+"""The cells that stand still, from which semantic maps are cut.
 
-A level is cut into square cells and, every quarter of a metre in height, into layers. A layer is for
-a body whose feet are at its height. For each cell it says what the body would meet there, from its
-head down to the ground that it stands on. There is one set of layers for a standing body and one for
-a crouched body, so a low passage is free only in the second. A cell has the type of an object that
-overlaps it, however little. If several objects overlap the cell, it has the type that comes last in
-CELL_TYPES.
+A level is cut into square cells and, every quarter of a metre in height, into layers. A layer is
+for a body whose feet are at its height. For each cell it says what the body would meet there, from
+its head down to the ground on which it stands. There is one set of layers for a standing body and
+one for a crouched body, so a low passage is free only in the second. A cell has the type of an
+object that overlaps it, however little. If several objects overlap the cell, it has the type that
+comes last in CELL_TYPES.
 """
 
 from __future__ import annotations
@@ -26,15 +26,15 @@ LAYER: Final = 0.25
 """The height of a layer, in metres."""
 STANDING: Final = 1.8
 CROUCHED: Final = 0.9
-"""The heights of the player's body, in metres."""
+"""The heights of the player's body, standing and crouched, in metres."""
 BELOW: Final = 0.1
-"""How far below its feet a body meets the ground that it stands on, in metres."""
+"""How far a layer looks below the feet, in metres, so that it shows the ground under the body."""
 
 _POINT_HEIGHT: Final = 1.0
 _TOUCH: Final = 1e-6
 
 Layers = tuple[tuple[NDArray[np.uint8], ...], tuple[NDArray[np.uint8], ...]]
-"""The layers for a standing and for a crouched body.
+"""The layers for a standing body, and those for a crouched body.
 
 They go from the lowest up; each is uint8 [rows, columns].
 """
@@ -60,8 +60,9 @@ class Frame:
 class Voxels:
     """The layers of a level, one set for each set of shut barriers.
 
-    Each layer has a margin of ``margin`` empty cells around the level, so that a map at the border can
-    be cut out of it, too. Raises ValueError for a type that is not in CELL_TYPES.
+    Each layer has a margin of ``margin`` empty cells around the level, so that a map at the border
+    can be cut out of it, too. ``ids`` has the number of each type in the layers. Raises ValueError
+    for a type that is not in CELL_TYPES.
     """
 
     def __init__(self, level: StealthLevel, sensor: MapSensor) -> None:
@@ -85,7 +86,10 @@ class Voxels:
         self._layers: dict[frozenset[int], Layers] = {}
 
     def layers(self, shut: Collection[int]) -> Layers:
-        """Return the layers while the barriers with these indices are shut; they are cached and read-only."""
+        """Return the layers while the barriers with these indices are shut.
+
+        They are cached and read-only.
+        """
         key = frozenset(shut)
         if key not in self._layers:
             things = sorted(self._typed_boxes(key), key=lambda thing: CELL_TYPES.index(thing[0]))
