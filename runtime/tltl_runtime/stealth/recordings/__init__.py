@@ -1,1 +1,1 @@
-"""Recorded episodes: their files, checks and summaries."""
+"""Recorded episodes: their files, checks and summaries. Begin with `episode`."""

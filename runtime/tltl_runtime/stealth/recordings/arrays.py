@@ -21,9 +21,11 @@ Arrays = Mapping[str, NDArray[Any]]
 
 @record
 class Array:
-    """The format of an array in the file: NumPy's ``dtype``, the shape, the least and the greatest value.
+    """The format of an array in an episode's file.
 
-    A shape has numbers, and names of axes whose lengths depend on the episode.
+    It has NumPy's ``dtype``, a shape, a unit, and the range of its values from ``low`` to ``high``.
+    A shape contains numbers, and names of axes whose lengths depend on the episode. ``doc`` says
+    what the values are.
     """
 
     name: str
@@ -61,7 +63,10 @@ ARRAYS: Final = (
 
 
 def to_arrays(episode: Episode, modes: tuple[str, ...]) -> dict[str, NDArray[Any]]:
-    """Convert an episode to the arrays of :data:`ARRAYS`; ``modes`` lists the enemies' modes."""
+    """Convert an episode to the arrays of :data:`ARRAYS`.
+
+    ``modes`` lists the modes of enemies: the array ``enemy_mode`` has indices into it.
+    """
     shots = episode.snapshots
     index_of = {mode: number for number, mode in enumerate(modes)}
     columns = {
@@ -90,7 +95,10 @@ def to_arrays(episode: Episode, modes: tuple[str, ...]) -> dict[str, NDArray[Any
 
 
 def snapshots(arrays: Arrays, modes: tuple[str, ...]) -> tuple[Snapshot, ...]:
-    """Convert arrays to snapshots; all indices into ``modes`` must be valid."""
+    """Convert the arrays of a file to snapshots.
+
+    ``modes`` is as in :func:`to_arrays`; the indices into it must be valid.
+    """
     lists = {name: array.tolist() for name, array in arrays.items()}
     player = zip(
         *(map(tuple, lists[name]) for name in ("position", "velocity")),

@@ -17,11 +17,11 @@ from tltl_runtime.stealth.world.player import PlayerKind
 from tltlc.api import Atom, expressions, label_text
 
 _RECENT: Final = 3.0
-"""Damage counts as a cause of death if it was dealt at most this many seconds before."""
+"""Damage counts as a cause of death if the player took it at most this many seconds before."""
 
 
 def cause(episode: Episode) -> Cause:
-    """Find the cause of the episode's end."""
+    """Find the cause of the end of an episode."""
     if not episode.success:
         death = next((row for row, shot in enumerate(episode.snapshots) if shot.health <= 0.0), None)
         if death is not None:
@@ -51,7 +51,7 @@ def _death_cause(episode: Episode, death: int) -> Cause:
 
 
 def _violation_cause(episode: Episode) -> Cause:
-    """Return the cause for a violation: the atoms that the last transition depended on."""
+    """Return the cause of a violation: the atoms on which the last transition depended."""
     broken = _broken_atoms(episode)
     by = tuple(name for name, _ in broken)
     words = [f"{name} {'holds' if holds else 'does not hold'}" for name, holds in broken]
@@ -61,8 +61,9 @@ def _violation_cause(episode: Episode) -> Cause:
 def _broken_atoms(episode: Episode) -> list[tuple[str, bool]]:
     """Return the atoms that caused a violation, with their truth values.
 
-    They are a prime implicant of the guard of the violating transition that held at the last step.
-    If several held and the player died, one with an atom that reads the health is preferred.
+    The violating transition has a guard. Its prime implicant that was true at the last step
+    consists of these atoms. If several were true and the player died, one with an atom that reads
+    the health is preferred.
     """
     fspa, last_transition = episode.fspa, (int(episode.states[-2]), int(episode.states[-1]))
     holds = [value > 0.0 for value in episode.atoms[-1].tolist()]
@@ -83,7 +84,10 @@ def _reads_health(atom: Atom) -> bool:
 
 
 def _limit_cause(episode: Episode) -> Cause:
-    """Return the cause of an episode that reached the limit; it says if the expert had no route to its next goal."""
+    """Return the cause of an episode that reached its limit.
+
+    It says so if the player is the expert and had no route to its next goal.
+    """
     last, steps = episode.snapshots[-1], len(episode.actions)
     remaining = f"limit after {steps} steps, remaining: {_remaining_text(episode)}"
     if "expert" in episode.player:
@@ -111,9 +115,9 @@ def _remaining_text(episode: Episode) -> str:
 
 
 def _damage_rates(level: StealthLevel, before: Snapshot, after: Snapshot) -> dict[str, float]:
-    """Return the health per second that each enemy and laser took in a decision, by name.
+    """Return the damage of each enemy and laser in one decision, in health per second, by name.
 
-    The damage is computed as in the game, but from the snapshots. In the game, enemies attack before
+    The computation is that of the game, but reads snapshots. In the game, enemies attack before
     they move, and lasers burn before switches open them.
     """
     feet, kind = after.player.position, PlayerKind()
@@ -133,9 +137,9 @@ def _damage_rates(level: StealthLevel, before: Snapshot, after: Snapshot) -> dic
 
 
 def _unreachable_goals(episode: Episode) -> tuple[str, ...] | None:
-    """Return the next goals if none of them can be reached.
+    """Return the next goals of the spec if the player can reach none of them.
 
-    Return an empty tuple if one of them can be reached, and None if the spec names no next goal.
+    Return an empty tuple if the player can reach one, and None if there are no next goals.
     """
     last = episode.snapshots[-1]
     sample = {signal.name: value for signal, value in zip(episode.fspa.signals, episode.signals[-1], strict=True)}

@@ -1,4 +1,4 @@
-"""Check a recording: run its spec's automaton on it again, and play its actions again in its level."""
+"""Check a recording: run its spec's automaton again on its signals, and play its actions again."""
 
 from __future__ import annotations
 
@@ -13,10 +13,11 @@ _Difference = tuple[str, object, object]
 
 
 def check(episode: Episode) -> tuple[Diagnostic, ...]:
-    """Run the spec's automaton on the recorded signals again, and compare the results with the recording.
+    """Run the spec's automaton again on the recorded signals, and compare the results.
 
-    Atoms, states, progress, rewards and the end must be equal. Return no diagnostics if they are
-    equal, else TLT0823 for the first step that differs, or the diagnostics of the monitor.
+    Atoms, states, progress, rewards and the end must equal the recorded ones. Return TLT0823 for
+    the first step that differs, or no diagnostics. If the monitor rejects the signals, return its
+    diagnostics.
     """
     try:
         first = next(_differences(episode), None)
@@ -33,8 +34,8 @@ def check(episode: Episode) -> tuple[Diagnostic, ...]:
 def resimulate(episode: Episode) -> int | None:
     """Play the actions again from the seed; return the first step that differs in any bit, or None.
 
-    Step 0 is the moment of the reset. The comparison includes the snapshots, and the signals of the
-    spec that the game supplies.
+    Step 0 is the moment of the reset. A step differs if its snapshot differs, or one of the spec's
+    signals that the game supplies.
 
     Raises:
         TltlError: TLT0730, pybullet is not installed. The other functions here do not need it.
@@ -66,7 +67,10 @@ def resimulate(episode: Episode) -> int | None:
 
 
 def check_replay(episode: Episode) -> tuple[Diagnostic, ...]:
-    """Return TLT0824, with what may have changed, if :func:`resimulate` finds a difference."""
+    """Return TLT0824 if :func:`resimulate` finds a difference, else an empty tuple.
+
+    The help of the diagnostic says which versions have changed since the recording.
+    """
     row = resimulate(episode)
     if row is None:
         return ()
@@ -87,7 +91,10 @@ def check_replay(episode: Episode) -> tuple[Diagnostic, ...]:
 
 
 def _differences(episode: Episode) -> Iterator[tuple[int, _Difference]]:
-    """Yield the differences with their step numbers; 0 is the moment of the reset."""
+    """Yield the step and the difference where recorded and recomputed values differ.
+
+    Step 0 is the moment of the reset.
+    """
     names = [signal.name for signal in episode.fspa.signals]
     monitor = Monitor(episode.fspa, episode.params, episode.reward)
     count = len(episode.actions)

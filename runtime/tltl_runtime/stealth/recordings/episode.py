@@ -17,10 +17,10 @@ from tltlc.api import EMPTY, Fspa, RewardOptions, record
 class Episode:
     """One episode of n decisions, with all data that is needed to draw it and to judge it again.
 
-    If the level is reset with ``seed`` and ``actions`` are played, the same episode results, bit for
-    bit. Arrays of length n + 1 begin with the moment of the reset. ``end`` is ``limit`` if the limit
-    of the spec or of the environment came before the verdict was settled, and ``stopped`` if the
-    player left.
+    If the level is reset with ``seed`` and ``actions`` are played, the same episode results, bit
+    for bit. Arrays of length n + 1 begin with the moment of the reset. ``end`` is ``limit`` if the
+    limit of the spec or of the environment came before the verdict was settled, and ``stopped`` if
+    the player left.
     """
 
     level: StealthLevel
@@ -49,9 +49,12 @@ class Episode:
     success: bool
     end: End
     reward: RewardOptions = RewardOptions()
-    """The reward options of the episode."""
+    """The options by which the rewards were computed."""
     versions: Mapping[str, str] = EMPTY
-    """The versions of Python and of the packages that played the episode; equal versions reproduce it."""
+    """The versions of Python and of the packages that played the episode.
+
+    The same versions play it again, bit for bit.
+    """
 
     @property
     def times(self) -> NDArray[np.float64]:

@@ -1,4 +1,4 @@
-"""Episode files: compressed numpy archives; ``docs/episode-log.md`` describes every array."""
+"""Files of episodes: compressed NumPy archives. ``docs/episode-log.md`` describes every array."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from tltlc.api import Fspa, RewardOptions, SourceFile, TltlError, compiler, file
 FORMAT: Final = "tltl-episode"
 VERSION: Final = 1
 MAX_BYTES: Final = fileio.limits.RECORDING.size
-"""The greatest size of a file, and of its unpacked arrays: 256 MiB.
+"""The greatest size of a file, and of all its arrays when they are unpacked: 256 MiB.
 
 That is about half a million decisions.
 """
@@ -40,7 +40,7 @@ _ERRORS: Final = LoadErrors("an", "episode", "TLT0820", "TLT0821", "TLT0822", ag
 
 @record
 class AxisNames:
-    """The names of the entries along each axis that has names, in order."""
+    """The names along the axes of the arrays, in order, for each axis that has names."""
 
     signals: tuple[str, ...]
     atoms: tuple[str, ...]
@@ -52,7 +52,10 @@ class AxisNames:
 
 @record
 class Meta:
-    """The JSON in the array ``meta``: an episode without its arrays and its spec's artefact."""
+    """The content of the array ``meta``, which is JSON.
+
+    It is an episode without its arrays and without the artefact of its spec.
+    """
 
     format: str
     version: int
@@ -267,7 +270,7 @@ def _check_array(values: NDArray[Any], array: Array, shape: tuple[int, ...], nam
 
 
 def _check_indices(arrays: Arrays, meta: Meta, fspa: Fspa, name: str) -> None:
-    """Raise TLT0822 unless all indices are in range and the names match the level and the spec."""
+    """Raise TLT0822 unless all indices are in range, and the names are those of level and spec."""
     limits = [
         ("actions", np.array(BRANCHES)),
         ("states", np.array(len(fspa.states))),

@@ -27,7 +27,7 @@ class ArchiveError(ValueError):
 
 
 def read_members(data: bytes, names: Collection[str], most: int) -> dict[str, bytes]:
-    """Return the bytes of the files ``NAME.npy`` in an archive, for those ``names`` that are present.
+    """Return the bytes of those files ``NAME.npy`` that an archive contains, by name.
 
     Raises:
         ArchiveError: the archive is damaged, or these files have more than ``most`` bytes in all.
@@ -46,7 +46,7 @@ def read_array(data: bytes) -> NDArray[Any]:
     """Read an array of plain numbers, of any shape, from the bytes of a file ``NAME.npy``.
 
     Raises:
-        ArchiveError: the file contains anything else.
+        ArchiveError: the bytes are not exactly one such array.
     """
     stream = BytesIO(data)
     try:
@@ -61,7 +61,7 @@ def read_array(data: bytes) -> NDArray[Any]:
 
 
 def _unpack(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> bytes:
-    """Unpack one file, but no more bytes than the size that it declares."""
+    """Unpack one file, but no more bytes than its entry in the archive declares."""
     if entry.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
         raise zipfile.BadZipFile
     with archive.open(entry) as file:

@@ -22,8 +22,8 @@ _INSTANT: Final = 1e-6
 def summary(episode: Episode, notation: Notation = "english") -> dict[str, Any]:
     """Return a summary of an episode as JSON data.
 
-    ``changes`` has a row for the start and for each change of state. ``notation`` is the notation of
-    the labels, which say what remains to be satisfied in each state.
+    ``changes`` has a row for the start and for each change of state. The label in a row says, in
+    ``notation``, what remains to be satisfied in that state.
     """
     level, fspa, result, reason = episode.level, episode.fspa, summary_of(episode), cause(episode)
     states = episode.states.tolist()
@@ -67,7 +67,7 @@ def summary(episode: Episode, notation: Notation = "english") -> dict[str, Any]:
 
 
 def summary_text(values: dict[str, Any]) -> str:
-    """Return a summary as text for people."""
+    """Return the result of :func:`summary` as text for people."""
     limit = "" if values["limit_steps"] is None else f" of {values['limit_steps']}"
     end = values["end"] if values["verdict"] in ("satisfied", "violated") else f"{values['end']}, {values['verdict']}"
     lines = [
@@ -100,7 +100,7 @@ def trace_csv(episode: Episode, start: float = 0.0, stop: float = inf) -> str:
     """Return the spec's signals from ``start`` to ``stop`` seconds as CSV, for ``tltlc monitor``.
 
     The column ``step`` counts decisions from 1: the moment of the reset is not part of the trace.
-    Numbers are written so that they can be read back bit for bit.
+    Numbers have enough digits to be read back bit for bit.
     """
     text = StringIO()
     writer = csv.writer(text, lineterminator="\n")
