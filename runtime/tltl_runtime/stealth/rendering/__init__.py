@@ -1,1 +1,4 @@
-"""Pictures of the game: plans, frames and films."""
+"""Pictures of the game.
+
+`render` draws frames, `film` makes films of them, and `plan` draws maps.
+"""

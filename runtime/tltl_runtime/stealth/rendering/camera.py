@@ -15,24 +15,30 @@ View = Literal["third_person", "top_down", "overview"]
 VIEWS: tuple[View, ...] = ("third_person", "top_down", "overview")
 
 SMALLEST, LARGEST = 16, 4096
-"""The least and greatest side of a picture, in pixels; outside this range, pybullet ends the process."""
+"""The least and the greatest side of a picture, in pixels.
+
+Outside this range, pybullet ends the process.
+"""
 
 _FOLLOW = (0.0, -6.6, 8.4)
 """The vector from the player's feet to the camera that follows the player, in metres.
 
-The camera is in the south and above, so that north is up in every view.
+The camera is to the south and above, so that north is up in every view.
 """
 _AHEAD = (0.0, 0.6, 0.6)
-"""The vector from the player's feet to the point that this camera looks at, in metres."""
+"""The vector from the player's feet to the point at which that camera looks, in metres."""
 _FIELD = 50.0
 _TOP_FIELD = 8.0
-"""A narrow field of view from far away, so that walls hardly lean outwards."""
+"""The field of view from above, in degrees.
+
+It is narrow, and the camera far away, so that walls hardly lean outwards.
+"""
 _MARGIN = 1.03
 _OVERVIEW_FIELD = 40.0
 _EDGE = 0.015
 """The fraction of the overview that stays free at each side."""
 _OBLIQUE = 1.05
-"""The height of the overview camera, as a multiple of its distance to the south."""
+"""The height of the overview camera, as a multiple of its horizontal distance from the middle."""
 
 
 @record
@@ -77,9 +83,10 @@ def check_size(size: object) -> tuple[int, int]:
 
 
 def sight_lines(camera: Camera, width: int, height: int) -> NDArray[np.float32]:
-    """Return for each pixel the vector from the camera to the point that it shows at a depth of one metre.
+    """Return for each pixel the vector from the camera to the point that it shows.
 
-    The result is (height, width, 3). Depth is measured along the direction of view.
+    The vector ends at a depth of one metre, along the direction of view. The result is (height,
+    width, 3).
     """
     ahead, right, up = _axes(camera)
     half = tan(np.radians(camera.field) / 2)
@@ -92,9 +99,9 @@ def sight_lines(camera: Camera, width: int, height: int) -> NDArray[np.float32]:
 
 
 def pixels(camera: Camera, points: NDArray[np.float64], width: int, height: int) -> NDArray[np.float64]:
-    """Project points (n, 3) to pixels from the upper left corner: (n, 2).
+    """Project points (n, 3) to pixels (n, 2), counted from the upper left corner of the picture.
 
-    All points must be in front of the eye.
+    All points must be in front of the camera.
     """
     ahead, right, up = _axes(camera)
     offsets = points - np.array(camera.eye)
@@ -115,7 +122,7 @@ def _top_down(level: StealthLevel, aspect: float) -> Camera:
 
 
 def _overview(level: StealthLevel, aspect: float) -> Camera:
-    """Return a camera in the south and above, as near as the corners of the level allow."""
+    """Return a camera to the south and above, as near as it can be to show the whole level."""
     low, high = level.bounds.low, level.bounds.high
     x, y = (low[0] + high[0]) / 2, (low[1] + high[1]) / 2
     corners = np.array([(a, b, c) for a in (low[0], high[0]) for b in (low[1], high[1]) for c in (0.0, high[2])])

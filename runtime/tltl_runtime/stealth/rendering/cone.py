@@ -22,8 +22,9 @@ _ONLY_STANDING = 0.5
 class SightField:
     """How well an enemy would see a player at each position on the floor.
 
-    The value is 1 where the enemy would see even a crouched player, 0.5 where only a standing one, 0
-    elsewhere. ``feet`` and ``yaw`` are the enemy's pose. ``boxes`` block its sight.
+    The value is 1 where the enemy would see even a crouched player, 0.5 where it would see only a
+    standing one, and 0 elsewhere. ``feet`` and ``yaw`` are the enemy's pose. ``boxes`` block its
+    sight.
     """
 
     def __init__(self, kind: EnemyKind, feet: Point, yaw: float, boxes: Iterable[Box]) -> None:
@@ -40,9 +41,9 @@ class SightField:
         self._seen = np.where(crouched, 1.0, np.where(standing, _ONLY_STANDING, 0.0)).astype(np.float32)
 
     def visibility(self, places: NDArray[np.float32]) -> NDArray[np.float32]:
-        """Return the values at positions (n, 2), in [0, 1]: (n,).
+        """Return the values (n,) at positions (n, 2), in [0, 1].
 
-        Values between 0, 0.5 and 1 are interpolated, at the borders of what the enemy sees.
+        At the borders of what the enemy sees, the values are interpolated.
         """
         x, y = places[:, 0] - np.float32(self.eyes[0]), places[:, 1] - np.float32(self.eyes[1])
         radius = np.hypot(x, y)
@@ -56,9 +57,9 @@ class SightField:
     def _free(
         self, x: NDArray[np.float64], y: NDArray[np.float64], head: float, boxes: Iterable[Box]
     ) -> NDArray[np.bool_]:
-        """Return for each offset ``x``, ``y`` whether no box blocks the line from the eyes to a head there.
+        """Return for each offset ``x``, ``y`` from the eyes whether they would see a head there.
 
-        ``head`` is the height of the heads, in metres.
+        ``head`` is the height of the head, in metres; ``boxes`` block the sight.
         """
         free = np.ones(x.shape, np.bool_)
         for box in boxes:

@@ -39,7 +39,7 @@ _BAR: Final = 90
 _BARS_FROM: Final = 80
 _GAP: Final = 6
 _LINES: Final = (25, 41)
-"""The vertical positions in the strip of the lines that say what remains."""
+"""The vertical positions, in the strip, of the two lines that say what remains to be satisfied."""
 
 _PAPER: Final = "#0f172a"
 _PALE: Final = "#e2e8f0"
@@ -55,8 +55,8 @@ def frames(
 ) -> Iterator[Picture]:
     """Yield one RGB picture of ``size`` (width, height) for each of ``times``.
 
-    ``times`` are rising seconds since the reset. Between two decisions, bodies are interpolated,
-    and the automaton is in the state of the earlier decision.
+    ``times`` are rising seconds since the reset. At a time between two decisions, the positions of
+    bodies are interpolated, and the automaton is in the state of the earlier decision.
     """
     width, height = size
     font = ImageFont.truetype(str(_FONT), _TEXT)
@@ -68,7 +68,7 @@ def frames(
 
 
 def _moment(episode: Episode, time: float) -> Moment:
-    """Return the number of the last decision before a time, and the snapshot at that time."""
+    """Return the number of decisions that are over at a time, and the snapshot at that time."""
     shots = episode.snapshots
     row = min(max(0, bisect_right(shots, time + _INSTANT, key=lambda shot: shot.time) - 1), len(shots) - 1)
     since = time - shots[row].time
@@ -92,7 +92,7 @@ def _draw_view(
 
 
 def _draw_plans(episode: Episode, moments: Sequence[Moment], size: tuple[int, int]) -> Iterator[Picture]:
-    """Draw the level's plan with the player's trail so far and all bodies."""
+    """Yield the level's plan for each moment, with all bodies and the player's path so far."""
     empty, pixel = backdrop(episode.level, size)
     trail = Image.fromarray(empty)
     draw = ImageDraw.Draw(trail)
@@ -142,7 +142,7 @@ def _figure(draw: ImageDraw.ImageDraw, at: tuple[float, float], yaw: float, radi
 def _add_strip(
     view: Picture, episode: Episode, moment: Moment, font: ImageFont.FreeTypeFont, notation: Notation
 ) -> Picture:
-    """Add the strip below the view: time, progress, health, and what remains to be satisfied."""
+    """Add a strip below the view: time, progress, health, and what remains to be satisfied."""
     height, width, _ = view.shape
     picture = Image.new("RGB", (width, height + STRIP), _PAPER)
     picture.paste(Image.fromarray(view), (0, 0))
@@ -172,7 +172,7 @@ def _add_strip(
 
 
 def _break_lines(text: str, width: int, font: ImageFont.FreeTypeFont) -> list[str]:
-    """Return a text as the lines of the strip; text that does not fit is cut off."""
+    """Break a text into lines for the strip, ``width`` pixels wide; cut off what does not fit."""
     lines: list[str] = []
     while text and len(lines) < len(_LINES):
         line = text

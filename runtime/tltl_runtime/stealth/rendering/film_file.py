@@ -20,8 +20,8 @@ class NoEncoderError(RuntimeError):
 def write_gif(path: Path, frames: Iterable[Picture], seconds: float) -> None:
     """Write a looping GIF that shows each frame for ``seconds`` (rounded to hundredths).
 
-    Each frame has its own palette, so that colours that first appear late are kept. Octrees compute
-    the palette, because the other methods lose the colours of small things, such as a switch.
+    Each frame has its own palette, so that colours that first appear late are kept. An octree
+    computes the palette: Pillow's other methods lose the colours of small things, such as a switch.
     """
     pictures = (
         Image.fromarray(frame).quantize(256, Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE) for frame in frames

@@ -13,7 +13,7 @@ from tltl_runtime.stealth.world.player import DECISION
 from tltlc.api import Fspa, formula_text, label_text, record, replace
 
 Tone = Literal["plain", "quiet", "good", "bad", "warn", "dark"]
-"""The meaning of a line or bar, which a screen shows by colour."""
+"""The meaning of a line or a bar. A screen shows it by colour."""
 
 KEYS: Final = ("WASD or arrows: walk   shift: sprint   C: crouch   space: jump", "V: view   R: again   Esc: stop")
 
@@ -65,7 +65,7 @@ class Hud:
 
 
 def hud(snapshot: Snapshot, info: Mapping[str, Any], fspa: Fspa) -> Hud:
-    """Return the display during play; ``info`` comes from the environment's last step or reset."""
+    """Return the display during play; ``info`` is that of the environment's last step or reset."""
     bars = (
         Bar("health", snapshot.health, "good" if snapshot.health > 0.5 else "bad"),
         Bar("stamina", snapshot.player.stamina, "plain"),
@@ -79,14 +79,17 @@ def hud(snapshot: Snapshot, info: Mapping[str, Any], fspa: Fspa) -> Hud:
 
 
 def start_screen(display: Hud, level: StealthLevel, fspa: Fspa) -> Hud:
-    """Return the screen before the first key is pressed."""
+    """Add the title, the goal and the keys to a display, for the screen before the first action."""
     goal = wrap(formula_text(fspa), _LONG)
     below = (*wrap(level.doc, _LONG), "", *goal, "", *KEYS, "", "Move to begin.")
     return replace(display, title=f"{level.name} {level.variant}", below=below)
 
 
 def end_screen(display: Hud, cause_of_end: Cause, file: str) -> Hud:
-    """Return the screen after the last step; ``file`` is the name of the recording."""
+    """Add the end and its cause to a display, for the screen after the last step.
+
+    ``file`` is the name of the recording.
+    """
     tone: Tone = "good" if cause_of_end.kind == "success" else "bad"
     below = (*wrap(cause_of_end.text, _LONG), f"recorded: {file}", "R: again   Esc: close")
     return replace(display, title=_TITLES[cause_of_end.kind], tone=tone, below=below)

@@ -10,9 +10,9 @@ from tltlc.api import replace
 
 
 def interpolate(before: Snapshot, after: Snapshot, share: float) -> Snapshot:
-    """Return a snapshot with the bodies between ``before`` (share 0) and ``after`` (share 1).
+    """Return a snapshot between ``before`` (share 0) and ``after`` (share 1).
 
-    Everything else is as in ``after``.
+    The time and the poses of bodies are interpolated. Everything else is as in ``after``.
     """
     if share >= 1.0:
         return after

@@ -1,7 +1,7 @@
-"""Layers that are painted over a picture by its depth: floor, fields of sight, glass, background.
+"""Paint layers over a picture: a floor pattern, fields of sight, glass, background.
 
-The depth of a pixel gives the position in the world that the pixel shows. So a layer is painted over
-the pixels whose positions it covers. Pictures contain floats from 0 to 1.
+The depth of a pixel tells which position in the world the pixel shows. A layer is painted over the
+pixels whose positions it covers. Pictures contain floats from 0 to 1.
 """
 
 from __future__ import annotations
@@ -26,13 +26,13 @@ _TILE = 2.0
 _TILE_SHADE = 0.955
 _EDGE_SHADE = 0.62
 _FACES = np.array((0.85, 0.7, 1.0), np.float32)
-"""The brightness of glass on its sides along x and along y, and on top."""
+"""The brightness of the sides of a glass box: those along x, those along y, and the top."""
 
 
 class Canvas:
-    """A picture (height, width, 3) with the depth of its pixels (height, width).
+    """A picture (height, width, 3) from ``camera``, with the depth of its pixels (height, width).
 
-    The depth is in metres along the view.
+    The depth is in metres along the direction of view.
     """
 
     def __init__(self, picture: Floats, depth: Floats, camera: Camera) -> None:
@@ -42,7 +42,7 @@ class Canvas:
         self.height, self.width = depth.shape
         self.lines = sight_lines(camera, self.width, self.height)
         self.places = np.array(camera.eye, np.float32) + self.lines * depth[..., None]
-        """The position of each pixel in the world."""
+        """The position in the world that each pixel shows, (height, width, 3)."""
 
     def tiles(self, floor: Mask) -> None:
         """Paint a chequered pattern of 2 m tiles where ``floor`` is true."""
@@ -51,14 +51,17 @@ class Canvas:
         self.picture[rows, columns] *= np.where(tile % 2 == 1, np.float32(_TILE_SHADE), np.float32(1.0))[:, None]
 
     def edges(self, bodies: NDArray[np.int32]) -> None:
-        """Draw thin dark lines between bodies, given the number of the body at each pixel [height, width]."""
+        """Draw thin dark lines between bodies.
+
+        ``bodies`` [height, width] has the number of the body at each pixel.
+        """
         edge = np.zeros(bodies.shape, np.bool_)
         edge[:, 1:] |= bodies[:, 1:] != bodies[:, :-1]
         edge[1:] |= bodies[1:] != bodies[:-1]
         self.picture[edge] *= _EDGE_SHADE
 
     def background(self, empty: Mask) -> None:
-        """Paint the background, lighter towards the top."""
+        """Paint the background where ``empty`` is true; it is lighter towards the top."""
         rows, columns = np.nonzero(empty)
         share = (1 - rows / self.height).astype(np.float32)[:, None]
         self.picture[rows, columns] = _BEHIND + share * (_BEHIND_TOP - _BEHIND)
@@ -73,7 +76,10 @@ class Canvas:
         self.picture[window] *= (1 - 0.45 * np.clip(1 - off**2, 0, 1) * below)[..., None]
 
     def field(self, field: SightField, colour: Sequence[float], strength: float) -> None:
-        """Paint the floor that an enemy sees; half as strong where the enemy sees only standing players."""
+        """Paint the floor that an enemy sees, in this ``colour`` and ``strength``.
+
+        The strength is half where the enemy sees only standing players.
+        """
         x, y, _ = field.eyes
         reach = field.reach
         window = self._window([(x + a, y + b, 0.0) for a in (-reach, reach) for b in (-reach, reach)])
@@ -84,7 +90,7 @@ class Canvas:
         self._blend(window, np.array(colour, np.float32), strength * seen)
 
     def glass(self, low: Point, high: Point, colour: Sequence[float], strength: float) -> None:
-        """Paint a translucent box; bodies in front of it hide it."""
+        """Paint a translucent box; bodies in front of the box hide it."""
         corners = [(x, y, z) for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])]
         window = self._window(corners)
         lines = self.lines[window]
@@ -102,7 +108,7 @@ class Canvas:
         self.picture[window] = self.picture[window] * (1 - share) + colour * share
 
     def _window(self, points: Sequence[Point]) -> Window:
-        """Return the part of the picture that contains the projections of these points."""
+        """Return the rows and columns of the picture in which these points can be seen."""
         positions = pixels(self.camera, np.array(points, np.float64), self.width, self.height)
         left, top = np.floor(positions.min(axis=0)).astype(int)
         right, bottom = np.ceil(positions.max(axis=0)).astype(int) + 1

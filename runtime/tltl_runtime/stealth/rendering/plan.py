@@ -24,7 +24,7 @@ from tltl_runtime.stealth.recordings.episode import Episode
 from tltlc.api import Fspa, Notation, label_text
 
 SOLIDS: Final = {"floor": "#f1f5f9", "platform": "#cbd5e1", "low": "#a8a29e", "wall": "#475569"}
-"""Colours by kind of solid; :data:`BARRIERS` has the colours of barriers."""
+"""The colour of each kind of solid; :data:`BARRIERS` has the colours of barriers."""
 BARRIERS: Final = {"solid": "#d97706", "laser": "#dc2626"}
 _SOLID_NAMES: Final = {"floor": "floor", "platform": "platform", "low": "low obstacle", "wall": "wall"}
 _BARRIER_NAMES: Final = {"solid": "gate", "laser": "laser"}
@@ -52,17 +52,20 @@ _COLUMN: Final = 2.0
 """The width of a column of the legend of :func:`draw_level`, in inches."""
 
 _ROOMY: Final = 6.0
-"""Plans at least this wide and high, in inches, have text of full size; smaller plans only at their natural size."""
+"""Plans at least this wide and high, in inches, have text of full size.
+
+A smaller plan has it only at its natural size.
+"""
 
 MOST_LISTED: Final = 12
-"""The most states of an episode in the legend."""
+"""The greatest number of states that the legend lists."""
 
 LETTERS_PER_INCH: Final = 12
 """Characters per inch of a line of the legend; longer lines are cut."""
 
 
 def draw_level(level: StealthLevel, reach: Reach) -> bytes:
-    """Draw the plan of a level as a PNG; red covers all places where the player cannot stand."""
+    """Draw the plan of a level as a PNG. Red covers all places where no player can stand."""
     width, height = natural_size(level)
     legend = _legend(level)
     columns = max(1, int(width / _COLUMN))
@@ -74,10 +77,11 @@ def draw_level(level: StealthLevel, reach: Reach) -> bytes:
 
 
 def draw_episode(episode: Episode, size: tuple[int, int] | None = None, notation: Notation = "english") -> bytes:
-    """Draw the plan of an episode as a PNG, ``size`` pixels wide and high.
+    """Draw the plan of an episode as a PNG.
 
-    It shows the player's path, where the state changed, and how the episode ended. The legend says
-    what remained to be satisfied in each state.
+    The picture is ``size`` (width, height) pixels large, by default as large as
+    :func:`natural_size` says. It shows the player's path, where the state changed, and how the
+    episode ended. The legend says what remained to be satisfied in each state.
     """
     states = episode.states.tolist()
     path = [shot.player.position for shot in episode.snapshots]
@@ -118,9 +122,10 @@ def draw_episode(episode: Episode, size: tuple[int, int] | None = None, notation
 def backdrop(
     level: StealthLevel, size: tuple[int, int]
 ) -> tuple[NDArray[np.uint8], Callable[[Point], tuple[float, float]]]:
-    """Return the plan without moving parts, (height, width, 3), and a function.
+    """Return the plan without moving parts, (height, width, 3), and a function for positions in it.
 
-    The function converts a position in the level to a pixel of the plan: x and y from the upper left.
+    The function converts a position in the level to a pixel of the plan: x and y from the upper
+    left.
     """
     figure = Figure(figsize=(size[0] / DPI, size[1] / DPI), dpi=DPI, layout="constrained")
     axes = level_axes(figure, level, moving=False, start=False)
@@ -141,7 +146,7 @@ def state_colour(state: int) -> str:
 
 
 def _add_reach(axes: Any, reach: Reach) -> None:
-    """Paint the cells without reachable ground red."""
+    """Paint all cells red in which no ground can be reached."""
     rows, columns = reach.ground.shape
     west, south = reach.origin
     red = np.where(reach.ground[..., None], 0.0, _UNREACHED)
@@ -182,16 +187,20 @@ def natural_size(level: StealthLevel) -> tuple[float, float]:
 
 
 def _text_scale(figure: Figure, level: StealthLevel) -> float:
-    """Return the size of text, relative to a plan of natural size, from 0.6 to 1; small plans have smaller text."""
+    """Return the size of text, from 0.6 to 1: small plans have smaller text.
+
+    It is relative to the text in a plan of natural size.
+    """
     roomy = np.minimum(natural_size(level), _ROOMY)
     return float(np.clip((figure.get_size_inches() / roomy).min(), 0.6, 1.0))
 
 
 def level_axes(figure: Figure, level: StealthLevel, moving: bool = True, start: bool = True) -> Any:
-    """Add axes in metres with everything in a level to a figure, and return the axes.
+    """Add axes to a figure, draw the level in them, and return them. Their unit is the metre.
 
-    With ``moving``, moving things are drawn at their initial positions; with ``start``, so is the
-    player's start. If text does not fit in full size, only switches and exits are named.
+    With ``moving``, the plan shows the beginning: barriers are drawn as shut, and movers and
+    enemies are named at their initial positions. With ``start``, it shows the player's start. If
+    text of full size does not fit, only switches and exits are named.
     """
     (x0, y0, _), (x1, y1, _) = level.bounds.low, level.bounds.high
     axes: Any = figure.add_subplot(
@@ -233,7 +242,7 @@ def level_axes(figure: Figure, level: StealthLevel, moving: bool = True, start: 
 
 
 def patrol_path(level: StealthLevel, enemy: Enemy) -> list[tuple[float, float]]:
-    """Return the path of an enemy's patrol around obstacles, with all barriers shut."""
+    """Return the points of an enemy's patrol, around obstacles, with all barriers shut."""
     floor = grid_of(level).floor(range(len(level.barriers)))
     route = [point[:2] for point in (*enemy.route, enemy.route[0])]
     path = route[:1]
@@ -265,9 +274,10 @@ def _mark(axes: Any, place: Point, marker: str, colour: str, label: str, size: f
 
 
 def state_label(fspa: Fspa, state: int, letters: int, notation: Notation = "english") -> str:
-    """Return the label of a state in the legend: the number, what remains to be satisfied, a settled verdict.
+    """Return the label of a state in the legend.
 
-    A label that is longer than ``letters`` is cut.
+    It has the state's number, what remains to be satisfied, and the verdict if that is settled. The
+    middle part is cut to ``letters`` characters.
     """
     automaton_state = fspa.states[state]
     text = label_text(fspa, state, notation)

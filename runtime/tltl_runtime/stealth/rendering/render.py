@@ -1,8 +1,8 @@
 """Render pictures of a level from snapshots.
 
-The views are those of :mod:`~tltl_runtime.stealth.rendering.camera`. Bodies are drawn by pybullet's
-TinyRenderer, which needs neither a display nor a graphics card and draws the same picture for the
-same snapshot; see docs/adr/0010-pictures-and-windows.md.
+The views are those of :mod:`~tltl_runtime.stealth.rendering.camera`. Pybullet's TinyRenderer draws
+the bodies. It needs neither a display nor a graphics card, and draws the same picture for the same
+snapshot; see docs/adr/0010-pictures-and-windows.md.
 """
 
 from __future__ import annotations
@@ -43,8 +43,9 @@ _OVERHEAD: Final = 1.0
 class Renderer:
     """Draws snapshots of a level, ``width`` by ``height`` pixels.
 
-    Each pixel is the mean of ``samples`` squared samples. Raises ValueError for a size that
-    :func:`~tltl_runtime.stealth.rendering.camera.check_size` rejects.
+    Each pixel is the mean of ``samples`` by ``samples`` smaller ones. Raises ValueError for a size
+    that :func:`~tltl_runtime.stealth.rendering.camera.check_size` rejects, also if ``samples``
+    makes it too large.
     """
 
     def __init__(self, level: StealthLevel, width: int = 640, height: int = 480, samples: int = 1) -> None:
@@ -63,7 +64,7 @@ class Renderer:
         self._scene.close()
 
     def frame(self, snapshot: Snapshot, view: View = "third_person") -> NDArray[np.uint8]:
-        """Return the picture, (height, width, 3)."""
+        """Return the picture of a snapshot, (height, width, 3)."""
         eye = camera(self.level, view, snapshot.player.position, self.width / self.height)
         obstacles = self._scene.obstacles(snapshot)
         glass = [obstacle for obstacle in obstacles if self._is_glass(obstacle.box, eye, view, snapshot)]
@@ -79,7 +80,10 @@ class Renderer:
         return (picture.clip(0.0, 1.0) * 255 + 0.5).astype(np.uint8)
 
     def names(self, snapshot: Snapshot, view: View = "third_person") -> list[tuple[str, float, float]]:
-        """Return the names of entities, except open barriers, with their positions in pixels."""
+        """Return the names of the entities in the picture, each with its position in pixels.
+
+        Open barriers have no names.
+        """
         eye = camera(self.level, view, snapshot.player.position, self.width / self.height)
         named = [(switch.name, switch.position, 0.3) for switch in self.level.switches]
         named += [(exit_.name, exit_.position, 2.7) for exit_ in self.level.exits]
@@ -104,7 +108,7 @@ class Renderer:
         ]
 
     def _draw_bodies(self, eye: Camera) -> Canvas:
-        """Draw the bodies, the floor and the background."""
+        """Draw the bodies, the pattern of the floor, and the background."""
         width, height = self.width * self.samples, self.height * self.samples
         _, _, colours, depths, bodies = pybullet.getCameraImage(
             width,
@@ -138,7 +142,7 @@ class Renderer:
                 canvas.field(field, _SIGHT[snapshot.modes[index]], 0.42)
 
     def _paint_glass(self, canvas: Canvas, snapshot: Snapshot, glass: list[Obstacle]) -> None:
-        """Paint the lasers and the boxes that would hide the player, from far to near."""
+        """Paint the lasers and the obstacles that are drawn as glass, from far to near."""
         panes = [(obstacle.box, obstacle.colour, _GLASS) for obstacle in glass]
         panes += [
             (barrier.box, _LASER, 0.5)
@@ -149,7 +153,11 @@ class Renderer:
             canvas.glass(box.low, box.high, colour, strength)
 
     def _is_glass(self, box: Box, eye: Camera, view: View, snapshot: Snapshot) -> bool:
-        """Whether to draw a box as glass: it hides the player, or always much of the level."""
+        """Whether to draw a box as glass.
+
+        It is glass if it hides the player, or if it hides much of the level: the south wall, or a
+        box overhead in the view from above.
+        """
         if view == "top_down" and box.low[2] > _OVERHEAD:
             return True
         if view != "top_down" and _is_front(box, self.level.bounds):

@@ -1,8 +1,8 @@
-"""The bodies in pictures: a pybullet client without physics, posed from snapshots.
+"""The bodies in pictures: a pybullet client without physics, which shows snapshots.
 
-Visual shapes have no collision shapes here. Each box is a separate body. Hidden bodies are moved far
-below. TinyRenderer cannot draw translucent objects, such as lasers. So they are not bodies, and
-:mod:`tltl_runtime.stealth.rendering.paint` draws them.
+Bodies have no collision shapes here, and each box is a body. A body that must not be seen is moved
+far below the level. TinyRenderer cannot draw translucent objects, such as lasers. So they are not
+bodies, and :mod:`tltl_runtime.stealth.rendering.paint` draws them.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ _AWAY: Final = (0.0, 0.0, -1000.0)
 
 @record
 class Obstacle:
-    """A box in a scene that may hide what is behind it."""
+    """A box in a scene that may hide what is behind it; ``body`` is its id in pybullet."""
 
     body: int
     box: Box
@@ -85,7 +85,7 @@ class Scene:
             self.client = -1
 
     def obstacles(self, snapshot: Snapshot) -> list[Obstacle]:
-        """Return all boxes that are present: solids except the floor, shut barriers, movers."""
+        """Return all boxes in a snapshot: solids except the floor, shut barriers, movers."""
         solid = [
             is_open
             for barrier, is_open in zip(self.level.barriers, snapshot.open, strict=True)
@@ -99,7 +99,7 @@ class Scene:
         return [*self._solids, *shut, *movers]
 
     def pose(self, snapshot: Snapshot, visible: Collection[Obstacle]) -> None:
-        """Move all bodies to match a snapshot; obstacles that are not in ``visible`` are hidden."""
+        """Move all bodies to match a snapshot, and hide the obstacles that are not ``visible``."""
         visible_bodies = {obstacle.body for obstacle in visible}
         for obstacle in visible:
             if obstacle.moves or obstacle.body in self._away:
@@ -144,7 +144,10 @@ class Scene:
         return self._body(shape, place)
 
     def _person(self, radius: float, height: float, colour: Colour) -> tuple[int, int]:
-        """Create an upright capsule and a visor on its front; both have their origin between the feet."""
+        """Create an upright capsule and a visor on its front.
+
+        The origin of both is between the feet.
+        """
         quarter = np.linspace(-pi / 2, 0, 7)
         foot = [(radius * cos(a), radius + radius * sin(a)) for a in quarter]
         head = [(r, height - z) for r, z in reversed(foot)]
@@ -164,7 +167,7 @@ class Scene:
         return self._lathe(plate, SHUT_SWITCH, place), self._lathe(button, SHUT_SWITCH, place)
 
     def _beacon(self, place: Point) -> None:
-        """Create a plate, a pole and a gem on top of it."""
+        """Create the mark of an exit: a plate, a pole, and a gem on top of the pole."""
         self._lathe([(0.7, 0.0), (0.7, 0.03), (0.0, 0.03)], EXIT, place)
         self._lathe([(0.06, 0.0), (0.06, 1.9)], EXIT, place)
         self._lathe([(0.0, 1.8), (0.3, 2.2), (0.0, 2.6)], EXIT, place)
@@ -192,10 +195,10 @@ class Scene:
 def _revolve(
     profile: tuple[tuple[float, float], ...], steps: int = 28
 ) -> tuple[list[list[float]], list[list[float]], list[int]]:
-    """Return the vertices, normals and triangles of a profile that is turned about the z axis in ``steps`` steps.
+    """Return the vertices, normals and triangles of a profile that is turned about the z axis.
 
-    Edges of the profile stay sharp. The result is cached, because pybullet never frees the lists that
-    it gets: new lists for each scene would leak.
+    It is turned in ``steps`` steps. Edges of the profile stay sharp. The result is cached, because
+    pybullet never frees the lists that it gets: new lists for each scene would leak.
     """
     vertices: list[list[float]] = []
     normals: list[list[float]] = []

@@ -28,14 +28,14 @@ from tltl_runtime.stealth.rendering.plan import (
 from tltlc.api import Fspa
 
 _FAINTEST: Final = 0.12
-"""The opacity of one trajectory among very many."""
+"""The least opacity of a trajectory, if there are very many."""
 
 
 def draw_trajectories(level: StealthLevel, fspa: Fspa, trajectories: Sequence[Trajectory], title: str) -> bytes:
-    """Draw trajectories as a PNG, coloured by the automaton's state.
+    """Draw trajectories on the plan of a level, coloured by the automaton's state, as a PNG.
 
-    Marks show where episodes ended; successes have small marks. The legend says what remained to be
-    satisfied in each state, how many episodes had each end, and what a star means.
+    Marks show where episodes ended; those of successes are small. The legend says what remained to
+    be satisfied in each state, how many episodes had each end, and which mark is an exit.
     """
     visited = sorted({int(state) for trajectory in trajectories for state in trajectory.states[:-1]})[:MOST_LISTED]
     ends = Counter(trajectory.end for trajectory in trajectories)

@@ -1,1 +1,1 @@
-"""The game in a window."""
+"""The game in a window. Begin with `window`."""

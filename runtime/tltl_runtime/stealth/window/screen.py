@@ -1,4 +1,4 @@
-"""The rendering of an environment: pictures, or a window that opens with the first picture."""
+"""The rendering of an environment: pictures, or a window that the first picture opens."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ MODES: Final = ("human", "rgb_array")
 
 
 class Screen:
-    """Renders pictures of a level for ``rgb_array``, and shows them in a window for ``human``.
+    """Renders pictures of a level, and shows them in a window in the ``mode`` ``human``.
 
-    ``size`` is width and height in pixels. Raises ValueError for an unknown mode or view, and for a
-    size that :func:`~tltl_runtime.stealth.rendering.camera.check_size` rejects.
+    ``size`` is the width and height in pixels. Raises ValueError for an unknown mode or view, and
+    for a size that :func:`~tltl_runtime.stealth.rendering.camera.check_size` rejects.
     """
 
     def __init__(self, level: StealthLevel, mode: str | None, view: View, size: tuple[int, int]) -> None:
@@ -40,10 +40,12 @@ class Screen:
         self._cannot_open = False
 
     def render(self, snapshot: Snapshot) -> NDArray[np.uint8] | None:
-        """Return the picture, (height, width, 3), or show it in the window for the time of a decision.
+        """Draw a snapshot, by the mode:
 
-        Return None without a mode, and in the mode ``human``. If no window can be opened, warn once
-        and show nothing.
+        - ``rgb_array``: return the picture, (height, width, 3).
+        - ``human``: show it in the window for the time of a decision, and return None. If no window
+          can be opened, warn once and show nothing.
+        - None: return None.
 
         Raises:
             TltlError: TLT0730, pygame is not installed.
@@ -78,7 +80,7 @@ class Screen:
             self._cannot_open = True
 
     def close(self) -> None:
-        """Close the window and release the bodies; a later call of ``render`` creates them again."""
+        """Close the window and release the bodies; a later ``render`` creates them again."""
         if self._renderer is not None:
             self._renderer.close()
         if self._window is not None:

@@ -1,4 +1,4 @@
-"""A window with a keyboard, using pygame: it shows pictures and reads the keys.
+"""A window with a keyboard, made with pygame: it shows pictures and reads the keys.
 
 No other module imports pygame; docs/adr/0010-pictures-and-windows.md explains the choice.
 """
@@ -22,7 +22,7 @@ NO_WINDOW: Final = "TLT0830"
 _MIN_WIDTH: Final = 960
 """The least width of a picture in the window, in pixels; narrower pictures are enlarged."""
 _DRIVERS_WITHOUT_SCREEN: Final = {"dummy", "offscreen"}
-"""SDL drivers without a screen: the game would wait for keys that nobody can press."""
+"""SDL drivers that show nothing: the game would wait for keys that nobody can press."""
 _TONES: Final[dict[Tone, tuple[int, int, int]]] = {
     "plain": (235, 239, 245),
     "quiet": (160, 170, 186),
@@ -61,7 +61,7 @@ class Keys:
 class Window:
     """A window for pictures of ``size`` (width, height); small pictures are enlarged.
 
-    A window with a ``side`` has a panel for a head-up display beside the pictures. With
+    With ``side``, the window has a panel for a head-up display beside the pictures. With
     ``sticky_crouch``, one key press starts crouching, and the next one ends it.
 
     Keys: arrows or WASD walk (up is north, away from the camera), space jumps, C or control
@@ -69,7 +69,7 @@ class Window:
     stop.
 
     Raises:
-        TltlError: TLT0730 without pygame, TLT0830 if no window can be opened.
+        TltlError: TLT0730, pygame is not installed; TLT0830, no window can be opened.
     """
 
     def __init__(self, title: str, size: tuple[int, int], side: bool = False, sticky_crouch: bool = False) -> None:
@@ -101,7 +101,7 @@ class Window:
         self._pygame.quit()
 
     def keys(self) -> Keys:
-        """Return the current input; keys tapped since the last call count as held."""
+        """Return the current input. A key that was tapped since the last call counts as held."""
         pygame = self._pygame
         stop = restart = view = False
         crouches = (pygame.K_c, pygame.K_LCTRL, pygame.K_RCTRL)
@@ -145,12 +145,15 @@ class Window:
         pygame.display.flip()
 
     def wait(self, seconds: float) -> None:
-        """Wait until ``seconds`` have passed since the last call; the window stays responsive."""
+        """Wait until ``seconds`` have passed since the last call; keep the window responsive."""
         self._pygame.event.pump()
         self._clock.tick(1 / seconds)
 
     def _draw_name(self, name: str, x: float, y: float) -> None:
-        """Draw a name above a position, light with a dark outline, so that it is readable everywhere."""
+        """Draw a name above a position.
+
+        It is light with a dark outline, so that it can be read everywhere.
+        """
         light, dark = (self._text(name, tone, _NAME_HEIGHT) for tone in ("plain", "dark"))
         left = self._side + round(x) - light.get_width() // 2
         top = round(y) - light.get_height()
@@ -185,7 +188,7 @@ class Window:
         self._surface.blit(panel, (max(0, middle[0]), max(0, middle[1])))
 
     def _bar(self, name: str, value: float, tone: Tone, height: int) -> Any:
-        """Draw a name and a track that is filled up to ``value``."""
+        """Draw a name and a bar that is filled up to ``value``, in [0, 1]."""
         pygame = self._pygame
         row = pygame.Surface((height * 13, height), pygame.SRCALPHA)
         row.blit(self._text(name, "quiet", height), (0, 0))
@@ -202,7 +205,10 @@ class Window:
 
 
 def _import_pygame() -> Any:
-    """Import pygame without its greeting on standard output."""
+    """Import pygame without the greeting that it prints on standard output.
+
+    Raises TltlError, TLT0730, if pygame is not installed.
+    """
     os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
     try:
         import pygame
