@@ -1,1 +1,1 @@
-"""The physics of the game: the bodies of a level, and the motion of the player."""
+"""The physics: the bodies of a level, and the motion of the player. Begin with `physics`."""

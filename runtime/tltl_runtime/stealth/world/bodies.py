@@ -1,4 +1,4 @@
-"""Create pybullet bodies in ways that avoid the silent traps of pybullet, which ``physics`` lists."""
+"""Create pybullet bodies, and avoid the traps of pybullet that :mod:`physics` lists."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from tltl_runtime.stealth.world.bullet import pybullet
 from tltl_runtime.stealth.world.geometry import Bounds
 
 COMPOUND = 16
-"""The most children that Bullet keeps in a compound shape."""
+"""The greatest number of children in a compound shape: Bullet drops the rest."""
 RAY, PLAYER, PARKED, WORLD = 1, 2, 4, 8
-"""Collision groups; Bullet puts rays into the first one."""
+"""Collision groups. Bullet puts rays into the first one."""
 STOPS = RAY | PLAYER
 """The groups that collide with the bodies of the world; the world does not collide with itself."""
 UPRIGHT = (0.0, 0.0, 0.0, 1.0)
@@ -31,14 +31,20 @@ def static_boxes(client: int, boxes: Sequence[Bounds]) -> int:
 
 
 def static_box(client: int, size: Point, place: Point) -> int:
-    """Create a static body of one box centred at ``place``, in the group of the world; it can be moved later."""
+    """Create a static body of one box centred at ``place``, in the group of the world.
+
+    It can be moved later.
+    """
     half = [side / 2 for side in size]
     shape = pybullet.createCollisionShape(pybullet.GEOM_BOX, halfExtents=half, physicsClientId=client)
     return _static(client, shape, place)
 
 
 def capsule(client: int, radius: float, height: float, place: Point) -> int:
-    """Create a dynamic capsule of 1 kg, without rotation and friction, parked at ``place``."""
+    """Create a dynamic capsule of 1 kg at ``place``, without rotation and friction.
+
+    It collides with nothing until :func:`set_filter` changes that.
+    """
     shape = pybullet.createCollisionShape(
         pybullet.GEOM_CAPSULE, radius=radius, height=height - 2 * radius, physicsClientId=client
     )
@@ -74,7 +80,10 @@ def _static(client: int, shape: int, place: Point) -> int:
 
 
 def _tiny_shape(client: int) -> int:
-    """Create a visual shape too small to see; without one, pybullet draws the collision shape."""
+    """Create a visual shape that is too small to see.
+
+    Without a visual shape, pybullet would draw the collision shape.
+    """
     corners = [[0.0, 0.0, 0.0], [0.001, 0.0, 0.0], [0.0, 0.001, 0.0]]
     shape: int = pybullet.createVisualShape(
         pybullet.GEOM_MESH, vertices=corners, indices=[0, 1, 2], physicsClientId=client

@@ -1,7 +1,8 @@
-"""Import pybullet without the line that it prints on standard error, because programs may parse that output.
+"""Import pybullet without the line that it prints on standard error.
 
-The first import prints the line, from C. So all other modules import pybullet from here. If pybullet
-is not installed, importing this module raises TltlError, TLT0730.
+Programs may parse that output. Pybullet prints the line at its first import, from C. So all other
+modules import pybullet from here. If pybullet is not installed, importing this module raises
+TltlError, TLT0730.
 """
 
 from __future__ import annotations

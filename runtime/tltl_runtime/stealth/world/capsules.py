@@ -1,8 +1,8 @@
 """The player's body in the physics: a standing and a crouched capsule, one of which is active.
 
-The inactive capsule touches nothing and falls. It is moved back to its place below the level from
-time to time. Nothing simpler works: a sleeping Featherstone body also falls, and a floor under the
-capsule would cost a quarter of the speed.
+The inactive capsule touches nothing and falls. From time to time, :meth:`Capsules.park` moves it
+back to its place below the level. Nothing simpler works: a sleeping Featherstone body also falls,
+and a floor under the capsule would cost a quarter of the speed.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ class Capsules:
         self._activate(False)
 
     def put(self, crouching: bool, feet: Point, velocity: Point) -> bool:
-        """Move the player to a pose; return whether this switched capsules."""
+        """Move the player to a pose; return whether this made the other capsule active."""
         changed = self.body != self._bodies[crouching]
         if changed:
             self._activate(crouching)
@@ -68,7 +68,7 @@ class Capsules:
         """Return the name of the capsule whose collision filter is wrong, or None.
 
         A ray down through the active capsule must hit that capsule. A ray down through the inactive
-        capsule must hit nothing.
+        capsule must not hit it.
         """
         for name, body, height in zip(("standing", "crouched"), self._bodies, self._heights, strict=True):
             (x, y, z), _ = pybullet.getBasePositionAndOrientation(body, self._client)

@@ -13,7 +13,10 @@ TOUCH = 0.02
 
 
 def group_boxes(boxes: list[Bounds], size: int) -> list[list[Bounds]]:
-    """Split boxes into groups of at most ``size`` neighbours, by halving along the longer side."""
+    """Split boxes into groups of at most ``size`` neighbours.
+
+    It halves the boxes along the longer side of their area until the groups are small enough.
+    """
     if len(boxes) <= size:
         return [boxes] if boxes else []
     middles = [[low[axis] + high[axis] for low, high in boxes] for axis in (0, 1)]
@@ -24,7 +27,10 @@ def group_boxes(boxes: list[Bounds], size: int) -> list[list[Bounds]]:
 
 
 def boxes_by_cell(boxes: list[Bounds], reach: float) -> dict[tuple[int, int], list[Bounds]]:
-    """Return the boxes within ``reach`` metres of each square metre of ground, by its south-west corner."""
+    """Return the boxes within ``reach`` metres of each square metre of ground.
+
+    The key of a square is its south-west corner.
+    """
     cells: dict[tuple[int, int], list[Bounds]] = {}
     for low, high in boxes:
         for x in range(floor(low[0] - reach), floor(high[0] + reach) + 1):
@@ -39,7 +45,10 @@ def depth(feet: Point, height: float, radius: float, low: Point, high: Point) ->
 
 
 def contact(feet: Point, height: float, radius: float, low: Point, high: Point) -> tuple[float, Point]:
-    """Return how far an upright capsule overlaps a box, as :func:`depth` does, and the unit vector out of the box."""
+    """Return how far an upright capsule overlaps a box, and the unit vector out of the box.
+
+    The overlap is in metres, negative if they are apart.
+    """
     x, y, z = feet
     bottom, top = z + radius, z + height - radius
     dx = x - min(max(x, low[0]), high[0])

@@ -1,4 +1,4 @@
-"""The movers of a level: they follow their paths and push the player.
+"""The bodies of the movers of a level: they follow their paths and push the player.
 
 For Bullet, a mover is a box that is teleported, so it pushes nothing. This module pushes the player
 by setting the player's velocity.
@@ -18,13 +18,19 @@ from tltl_runtime.stealth.world.mover_path import MoverPath
 from tltl_runtime.stealth.world.player import DECISION
 
 _REACH = 1.5
-"""Distance within which the player can touch a mover during one decision, in metres."""
+"""The player touches no mover farther away than this in a decision, in metres.
+
+The motion of the mover itself is added.
+"""
 _HARDEST_PUSH = 8.0
 """The greatest speed that a mover gives to the player, in metres per second."""
 
 
 class MoverBody:
-    """The body of a mover, created at its offset: ``place`` is its current centre, ``box`` its corners."""
+    """The body of a mover; ``place`` is its current centre, ``box`` has its corners.
+
+    It begins at the mover's offset.
+    """
 
     def __init__(self, client: int, mover: Mover) -> None:
         self._client = client
@@ -58,9 +64,9 @@ def push(
 ) -> None:
     """Advance each mover and push the player; call this before each physics step of ``seconds``.
 
-    ``has_room`` says whether a capsule at a position is free of everything but the mover. A mover
-    waits if the push would leave the player no room: if it moved on, it would press the player
-    through a wall, however slowly.
+    ``has_room`` says whether a capsule at a position is free of everything but the mover. If the
+    push would leave the player no room, the mover waits: otherwise it would press the player
+    through a wall.
     """
     x, y, z = feet = player.feet()
     height, radius = player.height, player.radius

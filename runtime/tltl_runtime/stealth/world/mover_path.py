@@ -12,7 +12,7 @@ from tltl_runtime.stealth.level import Mover, Point
 class MoverPath:
     """The positions of a mover, by the time that it has moved.
 
-    The mover moves there and back, or in a loop if its path is closed.
+    The mover moves to the end of its path and back, or in a loop if the path is closed.
     """
 
     def __init__(self, mover: Mover) -> None:
@@ -32,7 +32,7 @@ class MoverPath:
     def position_at(self, clock: float) -> Point:
         """Return the centre of the mover at ``clock`` seconds.
 
-        Each leg begins with the pause at its first point.
+        Each leg of the path begins with the pause at its first point.
         """
         if self._lap <= 0.0:
             return self._first

@@ -1,7 +1,8 @@
 """The bodies of a level in pybullet: static boxes, barriers, movers, and the player's capsule.
 
 The player is a dynamic capsule without rotation and friction. Its velocity is set once per
-decision; Bullet then runs nine steps of 1/60 s in one call. These measured properties must be kept:
+decision; Bullet then runs nine steps of 1/60 s in one call. The code depends on these properties of
+pybullet, which were measured:
 
 - The player is a Featherstone body (a Bullet rigid body with zero inertia becomes not-a-number).
   Everything else uses maximal coordinates, because each further Featherstone body costs as much per
@@ -10,9 +11,9 @@ decision; Bullet then runs nine steps of 1/60 s in one call. These measured prop
 - A change of mass between zero and non-zero resets collision filters, so masses never change.
 - A body without a visual shape gets one from its collision shape (with or without
   ``URDF_IGNORE_VISUAL_SHAPES``), so every body gets a triangle of one millimetre.
-- Crouching swaps two capsules (``capsules``).
-- Each pybullet call costs 0.4 to 1.5 µs, a fifth of it for keyword arguments: calls that run in
-  every decision use none.
+- A shape cannot be resized, so crouching swaps two capsules (``capsules``).
+- Each pybullet call costs 0.4 to 1.5 µs, a fifth of it for keyword arguments. So calls that run in
+  every decision have no keyword arguments.
 - Static bodies that collide with each other (their group and mask share a bit) make a step four
   times slower.
 - Every reset rebuilds the world. This makes episodes bit-for-bit reproducible, whatever ran before.
@@ -40,21 +41,21 @@ _SINK_TOLERANCE = 0.2
 A landing sinks into the floor by up to one physics step of a fall.
 """
 _PARK_INTERVAL = 64
-"""The number of decisions after which the inactive capsule is moved back; until then it falls a kilometre."""
+"""The inactive capsule is moved back after this many decisions; by then it has fallen 1 km."""
 
 
 class Random(Protocol):
-    """The random generator of a reset: ``random.Random`` or ``numpy.random.Generator``."""
+    """What a reset needs of a random generator: ``random.Random`` or ``numpy.random.Generator``."""
 
     def random(self) -> float:
         """Return a number in [0, 1)."""
 
 
 class WorldError(RuntimeError):
-    """The bodies differ from the level, or a body left the level.
+    """The bodies differ from the level, or the player left the level.
 
-    ``body`` is the name of the body, such as ``player``. The error is in the level or in the
-    physics.
+    ``body`` is the name of the body at fault, such as ``player``. The error is in the level or in
+    the physics.
     """
 
     def __init__(self, level: StealthLevel, step: int, body: str, problem: str) -> None:
@@ -71,8 +72,8 @@ class World:
     """The bodies of a level, in a pybullet client of their own.
 
     Barriers and movers are identified by their index in the level. Lasers have no body here: they
-    stop neither bodies nor sight. The constructor checks the world (see ``check``) and resets it,
-    with the player exactly at the start.
+    stop neither bodies nor sight. The constructor resets the world, with the player exactly at the
+    start, and checks it (see ``check``).
     """
 
     def __init__(self, level: StealthLevel, kind: PlayerKind | None = None) -> None:
@@ -107,8 +108,9 @@ class World:
     def reset(self, rng: Random | None) -> None:
         """Begin an episode.
 
-        Barriers are shut, movers are at their offset, and the player is within the start's spread.
-        Without ``rng`` the player is exactly at the start. Raises WorldError if there is no room.
+        All barriers are shut, and movers are at their offset. The player is at a random place
+        within the start's spread, or without ``rng`` exactly at the start. Raises WorldError if
+        there is no room.
         """
         self.steps = 0
         self._open = [False] * len(self.level.barriers)
@@ -145,10 +147,11 @@ class World:
         self._observe(crouching, wish.yaw, wish.stamina)
 
     def put(self, state: PlayerState) -> None:
-        """Set the player to ``state``, an earlier value of ``player``, so that a search can branch there.
+        """Set the player to ``state``, an earlier value of ``player``.
 
-        Everything else stays unchanged. Bullet's contact cache is not restored. So a decision that is
-        repeated may end some millimetres away from its first result.
+        A search can then continue from there. Everything else stays unchanged, and Bullet's contact
+        cache is not restored. So a decision that is repeated may end some millimetres away from its
+        first result.
         """
         self._put(state.crouching, state.position, state.velocity)
         self._state = state
@@ -171,7 +174,7 @@ class World:
         return self._open[barrier]
 
     def set_open(self, barrier: int, is_open: bool) -> None:
-        """Open or shut a barrier; an open one stops neither bodies nor sight."""
+        """Open or shut a barrier; an open barrier stops neither bodies nor sight."""
         self._open[barrier] = is_open
         body = self._barriers[barrier]
         if body is not None:
@@ -187,9 +190,9 @@ class World:
         return bool(hit[0] >= 0)
 
     def has_room(self, feet: Point, height: float, ignored: MoverBody | None = None) -> bool:
-        """Whether a capsule of this height, with the player's radius, is free of everything that stops bodies.
+        """Whether a capsule of this height would be free of everything that stops bodies.
 
-        The mover ``ignored`` does not count.
+        It has the player's radius and stands at ``feet``. The mover ``ignored`` does not count.
         """
         radius = self.kind.radius
         return all(
@@ -199,10 +202,10 @@ class World:
         )
 
     def check(self) -> None:
-        """Check the world with rays; raise WorldError if a box is missing or a collision filter is wrong.
+        """Test with rays whether the world matches the level.
 
         A ray tests the middle of each side of each box, from 1 cm outside, unless another body
-        covers that point.
+        covers that point. Raises WorldError if a box is missing or a collision filter is wrong.
         """
         boxes = [(solid.name, solid.box.low, solid.box.high) for solid in self.level.solids]
         boxes += [(barrier.name, barrier.box.low, barrier.box.high) for barrier in self._shut_barriers()]
@@ -294,7 +297,11 @@ class World:
         return near
 
     def _advance(self, near: Sequence[MoverBody]) -> None:
-        """Run the physics of a decision: in one call or, if movers are ``near``, step by step with their pushes."""
+        """Run the physics of a decision.
+
+        Without movers ``near``, this is one call of pybullet. Otherwise they push the player before
+        each physics step.
+        """
         if not near:
             self._run_at_once(SUBSTEPS)
             pybullet.stepSimulation(self._client)
@@ -324,6 +331,6 @@ class World:
         return shut + [mover.box for mover in self.movers if mover is not ignored]
 
     def _shut_barriers(self) -> list[Barrier]:
-        """Return the barriers that stop bodies now."""
+        """Return the barriers that stop bodies now: the solid ones that are shut."""
         barriers = zip(self.level.barriers, self._open, strict=True)
         return [barrier for barrier, is_open in barriers if barrier.kind == "solid" and not is_open]

@@ -8,9 +8,9 @@ from tltlc.api import Diagnostic, TltlError
 def player_fault(error: RuntimeError) -> TltlError | None:
     """Return TLT0806 if ``error`` says that the player has left the level, else None.
 
-    Other errors of the physics are not the level's fault.
+    The level is not at fault for other errors of the physics.
     """
-    # Imported here, because it loads the physics.
+    # Import this late, because it loads the physics.
     from tltl_runtime.stealth.world.physics import WorldError
 
     if not isinstance(error, WorldError) or error.body != "player":

@@ -47,7 +47,7 @@ class PlayerKind:
     step_height: float = 0.25
     """The highest stair that the player walks up."""
     fall_speed: float = 8.0
-    """The greatest fall speed at the start of a decision.
+    """The greatest speed of a fall at the start of a decision.
 
     A faster body could pass through a floor when it lands.
     """
@@ -67,7 +67,10 @@ class PlayerState:
 
 @record
 class Control:
-    """The motion that an action requests for one decision; ``stamina`` is what is left at the end, in [0, 1]."""
+    """The motion that an action requests for one decision.
+
+    ``stamina`` is what is left at the end of the decision, in [0, 1].
+    """
 
     velocity: tuple[float, float]
     yaw: float

@@ -13,7 +13,7 @@ from tltl_runtime.stealth.world.geometry import TOUCH, Bounds, depth
 from tltl_runtime.stealth.world.player import DECISION, PlayerKind
 
 HasRoom = Callable[[Point, float], bool]
-"""Whether a player of a given height is free with its feet at a point."""
+"""A function of a point and a height: whether a player of this height has room at the point."""
 
 
 def lift(
@@ -24,9 +24,10 @@ def lift(
     boxes: Sequence[Bounds],
     has_room: HasRoom,
 ) -> float:
-    """Return how far to lift the feet to walk up a stair in this decision; 0 if there is none.
+    """Return how far to lift the feet, in metres, so that the player walks up a stair.
 
-    ``boxes`` are the boxes that the player could touch.
+    It is 0 if there is no stair in the way of this decision. ``boxes`` are the boxes that the
+    player could touch.
     """
     x, y, z = feet
     highest = z + kind.step_height + 2 * TOUCH
@@ -61,7 +62,7 @@ def _lift_along(
     boxes: Sequence[Bounds],
     has_room: HasRoom,
 ) -> float:
-    """Return the lift onto the first box that the body touches along ``velocity``.
+    """Return the lift onto the first box that the body touches along ``velocity``, in metres.
 
     It is 0 if the box is too high, or if there is no room above it.
     """
