@@ -108,7 +108,7 @@ class EnemyKind:
     search_radius: float
     attack_range: float
     attack_damage: float
-    """Health per second."""
+    """The health that an attack takes from the player per second."""
     branches: tuple[str, ...] = ()
 
 
@@ -164,7 +164,7 @@ class StealthLevel:
     exits: tuple[Exit, ...]
     sensors: Sensors
     spec: str
-    """The spec that the level is made for, as ``FILE.tltl:NAME``."""
+    """The spec that the level is made for, as ``FILE.tltl:NAME``; empty if there is none."""
     files: tuple[tuple[str, str], ...]
     signals: tuple[tuple[str, str], ...] = ()
     """Pairs of an alias and its signal, such as (``open_right``, ``open(right)``).

@@ -121,7 +121,7 @@ class Simulation:
         self.enemies.set_open(barrier, True)
 
     def _burns(self) -> float:
-        """Health per second that lasers take from the player at its current position."""
+        """Return the health per second that lasers take from the player where it stands."""
         lasers = [self.level.barriers[index] for index in self._lasers if not self.open[index]]
         if not lasers:
             return 0.0

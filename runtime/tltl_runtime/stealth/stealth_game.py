@@ -144,7 +144,7 @@ class StealthGame(Game[StealthLevel, Episode]):
         params: Mapping[str, float] | None = None,
         render_mode: str | None = None,
     ) -> TltlEnv:
-        """Make an environment of a level with a spec."""
+        """Make an environment of a level with a spec, by default the spec of the level."""
         from tltl_runtime.stealth.env import make_env
 
         return make_env(level, variant, spec, sensors=sensors, reward=reward, params=params, render_mode=render_mode)

@@ -58,7 +58,7 @@ def check_supply(level: StealthLevel, fspa: Fspa, places: SpecPlaces) -> list[Di
 
 
 def params_from_level(level: StealthLevel, fspa: Fspa) -> dict[str, float]:
-    """Return the values, in SI units, of the spec's params that the level defines."""
+    """Return the values that the level defines for the spec's params, in SI units, by name."""
     declared = {param.name for param in fspa.params}
     return {name: value for name, value in params(level).items() if name in declared}
 

@@ -16,10 +16,7 @@ from tltl_runtime.stealth.world.player import PlayerKind
 from tltlc.api import Diagnostic, Fspa, Severity, TltlError, expressions, fileio, ranges, replace
 
 _LIFT_STEP: Final = 0.25
-"""How much higher each jump is than the one before, in metres.
-
-:class:`_ObstacleSearch` tries ever higher jumps to find a solid that is too high.
-"""
+"""Each jump that :class:`_ObstacleSearch` tries is higher than the last by this, in metres."""
 
 
 def check_reach(level: StealthLevel, reach: Reach, fspa: Fspa, places: SpecPlaces) -> list[Diagnostic]:

@@ -147,8 +147,9 @@ def return_to_route() -> Node:
 def check_gaps() -> Node:
     """After each leg of the patrol, run to a narrow place off the route.
 
-    :meth:`EnemyGuard.next_gap` chooses the place. The speed is the mean of the speeds of a walk and
-    of a chase: at walking speed, the guard would leave its route unwatched for too long.
+    :meth:`~tltl_runtime.stealth.enemies.enemy.EnemyGuard.next_gap` chooses the place. The speed is
+    the mean of the speeds of a walk and of a chase: at walking speed, the guard would leave its
+    route unwatched for too long.
     """
 
     def is_due(guard: EnemyGuard) -> bool:

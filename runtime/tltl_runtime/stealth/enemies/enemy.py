@@ -227,7 +227,8 @@ class EnemyGuard:
     def next_gap(self) -> Place | None:
         """Pick a narrow place off the route, at random among the three nearest unvisited ones.
 
-        When all have been visited, all count as unvisited again. Return None if there is none.
+        When all have been visited, all count as unvisited again. Return None if the floor has no
+        such place.
         """
         if self._gaps_of is not self.floor:
             self._gaps_of = self.floor

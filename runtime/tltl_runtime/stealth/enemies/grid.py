@@ -146,7 +146,7 @@ class Floor:
         return not crosses(*a, *b, self.obstacles)
 
     def next_point(self, a: Place, b: Place) -> Place | None:
-        """Return the point to which an enemy first walks straight on its path from a to b.
+        """Return the first stop on an enemy's path from a to b; it walks there in a straight line.
 
         An enemy must be able to stand at a. If b cannot be reached, the path leads to the reachable
         place nearest to b.
@@ -258,9 +258,9 @@ class Floor:
         return path
 
     def _furthest_straight(self, a: Place, path: Sequence[int]) -> Place:
-        """Return the centre of a cell on ``path``, as far along as an enemy at a can walk straight.
+        """Return the centre of a cell far along ``path`` to which an enemy at a can walk straight.
 
-        The search doubles its stride, so it makes few tests and may miss the last such cell.
+        The search doubles its stride, so it makes few tests and may miss cells even farther along.
         """
         reach, stride = 0, 1
         while stride and reach < len(path) - 1:

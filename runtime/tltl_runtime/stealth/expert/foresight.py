@@ -55,7 +55,7 @@ class _Bodies:
 
     poses: Poses
     costs: Floats
-    """What they pay for touching movers, in seconds."""
+    """The cost of each body for touching movers, in seconds."""
     left: Floats
     """The time left on the route to the goal, in seconds."""
     began: NDArray[np.int64]

@@ -32,7 +32,10 @@ Costs = NDArray[np.float32]
 
 
 def _actions() -> tuple[tuple[Action, ...], NDArray[np.float64]]:
-    """Return the distinct actions without a jump, and their displacements [actions, 2] in metres."""
+    """Return the distinct actions without a jump, and their displacements in metres.
+
+    The displacements are [actions, 2].
+    """
     kind = PlayerKind()
     actions: list[Action] = []
     displacements: list[tuple[float, float]] = []

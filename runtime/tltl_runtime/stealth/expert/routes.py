@@ -51,12 +51,12 @@ class Leg:
 
 @record
 class Field:
-    """The routes to a goal from all places; an index of a place is flat.
+    """The routes to a goal from all places.
 
     ``seconds`` [layers, rows, columns] is the time from each place to the goal; it is infinite if
-    there is no route. ``towards`` [places] is the index of the next place on the route, or -1 at
-    the goal and where there is no route. ``kinds`` [places] is how to get there, an index into
-    ``_KINDS``.
+    there is no route. ``towards`` [places] is the flat index of the next place on the route, or -1
+    at the goal and where there is no route. ``kinds`` [places] is how to get to the next place, as
+    an index into ``_KINDS``.
     """
 
     surfaces: Surfaces

@@ -1,8 +1,8 @@
 """The places where a player can stand: the tops of all boxes, cell by cell.
 
 The ground plan of a level is cut into square cells. Each height at which a box ends is a layer. A
-place is a cell in a layer: a box ends at this height below the centre of the cell, and there is
-room for the body above it. An upright cylinder approximates the body.
+place is a cell in a layer: the centre of the cell lies on the top of a box at this height, and
+there is room for the body above it. An upright cylinder approximates the body.
 """
 
 from __future__ import annotations

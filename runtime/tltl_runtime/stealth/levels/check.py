@@ -1,4 +1,4 @@
-"""Check the names in a level: specs can use them, and what refers to a thing finds it."""
+"""Check the names in a level: specs must be able to use them, and references to find them."""
 
 from __future__ import annotations
 

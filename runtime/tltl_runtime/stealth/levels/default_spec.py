@@ -21,9 +21,12 @@ def read_default_spec(table: CheckedTable, level: Path) -> str:
     """Return the spec that the key ``spec`` of a level names, as ``FILE:NAME``.
 
     ``level`` is the path of the level's file. FILE is the path of the spec's file, which is beside
-    the level or in the package. Return an empty text if there is no key, if its value is wrong
-    (this logs TLT0803), or if the file does not exist (this logs TLT0805). If the file does not
-    contain the spec, log TLT0805, too.
+    the level or in the package.
+
+    - If there is no key, return an empty text.
+    - If the value of the key is wrong, log TLT0803 and return an empty text.
+    - If there is no such file, log TLT0805 and return an empty text.
+    - If the file does not contain the spec, log TLT0805.
     """
     text = table.text("spec", "")
     file, _, name = text.rpartition(":")

@@ -78,9 +78,9 @@ def load_level(name_or_path: str, variant: str = "v0") -> StealthLevel:
             or bounds that are too large for enemies; TLT0800, unknown level, variant or added
             overlay; TLT0801, a file is not TOML; TLT0802, an unknown key; TLT0803, a missing key,
             or a value of a wrong type or out of range; TLT0804, a name that is taken or that specs
-            cannot use; TLT0805, a name that refers to nothing; TLT0806, outside the bounds;
-            TLT0807, inside a solid; TLT0808, an overlay changes something that does not exist; and
-            the errors of :func:`tltlc.io.files.read_source`.
+            cannot use; TLT0805, a name that refers to nothing; TLT0806, a thing outside the bounds;
+            TLT0807, a thing inside a solid; TLT0808, an overlay changes something that does not
+            exist; and the errors of :func:`tltlc.io.files.read_source`.
     """
     return _Loading(level_path(name_or_path)).level(variant)
 
@@ -362,6 +362,9 @@ class _Loading:
 
 
 def _first_line(source: SourceFile) -> Span:
-    """Return the span of the first line with content; diagnostics about the whole file point to it."""
+    """Return the span of the first line with content.
+
+    Diagnostics about the whole file point to it.
+    """
     match = re.search(r"^[ \t]*[^#\s].*$", source.text, re.MULTILINE)
     return Span(*match.span()) if match else Span(0, 0)

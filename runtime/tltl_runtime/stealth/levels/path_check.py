@@ -71,7 +71,7 @@ def _enemy_warnings(enemy: Enemy, level: StealthLevel, places: NamedParts) -> It
 
 
 def _can_walk(level: StealthLevel, start: Point, end: Point, *, shut: bool) -> bool:
-    """Whether an enemy can walk from ``start`` to ``end``, with all barriers shut or all open."""
+    """Whether an enemy can walk from ``start`` to ``end``, with barriers all shut or all open."""
     floor = grid_of(level).floor(range(len(level.barriers)) if shut else ())
     stands = floor.entry(start[:2]) is not None and floor.entry(end[:2]) is not None
     return stands and floor.area(start[:2]) == floor.area(end[:2])

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from tltl_runtime.stealth.simulation import Simulation
 
 _HALF_TIME_S: Final = 60.0
-"""The time, in seconds, that is observed as 0.5: the scale keeps the unbounded time below 1."""
+"""The time t is observed as t / (t + this), in seconds, so that it stays below 1."""
 
 
 class Observer:

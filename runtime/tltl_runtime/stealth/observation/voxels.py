@@ -1,4 +1,4 @@
-"""The cells that stand still, from which semantic maps are cut.
+"""The parts of semantic maps that stand still, as layers of cells.
 
 A level is cut into square cells and, every quarter of a metre in height, into layers. A layer is
 for a body whose feet are at its height. For each cell it says what the body would meet there, from
@@ -42,10 +42,10 @@ They go from the lowest up; each is uint8 [rows, columns].
 
 @record
 class Frame:
-    """The position and size of a grid of cells.
+    """The position and size of a grid of cells, in metres.
 
-    The cell in row 0 and column 0 has its south-west corner at ``x``, ``y``. Layer 0 is for a body whose
-    feet are at height ``z``. A cell is ``cell`` wide. All are in metres.
+    The cell in row 0 and column 0 has its south-west corner at ``x``, ``y``. Layer 0 is for a body
+    whose feet are at height ``z``. Each cell is ``cell`` wide.
     """
 
     x: float
@@ -107,7 +107,7 @@ class Voxels:
                 yield "laser" if barrier.kind == "laser" else "barrier", barrier.box
 
     def _point_box(self, position: Point) -> Box:
-        """Return a small box in the cell that contains a position."""
+        """Return a box for a thing at ``position``, so small that it lies in one cell."""
         x, y, z = position
         return Box((x, y, z), (x + 10 * _TOUCH, y + 10 * _TOUCH, z + _POINT_HEIGHT))
 

@@ -61,9 +61,9 @@ def _violation_cause(episode: Episode) -> Cause:
 def _broken_atoms(episode: Episode) -> list[tuple[str, bool]]:
     """Return the atoms that caused a violation, with their truth values.
 
-    The violating transition has a guard. Its prime implicant that was true at the last step
-    consists of these atoms. If several were true and the player died, one with an atom that reads
-    the health is preferred.
+    They form a prime implicant of the guard of the violating transition, one that was true at the
+    last step. If several were true and the player died, one with an atom that reads the health is
+    preferred.
     """
     fspa, last_transition = episode.fspa, (int(episode.states[-2]), int(episode.states[-1]))
     holds = [value > 0.0 for value in episode.atoms[-1].tolist()]

@@ -13,5 +13,5 @@ _PACKAGES: Final = ("tltlc", "pybullet", "numpy")
 
 @lru_cache(maxsize=1)
 def versions() -> Mapping[str, str]:
-    """Return the installed versions of Python and of these packages, by name."""
+    """Return the installed versions of Python and of the packages that play episodes, by name."""
     return {"python": platform.python_version(), **{name: version(name) for name in _PACKAGES}}

@@ -79,9 +79,9 @@ def draw_level(level: StealthLevel, reach: Reach) -> bytes:
 def draw_episode(episode: Episode, size: tuple[int, int] | None = None, notation: Notation = "english") -> bytes:
     """Draw the plan of an episode as a PNG.
 
-    The picture is ``size`` (width, height) pixels large, by default as large as
-    :func:`natural_size` says. It shows the player's path, where the state changed, and how the
-    episode ended. The legend says what remained to be satisfied in each state.
+    It is ``size`` (width, height) pixels large. By default, the plan has its :func:`natural_size`.
+    The PNG shows the player's path, where the state changed, and how the episode ended. Its legend
+    says what remained to be satisfied in each state.
     """
     states = episode.states.tolist()
     path = [shot.player.position for shot in episode.snapshots]

@@ -37,7 +37,7 @@ _LIGHT: Final = (-0.45, -0.8, 1.6)
 _GLASS: Final = 0.22
 _SHADOW: Final = 0.6
 _OVERHEAD: Final = 1.0
-"""In the view from above, boxes whose bottom is higher than this are drawn as glass."""
+"""In the view from above, boxes that begin above this height, in metres, are drawn as glass."""
 
 
 class Renderer:

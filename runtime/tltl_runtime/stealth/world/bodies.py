@@ -1,4 +1,7 @@
-"""Create pybullet bodies, and avoid the traps of pybullet that :mod:`physics` lists."""
+"""Create pybullet bodies, and avoid the traps of pybullet.
+
+:mod:`~tltl_runtime.stealth.world.physics` lists these traps.
+"""
 
 from __future__ import annotations
 

@@ -88,9 +88,9 @@ def is_inside(point: Point, low: Point, high: Point) -> bool:
 
 
 def sides(low: Point, high: Point) -> dict[str, tuple[Point, Point]]:
-    """Return two points for each of the six sides of a box, by the name of the side, such as ``+x``.
+    """Return two points for each side of a box, by the name of the side, such as ``+x``.
 
-    The first point is 1 cm outside the middle of the side, the second is the middle itself.
+    The first point is 1 cm outside the middle of the side. The second is the middle itself.
     """
     middle = [(a + b) / 2 for a, b in zip(low, high, strict=True)]
     sides: dict[str, tuple[Point, Point]] = {}

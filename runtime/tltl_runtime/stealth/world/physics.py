@@ -326,7 +326,7 @@ class World:
         return self._boxes_by_cell.get((floor(feet[0]), floor(feet[1])), [])
 
     def _changing_boxes(self, ignored: MoverBody | None) -> list[Bounds]:
-        """Return the corners of the shut barriers and of the movers, except the mover ``ignored``."""
+        """Return the corners of the shut barriers, and of the movers except ``ignored``."""
         shut = [(barrier.box.low, barrier.box.high) for barrier in self._shut_barriers()]
         return shut + [mover.box for mover in self.movers if mover is not ignored]
 

@@ -27,8 +27,8 @@ SIGN = (0.0, 1.0, -1.0)
 class PlayerKind:
     """The parameters of the player, in metres, seconds and metres per second.
 
-    A jump lifts the feet by 0.97 m, which follows from ``jump_speed`` and ``gravity``. The round end
-    of the capsule slides up the rest of an edge. From a walk or a sprint, the player reaches
+    A jump lifts the feet by 0.97 m, which follows from ``jump_speed`` and ``gravity``. The round
+    end of the capsule slides up the rest of an edge. From a walk or a sprint, the player reaches
     platforms of 1.0 m, hardly ever those of 1.2 m, and never higher ones.
     """
 
