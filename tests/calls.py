@@ -1,4 +1,4 @@
-"""Measure work as a number of function calls, which does not depend on the machine or its load."""
+"""Measure work as a number of function calls: it does not depend on the machine or its load."""
 
 from __future__ import annotations
 

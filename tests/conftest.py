@@ -29,7 +29,7 @@ LEFT_OUT = (
     *("RAY_ADDRESS", "WORLD_SIZE", "RANK", "LOCAL_RANK", "MASTER_ADDR", "MASTER_PORT", "OMP_NUM_THREADS"),
     *("GIT_DIR", "GIT_WORK_TREE", "GIT_INDEX_FILE", "GIT_OBJECT_DIRECTORY", "PYTHONWARNINGS", "PYTHONOPTIMIZE"),
 )
-"""Environment variables that would change the behaviour that the tests expect."""
+"""Environment variables that are removed, because they change what the tests expect."""
 
 HANDLERS: dict[signal.Signals, Any] = {
     getattr(signal, name): handler
@@ -40,7 +40,7 @@ HANDLERS: dict[signal.Signals, Any] = {
     ]
     if hasattr(signal, name)
 }
-"""The handlers with which Python starts; child processes of the tests inherit them."""
+"""The signal handlers with which Python starts; processes that the tests start inherit them."""
 
 _cache = tempfile.mkdtemp(prefix="tltlc-tests-")
 
@@ -50,7 +50,7 @@ def pytest_configure(config: pytest.Config) -> None:
     for name in LEFT_OUT:
         os.environ.pop(name, None)
     os.environ.update(GIT_CONFIG_GLOBAL=os.devnull, GIT_CONFIG_NOSYSTEM="1")
-    # Use a cache of our own, not the results of earlier runs or of tests in other processes.
+    # Use a new cache: results of earlier runs, and of tests in other processes, must not be used.
     os.environ["TLTLC_CACHE_DIR"] = _cache
     # A process in the background of a shell ignores Ctrl-C, and one under `nohup` ignores SIGHUP.
     for number, handler in HANDLERS.items():
@@ -61,7 +61,10 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
-    """Leave out, for ``-m quick``, what has no quick tests; otherwise let pytest decide."""
+    """Leave out files and folders without quick tests if pytest runs with ``-m quick``.
+
+    Otherwise let pytest decide.
+    """
     return True if quick.is_chosen(config) and not quick.has_quick_tests(collection_path) else None
 
 
@@ -73,14 +76,17 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 
 def pytest_collection_finish() -> None:
-    """Keep the garbage collector from visiting the modules and the tests, which live until the end."""
+    """Keep the garbage collector from visiting modules and tests again: they live until the end."""
     gc.collect()
     gc.freeze()
 
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_teardown() -> Iterator[None]:
-    """Fail if a test or an import has changed a signal handler: a later test could end the whole process."""
+    """Fail if a test or an import has changed a signal handler.
+
+    With another handler, a signal in a later test could end the whole process.
+    """
     yield
     changed = [number for number, handler in HANDLERS.items() if signal.getsignal(number) != handler]
     for number in changed:

@@ -1,4 +1,4 @@
-"""Handwritten automata, for tests that must not depend on the construction."""
+"""Handwritten automata, for tests that must not depend on the construction of automata."""
 
 from __future__ import annotations
 
@@ -9,9 +9,10 @@ from tltlc.resolve import spec
 
 
 def cover_and_hide() -> Fspa:
-    """The automaton of Fig. 3 of the paper, with the three buttons exclusive and a limit of 400 steps.
+    """Return the automaton of Fig. 3 of the paper, with exclusive goals and a limit of 400 steps.
 
-    States: 0 the whole formula, 1 the first button pressed, 2 the trap, 3 both pressed, 4 the goal.
+    The three goals are button 1, button 2 and the exit. The states are: 0 the whole formula, 1
+    button 1 is pressed, 2 the trap, 3 both buttons are pressed, 4 the exit is reached.
     """
     a, b, c, p = "near(s1)", "near(s2)", "near(exit)", "alive"
     goal = always(atom(p))
@@ -66,7 +67,11 @@ def cover_and_hide() -> Fspa:
 
 
 def near(distance: str, close: float = 1.0, far: str = "level_size") -> Expression:
-    """Closeness, Eq. 2 of the paper: 1 at the target, 0 at distance ``close``, -1 from distance ``far`` on."""
+    """Return the closeness, Eq. 2 of the paper, for a ``distance`` signal.
+
+    It is 1 at distance 0, 0 at distance ``close``, and -1 from the distance of the param ``far``
+    on.
+    """
     d, reach, one = SignalValue(distance), ParamValue(far), Const(1.0)
     share = Op("/", (Op("-", (reach, d)), Op("-", (reach, Const(close)))))
     return When(
@@ -85,7 +90,8 @@ def _advance(goal: int, name: str) -> Guard:
 def _stay(goal: int, name: str) -> Guard:
     """Return the guard "alive and not at the goal".
 
-    Because the buttons are exclusive, each of the other two buttons also gives a prime.
+    ``goal`` is the index of the atom ``name``. Because the goals are exclusive, being at another
+    goal also implies the guard. So each of the two other goals gives a prime.
     """
     other_goals = [((other, True), (3, True)) for other in range(3) if other != goal]
     primes = sorted([((goal, False), (3, True)), *other_goals])

@@ -1,6 +1,7 @@
-"""Damaged inputs for readers of files: valid inputs with pieces cut out, doubled, nested or replaced.
+"""Make damaged inputs for readers of files from valid inputs.
 
-Every input is made from a seed, so that the seed reproduces a failure.
+Pieces are cut out, doubled, nested or replaced. Every input is made from a seed, so that the seed
+reproduces a failure.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ SEEDS: Final = st.integers(0, 2**64 - 1)
 
 
 def times(usual: int) -> settings:
-    """Settings with ``usual`` examples in `make test`, and thirty times as many in `make fuzz`."""
+    """Return settings with ``usual`` examples, or with thirty times as many in `make fuzz`."""
     count = usual if settings().derandomize else 30 * usual
     return settings(max_examples=count, deadline=None, suppress_health_check=list(HealthCheck))
 
@@ -31,7 +32,7 @@ NUMBERS: Final = (
     *("0", "-0", "-0.0", "1", "-1", "0.5", "2147483648", "9223372036854775808", "-18446744073709551616", "1e16"),
     *("1e308", "-1e308", "1e309", "5e-324", "1" + "0" * 400, "-1" + "0" * 400, "1" + "0" * 5000, "NaN", "Infinity"),
 )
-"""JSON numbers, and the non-finite ones that only Python accepts."""
+"""Numbers of JSON, and NaN and Infinity, which only Python accepts."""
 
 VALUES: Final = (
     *NUMBERS, *("true", "false", "null", '""', "[]", "{}", "[[]]", "[null]", '{"": 0}', '"\\u0000"', '"\\ud800"'),
@@ -46,11 +47,14 @@ PIECES: Final = (
 
 
 class _Raw(str):
-    """A piece of JSON that is written verbatim."""
+    """A piece of JSON that :func:`json_text` writes as it is."""
 
 
 def check(read: Callable[[], object]) -> bool:
-    """Whether a reader accepts its input; the only error that it may raise is a TltlError that can be rendered."""
+    """Return whether a reader accepts its input.
+
+    The reader may raise no error but a TltlError that can be rendered.
+    """
     try:
         read()
     except TltlError as error:
@@ -108,7 +112,7 @@ def _other_word(random: Random, text: str) -> str:
 
 
 def mutated_bytes(random: Random, data: bytes) -> bytes:
-    """Return data with some bits flipped, and bytes replaced, doubled or cut off."""
+    """Return data with some bits flipped, and some bytes replaced, doubled or cut off."""
     changed = bytearray(data)
     for _ in range(random.choice((1, 1, 2, 5, 20))):
         start = random.randint(0, len(changed))
@@ -126,7 +130,10 @@ def mutated_bytes(random: Random, data: bytes) -> bytes:
 
 
 def mutated_json(random: Random, document: Any) -> str:
-    """Return JSON text with a few values changed; one time in ten, the text is changed as well."""
+    """Return a document as JSON, with a few values changed.
+
+    In one case of ten, the text is changed as well.
+    """
     document = [deepcopy(document)]
     for _ in range(random.choice((1, 1, 1, 2, 3))):
         _change(random, document)
@@ -135,7 +142,10 @@ def mutated_json(random: Random, document: Any) -> str:
 
 
 def _change(random: Random, document: list[Any]) -> None:
-    """Change one value in place, chosen by a random walk from the root, so that long lists are not preferred."""
+    """Change one value in place.
+
+    A random walk from the root chooses the value, so that long lists are not preferred.
+    """
     holder: Any = document
     key: Any = 0
     while isinstance(holder[key], (dict, list)) and holder[key] and random.random() < 0.85:
@@ -156,7 +166,7 @@ def _change(random: Random, document: list[Any]) -> None:
 
 
 def json_text(document: Any) -> str:
-    """Return a document as JSON, with raw pieces verbatim."""
+    """Return a document as JSON, with pieces of :class:`_Raw` as they are."""
     if isinstance(document, _Raw):
         return str(document)
     if isinstance(document, dict):

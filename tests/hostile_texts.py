@@ -1,4 +1,4 @@
-"""Texts that make a regular expression backtrack as much as possible, built from the parts of its pattern."""
+"""Make texts on which a regular expression backtracks as much as possible, from its pattern."""
 
 from __future__ import annotations
 
@@ -18,14 +18,18 @@ _MOST_SAMPLES: Final = 4
 
 
 def hostile_texts(pattern: str, flags: int, times: int) -> Iterator[str]:
-    """Yield texts for each repetition in a pattern: a lead, the repeated part ``times`` over, and an end that fails."""
+    """Yield texts for each repetition in a pattern that has no upper limit.
+
+    A text consists of a beginning that leads to the repetition, a text that it can repeat,
+    ``times`` over, and an end that probably does not match.
+    """
     for before, pumps in _repetitions(sre_parse.parse(pattern, flags)):
         for pump, end in product(pumps, _ENDS):
             yield before + pump * times + end
 
 
 def _repetitions(parts: Any) -> Iterator[tuple[str, list[str]]]:
-    """Yield, for each unbounded repetition, a text that leads to it and texts that it can repeat."""
+    """Yield for each unlimited repetition a text that leads to it and texts that it can repeat."""
     before = ""
     for op, value in parts:
         name = str(op)
@@ -39,7 +43,10 @@ def _repetitions(parts: Any) -> Iterator[tuple[str, list[str]]]:
 
 
 def _pumps(body: Any) -> list[str]:
-    """Return texts that a repeated part matches, and single characters, which several branches may share."""
+    """Return texts that can be repeated: texts that ``body`` matches, and single characters.
+
+    Several branches of ``body`` may match the same character.
+    """
     samples = [text for text in _samples(body) if text]
     letters = sorted({letter for text in _samples(body, whole=True) for letter in text} | {"\\", "a"})
     usable = [letter for letter in letters if re.fullmatch("[^\x00]", letter)]
@@ -59,7 +66,10 @@ def _inside(name: str, value: Any) -> Sequence[Any]:
 
 
 def _samples(parts: Any, *, whole: bool = False) -> list[str]:
-    """Return a few texts that a part matches; with ``whole``, optional repetitions are included."""
+    """Return a few texts that ``parts`` match.
+
+    If ``whole``, optional repetitions occur in them once; otherwise they are left out.
+    """
     texts = [""]
     for op, value in parts:
         name = str(op)

@@ -1,4 +1,7 @@
-"""Pipes and devices in a folder, and a check that nothing opens them: reading one could block forever."""
+"""Pipes and devices in a folder, and a check that nothing opens them.
+
+A test that reads one could block forever.
+"""
 
 from __future__ import annotations
 
@@ -13,13 +16,13 @@ import pytest
 
 
 def put_beside(path: Path) -> None:
-    """Create a pipe at the path, and next to it a link to a device that never ends."""
+    """Create a pipe at ``path``, and beside it a link to a device that never ends."""
     os.mkfifo(path)
     path.with_name(f"a_{path.name}").symlink_to("/dev/zero")
 
 
 def forbid(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Make the test fail, instead of hang, if anything opens a pipe or /dev/zero."""
+    """Make the test fail if anything opens a pipe or /dev/zero; otherwise it would hang."""
     original = io.open
 
     def checked_open(file: Any, *arguments: Any, **named: Any) -> Any:

@@ -1,8 +1,9 @@
-"""Choose the tests of ``make quick``, a subset that answers within a minute.
+"""Choose the tests of ``make quick``, a subset that takes at most a minute.
 
-A quick test starts no process, needs no compiler of another language, no physics and no training, and is no property
-test. The rules are here, in one place; no test marks itself. ``pytest -m quick`` reads a file only if it may hold
-quick tests, and skips a test that is about to start a process after all.
+A quick test starts no process, needs no compiler of another language, no physics and no training,
+and is no property test. All rules are here: no test marks itself. ``pytest -m quick`` reads a file
+only if it may contain quick tests. If a test in it is about to start a process all the same, the
+test is skipped.
 """
 
 from __future__ import annotations
@@ -21,7 +22,10 @@ QUICK = "quick"
 TESTS = Path(__file__).parent
 
 FOLDERS = ("benchmarks", "editors", "runtime", "tools/conformance")
-"""Folders without quick tests: they compare with peers, start editors, play and train, or build foreign monitors."""
+"""Folders without quick tests.
+
+Their tests compare with peers, start editors, play and train, or build foreign monitors.
+"""
 
 LARGE = (
     "automaton/infinite/test_reference.py",
@@ -55,13 +59,13 @@ LARGE = (
 STARTS_PROCESSES = re.compile(
     r"\b(subprocess|multiprocessing|os\.fork|chromium|docs\.sessions|lsp\.client|playground\.test_server)\b"
 )
-"""What a file mentions that starts processes; none of its tests is quick."""
+"""Words in files that start processes. A file with such a word has no quick tests."""
 
 FIXTURES = frozenset({"client", "process"})
-"""Fixtures that start processes; a test that uses one is not quick, but others in its file may be."""
+"""Fixtures that start processes. A test that uses one is not quick; its file may have others."""
 
 NEW_PROCESS = frozenset({"os.exec", "os.fork", "os.forkpty", "os.posix_spawn", "os.system", "subprocess.Popen"})
-"""The audit events of Python when a process starts."""
+"""The audit events by which Python reports that a process starts."""
 
 
 def is_chosen(config: pytest.Config) -> bool:
@@ -71,7 +75,10 @@ def is_chosen(config: pytest.Config) -> bool:
 
 @cache
 def has_quick_tests(path: Path) -> bool:
-    """Whether a file or folder may contain quick tests. It is not imported, so that nothing that it imports is."""
+    """Whether a file or folder may contain quick tests.
+
+    The function does not import the file, so that nothing is loaded for it.
+    """
     if not path.is_relative_to(TESTS):
         return True
     name = path.relative_to(TESTS).as_posix()
@@ -83,7 +90,7 @@ def has_quick_tests(path: Path) -> bool:
 
 
 def is_quick(item: pytest.Item) -> bool:
-    """Whether a test is quick, by its file, its fixtures and its marks."""
+    """Whether a test is quick. Its file, its fixtures and its marks decide."""
     if not has_quick_tests(item.path) or any(item.iter_markers("slow")):
         return False
     if is_hypothesis_test(getattr(item, "obj", None)):
@@ -92,9 +99,10 @@ def is_quick(item: pytest.Item) -> bool:
 
 
 class SkipProcesses:
-    """A plugin that skips each test that is about to start a process; in a second thread, it fails the start instead.
+    """A plugin that skips each test that is about to start a process.
 
-    For example, a few tests of commands draw a picture, which a process lays out.
+    For example, a few tests of commands draw a picture, and a process computes its layout. If a
+    second thread starts the process, the plugin cannot skip the test: then it raises an error.
     """
 
     def __init__(self) -> None:

@@ -1,6 +1,7 @@
-"""Formulas in the notation of the reference corpus, and the corpus itself, for tests and benchmarks.
+"""Read formulas in the notation of the reference corpus, and the corpus itself.
 
-This reader shares no code with the grammar of the language, so that the two can be compared.
+This reader shares no code with the grammar of the language. So tests and benchmarks can compare the
+two.
 """
 
 from __future__ import annotations
@@ -40,7 +41,10 @@ _STRENGTH |= {"F": 6, "G": 6, "(": 0}
 
 
 class Entry(NamedTuple):
-    """A formula of the corpus; a size is None if the automaton is too large to check explicitly."""
+    """A formula of the corpus, with the sizes of its automaton.
+
+    A size is None if the automaton is too large to check explicitly.
+    """
 
     name: str
     family: str
@@ -52,10 +56,11 @@ class Entry(NamedTuple):
 def read_formula(text: str) -> Formula:
     """Parse a formula.
 
-    A formula has the operators ``! & | -> <-> X WX N F G U W R M F[0,2] G[0,2]``, the constants ``true false 1 0``,
-    and names such as ``near(s1)``.  Unary operators bind tightest, then ``U W R M``, ``&``, ``|``, ``->`` and
-    ``<->``; binary operators except ``&`` and ``|`` group to the right.  Takes linear time without recursion.  Raises
-    ValueError if the text is not a formula.
+    A formula has the operators ``! & | -> <-> X WX N F G U W R M F[0,2] G[0,2]``, the constants
+    ``true false 1 0``, and names such as ``near(s1)``. Unary operators bind tightest, then ``U W R
+    M``, ``&``, ``|``, ``->`` and ``<->``. Binary operators except ``&`` and ``|`` group to the
+    right. The time is linear, and there is no recursion. Raises ValueError if the text is not a
+    formula.
     """
     operands: list[Formula] = []
     operators: list[str] = []
@@ -122,7 +127,10 @@ def _bounded(operator: str, last: int, body: Formula) -> Formula:
 
 
 def corpus() -> Iterator[Entry]:
-    """Yield the reference corpus, in file order; yield nothing if neither of its two files exists."""
+    """Yield the entries of the reference corpus, in the order of its file.
+
+    The corpus is in one of two files. Yield nothing if neither exists.
+    """
     for row in _rows():
         states, transition_based = row.get("states"), row.get("transition_based_states")
         yield Entry(

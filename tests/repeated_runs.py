@@ -1,4 +1,8 @@
-"""Run the tests N times in random orders beside busy processes: ``python -m tests.repeated_runs N BUSY [PYTEST …]``."""
+"""Run the tests several times, in random orders, beside busy processes.
+
+The command is ``python -m tests.repeated_runs N BUSY [PYTEST …]``: N runs, BUSY busy processes, and
+arguments for pytest.
+"""
 
 from __future__ import annotations
 
@@ -18,9 +22,9 @@ FAILED = ("FAILED ", "ERROR ")
 
 
 def main(runs: int, busy: int, arguments: list[str]) -> int:
-    """Run pytest ``runs`` times beside ``busy`` busy processes, and return the number of failed runs.
+    """Run pytest ``runs`` times beside ``busy`` busy processes; return how many runs failed.
 
-    Prints one line for each run.
+    Print one line for each run.
     """
     failed = 0
     with busy_processes(busy):
@@ -40,7 +44,10 @@ def main(runs: int, busy: int, arguments: list[str]) -> int:
 
 
 def run(seed: int, arguments: list[str]) -> subprocess.CompletedProcess[str]:
-    """Run pytest once, in the random order of ``seed``; later arguments override earlier ones."""
+    """Run pytest once, in the random order of ``seed``.
+
+    ``arguments`` come after the options that this function sets, and override them.
+    """
     command = [sys.executable, "-m", "pytest", "-q", "-rfE", "-n", "2", "-m", "not slow"]
     order = ["--random-order", f"--random-order-seed={seed}"]
     return subprocess.run([*command, *order, *arguments], cwd=ROOT, capture_output=True, text=True, check=False)

@@ -1,4 +1,4 @@
-"""Folders that are made once in a run of pytest, and read by the tests of all its worker processes."""
+"""Folders that are made once in a run of pytest, for the tests of all worker processes to read."""
 
 from __future__ import annotations
 
@@ -12,9 +12,10 @@ import pytest
 
 
 def made_once(temporary: pytest.TempPathFactory, name: str, make: Callable[[Path], None]) -> Path:
-    """Return the folder ``name`` of this run; the first test that asks for it fills it with ``make``.
+    """Return the folder ``name`` of this run of pytest.
 
-    The workers of pytest-xdist share it, so tests must only read it, or copy it.
+    The first test that asks for it fills it with ``make``. The workers of pytest-xdist share the
+    folder, so tests must only read or copy it.
     """
     base = temporary.getbasetemp()
     if "PYTEST_XDIST_WORKER" in os.environ:

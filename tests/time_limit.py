@@ -1,4 +1,7 @@
-"""Run code in a new process with a time limit: for inputs that once took hours and now take less than a second."""
+"""Run code in a new process with a time limit.
+
+This is for inputs that once took hours and now take less than a second.
+"""
 
 from __future__ import annotations
 

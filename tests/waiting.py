@@ -1,4 +1,4 @@
-"""Wait for events instead of fixed times; the deadlines only end a test that hangs."""
+"""Wait for events instead of fixed times. The deadlines only end tests that hang."""
 
 from __future__ import annotations
 
@@ -13,11 +13,17 @@ from typing import Final, TypeVar
 Found = TypeVar("Found")
 
 HANG_S: Final = 900.0
-"""Seconds after which a test counts as hanging, even on a busy machine.  Pass it as every ``timeout``."""
+"""Seconds after which a test counts as hanging, even on a busy machine.
+
+Pass it as every ``timeout``.
+"""
 
 
 def until(event: Callable[[], Found], what: str, pause_s: float = 0.02) -> Found:
-    """Wait until ``event()`` is true, and return its value; raise AssertionError after ``HANG_S`` seconds."""
+    """Wait until ``event()`` is true, and return its value.
+
+    Raise AssertionError after ``HANG_S`` seconds; ``what`` describes the event in its message.
+    """
     deadline = time.monotonic() + HANG_S
     while not (value := event()):
         assert time.monotonic() < deadline, f"waited {HANG_S:g} s in vain for {what}"
@@ -26,16 +32,17 @@ def until(event: Callable[[], Found], what: str, pause_s: float = 0.02) -> Found
 
 
 def printed(program: str, data: bytes = b"") -> bytes:
-    """Run a Python program with ``data`` as its input, and return its output; it may take ``HANG_S`` seconds.
+    """Run a Python program with ``data`` as its input, and return its output.
 
-    The program runs in a new process, because code such as a regular expression cannot be interrupted.
+    It may take ``HANG_S`` seconds. It runs in a new process, which can be killed: code such as a
+    regular expression cannot be interrupted.
     """
     words = [sys.executable, "-c", program]
     return subprocess.run(words, input=data, capture_output=True, timeout=HANG_S, check=True).stdout
 
 
 def is_running(pid: int) -> bool:
-    """Whether a process exists and has not ended, on Linux."""
+    """Whether a process exists and has not ended. It works on Linux."""
     try:
         return "Z" not in Path(f"/proc/{pid}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()[0]
     except OSError:
@@ -49,7 +56,7 @@ def until_gone(pids: Iterable[int]) -> None:
 
 
 def children(pid: int) -> list[int]:
-    """Return the processes that the main thread of a process started, on Linux."""
+    """Return the ids of the processes that a process started from its main thread, on Linux."""
     try:
         return [int(child) for child in Path(f"/proc/{pid}/task/{pid}/children").read_text(encoding="utf-8").split()]
     except OSError:
@@ -57,10 +64,10 @@ def children(pid: int) -> list[int]:
 
 
 def until_it_reads(pid: int, descriptor: int = 0) -> None:
-    """Wait until a process blocks in a read of a file descriptor, on Linux."""
+    """Wait until a process blocks in a read of a file descriptor. It works on Linux."""
 
     def reads() -> bool:
-        # The file has the number of the system call and its arguments, of which the descriptor is the first.
+        # The file contains the number of the system call, then its arguments. The first one is the descriptor.
         words = Path(f"/proc/{pid}/syscall").read_text(encoding="ascii").split()
         return len(words) > 2 and int(words[1], 16) == descriptor and int(words[0]) == _READ
 

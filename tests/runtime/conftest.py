@@ -1,4 +1,7 @@
-"""The tests of the runtime need the extra `rl`. Without it only `test_extra.py` is collected, and skipped."""
+"""Skip the tests of the runtime if the extra `rl` is not installed.
+
+Then pytest collects only `test_extra.py`, which it skips with the reason.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +17,7 @@ NEEDED = ("gymnasium", "numpy", "pybullet", "torch")
 MISSING = [name for name in NEEDED if find_spec(name) is None]
 
 collect_ignore = [str(path) for path in Path(__file__).parent.rglob("*.py")] if MISSING else []
-"""All files but ``test_extra.py``, which is skipped with the reason."""
+"""The files that pytest does not collect, because a package is missing."""
 collect_ignore = [path for path in collect_ignore if not path.endswith(("test_extra.py", "conftest.py", "__init__.py"))]
 
 
@@ -29,8 +32,8 @@ def pytest_configure(config: pytest.Config) -> None:
 def _find_fonts() -> None:
     """Let matplotlib find the fonts of this machine before the first test.
 
-    Otherwise the first process that draws does it, with a message on standard error if that takes long.
-    If several processes do it at once, some may fail.
+    Otherwise the first process that draws does it, and prints a message on standard error if that
+    takes long. If several processes do it at once, some may fail.
     """
     with Path(gettempdir(), f"tltlc-tests-fonts-{os.getuid()}.lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)

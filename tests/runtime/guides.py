@@ -12,7 +12,10 @@ from tests.waiting import HANG_S
 
 
 def check_program(program: Block, printed: Block, path: Path) -> None:
-    """Run a program of a guide from the file ``path``, and check that it prints the next block of the guide."""
+    """Run a ``program`` of a guide from the file ``path``, and check what it prints.
+
+    ``printed`` is the block of the guide that shows the output.
+    """
     path.write_text(program.text, encoding="utf-8")
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(ROOT), str(ROOT / "runtime")])}
     done = subprocess.run(

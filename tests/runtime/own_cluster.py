@@ -31,14 +31,17 @@ _SYSTEM: Final = {
 }
 _LOCK: Final = Path(tempfile.gettempdir(), f"tltlc-tests-ray-{os.getuid()}.lock")
 _OBJECTS_BYTES: Final = 100 * 2**20
-"""Far more than a test needs. By default, Ray takes a third of the machine's memory."""
+"""The memory of Ray for objects, far more than a test needs.
+
+By default, Ray takes a third of the machine's memory.
+"""
 
 
 @contextmanager
 def own_cluster() -> Iterator[None]:
-    """Connect this process to a new cluster of ``CORES`` cores, used by nothing else, until the block ends.
+    """Connect this process to a new Ray cluster of ``CORES`` cores until the block ends.
 
-    The time limits of the runtime are raised to ``HANG_S``.
+    Nothing else uses the cluster. The time limits of the runtime are raised to ``HANG_S``.
     """
     import ray
 
@@ -65,9 +68,11 @@ def own_cluster() -> Iterator[None]:
 
 @contextmanager
 def start_alone() -> Iterator[None]:
-    """Start a cluster while no other test starts one: Ray chooses free ports first and binds them later.
+    """Let no other test start a cluster until the block ends.
 
-    Ray limits one part of the start to 30 s, whatever its options. This raises the limit to ``HANG_S``.
+    Ray chooses free ports first and binds them later, so two starts could choose the same ports.
+    Ray limits one part of the start to 30 s, whatever its options; this function raises that limit
+    to ``HANG_S``.
     """
     from ray._private import services
 

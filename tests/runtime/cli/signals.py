@@ -18,7 +18,10 @@ Run = Callable[..., Outcome]
 
 @pytest.fixture
 def with_signals(tltlc: Run) -> Run:  # noqa: F811
-    """A function that runs a command line in this process, with the handlers of signals that a process of it has."""
+    """Return a function that runs a command line in this process, as a process of its own would.
+
+    It handles signals as that process does, and restores the handlers afterwards.
+    """
 
     def run(*arguments: str | Path) -> Outcome:
         handlers = {number: signal.getsignal(number) for number in (signal.SIGINT, *REQUESTS)}
@@ -34,7 +37,10 @@ def with_signals(tltlc: Run) -> Run:  # noqa: F811
 
 @pytest.fixture
 def interrupted(tltlc: Run, monkeypatch: pytest.MonkeyPatch) -> Run:  # noqa: F811
-    """A function that runs ``tltlc train`` and interrupts it before the environments of the training start."""
+    """Return a function that runs ``tltlc train`` and interrupts it.
+
+    The interrupt comes before the environments of the training start.
+    """
 
     def stop(_: object) -> None:
         raise KeyboardInterrupt
@@ -50,7 +56,10 @@ def interrupted(tltlc: Run, monkeypatch: pytest.MonkeyPatch) -> Run:  # noqa: F8
 
 
 def signal_at_call(patch: pytest.MonkeyPatch, owner: type, name: str, number: int, call: int = 2) -> None:
-    """Send a signal to this process when a method is called for the ``call``-th time, before it does anything."""
+    """Send a signal to this process when a method is called for the ``call``-th time.
+
+    The signal comes before that call does anything. ``owner`` is the class of the method ``name``.
+    """
     method, calls = getattr(owner, name), count(1)
 
     def interrupted(*arguments: Any, **options: Any) -> Any:

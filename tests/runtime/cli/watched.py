@@ -1,4 +1,7 @@
-"""Run ``tltlc play`` and ``record`` with real keys, and log what the game does into a file for the test."""
+"""Run ``tltlc play`` and ``record`` with real keys.
+
+The command logs what the game does into a file, which the test reads.
+"""
 
 from __future__ import annotations
 
@@ -20,8 +23,13 @@ Line = dict[str, Any]
 class Watched:
     """A running command whose window is open and receives keys.
 
-    Each line of the log has one of these keys: ``began``; ``looked``, the action of the pressed keys;
-    ``stepped``, the action of a step, with the displacement ``x``, ``y`` since the start of the episode in metres.
+    Each line of the log has one of these keys:
+
+    - ``began``: an episode has begun.
+    - ``heard``: a key was pressed.
+    - ``looked``: the action of the keys that are pressed, with ``view``, whether the view changes.
+    - ``stepped``: the action of a step, with ``x`` and ``y``, the displacement since the start of
+      the episode, in metres.
     """
 
     def __init__(self, display: dict[str, str], folder: Path, *arguments: str) -> None:
@@ -40,22 +48,25 @@ class Watched:
         self.until(self._hears, "hears keys")
 
     def log_lines(self) -> list[Line]:
-        """All lines of the log so far."""
+        """Return all lines of the log so far."""
         # Text after the last newline is an incomplete line.
         whole, _, _ = self._place.read_text(encoding="utf-8").rpartition("\n")
         return [json.loads(line) for line in whole.splitlines()]
 
     def episode(self) -> list[Line]:
-        """The lines of the log since the episode began."""
+        """Return the lines of the log since the last episode began."""
         lines = self.log_lines()
         return lines[max(place for place, line in enumerate(lines) if "began" in line) :]
 
     def steps(self) -> list[Line]:
-        """The steps of the episode so far."""
+        """Return the lines of the episode's steps so far."""
         return [line for line in self.episode() if "stepped" in line]
 
     def until(self, event: Callable[[], Any], description: str) -> None:
-        """Wait for an event; fail if the command ends before it."""
+        """Wait until ``event()`` is true; fail if the command ends before.
+
+        ``description`` completes the message "a game that …".
+        """
 
         def happened() -> bool:
             assert self.process.poll() is None, self.process.communicate()
@@ -64,13 +75,16 @@ class Watched:
         until(happened, f"a game that {description}", 0.05)
 
     def begin_again(self) -> None:
-        """Press the key that begins another episode, and wait until the episode begins."""
+        """Press the key that restarts, and wait until the new episode begins."""
         before = sum("began" in line for line in self.log_lines())
         keys(self._display, "key", "r")
         self.until(lambda: sum("began" in line for line in self.log_lines()) > before, "begins again")
 
     def until_it_looked(self, times: int = 1, wanted: Callable[[Line], bool] = lambda _: True) -> None:
-        """Wait until the game has looked at the keys this many times from now, with a line that is ``wanted``."""
+        """Wait until the game has read the keys this many times from now.
+
+        Only lines of the log count for which ``wanted`` is true.
+        """
         before = len(self.log_lines())
 
         def looks() -> list[Line]:
@@ -85,13 +99,13 @@ class Watched:
         return not subprocess.run(search, env=self._display, timeout=HANG_S, capture_output=True).returncode
 
     def _hears(self) -> bool:
-        # A key without a function in the game.
+        # This key does nothing in the game.
         keys(self._display, "key", "F5")
         return any("heard" in line for line in self.log_lines())
 
 
 def log_what_happens(place: Path) -> None:
-    """Patch the game in this process so that it logs each of its actions into a file."""
+    """Patch the game in this process so that it logs what happens into the file ``place``."""
     import pygame
 
     from tltl_runtime.stealth.episode_recorder import RecordEpisode

@@ -1,4 +1,4 @@
-"""An untrained policy: its weights are random, but scaled up so that its choices are not uniform."""
+"""Untrained policies: the weights are random, and so large that the choices are not uniform."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Untrained policies: real cards of real levels, with random weights."""
+"""Untrained policies: the cards of real levels, with random weights."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def card_of(
 
 
 def policy_of(card: Card, seed: int = 0, sharpness: float = 50.0) -> Policy:
-    """A policy with clear preferences; the choices of a new actor are nearly uniform."""
+    """Return a policy with clear preferences: the choices of a new actor are nearly uniform."""
     torch.manual_seed(seed)
     actor = new_actor(card)
     with torch.no_grad():
@@ -53,7 +53,7 @@ def policy_of(card: Card, seed: int = 0, sharpness: float = 50.0) -> Policy:
 
 
 def observation_of(card: Card, rng: np.random.Generator, batch: tuple[int, ...] = ()) -> dict[str, NDArray[Any]]:
-    """A random observation: values in [-1, 1], and zeros and ones in maps."""
+    """Return a random observation: values in [-1, 1], and zeros and ones in maps."""
     return {
         key: (
             rng.integers(0, 2, (*batch, *shape), dtype=np.uint8)

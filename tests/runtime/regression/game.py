@@ -1,4 +1,4 @@
-"""A small game with a suite: its own level and untrained policies."""
+"""A small game to test regression with: a suite with its own level and untrained policies."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ spec easy { limit 20 steps  reach alive }
 """A spec that is met at the first step."""
 
 NEVER = SOON.replace("limit 20 steps", "limit 4 steps")
-"""A spec that no player can meet: the exit is too far away for the limit."""
+"""A spec that no player can meet: its limit is too short to reach the exit."""
 
 SUITE = """\
 seed = 3
@@ -83,7 +83,7 @@ def with_few_environments(patch: pytest.MonkeyPatch) -> None:
 
 
 def edit(name: str, old: str, new: str) -> None:
-    """Replace the first occurrence of a text in a file."""
+    """Replace the first occurrence of ``old`` in a file; fail if there is none."""
     text = Path(name).read_text(encoding="utf-8")
     assert old in text
     Path(name).write_text(text.replace(old, new, 1), encoding="utf-8")

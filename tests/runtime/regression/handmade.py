@@ -32,7 +32,7 @@ name = "guard"
 kind = "guard"
 route = [[5.0, 8.5, 0.0]]
 """
-"""The file of a user's level."""
+"""The file of a small level, as a user could write it."""
 
 
 def an_episode(
@@ -53,7 +53,7 @@ def an_episode(
     nearest: NearestMiss | None = None,
     way: TrajectoryPoints = ((2.0, 2.0, 0, 0.0), (2.0, 2.0, 0, 1.0)),
 ) -> ExplainedEpisode:
-    """An explained episode, by default one that met its spec."""
+    """Return an explained episode, by default one that met its spec."""
     return ExplainedEpisode(
         summary=EpisodeSummary(
             index=index,
@@ -78,24 +78,24 @@ def an_episode(
 
 
 def changed(explained: ExplainedEpisode, **fields: object) -> ExplainedEpisode:
-    """The episode with other values in its summary."""
+    """Return the episode with other values of these ``fields`` in its summary."""
     return replace(explained, summary=replace(explained.summary, **fields))
 
 
 def summary(
     index: int = 0, success: bool = True, progress: float | None = None, reward: float | None = None
 ) -> EpisodeSummary:
-    """The summary of an episode, by default one that met its spec."""
+    """Return the summary of an episode, by default of one that met its spec."""
     return an_episode(index, success, progress=progress, reward=reward).summary
 
 
 def summaries(passed: int, failed: int = 0) -> list[EpisodeSummary]:
-    """Summaries of episodes; the first ``failed`` of them do not meet the spec."""
+    """Return summaries of episodes; the first ``failed`` episodes do not meet the spec."""
     return summaries_of(some_episodes(passed, failed))
 
 
 def some_episodes(passed: int, failed: int = 0) -> list[ExplainedEpisode]:
-    """Explained episodes; the first ``failed`` of them do not meet the spec."""
+    """Return explained episodes; the first ``failed`` of them do not meet the spec."""
     return [an_episode(index, index >= failed) for index in range(passed + failed)]
 
 

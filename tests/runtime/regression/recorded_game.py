@@ -19,7 +19,10 @@ def _recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def recorded_game(temporary: pytest.TempPathFactory) -> Path:
-    """A game with its baseline; the folder ``run`` has the results of a first run of its suite."""
+    """Return the folder of a game with its baseline.
+
+    Its folder ``run`` contains the results of a first run of the suite.
+    """
     return made_once(temporary, "recorded-game", _record)
 
 

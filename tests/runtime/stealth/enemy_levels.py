@@ -43,7 +43,7 @@ def box(x0: float, y0: float, x1: float, y1: float, z0: float = 0.0, z1: float =
 
 
 def bounds(x0: float, y0: float, x1: float, y1: float) -> tuple[Point, Point]:
-    """Return the corners of a box in the form that is used for movers."""
+    """Return the corners of a box, as :meth:`Enemies.step` takes those of movers."""
     return (x0, y0, 0.0), (x1, y1, 3.0)
 
 
@@ -87,7 +87,7 @@ def level(
 
 @st.composite
 def solids(draw: st.DrawFn, most: int = 8) -> tuple[Solid, ...]:
-    """Up to ``most`` boxes at arbitrary positions in 10 m by 8 m, on the floor or above it."""
+    """Draw up to ``most`` boxes anywhere in 10 m by 8 m, on the floor or above it."""
     boxes = []
     for _ in range(draw(st.integers(0, most))):
         x, y = draw(st.floats(0, 9.8)), draw(st.floats(0, 7.8))

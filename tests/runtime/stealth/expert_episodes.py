@@ -1,4 +1,4 @@
-"""Episodes of the scripted expert, each played once in a process."""
+"""Episodes of the scripted expert. Each process plays an episode once."""
 
 from __future__ import annotations
 
@@ -12,7 +12,10 @@ from tltl_runtime.stealth.recordings.episode import Episode
 
 
 def played(level: str, variant: str = "v0", seed: int = 0, *, careful: bool = True) -> Episode:
-    """The episode of a seed, played by the careful or the careless expert; it must only be read."""
+    """Return the episode of a ``seed``, played by the ``careful`` or the careless expert.
+
+    Tests share the episode, so they must only read it.
+    """
     return _played(level, variant, seed, careful)
 
 

@@ -17,7 +17,10 @@ MISSING += [name for name in ("pygame",) if find_spec(name) is None]
 
 @contextmanager
 def screen() -> Iterator[dict[str, str]]:
-    """Yield environment variables for processes, with the DISPLAY of an X server that ends with the block."""
+    """Start an X server, and stop it when the block ends.
+
+    Yield the environment variables with which a process uses it.
+    """
     reading, writing = os.pipe()
     # With -noreset: otherwise the server starts anew when its last client leaves, and a client that connects meanwhile
     # fails.

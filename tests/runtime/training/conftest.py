@@ -1,4 +1,4 @@
-"""Fixtures: a finished training, shared by the tests of a module."""
+"""Fixtures: a finished training, which the tests of a module share."""
 
 from __future__ import annotations
 
@@ -19,6 +19,9 @@ def _folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(name="whole", scope="module")
 def _whole(folder: Path) -> tuple[TrainingRun, list[TrainingReport]]:
-    """A training of three iterations; each module has its own, since resuming changes it."""
+    """Return a training of three iterations, and its reports.
+
+    Each module has its own training, because resuming changes it.
+    """
     run = run_in(folder / "whole")
     return run, list(train(run))

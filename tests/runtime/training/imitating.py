@@ -24,7 +24,7 @@ ALONG = 1, 0, 0, 0, 1
 def recorded_episode(
     seed: int, spec: str = SOON, variant: str = "v0", steps: int = 8, action: Sequence[int] = ALONG, player: str = "me"
 ) -> Episode:
-    """An episode that repeats one action and stops after ``steps`` steps."""
+    """Return an episode that repeats one action and stops after ``steps`` steps."""
     env = RecordEpisode(make_env("cover_and_hide", variant, spec), player)
     env.reset(seed=seed)
     for _ in range(steps):
@@ -34,7 +34,7 @@ def recorded_episode(
 
 
 def write_recordings(folder: Path, *episodes: Episode) -> Path:
-    """Write recordings of the episodes into the folder; return the folder."""
+    """Write recordings of the episodes into ``folder``; return the folder."""
     folder.mkdir(exist_ok=True)
     for episode in episodes:
         write_episode(new_path(folder, file_stem(episode)), episode)
@@ -42,6 +42,10 @@ def write_recordings(folder: Path, *episodes: Episode) -> Path:
 
 
 def imitating(folder: Path, demonstrations: Path | None, **changes: Any) -> TrainingRun:
-    """A training by imitation of three iterations; the actor is cloned in the first one."""
+    """Return a training by imitation of three iterations.
+
+    In the first iteration, the actor is cloned from the ``demonstrations``, or from the expert if
+    they are None. ``changes`` are those of :func:`run_in`.
+    """
     run = run_in(folder, SOON, **{"method": "imitation", "imitation__cloning": 0.3, **changes})
     return replace(run, demonstrations=str(demonstrations) if demonstrations else None)

@@ -20,7 +20,10 @@ def a_report(
     confirmation: Confirmation | None = None,
     checkpointed: bool = False,
 ) -> TrainingReport:
-    """The report of an iteration of 4096 steps, at 2048 steps per second."""
+    """Return the report of iteration ``number``: 4096 steps, at 2048 steps per second.
+
+    ``count`` is the number of episodes of which ``successes`` met the spec.
+    """
     progress = 0.5 + successes / count / 2 if count else 0.0
     return TrainingReport(
         iteration=Iteration(number, 4096, finished, {"value": 0.25, "entropy": 3.5}, 1.5, 0.5),

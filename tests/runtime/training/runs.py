@@ -1,4 +1,4 @@
-"""Trainings that take seconds; :func:`main` runs one as a program."""
+"""Trainings that take seconds. As a program, this module runs one of them with :func:`main`."""
 
 from __future__ import annotations
 
@@ -39,10 +39,10 @@ SMALL: dict[str, Any] = {
 
 
 def run_in(folder: Path, spec: str | None = None, **changes: Any) -> TrainingRun:
-    """A training on cover_and_hide of three iterations of 64 steps, with the settings :data:`SMALL`.
+    """Return a training on cover_and_hide: three iterations of 64 steps, with the settings SMALL.
 
-    ``changes`` override settings; dots in their names are written as two underscores.  ``spec`` is the text of a
-    spec that replaces the spec of the level.
+    ``changes`` override settings: ``rollout__envs`` is the setting ``rollout.envs``. ``spec`` is
+    the text of a spec that replaces the spec of the level.
     """
     level = load_level("cover_and_hide")
     task = load_task(spec or default_spec(level), offered=params(level))
@@ -57,7 +57,7 @@ def run_in(folder: Path, spec: str | None = None, **changes: Any) -> TrainingRun
 
 
 def checkpoint_of(run: TrainingRun) -> Checkpoint:
-    """The checkpoint that a training has written."""
+    """Return the checkpoint that a training has written."""
     checkpoint = read_checkpoint(run.folder / CHECKPOINT, identity(run))
     assert checkpoint is not None
     return checkpoint
@@ -91,7 +91,7 @@ class Growing(Runner):
 
 
 class Failing(Runner):
-    """A runner whose environment returns NaN in an observation from the second iteration on."""
+    """A runner whose environment returns NaN in observations from the second iteration on."""
 
     def _step(self, observation: Any) -> Any:
         if self.current_learning_iteration == 1:
@@ -101,7 +101,10 @@ class Failing(Runner):
 
 
 class WeightReporting(Runner):
-    """A runner that reports as losses the entropy weight, the penalty weight, and the extra penalty at step 0."""
+    """A runner that reports weights as if they were losses.
+
+    They are the entropy weight, the penalty weight, and the extra penalty at step 0.
+    """
 
     def iterations(self) -> Iterator[Iteration]:
         for iteration in super().iterations():
@@ -116,10 +119,12 @@ def _print_json(**values: Any) -> None:
 
 
 def main(folder: str, *options: str) -> None:
-    """Train in a folder with settings ``NAME=VALUE`` as in :func:`run_in`, values in JSON; ``--resume`` resumes.
+    """Train in a folder, and print a line of JSON for each report.
 
-    It prints a line of JSON for each report; with torchrun, each process does.  With ``--wait-in-search`` it prints
-    the number of steps of the search at its first progress report, and waits there to be killed.
+    An option ``NAME=VALUE`` changes a setting, as in :func:`run_in`; VALUE is JSON. ``--resume``
+    resumes the training. With ``--wait-in-search``, print the number of steps of the search at its
+    first progress report, and wait there to be killed. With torchrun, each process prints its own
+    lines.
     """
 
     def searching(searched: SearchProgress) -> None:

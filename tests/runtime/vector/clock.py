@@ -1,4 +1,4 @@
-"""A clock for tests of timeouts: it jumps ahead once a condition holds, however long that takes."""
+"""A clock for tests of timeouts: it jumps ahead when a condition holds."""
 
 from __future__ import annotations
 
@@ -9,9 +9,10 @@ from tests.waiting import HANG_S
 
 
 class Clock:
-    """Stands in for the module ``time``; jumps ahead by ``2 * HANG_S`` seconds once ``is_over()`` is true.
+    """A stand-in for the module ``time``, which jumps ahead when ``is_over()`` is true.
 
-    Give the runtime a timeout of ``HANG_S``. It then waits for what is slow, and gives up what never comes.
+    Give the runtime a timeout of ``HANG_S``. The clock jumps by twice as many seconds. So the
+    runtime waits for something slow, but gives up something that never comes.
     """
 
     def __init__(self, is_over: Callable[[], bool]) -> None:

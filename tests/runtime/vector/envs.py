@@ -1,4 +1,7 @@
-"""Environments that fail when an action tells them to, in a module that workers can import."""
+"""Environments that fail when an action tells them to.
+
+They have a module of their own, which worker processes can import.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +24,10 @@ GO, EXIT, RAISE, HANG, HOLD = range(5)
 
 
 class Fragile(gymnasium.Env[Any, Any]):
-    """Counts its steps; an episode has seven of them."""
+    """An environment that counts its steps; an episode has seven.
+
+    The actions EXIT, RAISE and HANG end the process, raise an error, and never return.
+    """
 
     observation_space = spaces.Dict(
         {
@@ -59,7 +65,11 @@ class Fragile(gymnasium.Env[Any, Any]):
 
 
 class Held(Fragile):
-    """On HOLD, creates a file ``held-PID`` in a folder, and ends its step once a file ``released`` exists."""
+    """An environment that a test can hold in a step.
+
+    The action HOLD creates a file ``held-PID`` in ``folder``. Its step ends when a file
+    ``released`` exists there.
+    """
 
     def __init__(self, folder: Path) -> None:
         super().__init__()
@@ -73,7 +83,7 @@ class Held(Fragile):
 
 
 class Preparing(Fragile):
-    """Has work that it can do before the next reset."""
+    """An environment with work that it can do before the next reset."""
 
     left = 3
 
@@ -83,7 +93,7 @@ class Preparing(Fragile):
 
 
 class Ending(Fragile):
-    """Ends its process after its first step, once that step is answered."""
+    """An environment that ends its process after its first step, once it has answered."""
 
     count = 0
 
@@ -94,7 +104,7 @@ class Ending(Fragile):
 
 
 class Unmade(gymnasium.Env[Any, Any]):
-    """Can be created only in the process with the id ``here``."""
+    """An environment that can be created only in the process with the id ``here``."""
 
     observation_space = Fragile.observation_space
     action_space = Fragile.action_space

@@ -24,7 +24,7 @@ HANG_MS = 1000 * HANG_S
 
 @contextmanager
 def browser() -> Iterator[Browser]:
-    """The browser, until the block ends."""
+    """Start the browser, and stop it when the block ends."""
     from playwright.sync_api import expect, sync_playwright
 
     expect.set_options(timeout=HANG_MS)
@@ -40,9 +40,11 @@ def browser() -> Iterator[Browser]:
 
 @contextmanager
 def opened(browser: Browser, path: Path, address: str = "", **context: Any) -> Iterator[Page]:
-    """Open a file in a new page; on exit, assert that nothing else was requested and that no error occurred.
+    """Open a file in a new page until the block ends.
 
-    ``context`` is what Playwright's ``new_context`` takes, such as ``viewport`` and ``color_scheme``.
+    ``address`` is the end of the address, such as ``#part``. ``context`` is what Playwright's
+    ``new_context`` takes, such as ``viewport`` and ``color_scheme``. At the end of the block,
+    assert that the page requested no other file and that no error occurred.
     """
     page_context = browser.new_context(**context)
     page_context.set_default_timeout(HANG_MS)

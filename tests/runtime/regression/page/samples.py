@@ -1,4 +1,4 @@
-"""Reports on cases that the scripted expert played: real episodes on real levels, without a trained policy."""
+"""Reports on real episodes of real levels, without a trained policy: the expert played them."""
 
 from __future__ import annotations
 
@@ -19,22 +19,22 @@ from tltl_runtime.stealth.recordings.episode_summary import summary_of
 
 
 def navigation() -> tuple[Episode, ...]:
-    """Two episodes that meet the spec."""
+    """Return two episodes on the level navigation that meet the spec."""
     return _played("navigation", 2)
 
 
 def branching() -> tuple[Episode, ...]:
-    """One episode with two enemies, movers and a laser."""
+    """Return one episode on the level branching, which has two enemies, movers and a laser."""
     return _played("branching", 1)
 
 
 def cover_and_hide_met() -> tuple[Episode, ...]:
-    """Two episodes that meet the spec."""
+    """Return two episodes on the level cover_and_hide that meet the spec."""
     return _played("cover_and_hide", 2)
 
 
 def cover_and_hide_failed() -> tuple[Episode, ...]:
-    """Three episodes of a player that does not hide."""
+    """Return three episodes on the level cover_and_hide, of a player that does not hide."""
     return _played("cover_and_hide", 3, careful=False)
 
 
@@ -45,7 +45,7 @@ def _played(level: str, count: int, *, careful: bool = True) -> tuple[Episode, .
 
 @cache
 def branching_that_takes_its_time() -> Episode:
-    """An episode of a player that walks in circles until the limit of the spec."""
+    """Return an episode of a player that walks in circles until the limit of the spec."""
     env = RecordEpisode(make_env("branching", "v0"), "nobody")
     try:
         env.reset(seed=0)
@@ -59,7 +59,7 @@ def branching_that_takes_its_time() -> Episode:
 
 
 def explained_of(index: int, episode: Episode) -> ExplainedEpisode:
-    """An episode with what explains it, as if a case had played it."""
+    """Return an episode with its explanation, as if a case had played it."""
     return explain_episode(summary_of(episode, index), episode)
 
 
@@ -70,7 +70,10 @@ def reported(
     before: Sequence[Episode],
     recorded: Iterable[int] | None = None,
 ) -> ReportedCase:
-    """The report on episodes of one level; only the indices ``recorded`` have a recording (default: all)."""
+    """Return a report on episodes of one level; the episodes ``before`` are the baseline.
+
+    Of the episodes ``now``, those with the indices ``recorded`` have a recording, by default all.
+    """
     level, fspa = now[0].level, now[0].fspa
     explained_episodes, baseline_episodes = (
         [explained_of(index, episode) for index, episode in enumerate(episodes)] for episodes in (now, before)
@@ -96,7 +99,7 @@ def reported(
 
 @cache
 def suite() -> SuiteReport:
-    """A case that passes, one with enemies that fails, and one that cannot be played."""
+    """Return a report on three cases: one passes, one with enemies fails, one cannot be played."""
     failed, met = cover_and_hide_failed(), cover_and_hide_met()
     broken = CaseReport("broken:v0", "broken", "v0", "fail", ("it cannot be played", "TLT0803: no `start`"))
     return SuiteReport(
