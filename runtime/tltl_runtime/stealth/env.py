@@ -218,5 +218,5 @@ def _supply_errors(level: StealthLevel, fspa: Fspa, places: SpecPlaces) -> list[
     return [diagnostic for diagnostic in check_supply(level, fspa, places) if diagnostic.severity == "error"]
 
 
-# Gymnasium reads the render modes of an entry point from its metadata.
+# `gymnasium.make` reads the render modes from the attribute `metadata` of this function.
 make_env.metadata = GameEnv.metadata  # type: ignore[attr-defined]

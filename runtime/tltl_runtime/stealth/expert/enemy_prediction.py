@@ -100,7 +100,7 @@ class Watch:
     def _outlook(self, models: Sequence[EnemyGuard], decisions: int, unseen: PlayerView) -> Outlook:
         distinct: dict[tuple[object, ...], tuple[EnemyGuard, int]] = {}
         for model in models:
-            # A model that draws random numbers moves differently each time. Of the others, one per state is enough.
+            # Keep each model that draws random numbers: it moves differently. Keep one of all others in the same state.
             draws = model.kind.branches or model.mode == "search"
             key = (id(model),) if draws else model.state
             first, count = distinct.get(key, (model, 0))

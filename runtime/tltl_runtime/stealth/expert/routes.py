@@ -175,7 +175,7 @@ class Routes:
                     pending.append(target)
         return reached
 
-    # Edges: arrays of sources, targets, seconds and kinds, for one direction and one pair of layers each.
+    # Groups of edges, each for one direction and one pair of layers: arrays of sources, targets, seconds and kinds.
 
     def _edges(self) -> Iterator[_Edges]:
         heights = self.surfaces.heights

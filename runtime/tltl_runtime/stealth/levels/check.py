@@ -35,7 +35,7 @@ def check_references(level: StealthLevel, places: NamedParts) -> list[Diagnostic
 
     Also return TLT0805 for each barrier that nothing opens, or that two things open.
     """
-    # Leave out the aliases: their targets are among the names to check.
+    # Leave out the aliases: the names that they stand for are checked here.
     signals = readers(replace(level, signals=()))
     known = {
         "switch": [switch.name for switch in level.switches],

@@ -53,7 +53,7 @@ def contact(feet: Point, height: float, radius: float, low: Point, high: Point) 
     bottom, top = z + radius, z + height - radius
     dx = x - min(max(x, low[0]), high[0])
     dy = y - min(max(y, low[1]), high[1])
-    # Compare the point of the capsule's axis nearest to the box with the point of the box nearest to it.
+    # Measure between the nearest points of the capsule's axis and of the box.
     if top < low[2]:
         dz = top - low[2]
     elif bottom > high[2]:
