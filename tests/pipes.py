@@ -22,7 +22,7 @@ def put_beside(path: Path) -> None:
 
 
 def forbid(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Make the test fail if anything opens a pipe or /dev/zero; otherwise it would hang."""
+    """Make the test fail, instead of hang, if anything opens a pipe or /dev/zero."""
     original = io.open
 
     def checked_open(file: Any, *arguments: Any, **named: Any) -> Any:

@@ -62,7 +62,7 @@ STARTS_PROCESSES = re.compile(
 """Words in files that start processes. A file with such a word has no quick tests."""
 
 FIXTURES = frozenset({"client", "process"})
-"""Fixtures that start processes. A test that uses one is not quick; its file may have others."""
+"""Fixtures that start processes. A test that uses one of them is not quick."""
 
 NEW_PROCESS = frozenset({"os.exec", "os.fork", "os.forkpty", "os.posix_spawn", "os.system", "subprocess.Popen"})
 """The audit events by which Python reports that a process starts."""

@@ -18,9 +18,10 @@ Run = Callable[..., Outcome]
 
 @pytest.fixture
 def with_signals(tltlc: Run) -> Run:  # noqa: F811
-    """Return a function that runs a command line in this process, as a process of its own would.
+    """Return a function that runs a command line in this process.
 
-    It handles signals as that process does, and restores the handlers afterwards.
+    The command line handles signals as it does in a process of its own. Afterwards the function
+    restores the handlers of this process.
     """
 
     def run(*arguments: str | Path) -> Outcome:

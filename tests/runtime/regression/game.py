@@ -1,4 +1,4 @@
-"""A small game to test regression with: a suite with its own level and untrained policies."""
+"""A small game for the tests of regression: a suite with its own level and untrained policies."""
 
 from __future__ import annotations
 
@@ -40,13 +40,16 @@ level = "room.toml"
 policy = "soon.safetensors"
 name = "hopeless"
 """
-"""Two cases that pass, and one whose policy never meets its spec."""
+"""The text of a suite: two cases that pass, and one whose policy never meets its spec."""
 
 VARIANTS = '[variants]\nv0 = []\nv1 = ["guard_alert"]\n'
 
 
 def write_game(folder: Path, suite: str = SUITE) -> Path:
-    """Write the level, the policies and the suite; return the path of the suite."""
+    """Write the files of the level, the policies and the suite into ``folder``.
+
+    ``suite`` is the text of the suite's file. Return the path of this file.
+    """
     folder.mkdir(exist_ok=True)
     (folder / "room.toml").write_text(ROOM + VARIANTS, encoding="utf-8")
     for name, spec in (("easy", EASY), ("soon", SOON)):

@@ -26,7 +26,7 @@ GO, EXIT, RAISE, HANG, HOLD = range(5)
 class Fragile(gymnasium.Env[Any, Any]):
     """An environment that counts its steps; an episode has seven.
 
-    The actions EXIT, RAISE and HANG end the process, raise an error, and never return.
+    The action EXIT ends the process, RAISE raises an error, and HANG never returns.
     """
 
     observation_space = spaces.Dict(
@@ -115,7 +115,7 @@ class Unmade(gymnasium.Env[Any, Any]):
 
 
 def leaves_its_level() -> TltlEnv:
-    """Return a game whose bounds end a metre from the start."""
+    """Return a game whose player soon leaves the level: its bounds end a metre from the start."""
     env = make_env("navigation")
     world = env.unwrapped.game.world  # type: ignore[attr-defined]
     (x, y, _), bounds = world.level.start.position, world.level.bounds

@@ -112,7 +112,10 @@ class SpaceGrid:
         return free
 
     def cells_near(self, box: Box, reach: float) -> Field:
-        """Return the cells that have a point within ``reach`` of a box, seen from above."""
+        """Return a mask of the cells that have a point within ``reach`` metres of a box.
+
+        Heights do not count.
+        """
         self.budget.spend(self.shape[1] * self.shape[2])
         dx = np.maximum(np.maximum(box.low[0] - self.west - self.cell, self.west - box.high[0]), 0.0)
         dy = np.maximum(np.maximum(box.low[1] - self.south - self.cell, self.south - box.high[1]), 0.0)

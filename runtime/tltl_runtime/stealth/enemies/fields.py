@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 GOALS: Final = 512
 """The number of goals to which :func:`steps_to` searches paths at once."""
 ARRIVED: Final = 8
-"""The code of a cell that is the goal, in place of a move, 0 to 7.
+"""The number that :func:`steps_to` returns where the cell is the goal itself.
 
-A greater code means that no path leads to the goal.
+A smaller number, 0 to 7, is a move. A greater number means that no path leads to the goal.
 """
 
 _MOVES: Final = ((1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (1, -1), (-1, 1), (-1, -1))
@@ -39,9 +39,9 @@ def steps_to(neighbours: NDArray[np.int64], first: int) -> NDArray[np.uint8]:
     """Return the first move of a shortest path from each cell to each of up to 512 goals.
 
     ``neighbours`` is the result of :func:`neighbours`. The goals are the cells from number
-    ``first`` on. The result is uint8 [512 or fewer, cells]; :data:`ARRIVED` explains the codes
-    above 7. One breadth-first search runs from all goals at once, with one bit per goal. Among
-    equally short paths, it prefers straight moves.
+    ``first`` on. The result is uint8 [512 or fewer, cells]; :data:`ARRIVED` explains the numbers.
+    One breadth-first search runs from all goals at once, with one bit per goal. Among equally short
+    paths, it prefers straight moves.
     """
     cells = neighbours.shape[1]
     goals = np.arange(first, min(first + GOALS, cells))

@@ -35,7 +35,7 @@ HEIGHT: Final = 1.8
 STEP: Final = 0.1
 """Boxes that are no higher than this do not stop enemies, in metres."""
 NARROW: Final = 2.0
-"""The greatest width of a passage that counts as narrow, a *gap*, in metres."""
+"""A passage that is at most this wide, in metres, is a gap."""
 GAP_SPACING: Final = 2.0
 """The least distance between the middles of two gaps, in metres."""
 

@@ -22,7 +22,7 @@ Truths = NDArray[np.bool_]
 _TOUCH: Final = 0.02
 """A body at most this far from a surface stands on it, in metres."""
 _COARSE: Final = 3
-"""How many physics steps a decision is simulated in if all bodies walk."""
+"""The number of physics steps in a decision if all bodies walk."""
 _BERTH: Final = 0.06
 """The distance to keep from movers, in metres."""
 

@@ -55,8 +55,8 @@ _VARIABLES: Final = ("health", "stamina", "crouching", "grounded", "visible", "s
 class NamedParts:
     """The labels of things in the level's files, for later checks.
 
-    ``names`` has the label of each thing's name, ``positions`` that of its position; both are by
-    name.
+    By the name of each thing, ``names`` has the label of its name, and ``positions`` the label of
+    its position.
     """
 
     names: dict[str, Label]

@@ -14,7 +14,10 @@ from tltl_runtime.stealth.world.geometry import Bounds
 COMPOUND = 16
 """The greatest number of children in a compound shape: Bullet drops the rest."""
 RAY, PLAYER, PARKED, WORLD = 1, 2, 4, 8
-"""Collision groups. Bullet puts rays into the first one."""
+"""The collision groups of rays, of the active capsule, of the inactive one, and of all else.
+
+Bullet itself puts rays into the first group.
+"""
 STOPS = RAY | PLAYER
 """The groups that collide with the bodies of the world; the world does not collide with itself."""
 UPRIGHT = (0.0, 0.0, 0.0, 1.0)

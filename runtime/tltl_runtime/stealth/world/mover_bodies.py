@@ -20,7 +20,7 @@ from tltl_runtime.stealth.world.player import DECISION
 _REACH = 1.5
 """The player touches no mover farther away than this in a decision, in metres.
 
-The motion of the mover itself is added.
+The distance that the mover itself moves is added.
 """
 _HARDEST_PUSH = 8.0
 """The greatest speed that a mover gives to the player, in metres per second."""
