@@ -17,7 +17,7 @@ from tests.backends.test_schema import DOCUMENT, DOCUMENTS, PLACES
 from tests.fuzzing import times
 from tltlc import backends
 from tltlc.artefact.decode import decode, read
-from tltlc.automaton.fspa import Fspa
+from tltlc.automaton.fspa import Fspa, Text
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
 WRONG = (None, True, -1, 1.5, 7, "é\n", [], {}, [[]], math.nan, math.inf, -math.inf, {"op": "+"})
@@ -90,3 +90,14 @@ def test_a_document_that_nests_too_deep_is_rejected() -> None:
     (error,) = errors({**DOCUMENT, "atoms": [atom, *DOCUMENT["atoms"][1:]]})
     assert error.code == "TLT0006"
     assert error.title == "`bot/artefact` cannot be read: it nests too deep"
+
+
+@pytest.mark.parametrize("form", ["F[0,1]({b} | {inner})", "F[0,1] {inner}", "G[0,1](F[0,1]({b} & {inner}) | {a})"])
+def test_a_short_label_is_read_at_once_even_if_its_formula_would_be_printed_too_long(form: str) -> None:
+    document = copy.deepcopy(DOCUMENT)
+    a, b, *_ = (atom["name"] for atom in document["atoms"])
+    label = a
+    for _ in range(60):
+        label = form.format(inner=label, a=a, b=b)
+    document["states"][1]["label"] = {"ascii": label, "unicode": "u", "english": "e"}
+    assert decode(document, "bot/artefact").states[1].label == Text(label, "u", "e")

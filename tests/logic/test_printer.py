@@ -16,7 +16,7 @@ from tltlc.grammar import tree
 from tltlc.grammar.parser import parse_formula
 from tltlc.logic import formula as f
 from tltlc.logic.formula import FALSE, TRUE, Formula
-from tltlc.logic.text.printer import ascii_text, unicode_text, words_text
+from tltlc.logic.text.printer import ascii_text, is_ascii_text, unicode_text, words_text
 
 NAMES = ("a", "near(s1)", "spatial.near(s1, close = 2)", "health > 0.5")
 NOTATIONS = pytest.mark.parametrize("write", [ascii_text, unicode_text, words_text])
@@ -190,3 +190,12 @@ def _from_tree(expr: tree.Expr, source: SourceFile) -> Formula:
             return _BINARY[expr.op](_from_tree(expr.left, source), _from_tree(expr.right, source))
         case _:
             return f.atom(source.slice(expr.span))
+
+
+@given(formula=formulas(NAMES, max_leaves=8), other=formulas(NAMES, max_leaves=8))
+def test_a_text_is_compared_with_the_printed_formula(formula: Formula, other: Formula) -> None:
+    text = ascii_text(formula)
+    assert is_ascii_text(formula, text)
+    assert not is_ascii_text(formula, text[:-1])
+    assert not is_ascii_text(formula, f"{text} ")
+    assert is_ascii_text(other, text) == (ascii_text(other) == text)

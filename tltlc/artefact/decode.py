@@ -16,7 +16,7 @@ from tltlc.io.json_text import JsonLimitError, first_non_finite, loads
 from tltlc.io.limits import ARTEFACT
 from tltlc.logic.formula import Formula
 from tltlc.logic.text.parser import FormulaParser
-from tltlc.logic.text.printer import ascii_text
+from tltlc.logic.text.printer import is_ascii_text
 from tltlc.resolve.spec import Atom, Param, Signal
 
 
@@ -137,8 +137,8 @@ def _formula_reader(atoms: Iterable[dict[str, Any]]) -> _Reader:
 
     def read(text: dict[str, str]) -> Formula | Text:
         formula = parser.formula(text["ascii"])
-        # A text that another tool wrote may mean something else here, if its operators have other precedences there.
-        if formula is not None and ascii_text(formula) == text["ascii"]:
+        # A text of another tool may mean something else here, since its operators may have other precedences.
+        if formula is not None and is_ascii_text(formula, text["ascii"]):
             return formula
         return Text(text["ascii"], text["unicode"], text["english"])
 

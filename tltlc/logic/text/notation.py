@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Final, NamedTuple
 
 from tltlc.logic.bounded import LEAST, Bounded, bounded_operator, operands_with_bounds
@@ -91,15 +91,35 @@ _Item = str | tuple[Formula, int]
 def write(formula: Formula, spelling: Spelling, least: int = 0) -> str:
     """Return the text of the formula, with only the brackets that it needs.
 
-    If the formula is an operand, ``least`` is the least strength at which it needs no brackets. An
-    explicit stack replaces recursion, since formulas nest deep.
+    If the formula is an operand, ``least`` is the least strength at which it needs no brackets.
     """
-    pieces: list[str] = []
+    return "".join(_pieces(formula, spelling, least))
+
+
+def is_written_as(formula: Formula, text: str, spelling: Spelling) -> bool:
+    """Whether :func:`write` returns this text for the formula.
+
+    The time is at most proportional to the length of ``text``. The text of the formula may be far
+    longer than the formula is in memory, since a formula shares equal operands.
+    """
+    position = 0
+    for piece in _pieces(formula, spelling, 0):
+        if not text.startswith(piece, position):
+            return False
+        position += len(piece)
+    return position == len(text)
+
+
+def _pieces(formula: Formula, spelling: Spelling, least: int) -> Iterator[str]:
+    """Yield the text of the formula, from left to right; ``least`` as for :func:`write`.
+
+    An explicit stack replaces recursion, since formulas nest deep.
+    """
     stack: list[_Item] = [(formula, least)]
     while stack:
         item = stack.pop()
         if isinstance(item, str):
-            pieces.append(item)
+            yield item
             continue
         node, least = item
         bound = _bound(node)
@@ -109,14 +129,13 @@ def write(formula: Formula, spelling: Spelling, least: int = 0) -> str:
         elif _needs_brackets(node, least, spelling):
             stack += [")", (node, 0), "("]
         elif node.op == "atom":
-            pieces.append(node.name)
+            yield node.name
         elif node.op in spelling.constants:
-            pieces.append(spelling.constants[node.op])
+            yield spelling.constants[node.op]
         elif len(node.args) == 1:
             _push_operand(stack, spelling.prefix[node.op], node.args[0], spelling)
         else:
             _push_infix(stack, node, spelling)
-    return "".join(pieces)
 
 
 def _bound(node: Formula) -> Bounded | None:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from tltlc.logic.formula import Formula
 from tltlc.logic.text.english import english_text
-from tltlc.logic.text.notation import ASCII, OPERAND, UNICODE, WORDS, write
+from tltlc.logic.text.notation import ASCII, OPERAND, UNICODE, WORDS, is_written_as, write
 
-__all__ = ["ascii_text", "english_text", "operand_text", "unicode_text", "words_text"]
+__all__ = ["ascii_text", "english_text", "is_ascii_text", "operand_text", "unicode_text", "words_text"]
 
 
 def ascii_text(formula: Formula) -> str:
@@ -15,6 +15,11 @@ def ascii_text(formula: Formula) -> str:
     Only the necessary brackets are printed.
     """
     return write(formula, ASCII)
+
+
+def is_ascii_text(formula: Formula, text: str) -> bool:
+    """Whether ``text`` is the :func:`ascii_text` of the formula, in time proportional to the length of ``text``."""
+    return is_written_as(formula, text, ASCII)
 
 
 def operand_text(formula: Formula) -> str:
