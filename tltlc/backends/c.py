@@ -16,13 +16,13 @@ from textwrap import wrap
 from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import Files, Options, Target
+from tltlc.backends.templates import fill_template
 from tltlc.monitor.samples import range_text
 from tltlc.program import reward_step, snippets, states
 from tltlc.program.arithmetic import with_declaration
 from tltlc.program.build import program
 from tltlc.program.names import printable_line
 from tltlc.program.printer import Printer
-from tltlc.program.template import fill_template
 from tltlc.program.tree import FAILING, Assign, Int
 from tltlc.program.used_names import functions_called, variables_read
 from tltlc.resolve.spec import Atom, Param, Signal

@@ -12,12 +12,12 @@ from collections.abc import Sequence
 from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import Files, Options, Target
+from tltlc.backends.templates import fill_template
 from tltlc.monitor.samples import range_text
 from tltlc.program import reward_step, snippets, states
 from tltlc.program.arithmetic import with_declaration
 from tltlc.program.build import program
 from tltlc.program.printer import Printer, comment_lines
-from tltlc.program.template import fill_template
 from tltlc.program.tree import FAILING, Assign, BinaryNumber, CommentLine, If, Statement, Variable
 from tltlc.program.used_names import functions_called, variables_read
 from tltlc.resolve.spec import Param, Signal

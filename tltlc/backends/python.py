@@ -16,13 +16,13 @@ from typing import ClassVar, Final
 from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import Files, Options, Target
+from tltlc.backends.templates import fill_template
 from tltlc.program import reward_step, states
 from tltlc.program.arithmetic import with_declaration
 from tltlc.program.build import program
 from tltlc.program.names import call_lines, docstring_text, float_literal, string_literal
 from tltlc.program.printer import Printer
 from tltlc.program.shallow import split_deep_values
-from tltlc.program.template import fill_template
 from tltlc.program.tree import (
     FAILING,
     Assign,

@@ -16,12 +16,12 @@ from tltlc.backends import Files
 from tltlc.backends.godot.names import RESERVED, snake_case
 from tltlc.backends.godot.numbers import number
 from tltlc.backends.godot.printer import Gd
+from tltlc.backends.templates import fill_template
 from tltlc.core.record import record
 from tltlc.monitor.samples import range_text
 from tltlc.program import reward_step, snippets, states
 from tltlc.program.arithmetic import with_declaration
 from tltlc.program.build import program
-from tltlc.program.template import fill_template
 from tltlc.program.tree import FAILING
 from tltlc.program.used_names import functions_called
 from tltlc.resolve.spec import Param, Signal

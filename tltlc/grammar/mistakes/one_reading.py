@@ -17,7 +17,6 @@ UNCLEAR: Final = INFIX - {"AND", "OR"}
 """Operators beside which it is unclear what an English word or a time applies to."""
 TEMPORAL: Final = BEFORE_ONE - {"NOT"}
 QUANTIFIERS: Final = frozenset(("ALL", "ANY"))
-_ORDER: Final = ("before", "after", "followed")
 _STATES: Final = ("but", "xor", "xnor", "nor", "nand", "without")
 """Words that join two conditions on the same step.
 

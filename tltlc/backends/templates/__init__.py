@@ -1,4 +1,4 @@
-"""Fill templates: texts of generated code with placeholders for the parts that differ between monitors."""
+"""Templates: texts of generated code with placeholders for the parts that differ between monitors."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _PLACE = re.compile(r"@@(\w+)@@")
 
 
 def fill_template(file: str, pieces: Mapping[str, str], present: Collection[str] = ()) -> str:
-    """Return the text of a file in ``backends/templates`` with its placeholders replaced.
+    """Return the text of a file in this folder with its placeholders replaced.
 
     ``@@NAME@@`` is replaced by ``pieces["NAME"]``. If this is empty, a line with nothing but the
     placeholder is removed. The lines between ``@@if NAME@@`` and ``@@end@@`` are kept if NAME is in
@@ -21,7 +21,7 @@ def fill_template(file: str, pieces: Mapping[str, str], present: Collection[str]
     Raises:
         KeyError: ``pieces`` has no entry for a placeholder.
     """
-    path = os.path.join(os.path.dirname(__file__), "..", "backends", "templates", file)  # noqa: PTH118, PTH120 (as codes.py)
+    path = os.path.join(os.path.dirname(__file__), file)  # noqa: PTH118, PTH120 (as codes.py)
     with open(path, encoding="utf-8") as template:  # noqa: PTH123
         return fill(template.read(), pieces, present)
 

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import pytest
 
-from tltlc.program.template import fill, fill_template
+from tltlc.backends.templates import fill, fill_template
 
 
 def test_placeholders_are_filled_once() -> None:
@@ -25,6 +25,8 @@ def test_a_placeholder_without_a_piece_is_a_bug() -> None:
         fill("@@a@@", {})
 
 
-def test_an_unknown_template_is_an_error() -> None:
+def test_a_template_is_read_from_its_folder() -> None:
     with pytest.raises(KeyError):
         fill_template("monitor.py.txt", {})
+    with pytest.raises(FileNotFoundError):
+        fill_template("monitor.cobol.txt", {})
