@@ -34,16 +34,18 @@ def bounded_operator(node: Formula) -> Bounded | None:
     ``p | X(p | X p)`` is the expansion of ``F[0,2] p``. Results are cached, so that the labels of n
     states that count down a bound take time proportional to n, not n².
     """
+    if not _ends_with_next(node):
+        return None
     chain: list[Formula] = []
     inner = node
-    while inner not in _operators and inner.op in ("or", "and") and inner.args[-1].op == _next_op(inner):
+    while _ends_with_next(inner) and inner not in _operators:
         chain.append(inner)
         inner = inner.args[-1].args[0]
     for outer in reversed(chain):
         *before, last = outer.args
         operator = _bounded_ending_in(last, outer, before)
         _operators[outer] = operator if operator and len(before) == len(_operands(operator.body, outer)) else None
-    return _operators.get(node)
+    return _operators[node]
 
 
 def count_down(node: Formula) -> Formula | None:
@@ -124,6 +126,11 @@ def _bounded_ending_in(last: Formula, node: Formula, before: Sequence[Formula]) 
     if _ends_with(before, _operands(inner, node)):
         return Bounded("F" if node.op == "or" else "G", 1, inner)
     return None
+
+
+def _ends_with_next(node: Formula) -> bool:
+    """Whether the node is ``… | X p`` or ``… & N p``."""
+    return node.op in ("or", "and") and node.args[-1].op == _next_op(node)
 
 
 def _next_op(node: Formula) -> str:

@@ -5,8 +5,8 @@ Begin with `state_statements`.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from functools import reduce
+from collections.abc import Mapping, Sequence
+from functools import lru_cache, reduce
 from typing import Final
 
 from tltlc.automaton.fspa import Edge, Guard, Implicant
@@ -54,7 +54,9 @@ def state_statements(tables: MonitorTables, state: int, atoms: Sequence[str]) ->
 
 class _StateCode:
     def __init__(self, tables: MonitorTables, state: int, atoms: Sequence[str]) -> None:
-        self._tables, self._state, self._atoms = tables, state, atoms
+        self._tables, self._state = tables, state
+        # Large automata have millions of literals: equal ones share one expression.
+        self._values, self._tests = _literals(tuple(atoms))
         self._at_goal = tables.fspa.judge == "goal"
 
     def statements(self) -> tuple[Statement, ...]:
@@ -99,9 +101,7 @@ class _StateCode:
     def _truth(self, guard: Guard) -> Expression:
         tests: list[Expression] = []
         for prime in guard.primes:
-            literals = [
-                Compare(">" if polarity else "<=", Variable(self._atoms[atom]), _ZERO) for atom, polarity in prime
-            ]
+            literals = [self._tests[literal] for literal in prime]
             tests.append(Bool(True) if not literals else literals[0] if len(literals) == 1 else All(tuple(literals)))
         return tests[0] if len(tests) == 1 else Any(tuple(tests))
 
@@ -162,8 +162,23 @@ class _StateCode:
         return _fold("max", [self._value(*literal) for literal in clause])
 
     def _value(self, atom: int, polarity: bool) -> Expression:
-        value = Variable(self._atoms[atom])
-        return value if polarity else Negate(value)
+        return self._values[atom, polarity]
+
+
+_Literals = Mapping[tuple[int, bool], Expression]
+"""An expression for each literal: the index of its atom, and whether the atom is true."""
+
+
+@lru_cache(maxsize=1)
+def _literals(atoms: tuple[str, ...]) -> tuple[_Literals, _Literals]:
+    """Return the value and the test of each literal over the variables ``atoms``."""
+    values: dict[tuple[int, bool], Expression] = {}
+    tests: dict[tuple[int, bool], Expression] = {}
+    for index, name in enumerate(atoms):
+        variable = Variable(name)
+        values[index, True], values[index, False] = variable, Negate(variable)
+        tests[index, True], tests[index, False] = Compare(">", variable, _ZERO), Compare("<=", variable, _ZERO)
+    return values, tests
 
 
 def _shared(primes: Sequence[Implicant]) -> list[tuple[int, bool]]:
