@@ -54,7 +54,12 @@ class Formula:
 
     @property
     def english(self) -> str:
-        """The formula as a sentence on finite traces, as :func:`~tltlc.logic.text.printer.english_text` gives it."""
+        """The formula as a sentence on finite traces, as :func:`~tltlc.logic.text.printer.english_text` gives it.
+
+        For the formula and the labels of an automaton, use ``tltlc.api.formula_text`` and
+        ``tltlc.api.label_text``: over infinite traces, and where only the end of the trace decides,
+        they give another sentence.
+        """
         from tltlc.logic.text.printer import english_text
 
         return english_text(self)
