@@ -57,8 +57,19 @@ this deep.
 """
 
 _Node = Union[source.Expression, source.Condition]
-_Path = tuple[source.Condition, ...]
-"""The conditions that are all true when an expression is computed."""
+
+
+class _Path:
+    """The conditions that are all true when an expression is computed: ``condition``, after those of ``before``.
+
+    ``variable`` is true if all of them are. It is None until the first statement needs it.
+    """
+
+    __slots__ = ("before", "condition", "variable")
+
+    def __init__(self, before: _Path | None, condition: source.Condition) -> None:
+        self.before, self.condition = before, condition
+        self.variable: Variable | None = None
 
 
 def with_declaration(name: str, statements: Sequence[Statement], *, changes: bool = True) -> tuple[Statement, ...]:
@@ -102,7 +113,7 @@ class ExpressionTranslator:
         """Return statements that assign the value of an expression to the variable ``name``."""
         lines: list[Statement] = []
         if _branch_depth(expression) > _MOST_BRANCHES:
-            expression = self._split(expression, lines, (), 0)
+            expression = self._split(expression, lines, None, 0)
         if isinstance(expression, source.When):
             return [*lines, *self._cases(name, expression)]
         value = self._value(expression, lines)
@@ -152,15 +163,19 @@ class ExpressionTranslator:
         return lines
 
     @overload
-    def _split(self, node: source.Condition, lines: list[Statement], path: _Path, depth: int) -> source.Condition: ...
+    def _split(
+        self, node: source.Condition, lines: list[Statement], path: _Path | None, depth: int
+    ) -> source.Condition: ...
 
     @overload
-    def _split(self, node: source.Expression, lines: list[Statement], path: _Path, depth: int) -> source.Expression: ...
+    def _split(
+        self, node: source.Expression, lines: list[Statement], path: _Path | None, depth: int
+    ) -> source.Expression: ...
 
     @overload
-    def _split(self, node: _Node, lines: list[Statement], path: _Path, depth: int) -> _Node: ...
+    def _split(self, node: _Node, lines: list[Statement], path: _Path | None, depth: int) -> _Node: ...
 
-    def _split(self, node: _Node, lines: list[Statement], path: _Path, depth: int) -> _Node:
+    def _split(self, node: _Node, lines: list[Statement], path: _Path | None, depth: int) -> _Node:
         """Return the node with every ``when`` at the depth :data:`_MOST_BRANCHES` replaced by a variable.
 
         Appends to ``lines`` the statements that compute these variables; they run only if all
@@ -173,26 +188,26 @@ class ExpressionTranslator:
             cases: list[tuple[source.Condition, source.Expression]] = []
             for condition, value in node.cases:
                 test = self._split(condition, lines, path, depth + 1)
-                cases.append((test, self._split(value, lines, (*path, test), depth + 1)))
-                path = (*path, source.Condition("not", (test,)))
+                cases.append((test, self._split(value, lines, _Path(path, test), depth + 1)))
+                path = _Path(path, source.Condition("not", (test,)))
             return source.When(tuple(cases), self._split(node.otherwise, lines, path, depth + 1))
         if isinstance(node, source.Condition) and node.op in ("and", "or"):
             parts: list[source.Condition] = []
             for part in node.args:
                 assert isinstance(part, source.Condition), "and and or take conditions"
                 parts.append(self._split(part, lines, path, depth))
-                path = (*path, parts[-1] if node.op == "and" else source.Condition("not", (parts[-1],)))
+                path = _Path(path, parts[-1] if node.op == "and" else source.Condition("not", (parts[-1],)))
             return source.Condition(node.op, tuple(parts))
         if isinstance(node, (source.Op, source.Condition)):
             args = tuple(self._split(argument, lines, path, depth) for argument in node.args)
             return replace(node, args=args)
         return node
 
-    def _compute_before(self, node: source.When, lines: list[Statement], path: _Path) -> source.SignalValue:
+    def _compute_before(self, node: source.When, lines: list[Statement], path: _Path | None) -> source.SignalValue:
         self._count += 1
         name = f"{self._prefix}{self._count}"
         if path:
-            test = self._test(source.Condition("and", path), lines)
+            test = self._holds(path, lines)
             lines.append(Declare(name, "real", Real(0.0), changes=True))
             lines.append(If(((test, tuple(self.assign(name, node))),)))
         else:
@@ -201,6 +216,33 @@ class ExpressionTranslator:
         stand_in = source.SignalValue(f"computed before: {name}")
         self._signals[stand_in.name] = name
         return stand_in
+
+    def _holds(self, path: _Path, lines: list[Statement]) -> Variable:
+        """Return a variable that is true if all conditions of the path are.
+
+        Appends to ``lines`` the statements that compute it. Paths share the variables of the
+        conditions that they have in common, and each condition is computed only once.
+        """
+        new: list[_Path] = []
+        known: _Path | None = path
+        while known is not None and known.variable is None:
+            new.append(known)
+            known = known.before
+        holds = known.variable if known is not None else None
+        for part in reversed(new):
+            needed: list[Statement] = []
+            test = self._test(part.condition, needed)
+            if holds is None:
+                lines += needed
+                name = self._declare("bool", lines)
+                lines.append(Assign(name, test))
+            else:
+                name = self._declare("bool", lines, changes=True)
+                lines.append(Assign(name, Bool(False)))
+                lines.append(If(((holds, (*needed, Assign(name, test))),)))
+            part.variable = holds = Variable(name)
+        assert holds is not None, "a path has at least one condition"
+        return holds
 
     # --- numbers ----------------------------------------------------------------------------------
 

@@ -3,6 +3,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from typing import Literal
+from unittest.mock import patch
 
 from hypothesis import given
 from hypothesis import strategies as st
@@ -19,6 +20,7 @@ from tltlc.expression.evaluate import evaluate
 from tltlc.expression.tree import Condition, Const, Expression, Op, SignalValue, When
 from tltlc.logic import formula as f
 from tltlc.monitor import Monitor
+from tltlc.program import arithmetic
 from tltlc.program.arithmetic import ExpressionTranslator, with_declaration
 from tltlc.program.build import program
 from tltlc.program.printer import Printer
@@ -63,6 +65,46 @@ def test_expressions_have_the_value_of_the_evaluator(
     expression: Expression, s1: float, health: float, size: float
 ) -> None:
     assert same(computed(expression, s1, health, size), expected(expression, s1, health, size))
+
+
+@times(80)
+@given(expressions(), values, values, values)
+def test_cases_that_are_computed_before_others_do_not_change_the_value(
+    expression: Expression, s1: float, health: float, size: float
+) -> None:
+    with patch.object(arithmetic, "_MOST_BRANCHES", 1):
+        assert same(computed(expression, s1, health, size), expected(expression, s1, health, size))
+
+
+def deep_cases(count: int) -> Expression:
+    """Return ``when`` expressions inside ``count * count`` cases, nested as deep as expressions are split."""
+    x = SignalValue("health")
+
+    def below(value: float) -> Condition:
+        return Condition("<", (x, Const(value)))
+
+    def cases(first: float, last: float, values: list[Expression]) -> Expression:
+        borders = [first + (last - first) * (index + 1) / count for index in range(count)]
+        return When(tuple(zip(map(below, borders), values, strict=True)), Const(-1.0))
+
+    inside = [[Const(float(i * count + j)) for j in range(count)] for i in range(count)]
+    leaves = [[When(((below(0.5), Const(0.25)),), When(((below(9.0), leaf),), x)) for leaf in row] for row in inside]
+    expression = cases(0.0, 1.0, [cases(i / count, (i + 1) / count, list(row)) for i, row in enumerate(leaves)])
+    for depth in range(arithmetic._MOST_BRANCHES - 2):
+        expression = When(((Condition(">", (x, Const(-1.0 - depth))), expression),), Const(2.0))
+    return expression
+
+
+def test_the_code_of_deep_cases_grows_with_their_number() -> None:
+    sizes = []
+    for count in (5, 20):
+        expression = deep_cases(count)
+        for health in (-2.0, -0.1, 0.0, 0.3, 0.55, 0.74, 0.99, 1.0, 3.0):
+            assert same(computed(expression, 0.0, health, 1.0), expected(expression, 0.0, health, 1.0))
+        statements = ExpressionTranslator(SIGNALS, PARAMS, "t").assign("value", expression)
+        sizes.append(len("".join(Printer().lines(statements))))
+    # The second expression has 16 times as many cases.
+    assert sizes[1] < 16 * sizes[0]
 
 
 def test_operands_are_computed_only_where_they_are_needed() -> None:
