@@ -49,7 +49,7 @@ def _pair(pair: SpecPair) -> dict[str, Any]:
 
 
 def _beginnings(pair: SpecPair) -> dict[str, Any] | None:
-    """Return ``beginnings`` of the pair's :class:`Comparison` as JSON.
+    """Return ``beginnings`` of the pair's :class:`~tltlc.tools.diff.relation.Comparison` as JSON.
 
     Return None unless one spec is over finite traces and the other over infinite traces.
     """
