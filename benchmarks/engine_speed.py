@@ -99,8 +99,8 @@ def _output_of(task: Task, command: Sequence[str]) -> str:
 def _version(engine: Engine) -> str:
     """Return the version of a compiler: the first number with dots that it prints."""
     completed = subprocess.run(engine.version, capture_output=True, text=True)
-    output = re.search(r"\d+(\.\d+)+", completed.stdout + completed.stderr)
-    return output[0] if output else "unknown"
+    number = re.search(r"\d+(\.\d+)+", completed.stdout + completed.stderr)
+    return number[0] if number else "unknown"
 
 
 def _bytes(engine: Engine, task: Task) -> Mapping[str, int]:

@@ -76,9 +76,9 @@ def _ours(evidence_: Evidence, planted_fspa: Fspa, min_support: float) -> Record
     search = SpecSearch(evidence_, MiningOptions(min_support=min_support))
     for _ in search.run():
         pass
-    matches = confirm(search.ranking(), evidence_, words, CompileOptions(), _TOP)
+    proposals = confirm(search.ranking(), evidence_, words, CompileOptions(), _TOP)
     seconds = time.perf_counter() - start
-    ranks = [rank for rank, proposal in enumerate(matches, start=1) if are_equivalent(proposal.fspa, planted_fspa)]
+    ranks = [rank for rank, proposal in enumerate(proposals, start=1) if are_equivalent(proposal.fspa, planted_fspa)]
     return {"seconds": seconds, "rank": ranks[0] if ranks else None, "tried": search.tried_count}
 
 
@@ -102,11 +102,11 @@ def goals(records: Mapping[str, Record]) -> Iterable[Sequence[str]]:
         met_or_missed(first >= _LEAST_FOUND),
     )
     ratios = {peer: _ratios(records, peer) for peer in PEERS}
-    measured = {peer: matches for peer, matches in ratios.items() if matches}
+    measured = {peer: peer_ratios for peer, peer_ratios in ratios.items() if peer_ratios}
     figure = "; ".join(
-        f"{PEERS[peer]} {median(matches):.0f} times as long or longer" for peer, matches in measured.items()
+        f"{PEERS[peer]} {median(peer_ratios):.0f} times as long or longer" for peer, peer_ratios in measured.items()
     )
-    met = all(median(matches) >= _FACTOR for matches in measured.values())
+    met = all(median(peer_ratios) >= _FACTOR for peer_ratios in measured.values())
     yield "specs from traces in a tenth of the peers' time (median)", figure, met_or_missed(met)
 
 
@@ -120,8 +120,8 @@ def section(records: Mapping[str, Record]) -> str:
     stopped = f"Both are stopped after {' or '.join(f'{limit:g}' for limit in limits)} s. " if limits else ""
     header = ("planted", "clauses", "ours, s", "rank", "with noise", *(f"{peer}, s" for peer in PEERS.values()))
     counts = "; ".join(
-        f"{title} {sum(map(matches, measured.values()))} of {len(measured)}"
-        for title, matches in (
+        f"{title} {sum(map(is_counted, measured.values()))} of {len(measured)}"
+        for title, is_counted in (
             ("ours at rank 1", lambda record: record["ours"]["rank"] == 1),
             ("with noise", lambda record: record["noisy"]["rank"] == 1),
             *((title, lambda record, peer=peer: _is_equal(record, peer)) for peer, title in PEERS.items()),

@@ -89,7 +89,7 @@ def _formulas(evidence: Evidence) -> Iterator[tuple[str, Values]]:
 
 
 def _mask(trace: LabelledTrace, atom: str) -> int:
-    return sum(1 << folder for folder, letter in enumerate(trace.letters) if atom in letter)
+    return sum(1 << index for index, letter in enumerate(trace.letters) if atom in letter)
 
 
 def _until(left: int, right: int) -> int:

@@ -76,8 +76,8 @@ class Scenario:
     @property
     def is_rare(self) -> bool:
         """Whether wrong verdicts are rare, so that many trials are needed."""
-        same_share = self.now == self.before
-        return self.is_slight or (same_share and (self.now.rate >= _RARE or self.now.rate == JUST_BELOW))
+        is_same = self.now == self.before
+        return self.is_slight or (is_same and (self.now.rate >= _RARE or self.now.rate == JUST_BELOW))
 
     @property
     def name(self) -> str:
