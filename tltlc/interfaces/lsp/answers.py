@@ -14,6 +14,7 @@ from tltlc.interfaces.lsp import (
     actions,
     completion,
     durations,
+    file_renames,
     folding,
     formatting,
     hover,
@@ -23,7 +24,6 @@ from tltlc.interfaces.lsp import (
     symbols,
     tokens,
 )
-from tltlc.interfaces.lsp import file_renames as moves
 from tltlc.interfaces.lsp.document import Document
 from tltlc.interfaces.lsp.edits import text_edit
 from tltlc.interfaces.lsp.names import Occurrence, Symbol
@@ -112,9 +112,9 @@ async def _rename(server: EditorSession, params: types.RenameParams) -> types.Wo
 
 
 async def _move_files(server: EditorSession, params: types.RenameFilesParams) -> types.WorkspaceEdit:
-    await server.texts.parse(moves.may_import)
+    await server.texts.parse(file_renames.may_import)
     renames = [(name_of(file.old_uri), name_of(file.new_uri)) for file in params.files]
-    return _workspace_edit(server, moves.edits_of_moves(renames, server.texts))
+    return _workspace_edit(server, file_renames.edits_of_moves(renames, server.texts))
 
 
 def _format(server: EditorSession, params: types.DocumentFormattingParams) -> list[types.TextEdit] | None:

@@ -269,17 +269,17 @@ class _LayoutPass:
 
     def _row_below(self, left: float) -> dict[int, Point]:
         """Return the places of the boxes in the row below, each below the edges that lead to it."""
-        ideal_levels = {
+        ideal_x = {
             state: mean([self._path_down(a)[-1][0] for a, b in self.drops if b == state], 0.0)
             for state, box in self.boxes.items()
             if box.below
         }
         places: dict[int, Point] = {}
-        reach = max((abs(self._path_down(a)[-1][0] - ideal_levels[b]) for a, b in self.drops), default=0.0)
+        reach = max((abs(self._path_down(a)[-1][0] - ideal_x[b]) for a, b in self.drops), default=0.0)
         top = self.bottom + min(max(reach / 8, 2 * _GAP), _MOST_BEND)
-        for state in sorted(ideal_levels, key=lambda state: (ideal_levels[state], state)):
+        for state in sorted(ideal_x, key=lambda state: (ideal_x[state], state)):
             box = self.boxes[state]
-            x = max(ideal_levels[state], left + _span(box) / 2)
+            x = max(ideal_x[state], left + _span(box) / 2)
             places[state] = x, top + box.over + box.height / 2
             left = x + _span(box) / 2 + 2 * _GAP
         return places

@@ -66,12 +66,12 @@ def fix(
     return FixedFile(module.source, tuple(fixed), remaining)
 
 
-def _apply_once(module: Module, findings: tuple[LintFinding, ...]) -> tuple[SourceFile, list[Diagnostic]]:
+def _apply_once(module: Module, remaining: tuple[LintFinding, ...]) -> tuple[SourceFile, list[Diagnostic]]:
     """Apply all fixes that neither overlap nor change what ``allow`` comments apply to.
 
     Returns the new text and the diagnostics that were fixed.
     """
-    fixable = _without_overlaps([finding for finding in findings if finding.fix])
+    fixable = _without_overlaps([finding for finding in remaining if finding.fix])
     if not fixable:
         return module.source, []
     if commented_spans(module):
