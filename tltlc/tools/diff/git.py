@@ -34,11 +34,9 @@ It then prints a size in bytes, and a text of that size.
 
 _HASH: Final = re.compile("[0-9a-f]{40,64}")
 _MOST_NAMES: Final = 1000
+"""A misspelt revision is compared with at most this many branches and tags."""
 _LONGEST_NAME: Final = 200
-"""The most characters of a name that may be suggested for a misspelt revision.
-
-At most ``_MOST_NAMES`` branches and tags are tried.
-"""
+"""Branches and tags with more characters are left out of this comparison."""
 
 
 @record

@@ -65,8 +65,7 @@ def diff_files(
 
     ``a`` and ``b`` are the name of each file and its automata. Specs are paired by name, in the order
     of A. ``one_each`` pairs the first spec of A with the first of B, whatever their names.
-    ``by_name`` is as in
-    :func:`tltlc.tools.diff.relation.compare`, ``declared`` as in
+    ``by_name`` is as in :func:`tltlc.tools.diff.relation.compare`, ``declared`` as in
     :func:`tltlc.tools.diff.assumed_exclusive.assumed_groups`.
 
     Errors: TLT0750 if a comparison takes more than ``work`` steps.

@@ -41,11 +41,9 @@ _WIDTH: Final = 100
 _MOST_LEFT_OUT: Final = 5
 _MOST_ATOMS: Final = 10
 _TITLES: Final = {"A": "no longer accepted", "B": "not accepted before"}
+"""Titles of printed tests, by the spec that accepts the trace."""
 _TITLES_OF_BEGINNINGS: Final = {"A": "broken now", "B": "broken before"}
-"""Titles of printed tests, by the spec that accepts the trace.
-
-For the beginning of a trace, by the spec that the beginning does not violate.
-"""
+"""Titles of printed tests with the beginning of a trace, by the spec that the beginning does not violate."""
 
 
 def text(report: FileDiff) -> str:

@@ -14,8 +14,20 @@ from tltlc.automaton.finite.build import DEFAULT_STATE_BUDGET
 from tltlc.automaton.finite.machine import OutOfStates
 from tltlc.automaton.fspa import Fspa, Text
 from tltlc.automaton.guards import TooManyPrimes
+from tltlc.automaton.infinite.assembly import assemble
+from tltlc.automaton.work import DEFAULT_WORK, OutOfWork, Work
+from tltlc.core.record import EMPTY, record
+from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.grammar.parser import parse_formula
+from tltlc.io.files import MAX_ARTEFACT_BYTES, read_source
+from tltlc.io.resources import resource_limits
+from tltlc.io.spec_file import STDIN_NAME, is_plain_name
+from tltlc.logic.formula import Formula
+from tltlc.logic.text.printer import ascii_text
+from tltlc.resolve.options import ResolveOptions
+from tltlc.resolve.resolution import FormulaOf
+from tltlc.resolve.spec import Judge
 from tltlc.tools.hoa.atoms import vocabulary_of
 from tltlc.tools.hoa.build import automaton_of
 from tltlc.tools.hoa.checks import check, is_finite
@@ -25,18 +37,6 @@ from tltlc.tools.hoa.tree import Hoa
 
 if TYPE_CHECKING:
     import os
-from tltlc.automaton.infinite.assembly import assemble
-from tltlc.automaton.work import DEFAULT_WORK, OutOfWork, Work
-from tltlc.core.record import EMPTY, record
-from tltlc.core.source import SourceFile
-from tltlc.io.files import MAX_ARTEFACT_BYTES, read_source
-from tltlc.io.resources import resource_limits
-from tltlc.io.spec_file import STDIN_NAME, is_plain_name
-from tltlc.logic.formula import Formula
-from tltlc.logic.text.printer import ascii_text
-from tltlc.resolve.options import ResolveOptions
-from tltlc.resolve.resolution import FormulaOf
-from tltlc.resolve.spec import Judge
 
 
 @record
