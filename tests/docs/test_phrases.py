@@ -85,8 +85,7 @@ ACCEPTED = {
     "`require (eventually alarm) implies eventually near(exit)`": (["near(exit)", "alarm"], ["alarm", ""]),
     "`require eventually within 5 s near(exit)`": ([*[""] * 50, "near(exit)"], [*[""] * 51, "near(exit)"]),
 }
-"""For each phrase, a trace that it accepts and one that it rejects, given as the atom of each step.
-"""
+"""For each phrase, a trace that it accepts and one that it rejects, given as the atom of each step."""
 
 
 @pytest.mark.parametrize("write", ACCEPTED)

@@ -24,8 +24,7 @@ pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="needs descripto
 
 OFTEN: Final = ("<&- >&-", "<&- >&- 2>&-")
 SELDOM: Final = (">&-", "<&-", "2>&-", ">&- 2>&-")
-"""Redirections that close streams, in shell syntax. The second row takes longer and rarely finds
-more."""
+"""Redirections that close streams, in shell syntax. The second row takes longer and rarely finds more."""
 SPEC: Final = (
     'signal seen: bool\nspec hide = G !seen\ntest "caught" for hide {\n    step seen\n    expect violated\n}\n'
 )
@@ -135,8 +134,8 @@ def _inputs_with_recording(inputs: Path) -> Path:
     """The inputs, and a recording of an episode."""
     if find_spec("pybullet") is None or find_spec("torch") is None:
         pytest.skip("needs the extra rl")
-    run_copy = _run(inputs, ("demonstrate", "cover_and_hide", "-o", "demo"), "")
-    assert run_copy.status == 0, run_copy.err
+    demonstration = _run(inputs, ("demonstrate", "cover_and_hide", "-o", "demo"), "")
+    assert demonstration.status == 0, demonstration.err
     return inputs
 
 
