@@ -17,7 +17,6 @@ from tltlc.grammar.tables import load
 _BEGINS_WORD: Final = frozenset(f"{string.ascii_letters}_")
 _IN_WORD: Final = _BEGINS_WORD.union(string.digits, ".")
 _LINES: Final = {"spec": (CLAUSES, "clause"), "test": (TEST_ITEMS, "test_item")}
-_STATEMENTS: Final = ("clause", "test_item")
 
 
 @record
