@@ -20,7 +20,6 @@ from tltlc.resolve import units
 from tltlc.resolve.margins import robustness
 from tltlc.resolve.values import Quantity, constant
 
-MOST = 1.7976931348623157e308
 FINITE = st.floats(allow_nan=False, allow_infinity=False)
 THREE = st.tuples(FINITE, FINITE, FINITE).map(sorted).filter(lambda ends: ends[0] < ends[2])
 

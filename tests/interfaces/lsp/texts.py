@@ -31,7 +31,3 @@ def open_text(marked: str, folder: Path | None = None, **others: str) -> tuple[D
     document = workspace.document(uri)
     assert document is not None
     return document, at, workspace
-
-
-def span_text(document: Document, start: int, end: int) -> str:
-    return document.source.text[start:end]
