@@ -6,6 +6,7 @@ import re
 from collections.abc import Callable
 from typing import Final
 
+from tltlc.core.record import record
 from tltlc.grammar import tree
 
 _STEPS: Final = (None, "step", "steps")
@@ -13,17 +14,24 @@ _WHOLE: Final = re.compile("[0-9]{1,9}")
 _WORD: Final = {"F": "within", "G": "for", "X": "after", "N": "after"}
 
 
-def bound_forms(node: tree.Unary, number: Callable[[tree.NumberExpr], str]) -> dict[str, str]:
-    """Return the bound of an operator in two forms, by the names ``words`` and ``brackets``.
+@record
+class Number:
+    """The text of a number: its digits, and its unit or an empty text."""
 
-    Words look like ``within 3 steps``, and brackets like ``[0,3]``. The result is empty if there is
-    no bound. It lacks a form that cannot express the bound:
+    digits: str
+    unit: str = ""
 
-    - ``for 3 steps`` counts samples, and ``[0,2]`` names the last one, so each expresses the other;
-    - no brackets equal ``for`` with a time, because a time is rounded up to samples;
-    - no brackets equal ``after``.
+    def __str__(self) -> str:
+        return f"{self.digits} {self.unit}" if self.unit else self.digits
 
-    ``number`` returns the text of a number.
+
+def bound_forms(node: tree.Unary, number: Callable[[tree.NumberExpr], Number]) -> dict[str, str]:
+    """Return the forms of the bound of an operator, by the names ``words`` and ``brackets``.
+
+    Words look like ``within 3 steps``, and brackets like ``[0,3]``. The result is empty without a
+    bound, and has one form if the other cannot express the bound. ``for 3 steps`` counts samples, and
+    ``[0,2]`` names the last one. A time is rounded up to samples, so no brackets equal ``for`` with
+    a time. ``after`` has no brackets. ``number`` returns a number as it is written.
     """
     bound = node.bound
     if bound is None:
@@ -44,21 +52,21 @@ def bound_forms(node: tree.Unary, number: Callable[[tree.NumberExpr], str]) -> d
     return {**texts, "words": f"{_WORD[node.op]} {phrase}"} if phrase else texts
 
 
-def _in_brackets(op: str, high: tree.NumberExpr, text: str) -> str | None:
-    """Return the end with which ``[0,END]`` equals ``within`` or ``for``; None if none does."""
+def _in_brackets(op: str, high: tree.NumberExpr, number: Number) -> str | None:
+    """Return the end in brackets that equals ``within`` or ``for`` with this bound, or None."""
     if high.unit not in _STEPS:
-        return text if op == "F" else None
-    count = text.partition(" ")[0]
+        return str(number) if op == "F" else None
+    count = number.digits
     if op == "F":
         return count
     return str(int(count) - 1) if op == "G" and _WHOLE.fullmatch(count) and int(count) else None
 
 
-def _in_words(op: str, high: tree.NumberExpr, text: str) -> str | None:
-    """Return the bound with which ``within`` or ``for`` equals ``[0,high]``; None if none does."""
+def _in_words(op: str, high: tree.NumberExpr, number: Number) -> str | None:
+    """Return the bound of ``within`` or ``for`` that equals the brackets ``[0,high]``, or None."""
     if high.unit not in _STEPS:
-        return text if op == "F" else None
-    count = text.partition(" ")[0]
+        return str(number) if op == "F" else None
+    count = number.digits
     if op == "G":
         if not _WHOLE.fullmatch(count):
             return None

@@ -8,7 +8,7 @@ from typing import Final
 from tltlc.core.source import SourceFile
 from tltlc.grammar import tree
 from tltlc.grammar.tree import Expr
-from tltlc.tools.fmt import bounds
+from tltlc.tools.fmt.bounds import Number, bound_forms
 from tltlc.tools.fmt.page import WIDTH
 from tltlc.tools.fmt.style import Style
 
@@ -40,7 +40,7 @@ class OneLinePrinter:
             case tree.NameExpr():
                 text: str | None = node.name
             case tree.NumberExpr():
-                text = self.number(node)
+                text = str(self.number(node))
             case tree.CallExpr():
                 inner = self._arguments(node, room - len(node.name) - 2)
                 text = None if inner is None else f"{node.name}({inner})"
@@ -64,17 +64,17 @@ class OneLinePrinter:
                 text = self._when(node, room)
         return text if text is not None and len(text) <= room else None
 
-    def number(self, node: tree.NumberExpr) -> str:
-        """Return a number as in the source, but with a space before its unit."""
+    def number(self, node: tree.NumberExpr) -> Number:
+        """Return a number as it is written in the source."""
         source_text = self._source.slice(node.span)
         if node.unit is None:
-            return source_text
-        count = source_text.rstrip(_LETTERS)
-        return f"{count.rstrip()} {source_text[len(count) :]}"
+            return Number(source_text)
+        digits = source_text.rstrip(_LETTERS)
+        return Number(digits.rstrip(), source_text[len(digits) :])
 
     def prefix(self, node: tree.Unary) -> str:
         """Return an operator before its operand, with its bound and a space if it needs one."""
-        return self._style.prefix_text(node, bounds.bound_forms(node, self.number))
+        return self._style.prefix_text(node, bound_forms(node, self.number))
 
     def infix(self, op: str) -> str:
         """Return an operator between two operands, with its spaces."""
