@@ -214,8 +214,8 @@ def _probability_of_at_most(count: int, trials: int, probability: float) -> floa
     """Return the probability that an event happens in at most ``count`` of the trials."""
     logs = log(probability), log1p(-probability)
     terms = (
-        lgamma(trials + 1) - lgamma(done + 1) - lgamma(trials - done + 1) + done * logs[0] + (trials - done) * logs[1]
-        for done in range(count + 1)
+        lgamma(trials + 1) - lgamma(hits + 1) - lgamma(trials - hits + 1) + hits * logs[0] + (trials - hits) * logs[1]
+        for hits in range(count + 1)
     )
     return fsum(map(exp, terms))
 

@@ -55,8 +55,8 @@ def load(plugin: Plugin, wanted_by: str) -> Any:
         return reduce(getattr, plugin.attribute.split("."), import_module(plugin.module))
     except ModuleNotFoundError as error:
         package = plugin.distribution
-        wanted = f"{package}[{','.join(plugin.extras)}]" if plugin.extras else error.name or package
-        raise exits.missing_component(wanted_by, error.name or package, wanted) from error
+        requirement = f"{package}[{','.join(plugin.extras)}]" if plugin.extras else error.name or package
+        raise exits.missing_component(wanted_by, error.name or package, requirement) from error
 
 
 def load_levels_plugin(name: str, wanted_by: str) -> Any:

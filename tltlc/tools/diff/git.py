@@ -105,9 +105,9 @@ def write_out(repository: Path, commit: str, revision: str, is_wanted: Callable[
             a limit on revisions in :mod:`tltlc.io.limits`; TLT0009, a path cannot be
             a file below the folder; TLT0005, the system refuses to write.
     """
-    wanted = _wanted_files(_files(repository, commit, revision), is_wanted, revision)
-    files = [file for file in wanted if not file.is_link]
-    files += _link_targets(repository, commit, [file.path for file in wanted if file.is_link])
+    wanted_files = _wanted_files(_files(repository, commit, revision), is_wanted, revision)
+    files = [file for file in wanted_files if not file.is_link]
+    files += _link_targets(repository, commit, [file.path for file in wanted_files if file.is_link])
     _check_sizes(repository, files, revision)
     unpack(folder, _contents(repository, files, revision), _archive(revision))
 
