@@ -14,8 +14,7 @@ from tltlc.automaton.guards import PRIME_LIMIT, TOTAL_PRIME_LIMIT
 from tltlc.core.record import replace
 from tltlc.core.source import SourceFile
 from tltlc.diagnostics.codes import codes
-from tltlc.grammar import keywords as words
-from tltlc.grammar import lalr, lexer, nesting
+from tltlc.grammar import keywords, lalr, lexer, nesting
 from tltlc.grammar.builder import Builder
 from tltlc.grammar.lexer import tokenize
 from tltlc.grammar.parser import parse_formula
@@ -106,11 +105,11 @@ def test_every_type_unit_and_function_is_documented() -> None:
 
 
 def test_every_declaration_clause_and_expectation_is_documented() -> None:
-    for name in (*words.DECLARATIONS, *words.CLAUSES, *words.TEST_ITEMS):
+    for name in (*keywords.DECLARATIONS, *keywords.CLAUSES, *keywords.TEST_ITEMS):
         assert any(text.split()[0] == name for text in IN_CODE), name
-    assert set(words.VERDICTS) <= IN_CODE
+    assert set(keywords.VERDICTS) <= IN_CODE
     for form in ("judge at", "semantics"):
-        for word in words.JUDGE if form == "judge at" else words.SEMANTICS:
+        for word in keywords.JUDGE if form == "judge at" else keywords.SEMANTICS:
             assert f"{form} {word}" in IN_CODE
 
 
