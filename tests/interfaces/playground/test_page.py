@@ -389,7 +389,7 @@ def test_without_the_token_the_page_says_which_address_to_open(browser: Browser,
     context = browser.new_context()
     page = context.new_page()
     page.goto(base)
-    summary(page, "^It could not begin: open the address that `tltlc serve` shows: the token in it is missing here")
+    summary(page, "^The page could not start: open the address that `tltlc serve` shows, because this address has no")
     # Only the fragment changes, so the browser does not reload the page.
     page.goto(f"{base}#{token}")
     summary(page, "^It compiles")
@@ -430,7 +430,7 @@ def test_a_link_with_a_wrong_token_does_not_replace_the_right_one(browser: Brows
     # A browser without a valid token does not store the wrong one either.
     stranger = browser.new_context().new_page()
     stranger.goto(f"{base}#token=junk")
-    summary(stranger, "^It could not begin: open the address that `tltlc serve` shows")
+    summary(stranger, "^The page could not start: open the address that `tltlc serve` shows")
     assert stranger.evaluate(STORED) is None
     stranger.context.close()
     context.close()
@@ -570,7 +570,7 @@ def test_a_trace_of_an_earlier_text_has_a_warning(page: Page, mode: str) -> None
     warning = page.locator("#strange")
     expect(warning).to_be_hidden()
     write(page, FIXED.replace("signal b: bool", "signal door: bool").replace("then b", "then door"))
-    expect(warning).to_contain_text(f"what they say of b counts for nothing, since the spec has no such {mode}.")
+    expect(warning).to_contain_text(f"They set b, which has no effect, because the spec has no such {mode}.")
     expect(page.locator("#steps .verdict")).to_have_text(["pending", "pending"])
     page.get_by_role("button", name="Clear").click()
     expect(warning).to_be_hidden()

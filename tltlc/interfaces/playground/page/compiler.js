@@ -9,7 +9,7 @@ const PATIENCE_MS = 3_000;
 const START_LIMIT_MS = 120_000;
 
 const REFUSED = {
-  403: "open the address that `tltlc serve` shows: the token in it is missing here, or is of an earlier server",
+  403: "open the address that `tltlc serve` shows, because this address has no token or the token of an earlier server",
   413: "the text is too long",
 };
 

@@ -302,4 +302,4 @@ function kept(name, value) {
   }
 }
 
-begin().catch((error) => say(`It could not begin: ${error.message}`));
+begin().catch((error) => say(`The page could not start: ${error.message}`));

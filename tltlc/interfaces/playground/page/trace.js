@@ -120,7 +120,7 @@ function warn(names, mode) {
   place.hidden = !names.length;
   const shown = names.slice(0, MOST_NAMES).map((name) => `\`${name}\``);
   const more = names.length > shown.length ? ", …" : "";
-  const text = `These steps were made for another text: what they say of ${shown.join(", ")}${more} counts for nothing, since the spec has no such ${mode}. Set the boxes anew, or begin with \`Clear\`.`;
+  const text = `These steps were made for another text. They set ${shown.join(", ")}${more}, which has no effect, because the spec has no such ${mode}. Set the boxes again, or press \`Clear\`.`;
   if (names.length && place.dataset.said !== text) place.replaceChildren(...prose(text));
   place.dataset.said = text;
 }
