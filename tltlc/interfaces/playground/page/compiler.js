@@ -88,12 +88,12 @@ function inBrowser() {
   }
   return {
     ask(request) {
-      const mine = ++last;
+      const number = ++last;
       // The answer to the previous request is no longer needed. But a new worker takes seconds to start, so wait a little
       // before ending the present one.
       if (running) setTimeout(running.giveUp, running.since + PATIENCE_MS - performance.now());
       const asked = busy.then(() => {
-        if (mine !== last) throw new DOMException("a later request has come", "AbortError");
+        if (number !== last) throw new DOMException("a later request has come", "AbortError");
         return answer(request);
       });
       busy = asked.catch(() => {});

@@ -16,7 +16,7 @@ const MOST_IN_LINK = 500_000;
 
 const asking = compiler();
 const page = { notation: kept("notation") === "unicode" ? "unicode" : "english", spec: "", mode: "atoms", letters: [], current: 0, picked: null, view: null, rows: [] };
-let begun = null;
+let startData = null;
 let timer = 0;
 let asked = 0;
 let remembering = 0;
@@ -26,13 +26,13 @@ async function begin() {
   theme();
   takeToken();
   window.addEventListener("hashchange", moved);
-  begun = await asking.ask({});
-  editor.begin(begun, () => {
+  startData = await asking.ask({});
+  editor.begin(startData, () => {
     named();
     later(TYPING_MS);
   });
   trace.begin({ changed: () => later(20), go, remove });
-  begun.examples.forEach(({ title }, index) => byId("examples").append(new Option(title, index)));
+  startData.examples.forEach(({ title }, index) => byId("examples").append(new Option(title, index)));
   byId("examples").addEventListener("change", ({ target }) => {
     if (target.value !== "") example(Number(target.value));
   });
@@ -50,8 +50,8 @@ async function begin() {
 
 /** The fragment of the address has changed: to a token, with which to repeat the failed request, or to another text. */
 function moved() {
-  if (takeToken()) begun ? later(0) : location.reload();
-  else if (begun && location.hash !== written) restore();
+  if (takeToken()) startData ? later(0) : location.reload();
+  else if (startData && location.hash !== written) restore();
 }
 
 /** Send a request after a delay; a later call replaces it. Answers to earlier requests are ignored from now on. */
@@ -62,14 +62,14 @@ function later(milliseconds) {
 }
 
 async function ask() {
-  const mine = ++asked;
-  const busy = setTimeout(() => mine === asked && say("Compiling…"), 400);
+  const number = ++asked;
+  const busy = setTimeout(() => number === asked && showSummary("Compiling…"), 400);
   try {
     const letters = page.letters.map((letter) => (page.mode === "atoms" ? letter.atoms : (letter.signals ?? {})));
     const answer = await asking.ask({ text: editor.text(), spec: page.spec, letters, notation: page.notation });
-    if (mine === asked) take(answer);
+    if (number === asked) take(answer);
   } catch (error) {
-    if (mine === asked) say(`No answer: ${error.message}`);
+    if (number === asked) showSummary(`No answer: ${error.message}`);
   } finally {
     clearTimeout(busy);
   }
@@ -78,7 +78,7 @@ async function ask() {
 /** Show an answer. */
 function take({ diagnostics, more, specs, tests, spec }) {
   editor.show(diagnostics);
-  say(summary(diagnostics, more, specs, tests));
+  showSummary(summary(diagnostics, more, specs, tests));
   meaning.stale(!spec);
   if (spec) {
     const isNew = page.view?.name !== spec.name;
@@ -134,7 +134,7 @@ function render() {
   const row = rows[current];
   const state = row ? (row.error ? null : row.state) : 0;
   meaning.light(state, row && !row.error ? [row.from, row.state] : null, picked);
-  meaning.tell(spec.states[picked ?? state], notation);
+  meaning.showState(spec.states[picked ?? state], notation);
 }
 
 function summary(diagnostics, more, specs, tests) {
@@ -142,20 +142,20 @@ function summary(diagnostics, more, specs, tests) {
     const number = diagnostics.filter((diagnostic) => diagnostic.severity === severity).length;
     return number ? [`${number} ${word}${number === 1 ? "" : "s"}`] : [];
   };
-  const said = [...count("error", "error"), ...count("warning", "warning"), ...count("note", "note")];
-  if (more) said.push(`${more} more messages`);
-  if (tests.length) said.push(`${tests.filter((test) => test.passed).length} of ${tests.length} tests passed`);
-  if (!specs.length && !said.length) return "There is no spec yet: spec NAME { reach … keep … }";
-  if (specs.length) return ["It compiles", ...said].join("; ");
-  return `${said.join("; ")}${page.view ? "; what is shown is of an earlier text" : ""}`;
+  const parts = [...count("error", "error"), ...count("warning", "warning"), ...count("note", "note")];
+  if (more) parts.push(`${more} more messages`);
+  if (tests.length) parts.push(`${tests.filter((test) => test.passed).length} of ${tests.length} tests passed`);
+  if (!specs.length && !parts.length) return "There is no spec yet: spec NAME { reach … keep … }";
+  if (specs.length) return ["It compiles", ...parts].join("; ");
+  return `${parts.join("; ")}${page.view ? "; what is shown is of an earlier text" : ""}`;
 }
 
-function say(text) {
+function showSummary(text) {
   if (byId("summary").textContent !== text) byId("summary").textContent = text;
 }
 
 function example(index) {
-  editor.setText(begun.examples[index].text);
+  editor.setText(startData.examples[index].text);
   named();
   Object.assign(page, { spec: "", letters: [], current: 0, picked: null, mode: "atoms" });
   later(0);
@@ -163,7 +163,7 @@ function example(index) {
 
 /** Show in the menu which example the text is, if it is one. */
 function named() {
-  const open = begun.examples.findIndex((example) => example.text === editor.text());
+  const open = startData.examples.findIndex((example) => example.text === editor.text());
   byId("examples").value = open < 0 ? "" : open;
 }
 
@@ -250,15 +250,15 @@ async function keep() {
 
 /** Restore the state from the fragment. Anybody may have written it, so every value is checked. */
 async function restore() {
-  const found = await unpacked(location.hash);
-  if (typeof found?.text !== "string") return false;
-  const mode = found.mode === "signals" ? "signals" : "atoms";
-  const given = Array.isArray(found.letters) ? found.letters.filter((letter) => letter && typeof letter === "object") : [];
+  const saved = await unpacked(location.hash);
+  if (typeof saved?.text !== "string") return false;
+  const mode = saved.mode === "signals" ? "signals" : "atoms";
+  const given = Array.isArray(saved.letters) ? saved.letters.filter((letter) => letter && typeof letter === "object") : [];
   const letters = given.slice(0, MOST_STEPS).map((letter) => ({ atoms: [], signals: null, [mode]: LETTERS[mode](letter) }));
-  const current = Math.min(Math.max(Math.trunc(Number(found.current)) || 0, 0), Math.max(letters.length - 1, 0));
-  editor.setText(found.text);
+  const current = Math.min(Math.max(Math.trunc(Number(saved.current)) || 0, 0), Math.max(letters.length - 1, 0));
+  editor.setText(saved.text);
   named();
-  Object.assign(page, { mode, spec: String(found.spec ?? ""), letters, current, picked: null });
+  Object.assign(page, { mode, spec: String(saved.spec ?? ""), letters, current, picked: null });
   later(0);
   return true;
 }
@@ -269,14 +269,14 @@ const LETTERS = {
 };
 
 async function share() {
-  if (!(await keep())) return say("The text is too long for a link: keep it as a file.");
+  if (!(await keep())) return showSummary("The text is too long for a link: keep it as a file.");
   const { length } = location.href;
   const long = length > LONG_LINK ? ` It has ${length} characters, and some programs cut long links.` : "";
   try {
     await navigator.clipboard.writeText(location.href);
-    say(`The link is in the clipboard; the text is in it.${long}`);
+    showSummary(`The link is in the clipboard; the text is in it.${long}`);
   } catch {
-    say(`Copy the address of this page: the text is in it.${long}`);
+    showSummary(`Copy the address of this page: the text is in it.${long}`);
   }
 }
 
@@ -302,4 +302,4 @@ function kept(name, value) {
   }
 }
 
-begin().catch((error) => say(`The page could not start: ${error.message}`));
+begin().catch((error) => showSummary(`The page could not start: ${error.message}`));

@@ -25,23 +25,23 @@ export function stale(is) {
 
 function english({ name, doc, formula, explanation, failures }) {
   const { outline, exclusive, ending, limit_steps: limit } = explanation;
-  const found = [element("h2", {}, name)];
-  if (doc) found.push(element("p", { class: "doc" }, doc));
+  const nodes = [element("h2", {}, name)];
+  if (doc) nodes.push(element("p", { class: "doc" }, doc));
   if (outline) {
-    found.push(...reach(outline.goals));
-    found.push(...list("Throughout:", outline.throughout), ...list("Again and again:", outline.recurring));
-    found.push(...list(outline.goals.length + outline.throughout.length ? "And:" : "It asks for this:", outline.others));
+    nodes.push(...reach(outline.goals));
+    nodes.push(...list("Throughout:", outline.throughout), ...list("Again and again:", outline.recurring));
+    nodes.push(...list(outline.goals.length + outline.throughout.length ? "And:" : "It asks for this:", outline.others));
   } else {
-    found.push(element("p", {}, formula.english));
+    nodes.push(element("p", {}, formula.english));
   }
-  found.push(...list("It is broken for good by:", failures));
+  nodes.push(...list("It is broken for good by:", failures));
   const more = [
     ...list("Never at the same step:", exclusive.map((group) => group.join(", "))),
     element("p", {}, ending, limit === null ? "" : ` The limit is ${limit} steps.`),
     element("p", {}, element("code", { class: "formula" }, formula.unicode)),
   ];
-  found.push(element("details", {}, element("summary", {}, "When it ends, and the formula"), more));
-  return found;
+  nodes.push(element("details", {}, element("summary", {}, "When it ends, and the formula"), more));
+  return nodes;
 }
 
 function reach(rows) {
@@ -99,7 +99,7 @@ export function light(current, edge, picked) {
 }
 
 /** Show what remains in a state in words; if the picture is in symbols, also as a formula. */
-export function tell(state, notation) {
+export function showState(state, notation) {
   if (!state) {
     byId("state").replaceChildren(element("p", { class: "quiet" }, "Click a state to see what remains there."));
     return;

@@ -27,7 +27,7 @@ export function show({ spec, letters, mode, current, rows }) {
     row.querySelector(".go").setAttribute("aria-current", index === current ? "step" : "false");
     fill(row, letters[index], rows[index], mode, columns);
   });
-  tell(rows[current], letters.length);
+  showStep(rows[current], letters.length);
   warn(strangers(spec, letters, mode), mode);
 }
 
@@ -87,7 +87,7 @@ function setter({ name, type, slider, low, high }, letter, index) {
   ];
 }
 
-function fill(row, letter, said, mode, columns) {
+function fill(row, letter, step, mode, columns) {
   row.querySelectorAll("td.input").forEach((cell, index) => {
     const { name } = columns[index];
     const value = mode === "atoms" ? letter.atoms.includes(name) : (letter.signals?.[name] ?? 0);
@@ -96,22 +96,22 @@ function fill(row, letter, said, mode, columns) {
       else if (input !== document.activeElement) input.value = input.type === "number" ? shown(value) : value;
     }
   });
-  const known = said && !said.error;
-  row.classList.toggle("wrong", Boolean(said?.error));
-  row.querySelector(".at").textContent = known ? said.state : "";
-  const verdict = known ? element("span", { class: `verdict ${said.verdict}` }, said.verdict) : "";
-  row.querySelector(".said").replaceChildren(said?.error ? element("span", { class: "refused" }, "refused") : verdict);
+  const known = step && !step.error;
+  row.classList.toggle("wrong", Boolean(step?.error));
+  row.querySelector(".at").textContent = known ? step.state : "";
+  const verdict = known ? element("span", { class: `verdict ${step.verdict}` }, step.verdict) : "";
+  row.querySelector(".said").replaceChildren(step?.error ? element("span", { class: "refused" }, "refused") : verdict);
   row.querySelector("meter").hidden = !known;
-  row.querySelector("meter").value = known ? said.progress : 0;
-  row.querySelector(".progress span").textContent = known ? shown(said.progress) : "";
-  row.querySelector(".reward").textContent = known ? shown(said.reward) : "";
+  row.querySelector("meter").value = known ? step.progress : 0;
+  row.querySelector(".progress span").textContent = known ? shown(step.progress) : "";
+  row.querySelector(".reward").textContent = known ? shown(step.reward) : "";
 }
 
 /** Return the names in the letters that this spec does not have. */
 function strangers(spec, letters, mode) {
   const known = new Set(spec[mode].map(({ name }) => name));
-  const said = letters.flatMap((letter) => (mode === "atoms" ? letter.atoms : Object.keys(letter.signals ?? {})));
-  return [...new Set(said)].filter((name) => !known.has(name));
+  const used = letters.flatMap((letter) => (mode === "atoms" ? letter.atoms : Object.keys(letter.signals ?? {})));
+  return [...new Set(used)].filter((name) => !known.has(name));
 }
 
 /** Warn if the trace was made for an earlier text. */
@@ -121,18 +121,18 @@ function warn(names, mode) {
   const shown = names.slice(0, MOST_NAMES).map((name) => `\`${name}\``);
   const more = names.length > shown.length ? ", …" : "";
   const text = `These steps were made for another text. They set ${shown.join(", ")}${more}, which has no effect, because the spec has no such ${mode}. Set the boxes again, or press \`Clear\`.`;
-  if (names.length && place.dataset.said !== text) place.replaceChildren(...prose(text));
-  place.dataset.said = text;
+  if (names.length && place.dataset.text !== text) place.replaceChildren(...prose(text));
+  place.dataset.text = text;
 }
 
-function tell(said, length) {
+function showStep(step, length) {
   const place = byId("moment");
   if (!length) place.textContent = "No step yet: add one, and say what holds at it.";
-  else if (!said) place.textContent = "";
-  else if (said.error) place.replaceChildren(...prose(`${said.error}: ${said.help}`));
+  else if (!step) place.textContent = "";
+  else if (step.error) place.replaceChildren(...prose(`${step.error}: ${step.help}`));
   else {
-    const end = said.done ? (said.accepting ? "  An episode ends here, in success." : "  An episode ends here, in failure.") : "";
-    const near = said.limiting ? `  Nearest to what leads on: ${said.limiting}.` : "";
-    place.textContent = `${said.label}${near}${end}`;
+    const end = step.done ? (step.accepting ? "  An episode ends here, in success." : "  An episode ends here, in failure.") : "";
+    const near = step.limiting ? `  Nearest to what leads on: ${step.limiting}.` : "";
+    place.textContent = `${step.label}${near}${end}`;
   }
 }

@@ -8,9 +8,9 @@ async function load() {
   const here = new URL("pyodide/", self.location.href).href;
   const [python, archive] = await Promise.all([
     loadPyodide({ indexURL: here }),
-    fetch("tltlc.zip").then((found) => {
-      if (!found.ok) throw new Error(`tltlc.zip: ${found.status}`);
-      return found.arrayBuffer();
+    fetch("tltlc.zip").then((response) => {
+      if (!response.ok) throw new Error(`tltlc.zip: ${response.status}`);
+      return response.arrayBuffer();
     }),
   ]);
   python.unpackArchive(archive, "zip", { extractDir: FOLDER });
@@ -29,8 +29,8 @@ self.onmessage = ({ data }) => {
   }
 };
 load().then(
-  (found) => {
-    answer = found;
+  (compiler) => {
+    answer = compiler;
     self.postMessage({ answer: "" });
   },
   (error) => self.postMessage({ error: `Python could not be loaded: ${error.message ?? error}` }),
