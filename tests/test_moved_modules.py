@@ -45,3 +45,8 @@ def test_other_modules_are_still_missing() -> None:
         import_module("tltlc.rabins")
     with pytest.raises(ImportError, match="nothing"):
         exec("from tltlc.comparison import nothing")
+
+
+def test_an_old_name_never_loads_a_second_copy_of_a_module() -> None:
+    with pytest.raises(ModuleNotFoundError, match="is not a package"):
+        import_module("tltlc.fmt.page")

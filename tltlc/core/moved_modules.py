@@ -46,4 +46,11 @@ class _Loader:
 
         moved = import_module(self._new_name)
         module.__doc__ = moved.__doc__
-        vars(module)["__getattr__"] = lambda name: getattr(moved, name)
+
+        def attribute(name: str) -> object:
+            # With the `__path__` of a package, Python would load a second copy of each of its modules.
+            if name == "__path__":
+                raise AttributeError(f"module {module.__name__!r} has no attribute {name!r}")
+            return getattr(moved, name)
+
+        vars(module)["__getattr__"] = attribute
