@@ -160,7 +160,7 @@ def episode_digest(episode: Episode) -> str:
 
 def judge_edit(suite: Suite, case: Case) -> Record:
     """Return the verdict of ``tltlc regress`` on a case, with the figures behind it."""
-    from tltl_runtime.regression.verdict.suite_run import regress
+    from tltl_runtime.regression.suite_run import regress
 
     reference = _reference(suite, case)
     (result,) = regress(suite, [case], (reference,), suite.path.parent / "run", 1, lambda *_: None)

@@ -31,7 +31,7 @@ FORMATS = {
     "episode": "runtime/tltl_runtime/stealth/recordings/file.py",
     "baseline": "runtime/tltl_runtime/regression/verdict/baseline.py",
     "report of a regression run": "runtime/tltl_runtime/regression/report/report_json.py",
-    "cached result of a regression case": "runtime/tltl_runtime/regression/verdict/suite_run.py",
+    "cached result of a regression case": "runtime/tltl_runtime/regression/suite_run.py",
     "cached result of retraining": "runtime/tltl_runtime/regression/retrain/retrain.py",
     "checkpoint of a training": "runtime/tltl_runtime/training/run/checkpoint.py",
     "record of a training": "runtime/tltl_runtime/training/run/record.py",

@@ -22,9 +22,9 @@ from tests.interfaces.cli.conftest import Outcome, tltlc  # noqa: F401
 from tests.runtime.regression.game import SUITE, edit
 from tests.runtime.regression.recorded_game import _game, recorded_game  # noqa: F401
 from tests.waiting import HANG_S
+from tltl_runtime.regression import suite_run
 from tltl_runtime.regression.suite.suite import read_suite
-from tltl_runtime.regression.verdict import suite_run
-from tltl_runtime.regression.verdict.suite_run import CASES, case_folder
+from tltl_runtime.regression.suite_run import CASES, case_folder
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.interfaces.cli.main import main
 
@@ -168,7 +168,7 @@ def test_a_run_stopped_in_its_first_case_reports_no_case(
     def stopped(*_: object, **__: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("tltl_runtime.regression.verdict.suite_run._judge", stopped)
+    monkeypatch.setattr("tltl_runtime.regression.suite_run._judge", stopped)
     result = tltlc("regress", "game.toml", "--json", "report.json", "--junit", "report.xml", *ONE)
     assert result.status == 130
     assert result.out == "no case was judged\n"
@@ -196,7 +196,7 @@ def test_the_error_that_ended_a_run_is_reported_although_the_page_is_unwritable(
     (folder / CASES / "hopeless" / "case.json").unlink()
     (folder / "report.html").unlink()
     (folder / "report.html").mkdir()
-    monkeypatch.setattr("tltl_runtime.regression.verdict.suite_run.judge_case", ended)
+    monkeypatch.setattr("tltl_runtime.regression.suite_run.judge_case", ended)
     result = tltlc("regress", "game.toml", *ONE)
     assert result.status == status
     assert "error[TLT0005]: cannot write `regression/game/report.html`" in result.err

@@ -10,8 +10,8 @@ from tests.runtime.regression.game import Played, edit
 from tests.runtime.regression.recorded_game import _game, _recorded  # noqa: F401
 from tltl_runtime.cli.support.regression_files import SuiteRun, json_text, write_reports
 from tltl_runtime.regression.suite.suite import SHIPPED, Suite, read_suite
+from tltl_runtime.regression.suite_run import FinishedCase, regress
 from tltl_runtime.regression.verdict.baseline import baseline_of
-from tltl_runtime.regression.verdict.suite_run import FinishedCase, regress
 from tltlc.core.record import replace
 
 NAMES = ("room:v0", "room:v1", "hopeless")

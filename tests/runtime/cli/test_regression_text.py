@@ -6,7 +6,7 @@ from tests.runtime.regression.handmade import summaries
 from tltl_runtime.cli.support.regression_text import summary_line
 from tltl_runtime.evaluation.figures import figures_of
 from tltl_runtime.regression.report.case_report import CaseReport
-from tltl_runtime.regression.retrain.retraining_result import FinishedRetraining, Outcome, RetrainingResult
+from tltl_runtime.regression.report.retraining_result import FinishedRetraining, Outcome, RetrainingResult
 from tltl_runtime.regression.verdict.verdict import Verdict
 
 TRAINED = FinishedRetraining(end="minutes", steps=1, seconds=1.0, searched=0, complete=True, shortest=None)

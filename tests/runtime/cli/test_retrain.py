@@ -23,11 +23,11 @@ from tests.runtime.regression.recorded_game import _game, recorded_game  # noqa:
 from tests.waiting import HANG_S
 from tltl_runtime.evaluation.figures import figures_of
 from tltl_runtime.policies.file import write_policy
-from tltl_runtime.regression.retrain.retraining_result import FinishedRetraining, RetrainingResult
+from tltl_runtime.regression.report.retraining_result import FinishedRetraining, RetrainingResult
 from tltl_runtime.regression.suite.suite import read_suite
+from tltl_runtime.regression.suite_run import regress
 from tltl_runtime.regression.verdict.baseline import baseline_of, read_baseline
 from tltl_runtime.regression.verdict.baseline_run import record_and_write_baseline
-from tltl_runtime.regression.verdict.suite_run import regress
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.stealth.world.physics import WorldError
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError

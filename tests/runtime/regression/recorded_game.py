@@ -9,8 +9,8 @@ import pytest
 
 from tests.runtime.regression.game import Played, with_baseline, write_game
 from tests.shared import made_once
+from tltl_runtime.regression.suite_run import regress
 from tltl_runtime.regression.verdict.baseline import baseline_of
-from tltl_runtime.regression.verdict.suite_run import regress
 
 
 @pytest.fixture(name="recorded", scope="module")

@@ -10,9 +10,9 @@ from tests.runtime.regression.recorded_game import _game, _recorded  # noqa: F40
 from tltl_runtime.regression.explain.explained_episode import summaries_of
 from tltl_runtime.regression.report.case_report import report_on
 from tltl_runtime.regression.suite.suite import read_suite
+from tltl_runtime.regression.suite_run import regress
 from tltl_runtime.regression.verdict.baseline import baseline_of
 from tltl_runtime.regression.verdict.play import CaseEpisode, JudgedCase, prepare_case
-from tltl_runtime.regression.verdict.suite_run import regress
 from tltl_runtime.regression.verdict.verdict import judge
 from tltlc.core.record import replace
 

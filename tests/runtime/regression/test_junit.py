@@ -12,7 +12,7 @@ from tests.runtime.regression.handmade import case, suite, summaries
 from tltl_runtime.evaluation.figures import figures_of
 from tltl_runtime.regression.report.case_report import CaseReport
 from tltl_runtime.regression.report.junit import junit
-from tltl_runtime.regression.retrain.retraining_result import FinishedRetraining, RetrainingResult
+from tltl_runtime.regression.report.retraining_result import FinishedRetraining, RetrainingResult
 from tltl_runtime.regression.suite.suite import Suite
 from tltlc.core.record import replace
 

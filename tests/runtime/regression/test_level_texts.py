@@ -10,9 +10,9 @@ import pytest
 from tests.runtime.regression.game import edit
 from tests.runtime.regression.handmade import PLAYED, some_episodes
 from tests.runtime.regression.recorded_game import _game, _recorded  # noqa: F401
-from tltl_runtime.regression.suite.level_texts import baseline_level, level_texts
 from tltl_runtime.regression.suite.suite import SHIPPED, read_suite
 from tltl_runtime.regression.verdict.baseline import Reference, baseline_of, read_baseline, text_sha256, write_baseline
+from tltl_runtime.regression.verdict.level_texts import baseline_level, level_texts
 from tltl_runtime.stealth.levels.file import level_names, load_level, variants
 from tltl_runtime.stealth.levels.identity import level_hash
 from tltlc.core.record import replace

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.runtime.regression.handmade import PLAYED, summaries
-from tltl_runtime.regression.explain.reasons import edits, obstacles, reasons
+from tltl_runtime.regression.report.reasons import edits, obstacles, reasons
 from tltl_runtime.regression.suite.suite import Thresholds
 from tltl_runtime.regression.verdict.verdict import Judgement, judge
 from tltl_runtime.spec.task import load_task

@@ -17,7 +17,7 @@ from tltl_runtime.policies.shipped import shipped_policies
 from tltl_runtime.regression.report.case_report import CaseReport
 from tltl_runtime.regression.report.junit import junit
 from tltl_runtime.regression.report.report_json import FORMAT, VERSION, document
-from tltl_runtime.regression.retrain.retraining_result import (
+from tltl_runtime.regression.report.retraining_result import (
     BestFailedEpisode,
     FinishedRetraining,
     Outcome,

@@ -26,9 +26,9 @@ from tltl_runtime.regression.retrain.retrain import (
     retraining_result,
 )
 from tltl_runtime.regression.suite.suite import Suite, read_suite
+from tltl_runtime.regression.suite_run import FinishedCase, regress
 from tltl_runtime.regression.verdict.baseline import baseline_of
 from tltl_runtime.regression.verdict.play import CaseEpisode, PreparedCase, play_episodes, prepare_case
-from tltl_runtime.regression.verdict.suite_run import FinishedCase, regress
 from tltl_runtime.spec.task import load_task
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.stealth.recordings.file import read_episode

@@ -8,7 +8,7 @@ import pytest
 
 from tests.runtime.regression.handmade import summaries
 from tltl_runtime.evaluation.figures import figures_of
-from tltl_runtime.regression.retrain.retraining_result import (
+from tltl_runtime.regression.report.retraining_result import (
     BestFailedEpisode,
     FinishedRetraining,
     Outcome,

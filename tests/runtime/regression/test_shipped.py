@@ -8,9 +8,9 @@ import pytest
 
 from tltl_runtime.regression.report.case_report import CaseReport
 from tltl_runtime.regression.suite.suite import SHIPPED, Case, read_suite
+from tltl_runtime.regression.suite_run import regress
 from tltl_runtime.regression.verdict.baseline import read_baseline, reference_of
 from tltl_runtime.regression.verdict.play import play_episodes, prepare_case
-from tltl_runtime.regression.verdict.suite_run import regress
 from tltl_runtime.stealth.levels.file import level_names, variants
 from tltl_runtime.support.record_json import to_json
 from tltlc.core.record import replace

@@ -26,9 +26,7 @@ from tltl_runtime.policies.policy import Policy
 from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode
 from tltl_runtime.regression.suite.dependencies import dependencies
 from tltl_runtime.regression.suite.suite import Case, Suite, read_suite
-from tltl_runtime.regression.verdict.baseline import baseline_of
-from tltl_runtime.regression.verdict.play import PreparedCase, play_episodes, prepare_case
-from tltl_runtime.regression.verdict.suite_run import (
+from tltl_runtime.regression.suite_run import (
     CASES,
     FinishedCase,
     _inputs,
@@ -37,6 +35,8 @@ from tltl_runtime.regression.verdict.suite_run import (
     lock_run,
     regress,
 )
+from tltl_runtime.regression.verdict.baseline import baseline_of
+from tltl_runtime.regression.verdict.play import PreparedCase, play_episodes, prepare_case
 from tltl_runtime.stealth.levels.default_spec import LEVELS
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.stealth.levels.identity import level_hash
@@ -202,7 +202,7 @@ def _edited_after(name: str, edit: Callable[[], object], monkeypatch: pytest.Mon
             edit()
         return ready_case
 
-    monkeypatch.setattr("tltl_runtime.regression.verdict.suite_run.prepare_case", then)
+    monkeypatch.setattr("tltl_runtime.regression.suite_run.prepare_case", then)
 
 
 def test_a_level_edited_while_it_is_played_is_reviewed_and_not_cached(
@@ -278,7 +278,7 @@ def test_a_lost_worker_ends_the_run(game: Path, monkeypatch: pytest.MonkeyPatch)
         ready_case = prepare_case(case, seed)
         return replace(ready_case, setup=replace(ready_case.setup, policy=Deadly(ready_case.setup.policy)))
 
-    monkeypatch.setattr("tltl_runtime.regression.verdict.suite_run.prepare_case", deadly)
+    monkeypatch.setattr("tltl_runtime.regression.suite_run.prepare_case", deadly)
     with pytest.raises(TltlError) as error:
         list(regress(suite, suite.cases, baseline_of(suite), Path("new"), 2, Played()))
     (diagnostic,) = error.value.diagnostics

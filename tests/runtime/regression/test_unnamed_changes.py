@@ -8,8 +8,8 @@ import pytest
 
 from tests.runtime.regression.handmade import ROOM, reference
 from tltl_runtime.regression.suite.suite import Suite, read_suite
-from tltl_runtime.regression.suite.unnamed_changes import unnamed_changes
 from tltl_runtime.regression.verdict.baseline import Reference
+from tltl_runtime.regression.verdict.unnamed_changes import unnamed_changes
 from tltl_runtime.stealth.levels.default_spec import LEVELS
 from tltl_runtime.stealth.levels.file import load_level
 

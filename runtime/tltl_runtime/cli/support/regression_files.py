@@ -14,11 +14,11 @@ from tltl_runtime.regression.report.junit import junit
 from tltl_runtime.regression.report.page.contents import NotRun, ReportedCase, SuiteReport
 from tltl_runtime.regression.report.page.page import html_report
 from tltl_runtime.regression.report.report_json import document
-from tltl_runtime.regression.suite.level_texts import baseline_level
 from tltl_runtime.regression.suite.suite import SHIPPED, Suite
+from tltl_runtime.regression.suite_run import CASES, FinishedCase, case_folder
 from tltl_runtime.regression.verdict.baseline import Reference
+from tltl_runtime.regression.verdict.level_texts import baseline_level
 from tltl_runtime.regression.verdict.play import PreparedCase
-from tltl_runtime.regression.verdict.suite_run import CASES, FinishedCase, case_folder
 from tltl_runtime.regression.verdict.verdict import Verdict
 from tltl_runtime.stealth.recordings.episode import Episode
 from tltl_runtime.stealth.recordings.file import read_episode

@@ -22,9 +22,9 @@ from tltl_runtime.regression.report.github import workflow_commands
 from tltl_runtime.regression.retrain.retrain import check_policy_folders
 from tltl_runtime.regression.suite.dependencies import Selection, files_of, select
 from tltl_runtime.regression.suite.suite import SHIPPED, Case, Suite, read_suite
-from tltl_runtime.regression.suite.unnamed_changes import unnamed_changes
+from tltl_runtime.regression.suite_run import FinishedCase, check_references, lock_run, regress
 from tltl_runtime.regression.verdict.baseline import Reference, baseline_of
-from tltl_runtime.regression.verdict.suite_run import FinishedCase, check_references, lock_run, regress
+from tltl_runtime.regression.verdict.unnamed_changes import unnamed_changes
 from tltl_runtime.support.number_text import short_list
 from tltlc.api import TltlError, cli, record, workflow_command
 

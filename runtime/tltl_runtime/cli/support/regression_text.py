@@ -9,7 +9,7 @@ import click
 from tltl_runtime.cli.support.printable import plain_text
 from tltl_runtime.evaluation.figures import Figures
 from tltl_runtime.regression.report.case_report import CaseReport
-from tltl_runtime.regression.retrain.retraining_result import OUTCOMES
+from tltl_runtime.regression.report.retraining_result import OUTCOMES
 
 _COLORS = {"pass": "green", "review": "yellow", "fail": "red"}
 

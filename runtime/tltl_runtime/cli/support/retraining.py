@@ -18,11 +18,11 @@ from tltl_runtime.cli.support.regression_display import RegressionDisplay
 from tltl_runtime.cli.support.training_progress import train_with_display
 from tltl_runtime.cli.support.training_text import minutes as minutes_text
 from tltl_runtime.evaluation.evaluate import Pool
+from tltl_runtime.regression.report.retraining_result import RetrainingResult
 from tltl_runtime.regression.retrain.retrain import configure_retraining, is_stored, make_room, retraining_result
-from tltl_runtime.regression.retrain.retraining_result import RetrainingResult
 from tltl_runtime.regression.suite.suite import SHIPPED, Suite
+from tltl_runtime.regression.suite_run import WORKER_ERRORS, FinishedCase
 from tltl_runtime.regression.verdict.baseline import baseline_command
-from tltl_runtime.regression.verdict.suite_run import WORKER_ERRORS, FinishedCase
 from tltl_runtime.training.run.record import finished_record, write_record
 from tltl_runtime.training.run.run_file import RUN, TrainingRun
 from tltlc.api import TltlError, cli, record, replace

@@ -1,1 +1,1 @@
-"""The reports on a suite: JSON, JUnit, GitHub annotations and an HTML page."""
+"""The reports on a suite: their sentences and figures, and their formats: JSON, JUnit, GitHub annotations, HTML."""

@@ -9,11 +9,11 @@ from tltl_runtime.evaluation.figures import Figures, figures_of
 from tltl_runtime.game.level_name import variant_text
 from tltl_runtime.regression.explain.explain import Finding, findings, most_frequent_end
 from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode, summaries_of
-from tltl_runtime.regression.explain.reasons import edits, obstacles, reasons
-from tltl_runtime.regression.retrain.retraining_result import RetrainingResult
-from tltl_runtime.regression.suite.level_texts import level_texts
+from tltl_runtime.regression.report.reasons import edits, obstacles, reasons
+from tltl_runtime.regression.report.retraining_result import RetrainingResult
 from tltl_runtime.regression.suite.suite import Case, Thresholds
 from tltl_runtime.regression.verdict.baseline import Identity
+from tltl_runtime.regression.verdict.level_texts import level_texts
 from tltl_runtime.regression.verdict.play import JudgedCase
 from tltl_runtime.regression.verdict.verdict import FigureChange, Judgement, Verdict
 from tltlc.api import Diagnostic, TltlError, record

@@ -15,7 +15,7 @@ from tltl_runtime.evaluation.evaluate import Pool
 from tltl_runtime.evaluation.figures import figures_of
 from tltl_runtime.policies.file import read_policy
 from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode, summaries_of
-from tltl_runtime.regression.retrain.retraining_result import (
+from tltl_runtime.regression.report.retraining_result import (
     BestFailedEpisode,
     FinishedRetraining,
     RetrainingResult,
@@ -25,9 +25,9 @@ from tltl_runtime.regression.retrain.retraining_result import (
 from tltl_runtime.regression.suite.named_files import policy_file
 from tltl_runtime.regression.suite.result_cache import cache_text, inputs_hash, read_cache
 from tltl_runtime.regression.suite.suite import LEAST_EPISODES, Case, Suite
+from tltl_runtime.regression.suite_run import WRITABLE, FinishedCase, case_folder
 from tltl_runtime.regression.verdict.confidence import rate_interval
 from tltl_runtime.regression.verdict.play import PreparedCase, play_episodes
-from tltl_runtime.regression.verdict.suite_run import WRITABLE, FinishedCase, case_folder
 from tltl_runtime.support.record_json import to_json
 from tltl_runtime.training.run.checkpoint import read_checkpoint
 from tltl_runtime.training.run.initial_policy import initial_policy_of, weights_hash

@@ -1,4 +1,1 @@
-"""Baselines, the play of cases, and the statistics of verdicts.
-
-Begin with :mod:`~tltl_runtime.regression.verdict.suite_run`.
-"""
+"""Baselines with the texts of their levels, the play of cases, and the statistics of verdicts."""

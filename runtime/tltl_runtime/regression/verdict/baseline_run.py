@@ -10,11 +10,11 @@ from typing import Final
 
 from tltl_runtime.evaluation.evaluate import Pool
 from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode, summaries_of
-from tltl_runtime.regression.suite.level_texts import level_texts
 from tltl_runtime.regression.suite.result_cache import cache_text, inputs_hash, read_cache
 from tltl_runtime.regression.suite.suite import LEAST_EPISODES, Case, Suite
 from tltl_runtime.regression.verdict.baseline import Reference, write_baseline
 from tltl_runtime.regression.verdict.confidence import rate_interval
+from tltl_runtime.regression.verdict.level_texts import level_texts
 from tltl_runtime.regression.verdict.play import OnEpisode, PreparedCase, play_episodes, prepare_case
 from tltl_runtime.regression.verdict.verdict import Verdict, judge
 from tltl_runtime.support.source_hash import sources_hash

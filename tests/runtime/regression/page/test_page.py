@@ -20,7 +20,7 @@ from tltl_runtime.regression.explain.explain import Finding
 from tltl_runtime.regression.report.case_report import CaseReport
 from tltl_runtime.regression.report.page.contents import NotRun, ReportedCase, SuiteReport
 from tltl_runtime.regression.report.page.page import html_report
-from tltl_runtime.regression.retrain.retraining_result import FinishedRetraining, RetrainingResult
+from tltl_runtime.regression.report.retraining_result import FinishedRetraining, RetrainingResult
 from tltl_runtime.stealth.level import Box
 from tltlc.automaton.fspa import Text
 from tltlc.core.record import replace

@@ -8,9 +8,9 @@ from pathlib import Path
 from tltl_runtime.game.level_name import variant_text
 from tltl_runtime.game.registry import registered_game
 from tltl_runtime.regression.suite.dependencies import dependencies
-from tltl_runtime.regression.suite.level_texts import current_text
 from tltl_runtime.regression.suite.suite import Case, Suite
 from tltl_runtime.regression.verdict.baseline import Reference, text_sha256
+from tltl_runtime.regression.verdict.level_texts import current_text
 
 
 def unnamed_changes(

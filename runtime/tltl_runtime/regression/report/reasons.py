@@ -9,9 +9,9 @@ from typing import Final
 from tltl_runtime.game.level import Level
 from tltl_runtime.game.registry import registered_game
 from tltl_runtime.regression.suite.changed_keys import changed_keys
-from tltl_runtime.regression.suite.level_texts import Texts
 from tltl_runtime.regression.suite.suite import Thresholds
 from tltl_runtime.regression.verdict.baseline import Identity
+from tltl_runtime.regression.verdict.level_texts import Texts
 from tltl_runtime.regression.verdict.verdict import Judgement, differing_figures
 from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltl_runtime.support.number_text import count_text, interval_text, percent_exactly
