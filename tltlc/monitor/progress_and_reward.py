@@ -100,7 +100,7 @@ def reward_step(
     ▲ lines 12 to 23: the episode ends on entry into an accepting or trap state, not one step later;
     ``termination="paper"`` runs the lines as printed.
     ▲ line 11: if ``spec_size`` is 0, which the line divides by, the progress in a goal state is 1.
-    The progress in a trap is 0, so nothing is gained by entering it.
+    ▲ line 11: a trap has the progress 0, so nothing is gained by entering it.
     ▲ line 14: the robustness that is added is at most 0.
     ▲ a spec that is judged at its limit ends the episode at T, or earlier if its verdict becomes
     final. Its progress is the share of T that the episode has survived.

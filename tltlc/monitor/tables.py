@@ -51,8 +51,8 @@ def _improves(fspa: Fspa, edge: Edge) -> bool:
 def _base_progress(distance: int | None, spec_size: int) -> float:
     """Return the progress of line 11 of Algorithm 1: ``(spec_size - distance) / spec_size``.
 
-    A trap, whose ``distance`` is None, has the progress 0. ▲ If ``spec_size`` is 0, which the paper
-    divides by, a goal has the progress 1.
+    A trap, whose ``distance`` is None, has the progress 0.
+    ▲ The paper divides by ``spec_size``. If it is 0, a goal has the progress 1.
     """
     if distance is None:
         return 0.0

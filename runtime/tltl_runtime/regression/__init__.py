@@ -1,4 +1,4 @@
 """Regression tests: do trained policies still meet their specs on changed levels?
 
-Begin with :mod:`~tltl_runtime.regression.verdict.suite_run`.
+Begin with :mod:`~tltl_runtime.regression.suite_run`.
 """

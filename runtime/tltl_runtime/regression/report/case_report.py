@@ -125,7 +125,7 @@ def _headline(
     2. which figure has changed;
     3. the pass rate.
 
-    ``statistics`` are the sentences of :func:`~tltl_runtime.regression.explain.reasons.reasons`.
+    ``statistics`` are the sentences of :func:`~tltl_runtime.regression.report.reasons.reasons`.
     """
     if most_frequent and judgement.rate_interval[0] < thresholds.pass_rate:
         return most_frequent
