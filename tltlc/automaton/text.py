@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import Final
 
 from tltlc.automaton.fspa import Fspa, Guard, Notation, Text
@@ -56,7 +57,9 @@ def guard_texts(fspa: Fspa) -> tuple[str, ...]:
     return tuple(texts[edge.guard.formula] for edge in fspa.edges)
 
 
+@lru_cache(maxsize=256)
 def _text(formula: Formula | Text, notation: Notation, *, endless: bool) -> str:
+    """Return a formula in a notation. The texts are cached: a game shows the label of its state in each frame."""
     if isinstance(formula, Text):
         return {"ascii": formula.ascii, "unicode": formula.unicode, "english": formula.english}[notation]
     if notation == "unicode":
