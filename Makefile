@@ -13,6 +13,9 @@ endif
 ORDERED := --random-order --random-order-seed=$(SEED)
 endif
 
+# One worker of pytest more than there are cores, because a worker often waits for a process; at most four, for the memory.
+WORKERS ?= $(shell $(PYTHON) -c 'import os; print(min(4, (os.cpu_count() or 1) + 1))')
+
 # Let Python store compiled modules, even if the shell forbids it. Otherwise each process that a test starts, and each
 # worker of pytest, compiles all modules again.
 unexport PYTHONDONTWRITEBYTECODE
@@ -54,7 +57,7 @@ test: $(VENV)/.installed-dev
 tests: $(VENV)/.installed-dev
 	@$(if $(ORDERED),echo "The order is random; the same one again: make test ORDER=random SEED=$(SEED)")
 	@# Without MAKEFLAGS, because compilers that tests start would look for the job server of `make -j`.
-	env -u MAKEFLAGS -u MFLAGS $(BIN)/python -m pytest -q -rs -n 2 -m "not slow" $(ORDERED)
+	env -u MAKEFLAGS -u MFLAGS $(BIN)/python -m pytest -q -rs -n $(WORKERS) -m "not slow" $(ORDERED)
 
 # Check that the tests depend neither on their order nor on how busy the machine is: N runs in random orders, beside BUSY
 # busy processes, with a line for each. ARGS are further arguments of pytest, such as `-n 4` or a folder.

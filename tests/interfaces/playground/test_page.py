@@ -576,6 +576,7 @@ def test_a_trace_of_an_earlier_text_has_a_warning(page: Page, mode: str) -> None
     expect(warning).to_be_hidden()
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not all((PYODIDE_FOLDER / name).is_file() for name in PYODIDE), reason="no npm package `pyodide`")
 def test_the_site_compiles_in_the_browser(browser: Browser, tmp_path: Path) -> None:
     from functools import partial
