@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import importlib
 import subprocess
 import sys
 from importlib import import_module
+from pathlib import Path
 
 import pytest
+
+import tltlc
+from tltlc.tools.fmt import format_text
 
 MOVED = {
     "tltlc.comparison:are_equivalent": "tltlc.automaton.compare",
@@ -32,6 +37,16 @@ def test_an_old_name_is_the_same_object(old: str) -> None:
         pytest.importorskip("torch")
         pytest.importorskip("gymnasium")
     assert getattr(import_module(module), name) is getattr(import_module(MOVED[old]), name)
+
+
+def test_a_folder_that_an_update_left_behind_is_not_taken_for_a_module(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "fmt" / "__pycache__").mkdir(parents=True)
+    monkeypatch.setattr(tltlc, "__path__", [*tltlc.__path__, str(tmp_path)])
+    monkeypatch.delitem(sys.modules, "tltlc.fmt", raising=False)
+    importlib.invalidate_caches()
+    assert import_module("tltlc.fmt").format_text is format_text
 
 
 def test_a_module_with_an_old_name_loads_on_first_import() -> None:

@@ -88,7 +88,7 @@ class _OldNames:
         return OldNames(_MOVED).find_spec(fullname, path, target)
 
 
-sys.meta_path.append(_OldNames)
+sys.meta_path.insert(0, _OldNames)
 
 
 def __getattr__(name: str) -> object:

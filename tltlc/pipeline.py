@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from tltlc.automaton.finite.build import DEFAULT_STATE_BUDGET, build
 from tltlc.automaton.verdict_warnings import verdict_warnings
@@ -283,6 +283,16 @@ def decode_artefact(document: object, name: str) -> Fspa:
     from tltlc.artefact.decode import decode
 
     return decode(document, name)
+
+
+def encode_artefact(fspa: Fspa) -> dict[str, Any]:
+    """Return the artefact of an automaton as JSON data, for a file that contains more than the artefact.
+
+    Errors: TLT0004 and TLT0006 if the artefact would be too large for a file.
+    """
+    from tltlc.backends.json import document_and_text
+
+    return document_and_text(fspa)[0]
 
 
 def with_params(fspa: Fspa, values: Mapping[str, str]) -> Fspa:

@@ -25,7 +25,8 @@ _HOMES = {
     "load_task": "tltl_runtime.spec.task",
 }
 
-sys.meta_path.append(
+sys.meta_path.insert(
+    0,
     OldNames(
         {
             "tltl_runtime.batch": "tltl_runtime.spec.batch",
@@ -35,7 +36,7 @@ sys.meta_path.append(
             "tltl_runtime.stealth.recording": "tltl_runtime.stealth.episode_recorder",
             "tltl_runtime.training.gail": "tltl_runtime.training.imitation.gail",
         }
-    )
+    ),
 )
 
 

@@ -2,12 +2,19 @@
 
 ``compile_source`` compiles a source text. ``read_artefact`` and ``decode_artefact`` read an
 automaton that was compiled before. ``emit`` returns the files of a target, such as ``python`` or
-``svg``.
+``svg``. ``encode_artefact`` returns an artefact as JSON data.
 """
 
 from tltlc.backends import Options as BackendOptions
 from tltlc.backends import emit
-from tltlc.pipeline import CompileOptions, compile_source, decode_artefact, read_artefact, unknown_spec
+from tltlc.pipeline import (
+    CompileOptions,
+    compile_source,
+    decode_artefact,
+    encode_artefact,
+    read_artefact,
+    unknown_spec,
+)
 
 __all__ = [
     "BackendOptions",
@@ -15,6 +22,7 @@ __all__ = [
     "compile_source",
     "decode_artefact",
     "emit",
+    "encode_artefact",
     "read_artefact",
     "unknown_spec",
 ]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from tltlc.artefact.encode import encode
 from tltlc.artefact.json_layout import layout
 from tltlc.artefact.size import check_size, least_size
@@ -13,7 +15,12 @@ TARGET = Target("json", "the automaton as JSON, for every tool that loads one", 
 
 
 def emit(fspa: Fspa, options: Options) -> Files:
-    """Return ``NAME.fspa.json``, checked against the schema.
+    """Return ``NAME.fspa.json``. Errors are those of :func:`document_and_text`."""
+    return {f"{fspa.name}.fspa.json": document_and_text(fspa)[1]}
+
+
+def document_and_text(fspa: Fspa) -> tuple[dict[str, Any], str]:
+    """Return the artefact of an automaton as JSON data and as the text of a file, checked against the schema.
 
     Raises:
         TltlError: TLT0004 the file would be larger than :data:`tltlc.io.limits.ARTEFACT` allows;
@@ -31,4 +38,4 @@ def emit(fspa: Fspa, options: Options) -> Files:
         blocks.append(block)
         size, commas = size + len(block.encode()), commas + block.count(",")
         check_size(subject, size, commas)
-    return {f"{fspa.name}.fspa.json": "".join(blocks)}
+    return document, "".join(blocks)

@@ -12,7 +12,10 @@ if TYPE_CHECKING:
 
 
 class OldNames:
-    """An import finder for old names of modules; append it to :data:`sys.meta_path`.
+    """An import finder for old names of modules; insert it at the front of :data:`sys.meta_path`.
+
+    Behind Python's own finders, a folder that an update left behind, with nothing but compiled
+    files in it, would be taken for a package with an old name.
 
     ``new_names`` maps old names to new names. The import of an old name imports the module with the
     new name, and returns another module object with the same attributes.

@@ -82,9 +82,8 @@ def to_bytes(policy: Policy) -> bytes:
 
 def check_size(network: Network, fspa: Fspa, sensors: Sensors) -> None:
     """Raise TltlError, TLT0862, if a policy with this network is too large for a file."""
-    (artefact,) = compiler.emit("json", fspa).values()
     # Encoded twice: the card is a JSON string in the JSON header of the file.
-    text = json.dumps(json.dumps(json.loads(artefact), ensure_ascii=False), ensure_ascii=False)
+    text = json.dumps(json.dumps(compiler.encode_artefact(fspa), ensure_ascii=False), ensure_ascii=False)
     weights = 2 * weight_count(network, _observation_shapes(fspa, sensors), registered_game().branches)
     size = weights + len(text.encode()) + _RECORD_BYTES
     if size > MAX_BYTES:
@@ -93,10 +92,9 @@ def check_size(network: Network, fspa: Fspa, sensors: Sensors) -> None:
 
 def card_json(card: Card) -> dict[str, Any]:
     """Return the card as JSON data, with the artefact of the spec in place of ``fspa``."""
-    (artefact,) = compiler.emit("json", card.fspa).values()
     document: dict[str, Any] = {"format": FORMAT, "version": VERSION}
     document |= {name: to_json(getattr(card, name)) for name in Card.__match_args__ if name != "fspa"}
-    return document | {"artefact": json.loads(artefact)}
+    return document | {"artefact": compiler.encode_artefact(card.fspa)}
 
 
 def from_bytes(data: bytes, name: str) -> Policy:

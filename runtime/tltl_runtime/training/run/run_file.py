@@ -100,7 +100,6 @@ def write_run(run: TrainingRun) -> None:
 
     Raises TltlError, TLT0005, if the file cannot be written.
     """
-    (artefact,) = compiler.emit("json", run.fspa).values()
     # Paths are absolute, because the training may be resumed from another folder.
     level = str(Path(run.level).absolute()) if run.level.endswith(".toml") else run.level
     document = {
@@ -112,7 +111,7 @@ def write_run(run: TrainingRun) -> None:
         "demonstrations": run.demonstrations and str(Path(run.demonstrations).absolute()),
         "initial": run.initial and to_json(replace(run.initial, path=str(Path(run.initial.path).absolute()))),
         "level_hash": current_level_hash(run),
-        "artefact": json.loads(artefact),
+        "artefact": compiler.encode_artefact(run.fspa),
     }
     text = json.dumps(document, indent=1, ensure_ascii=False) + "\n"
     fileio.write_files(run.folder, {RUN: text}, WRITABLE, durable=True, over_inputs=True)
