@@ -72,7 +72,7 @@ def test_a_counterexample_has_no_impossible_samples(one: Formula, other: Formula
     assert len(counterexample.prefix) <= min((len(trace) for trace in expected), default=len(counterexample.prefix))
 
 
-def test_after_a_goal_less_remains() -> None:
+def test_reaching_a_goal_leaves_strictly_less_to_do() -> None:
     fspa = finite("F a & F b")
     is_left = state_inclusion(fspa)
     after = {edge.target for edge in fspa.edges if edge.source == 0} - {0}

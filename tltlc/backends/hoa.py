@@ -132,7 +132,7 @@ class _EdgeLabels:
         return "@allowed" if text == "t" else f"@allowed & ({text})" if "|" in text else f"@allowed & {text}"
 
     def _short(self, primes: Sequence[Implicant]) -> str:
-        """Return the disjunction of the prime implicants as a short formula over numbers of atoms.
+        """Return the disjunction of the prime implicants as a short formula, with atoms as their numbers.
 
         Raises OutOfSteps or TooManyPrimes if this takes too much work.
         """

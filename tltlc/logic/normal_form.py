@@ -75,7 +75,7 @@ def _expand(signed: _Signed) -> tuple[Op, tuple[_Signed, ...]]:
 
 
 def _gather(op: Op, operands: tuple[_Signed, ...]) -> tuple[_Signed, ...]:
-    """Flatten operands that have the operator ``op``, too; return each operand once, in order."""
+    """Replace each operand whose own operator is also ``op`` by its operands; return each once, in order."""
     gathered: list[_Signed] = []
     seen: set[_Signed] = set()
     stack = list(reversed(operands))

@@ -38,7 +38,7 @@ def test_the_python_example_of_the_readme_runs(capsys, monkeypatch) -> None:  # 
     assert capsys.readouterr().out.startswith("3 ['")
 
 
-def test_the_readme_names_every_command() -> None:
+def test_the_readme_names_every_built_in_command() -> None:
     for command in BUILT_IN:
         assert f"`tltlc {command} " in README
 

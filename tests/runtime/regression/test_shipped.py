@@ -77,7 +77,7 @@ def test_a_corridor_with_more_bends_does_not_fail(judged: Mapping[str, CaseRepor
 
 @pytest.mark.slow
 @pytest.mark.parametrize("level", ["cover_and_hide", "branching"])
-def test_a_guard_that_looks_into_covers_does_not_pass(judged: Mapping[str, CaseReport], level: str) -> None:
+def test_a_level_whose_guard_looks_into_covers_does_not_pass(judged: Mapping[str, CaseReport], level: str) -> None:
     report = judged[f"{level}:v2"]
     assert report.verdict != "pass"
     (death, *_) = [finding.text for finding in report.explanation if finding.text.startswith("dies ")]

@@ -400,7 +400,7 @@ def test_a_word_joined_with_a_negation_is_no_misspelt_keyword(clause: str) -> No
     assert not [*all_fixes(in_spec(clause))]
 
 
-def test_a_name_with_another_first_letter_is_no_operator() -> None:
+def test_a_name_is_corrected_to_an_operator_only_if_the_first_letters_agree() -> None:
     assert [fix.title for _, fix in all_fixes(in_spec("reach exit a"))] == ["Write `exit(a)`"]
     assert [fix.title for _, fix in all_fixes(in_spec("require nxt a"))] == ["Write `next`"]
 

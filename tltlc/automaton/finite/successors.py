@@ -116,7 +116,10 @@ class Successors:
         self._of_state[self.diagrams.obligations.variable[state]] = transition
 
     def of_obligation(self, obligation: int) -> int:
-        """Return the transition of an obligation."""
+        """Return the transition of an obligation.
+
+        It is a node of a diagram that says, for each letter, what remains to be done.
+        """
         known = self._of_obligation
         if obligation in known:
             return known[obligation]

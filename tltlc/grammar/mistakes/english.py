@@ -482,7 +482,7 @@ def _goal_starts(failure: ParseFailure, at: int) -> list[int]:
 
 
 def _is_of_every_step(failure: ParseFailure, at: int) -> bool:
-    """Whether a condition at index ``at`` is about every step, not about one."""
+    """Whether the condition at token ``at`` is certainly about every step; if False, it may be about one."""
     is_kept = failure.tokens[0].text == "keep" and failure.start == "clause"
     return at == 0 or ((is_kept or has_always_before(failure)) and is_clear_here(failure, failure.tokens[at].text))
 

@@ -5,8 +5,9 @@ suite's ``error``: the error divided by the number of cases.
 
 1. There is no verdict before 25 episodes.
 2. ``fail`` if the pass rate is certainly below ``thresholds.fail_rate``.
-3. ``review`` if the pass rate is certainly at least ``thresholds.fail_rate``, and it is certainly
-   below ``thresholds.pass_rate`` or progress or reward has certainly changed.
+3. ``review`` if the pass rate is certainly at least ``thresholds.fail_rate``, and one of these
+   holds: it is certainly below ``thresholds.pass_rate``; progress has certainly changed; reward has
+   certainly changed.
 4. ``pass`` if the pass rate is certainly at least ``thresholds.pass_rate``, and the means of
    progress and reward differ from the baseline by half of their thresholds at most.
 5. No verdict yet if episodes are left to play.
@@ -16,12 +17,16 @@ suite's ``error``: the error divided by the number of cases.
 
 A statement on the pass rate is certain if it follows from the confidence interval of the rate,
 whose error over all evaluations is e
-(:func:`~tltl_runtime.regression.verdict.confidence.rate_interval`). Means are compared over equal
-seeds. A figure has certainly changed if both of these hold: the means differ by its threshold at
-least; and the p-value of the hypothesis that the policy's mean is within the threshold of the
-recorded one is e/4 at most, over all evaluations
-(:func:`~tltl_runtime.regression.verdict.confidence.mean_p_value`). So the probability that a
-certain verdict is wrong, by the rate or by the figures, is e at most, whatever the pass rate is.
+(:func:`~tltl_runtime.regression.verdict.confidence.rate_interval`). A figure (progress or reward)
+has certainly changed if both of these hold:
+
+- The means over equal seeds differ by its threshold at least.
+- A test refutes that the policy's mean is within the threshold of the mean of all episodes of the
+  baseline. Its p-value is e/4 at most, over all evaluations
+  (:func:`~tltl_runtime.regression.verdict.confidence.mean_p_value`).
+
+Each end of the interval has the error e/2, and each of the two figures e/4. So the probability that
+a certain verdict is wrong is e at most, whatever the pass rate is.
 """
 
 from __future__ import annotations

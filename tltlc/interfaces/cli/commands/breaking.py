@@ -45,8 +45,8 @@ def command(paths: tuple[str, ...], against: str, settings: CompileSettings, for
     """Report changes of specs, artefacts and libraries that break a game or a recorded baseline.
 
     Errors are changes that break it: a spec is gone or stricter, the game must supply a new signal, a predicate has
-    another meaning. Warnings are changes of other numbers or behaviour. Notes need no action. The exit status is 1 if
-    there is an error. The old files use the old versions of the files that they import.
+    another meaning. Warnings are changes of numbers or behaviour after which everything still works. Notes need no
+    action. The exit status is 1 if there is an error. The old files use the old versions of the files that they import.
     """
     from tltlc.interfaces.cli.report import Report
     from tltlc.tools.diff.breaking import version_changes
