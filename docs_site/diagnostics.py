@@ -7,7 +7,7 @@ from itertools import groupby
 from typing import Any, Final
 
 from docs_site.page import Page
-from tltlc.diagnostics import codes
+from tltlc.diagnostics import code_pages
 
 FOLDER: Final = "tltlc/diagnostics/pages"
 
@@ -29,8 +29,8 @@ FAMILIES: Final = {
 def pages() -> Iterator[Page]:
     """Yield the list of all codes, then the page of each code."""
     yield Page("diagnostics/index.md", _index(), f"{FOLDER}/index.md")
-    for code in codes.codes():
-        yield Page(_uri(code), codes.page(code), f"{FOLDER}/{code}.md")
+    for code in code_pages.codes():
+        yield Page(_uri(code), code_pages.page(code), f"{FOLDER}/{code}.md")
 
 
 def navigation() -> list[Any]:
@@ -43,24 +43,24 @@ def navigation() -> list[Any]:
 
 def homes() -> dict[str, str]:
     """Return the page of each file of a code, for links to the files."""
-    return {FOLDER: "diagnostics/index.md"} | {f"{FOLDER}/{code}.md": _uri(code) for code in codes.codes()}
+    return {FOLDER: "diagnostics/index.md"} | {f"{FOLDER}/{code}.md": _uri(code) for code in code_pages.codes()}
 
 
 def _index() -> str:
     lines = [
         "# Diagnostics",
         "",
-        f"Every message of `tltlc` has one of these {len(codes.codes())} codes. `tltlc explain TLT0305` shows the page",
-        "of a code in the terminal.",
+        f"Every message of `tltlc` has one of these {len(code_pages.codes())} codes. `tltlc explain TLT0305` shows the",
+        "page of a code in the terminal.",
     ]
     for family, members in _families():
         lines += ["", f"## {FAMILIES[family]}", "", "| code | means |", "|---|---|"]
-        lines += [f"| {code} | {codes.title(code).replace('|', '&#124;')} |" for code in members]
+        lines += [f"| {code} | {code_pages.title(code).replace('|', '&#124;')} |" for code in members]
     return "\n".join(lines) + "\n"
 
 
 def _families() -> Iterator[tuple[str, list[str]]]:
-    return ((family, [*members]) for family, members in groupby(codes.codes(), key=lambda code: code[:5]))
+    return ((family, [*members]) for family, members in groupby(code_pages.codes(), key=lambda code: code[:5]))
 
 
 def _uri(code: str) -> str:

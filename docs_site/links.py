@@ -7,7 +7,7 @@ import re
 from collections.abc import Mapping
 from typing import Final
 
-from tltlc.diagnostics.codes import codes
+from tltlc.diagnostics.code_pages import codes
 
 _PART: Final = re.compile(
     # Fenced code, headings, indented lines without a link, code in a line.

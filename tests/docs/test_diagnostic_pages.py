@@ -11,12 +11,12 @@ import pytest
 import tltlc
 from tests.docs.blocks import blocks
 from tltlc.core.source import SourceFile
-from tltlc.diagnostics import codes
+from tltlc.diagnostics import code_pages
 from tltlc.pipeline import compile_source
 from tltlc.tools.lint.allow import CODE as ALLOWED_IN_VAIN
 from tltlc.tools.lint.rules import rules
 
-FOLDER = Path(codes.__file__).parent / "pages"
+FOLDER = Path(code_pages.__file__).parent / "pages"
 ABBREVIATED = {"TLT0012", "TLT0103", "TLT0317"}
 """The causes of these codes are too long for a page; the examples are abbreviated."""
 AT_RUN_TIME = {"TLT0613": "TLT0306", "TLT0616": "TLT0306"}
@@ -29,7 +29,7 @@ OF_RULES = {*(rule.code for rule in rules()), ALLOWED_IN_VAIN}
 """Codes of the linter's rules; tests/tools/lint/test_pages.py runs their examples."""
 
 
-@pytest.mark.parametrize("code", sorted(set(codes.codes()) - ABBREVIATED - OF_RULES))
+@pytest.mark.parametrize("code", sorted(set(code_pages.codes()) - ABBREVIATED - OF_RULES))
 def test_the_example_causes_its_code(code: str, inside: Path) -> None:
     examples = [block for block in blocks(FOLDER / f"{code}.md") if block.kind == "tltl"]
     for block in examples:
@@ -44,4 +44,4 @@ def test_the_example_causes_its_code(code: str, inside: Path) -> None:
         from_a_source = ("TLT0010" <= code < "TLT0500" and code != "TLT0308") or code in FROM_A_SOURCE_TOO
         assert {diagnostic.code for diagnostic in diagnostics} <= {caused}
         assert bool(diagnostics) == from_a_source
-        assert caused == code or re.search(rf"\({caused}\)", codes.page(code))
+        assert caused == code or re.search(rf"\({caused}\)", code_pages.page(code))

@@ -13,7 +13,7 @@ from tltlc.automaton.finite.build import DEFAULT_STATE_BUDGET
 from tltlc.automaton.guards import PRIME_LIMIT, TOTAL_PRIME_LIMIT
 from tltlc.core.record import replace
 from tltlc.core.source import SourceFile
-from tltlc.diagnostics.codes import codes
+from tltlc.diagnostics.code_pages import codes
 from tltlc.grammar import keywords, lalr, lexer, nesting
 from tltlc.grammar.builder import Builder
 from tltlc.grammar.lexer import tokenize

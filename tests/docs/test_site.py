@@ -18,7 +18,7 @@ from tests.docs.blocks import DOCS, ROOT
 from tests.runtime.regression.page import chromium
 from tests.shared import made_once
 from tests.waiting import HANG_S
-from tltlc.diagnostics.codes import codes, title
+from tltlc.diagnostics.code_pages import codes, title
 from tltlc.interfaces.cli.command_line import BUILT_IN
 
 MISSING = [name for name in ("mkdocs", "material", "pymdownx") if find_spec(name) is None]

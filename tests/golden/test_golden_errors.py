@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from tests.golden.cases import Case, cases
-from tltlc.diagnostics.codes import codes, page, title
+from tltlc.diagnostics.code_pages import codes, page, title
 from tltlc.interfaces.cli.main import main
 
 ROOT = Path(__file__).parents[2]

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from tests.calls import calls
 from tests.fuzzing import times
 from tltlc.core.source import SourceFile
-from tltlc.diagnostics.codes import codes
+from tltlc.diagnostics.code_pages import codes
 from tltlc.diagnostics.render import FORMATS, render
 from tltlc.grammar.parser import MAX_CHARACTERS, parse, parse_formula
 from tltlc.grammar.tables import load

@@ -43,7 +43,7 @@ class Fix:
 class Diagnostic:
     """A message: what happened (``title``), where (``labels``, the main one first), and a suggestion (``help``).
 
-    ``code`` is one of the codes of :mod:`tltlc.diagnostics.codes`. ``fixes`` are edits that a
+    ``code`` is one of the codes of :mod:`tltlc.diagnostics.code_pages`. ``fixes`` are edits that a
     program can apply to the source of the first label, the likeliest fix first.
     """
 

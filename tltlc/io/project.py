@@ -184,7 +184,7 @@ def _lint_levels(table: object, source: SourceFile, errors: list[Diagnostic]) ->
 
 def _is_lint_code(text: str) -> bool:
     """Whether the text is the code of a lint diagnostic."""
-    from tltlc.diagnostics.codes import codes
+    from tltlc.diagnostics.code_pages import codes
 
     return text.startswith("TLT04") and text in codes()
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tltlc.diagnostics.codes import codes
+from tltlc.diagnostics.code_pages import codes
 from tltlc.interfaces.cli.command_line import BUILT_IN
 
 

@@ -9,13 +9,13 @@ import pytest
 
 from tests.docs.blocks import blocks
 from tltlc.core.source import SourceFile
-from tltlc.diagnostics import codes
+from tltlc.diagnostics import code_pages
 from tltlc.tools.lint import allow
 from tltlc.tools.lint import rules as package
 from tltlc.tools.lint.rules import rules
 from tltlc.tools.lint.run import lint
 
-FOLDER = Path(codes.__file__).parent / "pages"
+FOLDER = Path(code_pages.__file__).parent / "pages"
 CODES = sorted([*(rule.code for rule in rules()), allow.CODE])
 
 
@@ -41,7 +41,7 @@ def test_the_preferred_example_causes_no_finding(code: str) -> None:
 
 @pytest.mark.parametrize("code", CODES)
 def test_every_page_has_the_same_sections(code: str) -> None:
-    text = codes.page(code)
+    text = code_pages.page(code)
     headings = re.findall(r"^## (.*)$", text, re.MULTILINE)
     assert headings == ["Example", "How to fix it", "Why"]
     assert re.findall(r"(\w+):\n\n```tltl\n", text) == ["Avoid", "Prefer"]

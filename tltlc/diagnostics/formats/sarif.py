@@ -10,7 +10,7 @@ from urllib.parse import quote
 
 from tltlc import __version__
 from tltlc.core.source import SourceFile, Span
-from tltlc.diagnostics.codes import codes, title
+from tltlc.diagnostics.code_pages import codes, title
 from tltlc.diagnostics.diagnostic import Diagnostic, Fix, Label
 
 _SCHEMA: Final = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/os/schemas/sarif-schema-2.1.0.json"

@@ -95,22 +95,22 @@ def _print_code_page(code: str) -> int:
 
     For a prefix, list the codes that start with it, with their titles.
     """
-    from tltlc.diagnostics import codes
+    from tltlc.diagnostics import code_pages
 
     full_code = re.sub(r"(?i)\A(?:tlt)?", "TLT", code.strip(), count=1)
-    if full_code not in codes.codes():
-        family = codes.codes_with_prefix(full_code)
+    if full_code not in code_pages.codes():
+        family = code_pages.codes_with_prefix(full_code)
         if not family:
-            *first, last = (f"`{nearest}`" for nearest in codes.nearest_codes(full_code))
+            *first, last = (f"`{nearest}`" for nearest in code_pages.nearest_codes(full_code))
             candidates = f"{', '.join(first)} or {last}"
             raise click.UsageError(
                 f"there is no error code `{code}`: did you mean {candidates}?", click.get_current_context()
             )
         from tltlc.interfaces.cli.commands.list import show
 
-        show([{"name": member, "doc": codes.title(member)} for member in family])
+        show([{"name": member, "doc": code_pages.title(member)} for member in family])
         return 0
-    text = codes.page(full_code)
+    text = code_pages.page(full_code)
     if sys.stdout.isatty():
         from rich.console import Console
         from rich.markdown import Markdown

@@ -107,10 +107,10 @@ def _targets() -> Iterator[Row]:
 
 
 def _codes() -> Iterator[Row]:
-    from tltlc.diagnostics import codes
+    from tltlc.diagnostics import code_pages
 
-    for code in codes.codes():
-        yield {"name": code, "doc": codes.title(code)}
+    for code in code_pages.codes():
+        yield {"name": code, "doc": code_pages.title(code)}
 
 
 def _levels() -> Iterator[Row]:

@@ -1,6 +1,6 @@
 import pytest
 
-from tltlc.diagnostics.codes import codes, page, title
+from tltlc.diagnostics.code_pages import codes, page, title
 
 
 def test_codes_are_in_order_and_have_titles() -> None:
