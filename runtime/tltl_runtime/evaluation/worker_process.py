@@ -5,7 +5,6 @@ from __future__ import annotations
 import multiprocessing
 import os
 import signal
-import sys
 import threading
 from collections.abc import Callable
 from concurrent.futures import Future, ProcessPoolExecutor
@@ -16,7 +15,7 @@ from typing import Final
 from tltl_runtime.evaluation.player import EpisodePlayer, EpisodeRequest, PlayedEpisode
 from tltl_runtime.evaluation.scheduler import WorkerLostError
 from tltl_runtime.game.registry import registered_game
-from tltl_runtime.support.child_processes import block_interrupts
+from tltl_runtime.support.child_processes import block_interrupts, worker_context
 
 
 class WorkerProcess:
@@ -50,18 +49,7 @@ class WorkerProcess:
 
 
 def _context() -> BaseContext:
-    """Return the context of :mod:`multiprocessing` that starts workers.
-
-    On Linux it is a fork server, which loads torch and the game once for all workers. A forked
-    process inherits the locks of all threads, but not the threads, and may hang. Forking is safe
-    here: the fork server computes nothing, so torch starts no threads in it, and OpenBLAS ends its
-    threads before a fork.
-    """
-    if sys.platform != "linux":
-        return multiprocessing.get_context("spawn")
-    context = multiprocessing.get_context("forkserver")
-    context.set_forkserver_preload(["tltl_runtime.evaluation.player", *registered_game().modules])
-    return context
+    return worker_context(["tltl_runtime.evaluation.player", *registered_game().modules])
 
 
 _PROCESS_ENDED: Final = "its process ended; where it said nothing before, it was perhaps killed for want of memory"

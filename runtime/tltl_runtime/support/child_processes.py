@@ -1,10 +1,29 @@
-"""Start child processes with SIGINT blocked, so that only the parent handles Ctrl-C."""
+"""How worker processes start, and how to start them with SIGINT blocked, so that only the parent handles Ctrl-C."""
 
 from __future__ import annotations
 
+import multiprocessing
 import signal
-from collections.abc import Iterator
+import sys
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
+from multiprocessing.context import ForkServerContext, SpawnContext
+
+
+def worker_context(preloaded: Iterable[str]) -> ForkServerContext | SpawnContext:
+    """Return the context of :mod:`multiprocessing` that starts workers.
+
+    On Linux it is a fork server: it loads the modules ``preloaded`` once for all workers of this
+    process. The first call decides which. A forked process inherits the locks of all threads, but
+    not the threads, and may hang. Forking is safe here: the fork server computes nothing, so torch
+    starts no threads in it, and OpenBLAS ends its threads before a fork. Workers have the
+    environment variables with which the fork server started.
+    """
+    if sys.platform != "linux":
+        return multiprocessing.get_context("spawn")
+    context = multiprocessing.get_context("forkserver")
+    context.set_forkserver_preload(list(preloaded))
+    return context
 
 
 @contextmanager

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import logging
-import multiprocessing
 import weakref
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Final, Literal, NoReturn
 
 import gymnasium
@@ -16,6 +15,7 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import DTypeLike, NDArray
 
 from tltl_runtime.spec.wrapper import TltlEnv
+from tltl_runtime.support.child_processes import worker_context
 from tltl_runtime.vector.actions import check_batch
 from tltl_runtime.vector.arguments import check_arguments, split_mask
 from tltl_runtime.vector.cores import cores
@@ -115,7 +115,7 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         self._observations: Any = None
         self._unproven: set[int] = set()
         """Workers that were replaced and have not taken a step since."""
-        context = multiprocessing.get_context("spawn")
+        context = worker_context(["tltl_runtime.vector.worker", *_modules(example)])
         self._rows = Rows(context, self.num_envs, self.single_observation_space, self.single_action_space, info)
         self._workers: Workers | RayWorkers
         if workers == "ray":
@@ -326,6 +326,16 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
             )
             for row in range(share.start, share.stop)
         )
+
+
+def _modules(env: gymnasium.Env[Any, Any]) -> Iterator[str]:
+    """Yield the modules of an environment and of its wrappers, except that of the script that runs."""
+    while True:
+        if type(env).__module__ != "__main__":
+            yield type(env).__module__
+        if not isinstance(env, gymnasium.Wrapper):
+            return
+        env = env.env
 
 
 def _has_spec(env: gymnasium.Env[Any, Any]) -> bool:

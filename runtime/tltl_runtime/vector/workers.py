@@ -7,7 +7,7 @@ import selectors
 import time
 from collections.abc import Iterator, Sequence
 from multiprocessing.connection import Connection
-from multiprocessing.context import SpawnContext, SpawnProcess
+from multiprocessing.context import ForkServerContext, ForkServerProcess, SpawnContext, SpawnProcess
 from typing import Any, Final
 
 from gymnasium.vector import AutoresetMode
@@ -28,15 +28,16 @@ _TO_END_S: Final = 5.0
 class Workers:
     """Processes that step environments; worker w has the w-th slice of ``shares``.
 
-    Processes are spawned, not forked: forking while threads of torch or OpenBLAS exist is unsafe. A
-    command to all workers returns their answers in order of the workers. A worker is lost if it
-    ends, raises, or is silent for ``timeout`` seconds. Its answer is then a :class:`Loss`, and
-    ``start`` starts a new process in its place.
+    A process is never forked from this one: forking while threads of torch or OpenBLAS exist is
+    unsafe (:func:`~tltl_runtime.support.child_processes.worker_context`). A command to all workers
+    returns their answers in order of the workers. A worker is lost if it ends, raises, or is silent
+    for ``timeout`` seconds. Its answer is then a :class:`Loss`, and ``start`` starts a new process
+    in its place.
     """
 
     def __init__(
         self,
-        context: SpawnContext,
+        context: ForkServerContext | SpawnContext,
         functions: Sequence[EnvFunction],
         shares: Sequence[slice],
         rows: Rows,
@@ -46,7 +47,7 @@ class Workers:
         self.shares = tuple(shares)
         self._context, self._functions, self._rows = context, functions, rows
         self._autoreset, self._timeout = autoreset, timeout
-        self._processes: dict[int, SpawnProcess] = {}
+        self._processes: dict[int, ForkServerProcess | SpawnProcess] = {}
         self._connections: dict[int, Connection] = {}
         self._pending: set[int] = set()
         """Workers whose answers are pending; the selector watches only these."""
