@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import os
+import sys
+from contextlib import closing
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 import gymnasium
@@ -165,6 +169,18 @@ def test_workers_run_any_environment_with_spaces_of_fixed_size() -> None:
     assert env.call("seeds") == ([1, None], [2, None], [1, None])
     env.close()
     env.close()
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="other systems spawn workers")
+def test_one_process_that_has_loaded_the_game_starts_all_workers() -> None:
+    parents = set()
+    for _ in range(2):
+        with closing(make_vec("cover_and_hide", num_envs=2, workers=2)) as env:
+            parents |= {
+                int(Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[1]) for pid in env.worker_pids
+            }
+    (parent,) = parents
+    assert parent != os.getpid()
 
 
 def test_idle_workers_prepare_the_next_reset() -> None:
