@@ -69,13 +69,13 @@ def exists(reference: str, path: Path) -> bool:
             return exists(f"{source}.{reference}", path)
         return reference in names or any(name.endswith(f".{reference}") for name in names)
     for length in range(len(parts), 0, -1):
-        found = module_path(parts[:length])
-        if found is not None:
+        module = module_path(parts[:length])
+        if module is not None:
             rest = ".".join(parts[length:])
             first = parts[length] if rest else ""
-            if "." in rest and first in imported_from(found):
-                return exists(f"{imported_from(found)[first]}.{rest}", path)
-            return not rest or rest in names_in(found)
+            if "." in rest and first in imported_from(module):
+                return exists(f"{imported_from(module)[first]}.{rest}", path)
+            return not rest or rest in names_in(module)
     return False
 
 
