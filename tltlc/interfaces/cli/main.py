@@ -32,12 +32,15 @@ def end_at_once(number: int = 2, frame: "FrameType | None" = None) -> "NoReturn"
 
 def _run_process() -> "NoReturn":
     try:
+        import atexit
         import gc
         import signal
 
         # Loading the modules and compiling a spec makes fewer objects than this, and none of them is garbage. With
         # Python's own threshold, the collector would visit them about a hundred times.
         gc.set_threshold(100_000)
+        # At its exit, Python collects garbage whatever the threshold is. It leaves out frozen objects.
+        atexit.register(gc.freeze)
         if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
             signal.signal(signal.SIGINT, end_at_once)
         from tltlc.interfaces.cli.streams import open_missing_streams
