@@ -1,4 +1,4 @@
-"""Make a page for each diagnostic code, and a page that lists the codes by family."""
+"""Make a page for each diagnostic code, a page that lists the codes by family, and the table of the lint rules."""
 
 from __future__ import annotations
 
@@ -8,6 +8,8 @@ from typing import Any, Final
 
 from docs_site.page import Page
 from tltlc.diagnostics import code_pages
+from tltlc.tools.lint import allow
+from tltlc.tools.lint.rules import rules
 
 FOLDER: Final = "tltlc/diagnostics/pages"
 
@@ -55,8 +57,21 @@ def _index() -> str:
     ]
     for family, members in _families():
         lines += ["", f"## {FAMILIES[family]}", "", "| code | means |", "|---|---|"]
-        lines += [f"| {code} | {code_pages.title(code).replace('|', '&#124;')} |" for code in members]
+        lines += [f"| {code} | {_title(code)} |" for code in members]
     return "\n".join(lines) + "\n"
+
+
+def lint_rules() -> str:
+    """Return a table of the lint rules with links to their pages in the project, for pages in ``docs/guides/``."""
+    severities = {**{rule.code: rule.severity for rule in rules()}, allow.CODE: allow.SEVERITY}
+    lines = ["| code | severity | finds |", "|---|---|---|"]
+    for code, severity in sorted(severities.items()):
+        lines.append(f"| [{code}](../../{FOLDER}/{code}.md) | {severity} | {_title(code)} |")
+    return "\n".join(lines) + "\n"
+
+
+def _title(code: str) -> str:
+    return code_pages.title(code).replace("|", "&#124;")
 
 
 def _families() -> Iterator[tuple[str, list[str]]]:

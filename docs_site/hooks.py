@@ -36,6 +36,8 @@ COPIED: Final = {
 
 _ROW: Final = re.compile(r"^\|.*$", re.MULTILINE)
 _CODE: Final = re.compile(r"`[^`]*`")
+_LINT_RULES: Final = "<!-- lint rules -->\n"
+"""Stands in a page for the table of the lint rules."""
 _COMMENT: Final = re.compile(r"^<!--.*?-->\n", re.DOTALL | re.MULTILINE)
 
 
@@ -60,10 +62,14 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
 
 
 def on_page_markdown(markdown: str, page: SitePage, config: MkDocsConfig, files: Files) -> str:
-    """Adapt the Markdown of a page to the site, and remove comments, which are for the tests of the pages."""
+    """Adapt the Markdown of a page to the site, and remove comments, which are for the tests of the pages.
+
+    The table of the lint rules replaces its mark.
+    """
     uri = page.file.src_uri
     origin = generated_pages()[uri].origin if uri in generated_pages() else f"docs/{uri}"
-    text = _ROW.sub(lambda row: _CODE.sub(_unescape_bars, row[0]), _COMMENT.sub("", markdown))
+    text = markdown.replace(_LINT_RULES, diagnostics.lint_rules()) if _LINT_RULES in markdown else markdown
+    text = _ROW.sub(lambda row: _CODE.sub(_unescape_bars, row[0]), _COMMENT.sub("", text))
     return links.to_pages(text, origin, uri, homes())
 
 

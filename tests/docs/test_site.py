@@ -20,6 +20,8 @@ from tests.shared import made_once
 from tests.waiting import HANG_S
 from tltlc.diagnostics.code_pages import codes, title
 from tltlc.interfaces.cli.command_line import BUILT_IN
+from tltlc.tools.lint import allow
+from tltlc.tools.lint.rules import rules
 
 MISSING = [name for name in ("mkdocs", "material", "pymdownx") if find_spec(name) is None]
 pytestmark = pytest.mark.skipif(bool(MISSING), reason=f"not installed: {', '.join(MISSING)}")
@@ -98,6 +100,13 @@ def test_every_command_has_a_page(site: Path, pages: dict[Path, ParsedPage]) -> 
     assert all(
         text in compile_ for text in ("--state-budget N", "-h, --help", "tltlc compile [OPTIONS] SPEC", "Examples")
     )
+
+
+def test_the_guide_lists_every_lint_rule(pages: dict[Path, ParsedPage], site: Path) -> None:
+    guide = pages[site / "guides" / "linting.html"]
+    listed = dict(re.findall(r"(TLT04[0-9]{2})\n(\w+)\n", guide.text))
+    assert listed == {**{rule.code: rule.severity for rule in rules()}, allow.CODE: allow.SEVERITY}
+    assert {f"../diagnostics/{code}.html" for code in listed} <= guide.links
 
 
 def test_no_page_loads_from_another_host(site: Path, pages: dict[Path, ParsedPage]) -> None:

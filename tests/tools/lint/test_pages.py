@@ -56,9 +56,3 @@ def test_every_rule_has_its_own_tests() -> None:
     folder, tests = Path(package.__file__).parent, Path(__file__).parent / "rules"
     names = {path.name for path in folder.glob("[!_]*.py")}
     assert {path.name.removeprefix("test_") for path in tests.glob("test_*.py")} == names
-
-
-def test_the_guide_lists_every_rule_with_its_severity() -> None:
-    guide = (Path(__file__).parents[3] / "docs" / "guides" / "linting.md").read_text(encoding="utf-8")
-    listed = dict(re.findall(r"^\| (TLT04[1-3][0-9]) \| (\w+) \|", guide, re.MULTILINE))
-    assert listed == {**{rule.code: rule.severity for rule in rules()}, allow.CODE: allow.SEVERITY}
