@@ -19,7 +19,7 @@ RECORD = Path(__file__).parents[3] / "docs" / "training.md"
 
 
 def test_shipped_policies_are_found_by_the_names_of_levels() -> None:
-    assert set(shipped_policies()) == set(level_names())
+    assert {"navigation", "cover_and_hide", "branching"} <= set(shipped_policies()) <= set(level_names())
     assert all(shipped_policy(name) == path for name, path in shipped_policies().items())
     assert shipped_policy("../shipped/navigation") is None
     assert shipped_policy("my_level.toml") is None

@@ -10,10 +10,10 @@ import pytest
 
 from tests import pipes
 from tests.runtime.regression.handmade import ROOM
-from tltl_runtime.policies.shipped import shipped_policy
+from tltl_runtime.policies.shipped import shipped_policies, shipped_policy
 from tltl_runtime.regression.suite.suite import MOST_EPISODES, SHIPPED, Case, Thresholds, read_suite
 from tltl_runtime.stealth.levels.default_spec import LEVELS
-from tltl_runtime.stealth.levels.file import level_names, variants
+from tltl_runtime.stealth.levels.file import variants
 from tltlc.diagnostics.diagnostic import TltlError
 
 POLICY = 'policy = "navigation"\n'
@@ -24,12 +24,12 @@ def read(folder: Path, text: str) -> tuple[Case, ...]:
     return read_suite(folder / "game.toml").cases
 
 
-def test_the_shipped_suite_has_every_level_in_every_variant() -> None:
+def test_the_shipped_suite_plays_the_shipped_policies_in_every_variant() -> None:
     suite = read_suite(SHIPPED)
     assert [(case.level, case.variant) for case in suite.cases] == [
         (level, variant) for level in ("navigation", "cover_and_hide", "branching") for variant in variants(level)
     ]
-    assert {case.level for case in suite.cases} == set(level_names())
+    assert {case.level for case in suite.cases} == set(shipped_policies())
     assert all(case.policy == shipped_policy(case.level) and case.reference == "v0" for case in suite.cases)
     assert [case.name for case in suite.cases[:2]] == ["navigation:v0", "navigation:v1"]
 

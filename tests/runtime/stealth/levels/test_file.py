@@ -65,8 +65,9 @@ def test_an_invalid_level_gives_the_expected_message(case: Case, folder: Path) -
 
 
 def test_the_levels_of_the_paper_have_three_variants() -> None:
-    assert level_names() == ("branching", "cover_and_hide", "navigation")
-    assert all(variants(name) == ("v0", "v1", "v2") for name in level_names())
+    levels = "branching", "cover_and_hide", "navigation"
+    assert set(levels) <= set(level_names())
+    assert all(variants(name) == ("v0", "v1", "v2") for name in levels)
 
 
 @pytest.mark.parametrize(("name", "variant"), SHIPPED)
