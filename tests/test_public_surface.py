@@ -33,9 +33,9 @@ FORMATS = {
     "report of a regression run": "runtime/tltl_runtime/regression/report/report_json.py",
     "cached result of a regression case": "runtime/tltl_runtime/regression/suite_run.py",
     "cached result of retraining": "runtime/tltl_runtime/regression/retrain/retrain.py",
-    "checkpoint of a training": "runtime/tltl_runtime/training/run/checkpoint.py",
-    "record of a training": "runtime/tltl_runtime/training/run/record.py",
-    "settings of a run": "runtime/tltl_runtime/training/run/run_file.py",
+    "checkpoint of a training": "runtime/tltl_runtime/training/files/checkpoint.py",
+    "record of a training": "runtime/tltl_runtime/training/files/record.py",
+    "settings of a run": "runtime/tltl_runtime/training/files/run_file.py",
 }
 """The file formats that have versions, with the modules that state them."""
 

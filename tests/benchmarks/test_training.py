@@ -124,7 +124,7 @@ def test_settings_of_the_plan_and_of_an_ablation_are_merged() -> None:
 def test_the_settings_of_an_ablation_are_valid(name: str, tmp_path: Path) -> None:
     for package in training.NEEDED:
         pytest.importorskip(package)
-    from tltl_runtime.training.run.settings import read_settings
+    from tltl_runtime.training.files.settings import read_settings
 
     ablation = training.ABLATIONS[name]
     (tmp_path / "settings.toml").write_text(training.settings_text(training.QUICK.settings, ablation.settings))

@@ -39,12 +39,12 @@ from tltl_runtime.stealth.recordings.summary import monitor_command, trace_csv
 from tltl_runtime.stealth.recordings.summary import summary as episode_summary
 from tltl_runtime.stealth.recordings.summary import summary_text as episode_summary_text
 from tltl_runtime.training.exploration.search import SearchProgress
+from tltl_runtime.training.files.checkpoint import BestPolicy, Checkpoint, read_checkpoint, write_checkpoint
+from tltl_runtime.training.files.metrics import METRICS, read_metrics, truncate
+from tltl_runtime.training.files.record import finished_record, record_so_far, recorded_end
+from tltl_runtime.training.files.run_file import CHECKPOINT, RECORD, RUN, identity, read_run, write_run
+from tltl_runtime.training.files.settings import read_settings
 from tltl_runtime.training.ppo.recent_episodes import RecentEpisodes
-from tltl_runtime.training.run.checkpoint import BestPolicy, Checkpoint, read_checkpoint, write_checkpoint
-from tltl_runtime.training.run.metrics import METRICS, read_metrics, truncate
-from tltl_runtime.training.run.record import finished_record, record_so_far, recorded_end
-from tltl_runtime.training.run.run_file import CHECKPOINT, RECORD, RUN, identity, read_run, write_run
-from tltl_runtime.training.run.settings import read_settings
 
 FOLDER: Final = ROOT / "runtime" / "tltl_runtime"
 SUITE: Final = """\
@@ -132,7 +132,7 @@ def test_a_damaged_suite_is_read_or_rejected(seed: int, folder: Path) -> None:
 @times(100)
 def test_a_damaged_file_of_settings_is_read_or_rejected(seed: int, folder: Path) -> None:
     path = folder / "settings.toml"
-    text = (FOLDER / "training" / "run" / "settings.toml").read_text(encoding="utf-8")
+    text = (FOLDER / "training" / "files" / "settings.toml").read_text(encoding="utf-8")
     path.write_text(mutated_text(Random(seed), text), encoding="utf-8", errors="replace")
     check(lambda: read_settings(path))
 

@@ -62,8 +62,8 @@ def _read(name: str) -> tuple[Policy, dict[str, Any], str]:
     """
     from tltl_runtime.cli.support.policy_path import policy_file, progress
     from tltl_runtime.policies.file import read_policy
-    from tltl_runtime.training.run.record import record_so_far
-    from tltl_runtime.training.run.run_file import RUN
+    from tltl_runtime.training.files.record import record_so_far
+    from tltl_runtime.training.files.run_file import RUN
 
     path = Path(name)
     policy = read_policy(policy_file(path))

@@ -92,7 +92,7 @@ def _table(options: _Table1Options) -> str:
     """Return two tables as text: over the paper's number of episodes, and over all episodes."""
     from tltl_runtime.regression.table1.paper_table import LEVELS, MODELS, RUNS, VARIANTS, TableRow, markdown
     from tltl_runtime.regression.table1.table_cells import EPISODES, SEED, cell_episodes, figures
-    from tltl_runtime.training.run.versions import versions
+    from tltl_runtime.training.files.versions import versions
 
     seeds = []
     rows: dict[int, dict[tuple[str, Model], TableRow]] = {RUNS: {}, EPISODES: {}}

@@ -14,19 +14,19 @@ from tltl_runtime.cli.support.options import output_folder
 from tltl_runtime.cli.support.sensor_options import senses_options
 from tltl_runtime.cli.support.worker_options import WorkersType
 from tltl_runtime.support.number_text import duration, share
-from tltl_runtime.training.run.choices import Method
+from tltl_runtime.training.files.choices import Method
 from tltlc.api import cli
 
 if TYPE_CHECKING:
-    from tltl_runtime.training.run.report import TrainingReport
-    from tltl_runtime.training.run.run_file import TrainingRun
+    from tltl_runtime.training.files.report import TrainingReport
+    from tltl_runtime.training.files.run_file import TrainingRun
 
 
 def _setting(table: str, key: str) -> Callable[[click.Context, click.Parameter, Any], Any]:
     """Return a callback that checks an option like the setting ``key`` in the table ``table``."""
 
     def check(_: click.Context, parameter: click.Parameter, value: Any) -> Any:
-        from tltl_runtime.training.run.settings_file import KINDS
+        from tltl_runtime.training.files.settings_file import KINDS
 
         kind = KINDS[table][key]
         if value is not None and kind.read(value) is None:
@@ -147,9 +147,9 @@ def command(
             new_settings,
             resumed_run,
         )
+        from tltl_runtime.training.files.run_file import resume_command
+        from tltl_runtime.training.files.settings import settings_text
         from tltl_runtime.training.ppo.distributed import process_group
-        from tltl_runtime.training.run.run_file import resume_command
-        from tltl_runtime.training.run.settings import settings_text
 
         train_options = TrainOptions(spec=spec, sensors=sensors, **options)
         if print_config:
@@ -163,7 +163,7 @@ def command(
         run = new_run(train_options, folder) if resume is None else resumed_run(train_options, resume)
         again, is_first = resume_command(run.folder), process_group().rank == 0
         if resume is not None:
-            from tltl_runtime.training.run.record import finished_record
+            from tltl_runtime.training.files.record import finished_record
 
             if record := finished_record(run):
                 if is_first:
@@ -177,7 +177,7 @@ def command(
         from tltl_runtime.cli.support.training_progress import stopped_line, train_with_display
         from tltl_runtime.stealth.capabilities.feasible import reach_warnings
         from tltl_runtime.stealth.levels.file import load_level
-        from tltl_runtime.training.run.record import write_record
+        from tltl_runtime.training.files.record import write_record
 
         if is_first:
             report.add(reach_warnings(load_level(run.level, run.variant), run.fspa))
@@ -199,8 +199,8 @@ def command(
 
 def _start_lines(run: TrainingRun, *, resume: bool) -> Iterator[str]:
     """Describe the training; if it is resumed without a checkpoint, say what happens to its files."""
-    from tltl_runtime.training.run.metrics import METRICS
-    from tltl_runtime.training.run.run_file import CHECKPOINT, POLICY, RECORD
+    from tltl_runtime.training.files.metrics import METRICS
+    from tltl_runtime.training.files.run_file import CHECKPOINT, POLICY, RECORD
 
     place = f"{Path(run.level).stem} {run.variant}"
     how = f" by {run.settings.method}" if run.settings.imitates else ""

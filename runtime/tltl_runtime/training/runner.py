@@ -14,28 +14,13 @@ from rsl_rl.utils import check_nan
 from torch import Tensor, nn
 
 from tltl_runtime.policies.threads import threads
-from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltl_runtime.training.exploration.self_imitation import imitate
+from tltl_runtime.training.files.report import Iteration
 from tltl_runtime.training.ppo.distributed import process_group
 from tltl_runtime.training.ppo.environment import TrainingEnv
-from tltlc.api import Diagnostic, TltlError, record
+from tltlc.api import Diagnostic, TltlError
 
-
-@record
-class Iteration:
-    """The result of a rollout and the update after it.
-
-    ``number`` counts from 1. ``steps`` counts the decisions of all environments. ``finished`` are
-    the episodes that ended. ``losses`` are the losses of rsl-rl's PPO by name, and ``imitation`` if
-    there was self-imitation. ``collect_s`` and ``learn_s`` are wall-clock seconds.
-    """
-
-    number: int
-    steps: int
-    finished: tuple[EpisodeSummary, ...]
-    losses: dict[str, float]
-    collect_s: float
-    learn_s: float
+__all__ = ["Iteration", "Runner"]
 
 
 class Runner(OnPolicyRunner):

@@ -10,7 +10,7 @@ from types import ModuleType
 import pytest
 
 from tltl_runtime.spec.batch import reward_modes as batch_modes
-from tltl_runtime.training.run.settings import default_text
+from tltl_runtime.training.files.settings import default_text
 from tltlc.monitor import reward_modes as scalar_modes
 from tltlc.monitor.progress_and_reward import MODES
 

@@ -15,7 +15,7 @@ from tltl_runtime.cli.support.training_run import TrainOptions, new_run
 from tltl_runtime.policies.file import write_policy
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.stealth.recordings.file import read_episode
-from tltl_runtime.training.run.run_file import read_run, write_run
+from tltl_runtime.training.files.run_file import read_run, write_run
 
 Run = Callable[..., Outcome]
 LEVEL = "cover_and_hide:v0+guard_alert+edits/wide.toml"

@@ -29,8 +29,8 @@ from tltl_runtime.policies.shipped import shipped_policy
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.stealth.levels.identity import level_hash
 from tltl_runtime.stealth.recordings.file import read_episode, write_episode
-from tltl_runtime.training.run.run_file import TrainingRun, write_run
-from tltl_runtime.training.run.settings import read_settings
+from tltl_runtime.training.files.run_file import TrainingRun, write_run
+from tltl_runtime.training.files.settings import read_settings
 from tltlc.core.record import replace
 
 Run = Callable[..., Outcome]

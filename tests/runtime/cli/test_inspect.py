@@ -18,8 +18,8 @@ from tltl_runtime.policies.file import write_policy
 from tltl_runtime.policies.identity import spec_hash
 from tltl_runtime.policies.policy import Policy
 from tltl_runtime.policies.summary import summary, summary_text
-from tltl_runtime.training.run.metrics import METRICS, metrics_line
-from tltl_runtime.training.run.run_file import POLICY, write_run
+from tltl_runtime.training.files.metrics import METRICS, metrics_line
+from tltl_runtime.training.files.run_file import POLICY, write_run
 from tltl_runtime.training.run.train import train
 from tltlc.automaton.text import formula_text
 from tltlc.core.record import replace

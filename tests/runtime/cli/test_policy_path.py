@@ -11,8 +11,8 @@ from tests.interfaces.cli.conftest import Outcome, tltlc  # noqa: F401
 from tests.runtime.training.reports import a_report, an_episode
 from tests.runtime.training.runs import run_in
 from tltl_runtime.cli.support.policy_path import policy_path
-from tltl_runtime.training.run.metrics import METRICS, metrics_line
-from tltl_runtime.training.run.run_file import POLICY, write_run
+from tltl_runtime.training.files.metrics import METRICS, metrics_line
+from tltl_runtime.training.files.run_file import POLICY, write_run
 from tltlc.diagnostics.diagnostic import TltlError
 
 

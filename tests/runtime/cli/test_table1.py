@@ -13,7 +13,7 @@ from tltl_runtime.cli import table1
 from tltl_runtime.regression.table1 import paper_table, table_cells
 from tltl_runtime.regression.table1.paper_table import VARIANTS
 from tltl_runtime.support.folder_lock import lock_folder
-from tltl_runtime.training.run.settings import read_settings
+from tltl_runtime.training.files.settings import read_settings
 from tltlc.diagnostics.diagnostic import Diagnostic
 
 Run = Callable[..., Outcome]

@@ -26,8 +26,8 @@ from tests.shared import made_once
 from tests.waiting import HANG_S
 from tltl_runtime.policies.file import read_policy
 from tltl_runtime.training.exploration.search import SearchProgress
-from tltl_runtime.training.run.metrics import METRICS, read_metrics
-from tltl_runtime.training.run.settings import default_text, read_settings
+from tltl_runtime.training.files.metrics import METRICS, read_metrics
+from tltl_runtime.training.files.settings import default_text, read_settings
 from tltl_runtime.training.runner import Iteration, Runner
 from tltlc.core.record import replace
 from tltlc.interfaces.cli.main import main

@@ -17,9 +17,9 @@ from tests.runtime.cli.signals import interrupted  # noqa: F401
 from tests.runtime.cli.test_train import SMALL
 from tests.runtime.training.imitating import SOON, recorded_episode, write_recordings
 from tests.waiting import until
-from tltl_runtime.training.run.checkpoint import read_checkpoint
-from tltl_runtime.training.run.metrics import METRICS, read_metrics
-from tltl_runtime.training.run.settings import read_settings
+from tltl_runtime.training.files.checkpoint import read_checkpoint
+from tltl_runtime.training.files.metrics import METRICS, read_metrics
+from tltl_runtime.training.files.settings import read_settings
 from tltl_runtime.training.runner import Iteration, Runner
 
 TltlcFunction = Callable[..., Outcome]

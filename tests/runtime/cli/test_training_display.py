@@ -15,8 +15,8 @@ from tltl_runtime.cli.support.training_text import (
     seconds_left,
 )
 from tltl_runtime.training.exploration.search import SearchProgress
-from tltl_runtime.training.run.report import Confirmation
-from tltl_runtime.training.run.settings import Stop, read_settings
+from tltl_runtime.training.files.report import Confirmation
+from tltl_runtime.training.files.settings import Stop, read_settings
 from tltlc.core.record import replace
 
 

@@ -12,7 +12,7 @@ from tests.runtime.training.reports import a_report
 from tests.runtime.training.runs import run_in
 from tltl_runtime.cli.support.training_picture import TrainingDisplay
 from tltl_runtime.training.exploration.search import SearchProgress
-from tltl_runtime.training.run.report import TrainingReport
+from tltl_runtime.training.files.report import TrainingReport
 from tltlc.core.record import replace
 
 SEARCHED = SearchProgress(steps=6400, replayed=3200, seconds=80.0, places=1200, lengths=(90, 80), complete=True)

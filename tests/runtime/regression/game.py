@@ -13,7 +13,7 @@ from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode
 from tltl_runtime.regression.suite.suite import Case, Suite, baseline_path, read_suite
 from tltl_runtime.regression.verdict.baseline import write_baseline
 from tltl_runtime.regression.verdict.baseline_run import record_baseline
-from tltl_runtime.training.run.settings import read_settings
+from tltl_runtime.training.files.settings import read_settings
 from tltlc.core.record import replace
 
 EASY = """\

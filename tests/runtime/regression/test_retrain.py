@@ -32,8 +32,8 @@ from tltl_runtime.regression.verdict.play import CaseEpisode, PreparedCase, play
 from tltl_runtime.spec.task import load_task
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.stealth.recordings.file import read_episode
-from tltl_runtime.training.run.record import write_record
-from tltl_runtime.training.run.run_file import CHECKPOINT, POLICY, RECORD, RUN, TrainingRun
+from tltl_runtime.training.files.record import write_record
+from tltl_runtime.training.files.run_file import CHECKPOINT, POLICY, RECORD, RUN, TrainingRun
 from tltl_runtime.training.run.train import train
 from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import TltlError

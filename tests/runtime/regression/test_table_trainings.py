@@ -24,8 +24,8 @@ from tltl_runtime.regression.table1.table_trainings import (
 )
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.stealth.stealth_game import StealthGame
-from tltl_runtime.training.run.run_file import POLICY, RECORD, write_run
-from tltl_runtime.training.run.settings import read_settings
+from tltl_runtime.training.files.run_file import POLICY, RECORD, write_run
+from tltl_runtime.training.files.settings import read_settings
 from tltlc.core.record import replace
 
 STEPS = 10**6

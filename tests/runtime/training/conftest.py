@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from tests.runtime.training.runs import run_in
-from tltl_runtime.training.run.report import TrainingReport
-from tltl_runtime.training.run.run_file import TrainingRun
+from tltl_runtime.training.files.report import TrainingReport
+from tltl_runtime.training.files.run_file import TrainingRun
 from tltl_runtime.training.run.train import train
 
 

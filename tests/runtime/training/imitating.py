@@ -12,7 +12,7 @@ from tltl_runtime.stealth.env import make_env
 from tltl_runtime.stealth.episode_recorder import RecordEpisode
 from tltl_runtime.stealth.recordings.episode import Episode
 from tltl_runtime.stealth.recordings.file import write_episode
-from tltl_runtime.training.run.run_file import TrainingRun
+from tltl_runtime.training.files.run_file import TrainingRun
 from tltlc.core.record import replace
 
 SOON = "import stealth\nspec soon { level cover_and_hide\n limit 8 steps\n keep alive }\n"

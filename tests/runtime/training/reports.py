@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from tltl_runtime.spec.episode_summary import EpisodeSummary
-from tltl_runtime.training.run.report import Confirmation, EpisodeWindow, StopReason, TrainingReport
+from tltl_runtime.training.files.report import Confirmation, EpisodeWindow, StopReason, TrainingReport
 from tltl_runtime.training.runner import Iteration
 
 

@@ -18,9 +18,9 @@ from tltl_runtime.spec.task import load_task
 from tltl_runtime.stealth.capabilities.vocabulary import params
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.training.exploration.search import SearchProgress
-from tltl_runtime.training.run.checkpoint import Checkpoint, read_checkpoint
-from tltl_runtime.training.run.run_file import CHECKPOINT, TrainingRun, identity
-from tltl_runtime.training.run.settings import read_settings
+from tltl_runtime.training.files.checkpoint import Checkpoint, read_checkpoint
+from tltl_runtime.training.files.run_file import CHECKPOINT, TrainingRun, identity
+from tltl_runtime.training.files.settings import read_settings
 from tltl_runtime.training.run.train import train
 from tltl_runtime.training.runner import Iteration, Runner
 from tltlc.core.record import replace

@@ -10,8 +10,8 @@ import torch
 
 from tests.runtime.training.runs import run_in
 from tltl_runtime.training.exploration.search import SearchProgress
-from tltl_runtime.training.run.checkpoint import BestPolicy, Checkpoint, read_checkpoint, write_checkpoint
-from tltl_runtime.training.run.run_file import RUN, write_run
+from tltl_runtime.training.files.checkpoint import BestPolicy, Checkpoint, read_checkpoint, write_checkpoint
+from tltl_runtime.training.files.run_file import RUN, write_run
 from tltlc.core.record import replace
 
 

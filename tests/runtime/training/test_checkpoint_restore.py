@@ -14,9 +14,9 @@ import torch
 from tests.runtime.training.runs import run_in
 from tltl_runtime.training.exploration.reverse_curriculum import ReverseCurriculum
 from tltl_runtime.training.exploration.search import FailedEpisode, SuccessfulEpisode
-from tltl_runtime.training.run.checkpoint import read_checkpoint
-from tltl_runtime.training.run.report import TrainingReport
-from tltl_runtime.training.run.run_file import CHECKPOINT, TrainingRun
+from tltl_runtime.training.files.checkpoint import read_checkpoint
+from tltl_runtime.training.files.report import TrainingReport
+from tltl_runtime.training.files.run_file import CHECKPOINT, TrainingRun
 from tltl_runtime.training.run.train import train
 from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import TltlError

@@ -9,7 +9,7 @@ import pytest
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
-from tltl_runtime.training.run.curve import curve_figure, draw_curve
+from tltl_runtime.training.files.curve import curve_figure, draw_curve
 
 
 def _point(steps: int, rate: float | None) -> dict[str, Any]:

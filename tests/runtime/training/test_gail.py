@@ -15,13 +15,13 @@ from tests.runtime.training.runs import checkpoint_of
 from tests.runtime.training.test_settings import compare
 from tltl_runtime.policies.file import read_policy
 from tltl_runtime.stealth.env import make_env
+from tltl_runtime.training.files.metrics import METRICS, read_metrics
+from tltl_runtime.training.files.record import write_record
+from tltl_runtime.training.files.report import TrainingReport
+from tltl_runtime.training.files.run_file import DEMONSTRATIONS, POLICY, TrainingRun, read_run
+from tltl_runtime.training.files.settings import rsl_config
 from tltl_runtime.training.imitation.gail import Gail
 from tltl_runtime.training.ppo.distributed import process_group
-from tltl_runtime.training.run.metrics import METRICS, read_metrics
-from tltl_runtime.training.run.record import write_record
-from tltl_runtime.training.run.report import TrainingReport
-from tltl_runtime.training.run.run_file import DEMONSTRATIONS, POLICY, TrainingRun, read_run
-from tltl_runtime.training.run.settings import rsl_config
 from tltl_runtime.training.run.setup import load_imitation_data, make_environments, prepare_environment
 from tltl_runtime.training.run.train import train
 from tltl_runtime.training.runner import Runner

@@ -18,11 +18,11 @@ from tltl_runtime.policies.file import read_policy, write_policy
 from tltl_runtime.policies.policy import NotFiniteError, Policy
 from tltl_runtime.policies.summary import summary, summary_text
 from tltl_runtime.training.exploration.search import SearchProgress
-from tltl_runtime.training.run.checkpoint import deep_copy
+from tltl_runtime.training.files.checkpoint import deep_copy
+from tltl_runtime.training.files.record import record_so_far, write_record
+from tltl_runtime.training.files.report import TrainingReport
+from tltl_runtime.training.files.run_file import CHECKPOINT, POLICY, TrainingRun, identity, read_run
 from tltl_runtime.training.run.initial_policy import initial_policy_of, weights_hash
-from tltl_runtime.training.run.record import record_so_far, write_record
-from tltl_runtime.training.run.report import TrainingReport
-from tltl_runtime.training.run.run_file import CHECKPOINT, POLICY, TrainingRun, identity, read_run
 from tltl_runtime.training.run.train import train
 from tltl_runtime.training.runner import Runner
 from tltlc.core.record import replace

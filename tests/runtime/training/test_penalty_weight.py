@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from tests.runtime.training.runs import run_in
+from tltl_runtime.training.files.settings import read_settings
 from tltl_runtime.training.ppo.scheduled_weights import ScheduledWeights, penalty_rise, scheduled_weights
-from tltl_runtime.training.run.settings import read_settings
 from tltlc.core.record import replace
 
 

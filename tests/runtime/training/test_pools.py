@@ -11,8 +11,8 @@ from tests.runtime.own_cluster import needs_ray, own_cluster
 from tests.runtime.training.runs import run_in
 from tltl_runtime.policies.file import read_policy
 from tltl_runtime.spec.task import load_task
+from tltl_runtime.training.files.run_file import POLICY
 from tltl_runtime.training.run.initial_policy import initial_policy_of
-from tltl_runtime.training.run.run_file import POLICY
 from tltl_runtime.training.run.train import train
 from tltlc.core.record import replace
 

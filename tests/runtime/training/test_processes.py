@@ -19,9 +19,9 @@ from tests.runtime.training import runs
 from tests.runtime.training.runs import run_in
 from tests.waiting import HANG_S, children, until_gone
 from tltl_runtime.policies.file import read_policy
-from tltl_runtime.training.run.checkpoint import read_checkpoint
-from tltl_runtime.training.run.metrics import METRICS, read_metrics
-from tltl_runtime.training.run.run_file import CHECKPOINT, POLICY, RUN, identity
+from tltl_runtime.training.files.checkpoint import read_checkpoint
+from tltl_runtime.training.files.metrics import METRICS, read_metrics
+from tltl_runtime.training.files.run_file import CHECKPOINT, POLICY, RUN, identity
 
 pytestmark = pytest.mark.slow
 

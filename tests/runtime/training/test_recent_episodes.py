@@ -7,8 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tltl_runtime.spec.episode_summary import EpisodeSummary
+from tltl_runtime.training.files.report import EpisodeWindow
 from tltl_runtime.training.ppo.recent_episodes import RecentEpisodes, Standstill
-from tltl_runtime.training.run.report import EpisodeWindow
 
 SUCCESS = EpisodeSummary(0, None, True, "success", 1.0, 0.6, 40, 4)
 FAILURE = EpisodeSummary(1, None, False, "violation", 0.6, -0.4, 25, 2)

@@ -16,8 +16,8 @@ from tests.runtime.training.test_search import curriculum_of
 from tltl_runtime.stealth.env import make_env
 from tltl_runtime.training.exploration.search import SuccessfulEpisode
 from tltl_runtime.training.exploration.self_imitation import BATCH, SelfImitation, imitate
+from tltl_runtime.training.files.settings import rsl_config
 from tltl_runtime.training.ppo.environment import TrainingEnv
-from tltl_runtime.training.run.settings import rsl_config
 from tltl_runtime.training.runner import Runner
 from tltl_runtime.vector import make_vec
 

@@ -9,8 +9,14 @@ from typing import get_type_hints
 import pytest
 
 from tltl_runtime.policies.network import Network
-from tltl_runtime.training.run.settings import TrainingSettings, default_text, read_settings, rsl_config, settings_text
-from tltl_runtime.training.run.settings_file import KINDS, read_values
+from tltl_runtime.training.files.settings import (
+    TrainingSettings,
+    default_text,
+    read_settings,
+    rsl_config,
+    settings_text,
+)
+from tltl_runtime.training.files.settings_file import KINDS, read_values
 from tltlc.core.record import replace
 from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import TltlError

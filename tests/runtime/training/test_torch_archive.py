@@ -15,7 +15,7 @@ import torch
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tltl_runtime.training.run.torch_archive import TorchArchiveError, read_torch
+from tltl_runtime.training.files.torch_archive import TorchArchiveError, read_torch
 from tltlc.io.limits import Limit
 
 

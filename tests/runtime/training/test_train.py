@@ -21,13 +21,11 @@ from tltl_runtime.stealth.capabilities.vocabulary import params
 from tltl_runtime.stealth.levels.file import level_path, load_level
 from tltl_runtime.support.record_json import from_json, to_json
 from tltl_runtime.training.exploration.search import SearchProgress
-from tltl_runtime.training.ppo.scheduled_weights import penalty_rise
-from tltl_runtime.training.run import training_files
-from tltl_runtime.training.run.checkpoint import Checkpoint, write_checkpoint
-from tltl_runtime.training.run.metrics import METRICS, read_metrics
-from tltl_runtime.training.run.record import write_record
-from tltl_runtime.training.run.report import Confirmation, TrainingReport
-from tltl_runtime.training.run.run_file import (
+from tltl_runtime.training.files.checkpoint import Checkpoint, write_checkpoint
+from tltl_runtime.training.files.metrics import METRICS, read_metrics
+from tltl_runtime.training.files.record import write_record
+from tltl_runtime.training.files.report import Confirmation, TrainingReport
+from tltl_runtime.training.files.run_file import (
     CHECKPOINT,
     CURVE,
     MAY_CHANGE,
@@ -40,7 +38,9 @@ from tltl_runtime.training.run.run_file import (
     read_run,
     write_run,
 )
-from tltl_runtime.training.run.settings import TrainingSettings, read_settings
+from tltl_runtime.training.files.settings import TrainingSettings, read_settings
+from tltl_runtime.training.ppo.scheduled_weights import penalty_rise
+from tltl_runtime.training.run import training_files
 from tltl_runtime.training.run.train import train
 from tltl_runtime.training.runner import Iteration, Runner
 from tltlc.core.record import replace
@@ -173,7 +173,7 @@ def test_a_training_interrupted_while_it_saves_saves_again(folder: Path, monkeyp
     assert checkpoint_of(run).iteration == 2
 
 
-@pytest.mark.parametrize("broken", ["train.TrainingReport", "metrics.Metrics.add"])
+@pytest.mark.parametrize("broken", ["run.train.TrainingReport", "files.metrics.Metrics.add"])
 def test_no_checkpoint_contains_an_unmeasured_iteration(
     folder: Path, monkeypatch: pytest.MonkeyPatch, broken: str
 ) -> None:
@@ -183,7 +183,7 @@ def test_no_checkpoint_contains_an_unmeasured_iteration(
 
     reports = train(run := run_in(folder / f"before-{broken}"))
     next(reports)
-    monkeypatch.setattr(f"tltl_runtime.training.run.{broken}", interrupt)
+    monkeypatch.setattr(f"tltl_runtime.training.{broken}", interrupt)
     with pytest.raises(KeyboardInterrupt):
         next(reports)
     assert checkpoint_of(run).iteration == 1

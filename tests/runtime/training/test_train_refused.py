@@ -14,16 +14,16 @@ import torch
 
 from tests.runtime.training.runs import checkpoint_of, run_in
 from tests.runtime.training.test_settings import compare
-from tltl_runtime.training.run.checkpoint import VERSION, write_checkpoint
-from tltl_runtime.training.run.report import TrainingReport
-from tltl_runtime.training.run.run_file import (
+from tltl_runtime.training.files.checkpoint import VERSION, write_checkpoint
+from tltl_runtime.training.files.report import TrainingReport
+from tltl_runtime.training.files.run_file import (
     CHECKPOINT,
     RUN,
     TrainingRun,
     read_run,
 )
+from tltl_runtime.training.files.training_lock import lock_training
 from tltl_runtime.training.run.train import train
-from tltl_runtime.training.run.training_lock import lock_training
 from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import TltlError
 

@@ -16,10 +16,10 @@ from tltl_runtime.policies.fit import check_policy
 from tltl_runtime.policies.policy import Policy
 from tltl_runtime.stealth.level import Sensors, StealthLevel
 from tltl_runtime.stealth.observation.sensors import choose_sensors
+from tltl_runtime.training.files.run_file import TrainingRun
+from tltl_runtime.training.files.settings import TrainingSettings
+from tltl_runtime.training.files.settings_file import read_values
 from tltl_runtime.training.run.initial_policy import weights_hash
-from tltl_runtime.training.run.run_file import TrainingRun
-from tltl_runtime.training.run.settings import TrainingSettings
-from tltl_runtime.training.run.settings_file import read_values
 from tltlc.api import Diagnostic, Fspa, TltlError, fileio, record, replace
 
 _COMMAND = "tltlc train --from"

@@ -9,8 +9,8 @@ from tltl_runtime.cli.support.level_argument import check_level_exists, check_sp
 from tltl_runtime.game.level_name import split_level
 from tltl_runtime.policies.shipped import shipped_policy
 from tltl_runtime.stealth.levels.file import level_names, load_level
-from tltl_runtime.training.run.metrics import METRICS, read_metrics
-from tltl_runtime.training.run.run_file import POLICY, RUN, named_trainings, read_level_and_variant, resume_command
+from tltl_runtime.training.files.metrics import METRICS, read_metrics
+from tltl_runtime.training.files.run_file import POLICY, RUN, named_trainings, read_level_and_variant, resume_command
 from tltlc.api import Diagnostic, TltlError, fileio
 
 

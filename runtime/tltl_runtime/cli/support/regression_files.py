@@ -23,7 +23,7 @@ from tltl_runtime.regression.verdict.verdict import Verdict
 from tltl_runtime.stealth.recordings.episode import Episode
 from tltl_runtime.stealth.recordings.file import read_episode
 from tltl_runtime.support.number_text import short_list
-from tltl_runtime.training.run.versions import versions
+from tltl_runtime.training.files.versions import versions
 from tltlc.api import TltlError, fileio, record
 
 PAGE: Final = "report.html"

@@ -23,8 +23,8 @@ from tltl_runtime.regression.retrain.retrain import configure_retraining, is_sto
 from tltl_runtime.regression.suite.suite import SHIPPED, Suite
 from tltl_runtime.regression.suite_run import WORKER_ERRORS, FinishedCase
 from tltl_runtime.regression.verdict.baseline import baseline_command
-from tltl_runtime.training.run.record import finished_record, write_record
-from tltl_runtime.training.run.run_file import RUN, TrainingRun
+from tltl_runtime.training.files.record import finished_record, write_record
+from tltl_runtime.training.files.run_file import RUN, TrainingRun
 from tltlc.api import TltlError, cli, record, replace
 
 _FATAL_ERRORS: Final = WORKER_ERRORS | {"TLT0005"}

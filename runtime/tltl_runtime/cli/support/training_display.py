@@ -23,10 +23,10 @@ from tltl_runtime.cli.support.training_text import (
     search_result_line,
 )
 from tltl_runtime.training.exploration.search import SearchProgress
+from tltl_runtime.training.files.report import TrainingReport
+from tltl_runtime.training.files.run_file import CHECKPOINT, TrainingRun
 from tltl_runtime.training.imitation.demonstrations import Attempt
 from tltl_runtime.training.ppo.distributed import process_group
-from tltl_runtime.training.run.report import TrainingReport
-from tltl_runtime.training.run.run_file import CHECKPOINT, TrainingRun
 
 _SECONDS_BETWEEN_LINES: Final = 10.0
 

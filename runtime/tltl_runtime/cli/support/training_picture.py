@@ -25,10 +25,10 @@ from tltl_runtime.cli.support.training_text import (
 )
 from tltl_runtime.support.number_text import duration, number, percent, share
 from tltl_runtime.training.exploration.search import SearchProgress
+from tltl_runtime.training.files.report import EpisodeWindow, TrainingReport
+from tltl_runtime.training.files.run_file import CHECKPOINT, TrainingRun
+from tltl_runtime.training.files.settings import Stop
 from tltl_runtime.training.imitation.demonstrations import Attempt
-from tltl_runtime.training.run.report import EpisodeWindow, TrainingReport
-from tltl_runtime.training.run.run_file import CHECKPOINT, TrainingRun
-from tltl_runtime.training.run.settings import Stop
 from tltlc.api import Fspa, State, label_text
 
 _WIDTH: Final = 100

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from contextlib import closing, contextmanager
 
 from tltl_runtime.cli.support.training_display import display
-from tltl_runtime.training.run.report import TrainingReport
-from tltl_runtime.training.run.run_file import CHECKPOINT, RUN, TrainingRun
+from tltl_runtime.training.files.report import TrainingReport
+from tltl_runtime.training.files.run_file import CHECKPOINT, RUN, TrainingRun
 from tltl_runtime.training.run.train import train
 from tltl_runtime.vector.errors import WorkerError
 from tltlc.api import Diagnostic, TltlError

@@ -34,13 +34,9 @@ from tltl_runtime.stealth.levels.identity import level_hash
 from tltl_runtime.stealth.observation.sensors import choose_sensors
 from tltl_runtime.support.number_text import duration
 from tltl_runtime.support.record_json import to_json
-from tltl_runtime.training.imitation.demonstrations import recordings
-from tltl_runtime.training.imitation.imitation_data import nothing_to_imitate
-from tltl_runtime.training.ppo.distributed import process_group
-from tltl_runtime.training.run.checkpoint import read_checkpoint
-from tltl_runtime.training.run.choices import Method
-from tltl_runtime.training.run.initial_policy import initial_policy_of
-from tltl_runtime.training.run.run_file import (
+from tltl_runtime.training.files.checkpoint import read_checkpoint
+from tltl_runtime.training.files.choices import Method
+from tltl_runtime.training.files.run_file import (
     CHECKPOINT,
     MAY_CHANGE,
     RUN,
@@ -50,8 +46,12 @@ from tltl_runtime.training.run.run_file import (
     read_run,
     resume_command,
 )
-from tltl_runtime.training.run.settings import TrainingSettings, read_settings
-from tltl_runtime.training.run.settings_file import read_values
+from tltl_runtime.training.files.settings import TrainingSettings, read_settings
+from tltl_runtime.training.files.settings_file import read_values
+from tltl_runtime.training.imitation.demonstrations import recordings
+from tltl_runtime.training.imitation.imitation_data import nothing_to_imitate
+from tltl_runtime.training.ppo.distributed import process_group
+from tltl_runtime.training.run.initial_policy import initial_policy_of
 from tltlc.api import Diagnostic, Fspa, TltlError, fileio, record, replace
 
 T = TypeVar("T")

@@ -6,10 +6,10 @@ from typing import Final
 
 from tltl_runtime.support.number_text import duration, number, share
 from tltl_runtime.training.exploration.search import SearchProgress, SearchSettings
+from tltl_runtime.training.files.report import Confirmation, TrainingReport
+from tltl_runtime.training.files.settings import Stop
 from tltl_runtime.training.imitation.demonstrations import Attempt
 from tltl_runtime.training.imitation.imitation_data import ImitationSummary
-from tltl_runtime.training.run.report import Confirmation, TrainingReport
-from tltl_runtime.training.run.settings import Stop
 
 SEARCH_IS_LOST: Final = "Ctrl-C stops it; a search that is not over then begins anew."
 SEARCHED_AGAIN: Final = "the pass rate rises no more: ways are searched by chance from where episodes failed"

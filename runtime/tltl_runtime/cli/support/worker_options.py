@@ -22,7 +22,7 @@ class WorkersType(_Type):
         """Convert the value to a number or ``ray``."""
         if value == "ray" or isinstance(value, int):
             return value
-        from tltl_runtime.training.run.settings_file import KINDS
+        from tltl_runtime.training.files.settings_file import KINDS
 
         kind = KINDS["rollout"]["workers"]
         try:

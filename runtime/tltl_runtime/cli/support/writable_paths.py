@@ -54,7 +54,7 @@ def check_apart(files: Mapping[str, Path | None], inputs: Iterable[Path]) -> Non
 
 def check_no_training(folder: Path) -> None:
     """Raise TltlError, TLT0005, if a folder contains a training: no other files may go there."""
-    from tltl_runtime.training.run.run_file import RUN
+    from tltl_runtime.training.files.run_file import RUN
 
     if fileio.exists(folder / RUN):
         title = f"cannot write into `{folder}`: it is the folder of a training"

@@ -29,11 +29,10 @@ from tltl_runtime.regression.suite_run import WRITABLE, FinishedCase, case_folde
 from tltl_runtime.regression.verdict.confidence import rate_interval
 from tltl_runtime.regression.verdict.play import PreparedCase, play_episodes
 from tltl_runtime.support.record_json import to_json
-from tltl_runtime.training.run.checkpoint import read_checkpoint
-from tltl_runtime.training.run.initial_policy import initial_policy_of, weights_hash
-from tltl_runtime.training.run.metrics import METRICS
-from tltl_runtime.training.run.record import recorded_end
-from tltl_runtime.training.run.run_file import (
+from tltl_runtime.training.files.checkpoint import read_checkpoint
+from tltl_runtime.training.files.metrics import METRICS
+from tltl_runtime.training.files.record import recorded_end
+from tltl_runtime.training.files.run_file import (
     CHECKPOINT,
     CURVE,
     POLICY,
@@ -44,8 +43,9 @@ from tltl_runtime.training.run.run_file import (
     read_level_hash,
     read_run,
 )
-from tltl_runtime.training.run.settings import read_settings
-from tltl_runtime.training.run.training_lock import lock_training
+from tltl_runtime.training.files.settings import read_settings
+from tltl_runtime.training.files.training_lock import lock_training
+from tltl_runtime.training.run.initial_policy import initial_policy_of, weights_hash
 from tltlc.api import Diagnostic, Fspa, TltlError, fileio, label_text, replace
 
 FOLDER: Final = "retrained"

@@ -24,7 +24,7 @@ def policy_file(path: Path) -> Path:
     """
     if not fileio.is_dir(path):
         return path
-    from tltl_runtime.training.run.run_file import POLICY
+    from tltl_runtime.training.files.run_file import POLICY
 
     return path / POLICY
 
@@ -102,7 +102,7 @@ def _with_label(label: Label, diagnostics: Iterable[Diagnostic]) -> list[Diagnos
 
 
 def _no_policy(folder: Path) -> Diagnostic:
-    from tltl_runtime.training.run.run_file import RUN, named_trainings, resume_command
+    from tltl_runtime.training.files.run_file import RUN, named_trainings, resume_command
 
     if fileio.exists(folder / RUN):
         help_ = f"`{resume_command(folder)}` goes on until it has one; one that is going on has it soon"

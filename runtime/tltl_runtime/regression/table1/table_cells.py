@@ -22,7 +22,7 @@ from tltl_runtime.policies.identity import spec_hash
 from tltl_runtime.regression.suite.result_cache import cache_text, inputs_hash, read_cache
 from tltl_runtime.regression.table1.paper_table import CellFigures, Model
 from tltl_runtime.spec.task import load_task
-from tltl_runtime.training.run.versions import versions
+from tltl_runtime.training.files.versions import versions
 from tltlc.api import fileio, record
 
 EPISODES: Final = 100

@@ -14,9 +14,9 @@ from tltl_runtime.policies.identity import spec_hash
 from tltl_runtime.regression.table1.paper_table import Model
 from tltl_runtime.spec.task import load_task
 from tltl_runtime.support.record_json import to_json
-from tltl_runtime.training.run.record import finished_record
-from tltl_runtime.training.run.run_file import MAY_CHANGE, POLICY, RECORD, RUN, leaves, read_run
-from tltl_runtime.training.run.settings import read_settings
+from tltl_runtime.training.files.record import finished_record
+from tltl_runtime.training.files.run_file import MAY_CHANGE, POLICY, RECORD, RUN, leaves, read_run
+from tltl_runtime.training.files.settings import read_settings
 from tltlc.api import record, replace
 
 _MINUTES: Final = 60.0

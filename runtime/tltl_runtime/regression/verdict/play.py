@@ -22,7 +22,7 @@ from tltl_runtime.regression.suite.suite import Case
 from tltl_runtime.regression.verdict.baseline import Identity, Reference
 from tltl_runtime.regression.verdict.verdict import Judgement, judge
 from tltl_runtime.spec.task import read_spec
-from tltl_runtime.training.run.versions import versions
+from tltl_runtime.training.files.versions import versions
 from tltlc.api import Diagnostic, TltlError, fileio, record
 
 OnEpisode = Callable[[Case, int, ExplainedEpisode], None]

@@ -52,7 +52,7 @@ _Losses = dict[str, float]
 class Gail(PPO):
     """rsl-rl's PPO with rewards from a discriminator, after behavioural cloning.
 
-    ``gail`` is the entry of that name in :func:`~tltl_runtime.training.run.settings.rsl_config`.
+    ``gail`` is the entry of that name in :func:`~tltl_runtime.training.files.settings.rsl_config`.
     The environment must have ``imitation_data``. Under ``successes`` in the extras of a step, it
     must say which episodes ended in success. The losses are those of PPO and:
 

@@ -9,9 +9,9 @@ from torch import Tensor
 from tltl_runtime.game.registry import registered_game
 from tltl_runtime.policies.card import Card
 from tltl_runtime.policies.policy import NotFiniteError, Policy
+from tltl_runtime.training.files.run_file import TrainingRun
+from tltl_runtime.training.files.versions import versions
 from tltl_runtime.training.ppo.environment import TrainingEnv
-from tltl_runtime.training.run.run_file import TrainingRun
-from tltl_runtime.training.run.versions import versions
 from tltlc.api import Diagnostic, TltlError
 
 

@@ -6,8 +6,8 @@ from enum import IntEnum
 
 import numpy as np
 
+from tltl_runtime.training.files.run_file import TrainingRun
 from tltl_runtime.training.ppo.distributed import ProcessGroup
-from tltl_runtime.training.run.run_file import TrainingRun
 
 
 class Purpose(IntEnum):

@@ -7,10 +7,7 @@ from collections.abc import Iterable, Sequence
 from typing import Any
 
 from tltl_runtime.spec.episode_summary import EpisodeSummary, progress_return
-from tltl_runtime.training.run.report import EpisodeWindow
-
-Score = tuple[float, float, float]
-"""The score of a policy: pass rate, mean progress, mean reward. Greater is better."""
+from tltl_runtime.training.files.report import EpisodeWindow, Score
 
 _STANDSTILL_STEPS = 100_000
 """The training stands still if the pass rate has not risen for this many steps."""

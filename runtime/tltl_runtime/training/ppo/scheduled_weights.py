@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from tltl_runtime.training.run.run_file import TrainingRun
-from tltl_runtime.training.run.settings import Ppo
+from tltl_runtime.training.files.run_file import TrainingRun
+from tltl_runtime.training.files.settings import Ppo
 from tltlc.api import monitors, record, replace
 
 

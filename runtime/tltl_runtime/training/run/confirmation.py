@@ -11,9 +11,9 @@ import numpy as np
 
 from tltl_runtime.evaluation.evaluate import evaluate
 from tltl_runtime.policies.policy import Policy
-from tltl_runtime.training.run.checkpoint import level_changed_error
-from tltl_runtime.training.run.report import Confirmation
-from tltl_runtime.training.run.run_file import TrainingRun, current_level_hash
+from tltl_runtime.training.files.checkpoint import level_changed_error
+from tltl_runtime.training.files.report import Confirmation
+from tltl_runtime.training.files.run_file import TrainingRun, current_level_hash
 
 
 def confirm(run: TrainingRun, policy: Policy, stream: np.random.SeedSequence) -> Confirmation:

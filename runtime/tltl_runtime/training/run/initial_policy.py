@@ -7,7 +7,7 @@ from pathlib import Path
 
 from tltl_runtime.policies.file import read_policy
 from tltl_runtime.policies.policy import Policy
-from tltl_runtime.training.run.run_file import InitialPolicy, resume_command
+from tltl_runtime.training.files.run_file import InitialPolicy, resume_command
 from tltlc.api import Diagnostic, TltlError
 
 

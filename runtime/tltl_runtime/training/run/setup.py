@@ -15,17 +15,9 @@ from tltl_runtime.spec.wrapper import TltlEnv
 from tltl_runtime.training.exploration.replayed_starts import ReplayedStartEnv
 from tltl_runtime.training.exploration.reverse_curriculum import ReverseCurriculum
 from tltl_runtime.training.exploration.search import Player, SearchProgress
-from tltl_runtime.training.exploration.search_schedule import SearchCallback, search_before_training
 from tltl_runtime.training.exploration.self_imitation import SelfImitation
-from tltl_runtime.training.imitation.demonstrations import Attempt
-from tltl_runtime.training.imitation.imitation_data import ImitationData, read_demonstrations, record_expert
-from tltl_runtime.training.ppo.distributed import ProcessGroup, cores
-from tltl_runtime.training.ppo.environment import TrainingEnv
-from tltl_runtime.training.ppo.random_streams import Purpose, stream
-from tltl_runtime.training.ppo.scheduled_weights import penalty_rise
-from tltl_runtime.training.run.checkpoint import Checkpoint, checkpoint_error, level_changed_error, read_checkpoint
-from tltl_runtime.training.run.initial_policy import read_initial_policy
-from tltl_runtime.training.run.run_file import (
+from tltl_runtime.training.files.checkpoint import Checkpoint, checkpoint_error, level_changed_error, read_checkpoint
+from tltl_runtime.training.files.run_file import (
     CHECKPOINT,
     RUN,
     TrainingRun,
@@ -36,6 +28,14 @@ from tltl_runtime.training.run.run_file import (
     resume_command,
     write_run,
 )
+from tltl_runtime.training.imitation.demonstrations import Attempt
+from tltl_runtime.training.imitation.imitation_data import ImitationData, read_demonstrations, record_expert
+from tltl_runtime.training.ppo.distributed import ProcessGroup, cores
+from tltl_runtime.training.ppo.environment import TrainingEnv
+from tltl_runtime.training.ppo.random_streams import Purpose, stream
+from tltl_runtime.training.ppo.scheduled_weights import penalty_rise
+from tltl_runtime.training.run.initial_policy import read_initial_policy
+from tltl_runtime.training.run.search_schedule import SearchCallback, search_before_training
 from tltl_runtime.vector import WorkerVectorEnv, make_vec
 from tltl_runtime.vector.env import TLTL_INFO
 from tltlc.api import Diagnostic, TltlError

@@ -13,22 +13,23 @@ from tltl_runtime.policies.file import check_size
 from tltl_runtime.policies.threads import threads
 from tltl_runtime.support.record_json import RecordJsonError
 from tltl_runtime.training.exploration.search import SearchProgress, combined_progress
-from tltl_runtime.training.exploration.search_schedule import SearchCallback, search_after_standstill
+from tltl_runtime.training.files.checkpoint import BestPolicy, Checkpoint, checkpoint_error, deep_copy
+from tltl_runtime.training.files.report import Confirmation, TrainingReport
+from tltl_runtime.training.files.run_file import CHECKPOINT, TrainingRun, identity
+from tltl_runtime.training.files.settings import algorithm_name, rsl_config
+from tltl_runtime.training.files.training_lock import lock_training
 from tltl_runtime.training.imitation.demonstrations import Attempt
 from tltl_runtime.training.imitation.gail import Gail
-from tltl_runtime.training.ppo.checkpoint_restore import restore_checkpoint
 from tltl_runtime.training.ppo.distributed import ProcessGroup, join_process_group
 from tltl_runtime.training.ppo.policy import card_of, policy_of
-from tltl_runtime.training.ppo.process_exchange import gather_iteration, process_state, set_generators
 from tltl_runtime.training.ppo.random_streams import Purpose, stream
 from tltl_runtime.training.ppo.recent_episodes import RecentEpisodes, Standstill
 from tltl_runtime.training.ppo.scheduled_weights import scheduled_weights
-from tltl_runtime.training.run.checkpoint import BestPolicy, Checkpoint, checkpoint_error, deep_copy
+from tltl_runtime.training.run.checkpoint_restore import restore_checkpoint
 from tltl_runtime.training.run.confirmation import confirm
 from tltl_runtime.training.run.named_classes import class_of, device_of
-from tltl_runtime.training.run.report import Confirmation, TrainingReport
-from tltl_runtime.training.run.run_file import CHECKPOINT, TrainingRun, identity
-from tltl_runtime.training.run.settings import algorithm_name, rsl_config
+from tltl_runtime.training.run.process_exchange import gather_iteration, process_state, set_generators
+from tltl_runtime.training.run.search_schedule import SearchCallback, search_after_standstill
 from tltl_runtime.training.run.setup import (
     initial_policy,
     load_imitation_data,
@@ -37,7 +38,6 @@ from tltl_runtime.training.run.setup import (
     start_or_resume,
 )
 from tltl_runtime.training.run.training_files import TrainingFiles
-from tltl_runtime.training.run.training_lock import lock_training
 from tltl_runtime.training.runner import Iteration, Runner
 from tltlc.api import replace
 
@@ -52,7 +52,7 @@ def train(
     """Train in ``run.folder``; yield a report after each iteration.
 
     The last report says why the training ends. The folder gets ``run.json``, ``checkpoint.pt``,
-    ``policy.safetensors`` and the files of :class:`~tltl_runtime.training.run.metrics.Metrics`,
+    ``policy.safetensors`` and the files of :class:`~tltl_runtime.training.files.metrics.Metrics`,
     each before the report of its iteration. Any end of the training, even by Ctrl-C or by closing
     the iterator, leaves a checkpoint of the last complete iteration. Only if the process is killed,
     the iterations after the last checkpoint are lost. With ``resume``, the training continues from

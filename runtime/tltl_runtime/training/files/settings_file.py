@@ -10,7 +10,7 @@ from typing import Any, Final, get_args
 from tltl_runtime.policies.network import MAX_KERNEL, MAX_LAYERS, MAX_STRIDE, MAX_WIDTH, Activation
 from tltl_runtime.support.suggestion import MOST_SUGGESTIONS, suggestion
 from tltl_runtime.support.toml_tree import Entry, Tree, read_tree
-from tltl_runtime.training.run.choices import EntropySchedule, Method, PenaltySchedule, Pool
+from tltl_runtime.training.files.choices import EntropySchedule, Method, PenaltySchedule, Pool
 from tltlc.api import Diagnostic, SourceFile, TltlError, monitors, record
 
 

@@ -13,7 +13,7 @@ from typing import Any, Final
 from torch.utils.tensorboard import SummaryWriter
 
 from tltl_runtime.support.record_json import to_json
-from tltl_runtime.training.run.report import EpisodeWindow, TrainingReport
+from tltl_runtime.training.files.report import EpisodeWindow, TrainingReport
 from tltlc.api import Diagnostic, Fspa, TltlError, fileio, label_text
 
 METRICS: Final = "metrics.jsonl"

@@ -13,11 +13,10 @@ from torch import Tensor
 
 from tltl_runtime.support.record_json import RecordJsonError, from_json
 from tltl_runtime.training.exploration.search import SearchProgress
-from tltl_runtime.training.ppo.recent_episodes import Score
-from tltl_runtime.training.run.report import StopReason
-from tltl_runtime.training.run.run_file import resume_command
-from tltl_runtime.training.run.settings import Stop
-from tltl_runtime.training.run.torch_archive import TorchArchiveError, read_torch
+from tltl_runtime.training.files.report import Score, StopReason
+from tltl_runtime.training.files.run_file import resume_command
+from tltl_runtime.training.files.settings import Stop
+from tltl_runtime.training.files.torch_archive import TorchArchiveError, read_torch
 from tltlc.api import Diagnostic, TltlError, fileio, record
 
 FORMAT: Final = "tltl-checkpoint"
@@ -43,7 +42,7 @@ class BestPolicy:
 class Checkpoint:
     """The state of a training after iteration number ``iteration``.
 
-    - ``run`` is the :func:`~tltl_runtime.training.run.run_file.identity` of the training.
+    - ``run`` is the :func:`~tltl_runtime.training.files.run_file.identity` of the training.
     - ``losses`` are the losses of the iteration.
     - ``steps`` and ``seconds`` are totals over all iterations; ``replayed`` counts replayed
       decisions.

@@ -5,12 +5,32 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Literal
 
+from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltl_runtime.training.exploration.search import SearchProgress
 from tltl_runtime.training.imitation.imitation_data import ImitationSummary
-from tltl_runtime.training.runner import Iteration
 from tltlc.api import record
 
 StopReason = Literal["met", "steps", "minutes"]
+
+Score = tuple[float, float, float]
+"""The score of a policy: pass rate, mean progress, mean reward. Greater is better."""
+
+
+@record
+class Iteration:
+    """The result of a rollout and the update after it.
+
+    ``number`` counts from 1. ``steps`` counts the decisions of all environments. ``finished`` are
+    the episodes that ended. ``losses`` are the losses of rsl-rl's PPO by name, and ``imitation`` if
+    there was self-imitation. ``collect_s`` and ``learn_s`` are wall-clock seconds.
+    """
+
+    number: int
+    steps: int
+    finished: tuple[EpisodeSummary, ...]
+    losses: dict[str, float]
+    collect_s: float
+    learn_s: float
 
 
 @record

@@ -11,8 +11,8 @@ from typing import Any, Final, Literal
 
 from tltl_runtime.policies.network import Network, Shapes, model_config
 from tltl_runtime.training.exploration.search import SearchSettings
-from tltl_runtime.training.run.choices import EntropySchedule, Method, PenaltySchedule, Pool
-from tltl_runtime.training.run.settings_file import read_values
+from tltl_runtime.training.files.choices import EntropySchedule, Method, PenaltySchedule, Pool
+from tltl_runtime.training.files.settings_file import read_values
 from tltlc.api import Diagnostic, RewardOptions, TltlError, fileio, monitors, record, replace
 
 DEFAULTS: Final = Path(__file__).with_name("settings.toml")

@@ -6,11 +6,11 @@ from collections.abc import Callable
 
 from tltl_runtime.training.exploration.reverse_curriculum import ReverseCurriculum
 from tltl_runtime.training.exploration.search import Player, SearchProgress, TrajectorySearch
+from tltl_runtime.training.files.checkpoint import Checkpoint
+from tltl_runtime.training.files.run_file import TrainingRun
 from tltl_runtime.training.ppo.distributed import ProcessGroup
 from tltl_runtime.training.ppo.environment import TrainingEnv
 from tltl_runtime.training.ppo.random_streams import Purpose, stream
-from tltl_runtime.training.run.checkpoint import Checkpoint
-from tltl_runtime.training.run.run_file import TrainingRun
 from tltl_runtime.vector import WorkerVectorEnv
 
 SearchCallback = Callable[[SearchProgress], None]

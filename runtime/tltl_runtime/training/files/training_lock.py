@@ -6,7 +6,7 @@ from contextlib import AbstractContextManager
 from pathlib import Path
 
 from tltl_runtime.support.folder_lock import lock_folder
-from tltl_runtime.training.run.run_file import WRITABLE
+from tltl_runtime.training.files.run_file import WRITABLE
 from tltlc.api import Diagnostic
 
 

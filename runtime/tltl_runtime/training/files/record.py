@@ -17,12 +17,12 @@ from tltl_runtime.policies.file import read_policy, write_policy
 from tltl_runtime.policies.identity import spec_hash
 from tltl_runtime.policies.policy import Policy
 from tltl_runtime.support.record_json import from_json, to_json
-from tltl_runtime.training.run.checkpoint import read_checkpoint
-from tltl_runtime.training.run.curve import draw_curve
-from tltl_runtime.training.run.metrics import METRICS, WINDOW_MEANS, means, read_metrics
-from tltl_runtime.training.run.report import StopReason, TrainingReport
-from tltl_runtime.training.run.run_file import CHECKPOINT, CURVE, POLICY, RECORD, WRITABLE, TrainingRun, read_run
-from tltl_runtime.training.run.versions import versions
+from tltl_runtime.training.files.checkpoint import read_checkpoint
+from tltl_runtime.training.files.curve import draw_curve
+from tltl_runtime.training.files.metrics import METRICS, WINDOW_MEANS, means, read_metrics
+from tltl_runtime.training.files.report import StopReason, TrainingReport
+from tltl_runtime.training.files.run_file import CHECKPOINT, CURVE, POLICY, RECORD, WRITABLE, TrainingRun, read_run
+from tltl_runtime.training.files.versions import versions
 from tltlc.api import fileio, record, replace
 
 _VERSION: Final = 1

@@ -11,7 +11,7 @@ from torch import Tensor, nn
 from torch.optim import Optimizer
 
 from tltl_runtime.support.record_json import RecordJsonError
-from tltl_runtime.training.run.checkpoint import Checkpoint
+from tltl_runtime.training.files.checkpoint import Checkpoint
 from tltl_runtime.training.runner import Runner
 
 _NETWORK: Final = "_state_dict"

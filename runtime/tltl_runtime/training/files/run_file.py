@@ -19,8 +19,8 @@ from tltl_runtime.policies.card import OBSERVATION
 from tltl_runtime.policies.identity import spec_hash
 from tltl_runtime.support.number_text import short_list
 from tltl_runtime.support.record_json import RecordJsonError, from_json, to_json
+from tltl_runtime.training.files.settings import TrainingSettings, read_settings
 from tltl_runtime.training.imitation.demonstrations import recordings
-from tltl_runtime.training.run.settings import TrainingSettings, read_settings
 from tltlc.api import Diagnostic, Fspa, SourceFile, TltlError, compiler, fileio, record, replace
 
 RUN: Final = "run.json"

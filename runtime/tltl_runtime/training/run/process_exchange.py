@@ -16,7 +16,7 @@ from tltlc.api import Diagnostic, TltlError, record, replace
 ProcessState = Mapping[str, Tensor]
 """The state of a process, by name.
 
-It is an item of ``processes`` of :class:`~tltl_runtime.training.run.checkpoint.Checkpoint`.
+It is an item of ``processes`` of :class:`~tltl_runtime.training.files.checkpoint.Checkpoint`.
 """
 
 
