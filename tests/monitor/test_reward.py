@@ -17,7 +17,7 @@ from tltlc.automaton.fspa import Fspa
 from tltlc.core.record import replace
 from tltlc.logic import formula as f
 from tltlc.monitor import Monitor, RewardOptions, Step
-from tltlc.monitor.progress_and_reward import reward_step
+from tltlc.monitor.progress_and_reward import MODES, reward_step
 from tltlc.monitor.tables import tables
 
 A, P = f.atom("a"), f.atom("p")
@@ -219,7 +219,7 @@ def test_a_truncated_episode_succeeds_only_at_its_goal() -> None:
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"mode": "Sparse"}, "mode is one of 'progress', 'sparse', 'edge', 'potential', not 'Sparse'"),
+        ({"mode": "Sparse"}, f"mode is one of {', '.join(map(repr, MODES))}, not 'Sparse'"),
         ({"mode": ""}, "mode is one of"),
         ({"mode": "os"}, "mode is one of"),
         ({"mode": None}, "mode is one of"),

@@ -1,12 +1,17 @@
 from __future__ import annotations
 
+import subprocess
+import sys
 from collections.abc import Sequence
 from itertools import product
+from pathlib import Path
+from zipfile import ZipFile
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+import tltlc
 from tests.logic.strategies import formulas
 from tests.monitor.strategies import atom_traces, automata, values
 from tltlc.automaton.finite.build import build, spec_from_formula
@@ -15,6 +20,7 @@ from tltlc.core.record import replace
 from tltlc.logic import formula as f
 from tltlc.logic.oracle import holds
 from tltlc.monitor import Monitor, RewardOptions
+from tltlc.monitor.progress_and_reward import MODES
 
 A, B, P = f.atom("a"), f.atom("b"), f.atom("p")
 SPARSE, EDGE = RewardOptions(mode="sparse"), RewardOptions(mode="edge")
@@ -104,3 +110,22 @@ def test_potential_rewards_sum_to_success_minus_the_initial_potential(
     distance = fspa.states[0].distance
     start = 0.0 if distance is None else 1.0 if not fspa.spec_size else 1 - distance / fspa.spec_size
     assert total == pytest.approx(gamma**length * step.accepting - start)
+
+
+def test_a_monitor_in_a_zip_archive_has_all_modes(tmp_path: Path) -> None:
+    """A game may embed the monitor in an archive, from which Python imports it."""
+    root = Path(tltlc.__file__).parent
+    archive = tmp_path / "game.zip"
+    with ZipFile(archive, "w") as file:
+        for path in root.rglob("*.py"):
+            file.write(path, Path("tltlc", path.relative_to(root)))
+    code = f"""import sys
+sys.path.insert(0, {str(archive)!r})
+from tltlc.monitor import RewardOptions
+from tltlc.monitor import progress_and_reward as module
+from tltlc.monitor.reward_modes import mode_function
+print(module.__file__, *module.MODES, *(mode_function(mode).__name__ for mode in module.MODES[1:]))"""
+    command = [sys.executable, "-c", code]
+    printed = subprocess.run(command, capture_output=True, encoding="utf-8", check=True, cwd=tmp_path).stdout.split()
+    assert printed[0].startswith(str(archive))
+    assert printed[1:] == [*MODES, *["reward"] * (len(MODES) - 1)]

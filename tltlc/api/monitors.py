@@ -2,12 +2,14 @@
 
 ``Samples`` checks samples of signals and computes the values of the atoms. ``robustness`` computes
 the robustness of a guard, and ``tables`` what is needed to compute progress. ``MODES`` has the
-names of the reward modes. ``tltlc.api.Monitor`` does all of this for one automaton, step by step.
+names of the reward modes; ``mode_function`` returns the function of a mode, which rewards a
+``Transition``. ``tltlc.api.Monitor`` does all of this for one automaton, step by step.
 """
 
 from tltlc.monitor.arguments import automaton_argument, reward_options_argument
 from tltlc.monitor.guards import bounding_literal, robustness
 from tltlc.monitor.progress_and_reward import MODES, Mode, TerminalPenalty, Termination, ends_episode, terminal_penalty
+from tltlc.monitor.reward_modes import Transition, mode_function
 from tltlc.monitor.samples import (
     ROUNDING,
     SUGGESTIONS,
@@ -28,10 +30,12 @@ __all__ = [
     "Samples",
     "TerminalPenalty",
     "Termination",
+    "Transition",
     "automaton_argument",
     "bounding_literal",
     "ends_episode",
     "finite_signal_value",
+    "mode_function",
     "name_list",
     "number_text",
     "param_values",

@@ -6,19 +6,25 @@ it. A ▲ marks where the code deviates from the listing.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
-from typing import Final, Literal, get_args
+from pkgutil import iter_modules
+from typing import TYPE_CHECKING, Final, Literal, get_args
 
 from tltlc.core.record import record
 from tltlc.monitor.guards import robustness
 from tltlc.monitor.tables import MonitorTables
 
-Mode = Literal["progress", "sparse", "edge", "potential"]
-MODES: Final[tuple[Mode, ...]] = get_args(Mode)
+_FOLDER: Final = os.path.join(os.path.dirname(__file__), "reward_modes")  # noqa: PTH118, PTH120
+MODES: Final = ("progress", *sorted(module.name for module in iter_modules([_FOLDER])))
 """All reward modes.
 
-``progress`` is Algorithm 1. Each of the others is a module of :mod:`tltlc.monitor.reward_modes`.
+``progress`` is Algorithm 1. The others are the modules of :mod:`tltlc.monitor.reward_modes`.
 """
+if TYPE_CHECKING:
+    Mode = str
+else:
+    Mode = Literal[MODES]
 Termination = Literal["entry", "paper"]
 TerminalPenalty = Literal["undiscounted", "discounted"]
 

@@ -2,9 +2,9 @@
 
 A module defines a pure function ``reward(tables, transition, options, memory) -> (reward,
 memory)``. ``memory`` is what the mode remembers from step to step; it is None at the start of an
-episode. These modes have no penalties for steps or failures. To add a mode, add its name to
-:data:`tltlc.monitor.progress_and_reward.Mode`. Then write two modules of this name: one here for
-one environment, and one in ``tltl_runtime.spec.batch.reward_modes`` for many environments.
+episode. These modes have no penalties for steps or failures. To add a mode, write its module.
+To compute it faster for many environments, write a module of the same name in
+``tltl_runtime.spec.batch.reward_modes`` that uses tensors.
 """
 
 from __future__ import annotations

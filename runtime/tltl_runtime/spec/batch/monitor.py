@@ -97,9 +97,11 @@ class BatchMonitor:
     ``clamped`` counts values out of range, by the names of signals and atoms. ``signal_names`` is
     the order of signals in a tensor.
 
-    Checking samples waits for the device a few times per step. With ``checked=False`` a step never
-    waits. Then values out of range are clamped and not counted. A NaN makes its atoms false and may
-    appear in progress and reward. If exclusive atoms hold at once, some edge of the state is taken.
+    Checking samples waits for the device a few times per step. With ``checked=False`` a step waits
+    only in a reward mode without tensors (:class:`~tltl_runtime.spec.batch.reward_modes.RowByRow`).
+    An unchecked step clamps values out of range without counting them. A NaN makes its atoms false
+    and may appear in progress and reward. If exclusive atoms hold at once, some edge of the state
+    is taken.
 
     Raises:
         MonitorError: TLT0307, TLT0308 for ``params`` that do not fit.

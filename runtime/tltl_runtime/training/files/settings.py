@@ -214,7 +214,8 @@ def read_settings(path: Path | None = None) -> TrainingSettings:
 
 def default_text() -> str:
     """Return the TOML text of the defaults, with comments: a template for settings files."""
-    return DEFAULTS.read_text(encoding="utf-8")
+    *names, last = monitors.MODES
+    return DEFAULTS.read_text(encoding="utf-8").replace("{modes}", f"{', '.join(names)} or {last}")
 
 
 def settings_text(settings: TrainingSettings) -> str:

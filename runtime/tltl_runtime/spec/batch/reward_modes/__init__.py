@@ -2,17 +2,22 @@
 
 A module has the name of its mode and defines a class ``Reward``, which is a :class:`RewardMode`.
 The module of that name in :mod:`tltlc.monitor.reward_modes` gives equal rewards, for one automaton.
+If a mode has no module here, :class:`RowByRow` calls that module for each environment.
 """
 
 from __future__ import annotations
 
 import importlib
-from typing import NamedTuple, Protocol
+import importlib.util
+from typing import Any, Final, NamedTuple, Protocol
 
 import torch
 from torch import Tensor
 
-from tltlc.api import Fspa, RewardOptions
+from tltlc.api import Fspa, RewardOptions, monitors
+
+_ENDED: Final = -1
+"""The memory of :class:`RowByRow` for an environment whose episode has ended."""
 
 
 class BatchTransition(NamedTuple):
@@ -57,5 +62,48 @@ def reward_mode(fspa: Fspa, options: RewardOptions, device: torch.device, dtype:
     Mode ``progress`` has no module: :class:`~tltl_runtime.spec.batch.progress_and_reward.Outcomes`
     computes it.
     """
+    if importlib.util.find_spec(f"{__name__}.{options.mode}") is None:
+        return RowByRow(fspa, options, device, dtype)
     mode: RewardMode = importlib.import_module(f"{__name__}.{options.mode}").Reward(fspa, options, device, dtype)
     return mode
+
+
+class RowByRow:
+    """A reward mode that calls the scalar function of the mode for each environment, on the CPU.
+
+    Each step reads its tensors, so it waits for the device. The memory has an index for each
+    environment, int64 [N], into a list of what the function remembers; it is -1 after the end of
+    the episode, when the function is not called. Each step makes a new list, so only the memory of
+    the last step is valid.
+    """
+
+    def __init__(self, fspa: Fspa, options: RewardOptions, device: torch.device, dtype: torch.dtype) -> None:
+        self._tables, self._options, self._device, self._dtype = monitors.tables(fspa), options, device, dtype
+        self._function = monitors.mode_function(options.mode)
+        self._remembered: list[Any] = [None]
+
+    def start(self, count: int) -> Tensor:
+        """Return the index of None for each environment."""
+        return torch.zeros(count, dtype=torch.int64, device=self._device)
+
+    def reward(self, step: BatchTransition, memory: Tensor) -> tuple[Tensor, Tensor]:
+        """Return the reward and the indices of what the function remembers after the step."""
+        columns = step.source, step.target, step.values.T, step.done, step.success, memory
+        rewards: list[float] = []
+        indices: list[int] = []
+        remembered: list[Any] = [None]
+        for source, target, values, done, success, index in zip(*(column.tolist() for column in columns), strict=True):
+            if index == _ENDED:
+                rewards.append(0.0)
+                indices.append(_ENDED)
+                continue
+            transition = monitors.Transition(source, target, values, done, success)
+            reward, after = self._function(self._tables, transition, self._options, self._remembered[index])
+            rewards.append(reward)
+            indices.append(_ENDED if done else len(remembered))
+            remembered.append(after)
+        self._remembered = remembered
+        return (
+            torch.tensor(rewards, dtype=self._dtype, device=self._device),
+            torch.tensor(indices, dtype=torch.int64, device=self._device),
+        )
