@@ -182,7 +182,7 @@ NAMES = (
 @compilers
 @batches
 @given(data=st.data())
-def test_hostile_texts_are_no_code(compiler: str, tmp_path: Path, data: st.DataObject) -> None:
+def test_hostile_texts_do_not_become_code(compiler: str, tmp_path: Path, data: st.DataObject) -> None:
     fspas = different(data, hostile_automata(), 6)
     programs = programs_of(tmp_path, compiler, fspas)
     # Each trace lacks the first signal of its program.

@@ -56,7 +56,7 @@ def run_program(folder: Path, *words: str, stdin: bytes = b"") -> Outcome:
 
 @batches
 @given(data=st.data())
-def test_hostile_texts_are_no_code(tmp_path: Path, data: st.DataObject) -> None:
+def test_hostile_texts_do_not_become_code(tmp_path: Path, data: st.DataObject) -> None:
     programs = Programs(*RUNNERS, tmp_path, different(data, hostile_automata(), 6))
     assert {status for status, _, _ in programs.run(*((number, "nothing\n1\n") for number in range(6)))} == {1}
     for number, fspa in enumerate(programs.fspas):

@@ -273,7 +273,7 @@ def test_hostile_names_stay_distinct(tmp_path: Path) -> None:
 @runs
 @batches
 @given(data=st.data())
-def test_hostile_texts_are_no_code(tmp_path: Path, data: st.DataObject) -> None:
+def test_hostile_texts_do_not_become_code(tmp_path: Path, data: st.DataObject) -> None:
     fspas = different(data, hostile_automata(), 5)
     programs = Programs(*RUNNERS, tmp_path, fspas)
     assert {status for status, _, _ in programs.run(*((number, "nothing\n1\n") for number in range(5)))} == {1}

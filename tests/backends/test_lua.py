@@ -72,7 +72,7 @@ LUA_NAMES = (
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.function_scoped_fixture],
 )
 @given(fspa=hostile_automata())
-def test_hostile_texts_are_no_code(tmp_path: Path, fspa: Fspa) -> None:
+def test_hostile_texts_do_not_become_code(tmp_path: Path, fspa: Fspa) -> None:
     assume("\0" not in fspa.signals[0].name)
     samples = [{fspa.signals[0].name: value, "health": 1.0} for value in (-1.0, 0.0, -0.5)]
     module = write_module(fspa, tmp_path)

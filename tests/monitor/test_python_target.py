@@ -218,7 +218,7 @@ def test_deep_arithmetic_agrees_with_the_monitor(depth: int) -> None:
 
 @times(40)
 @given(hostile_automata())
-def test_hostile_texts_are_no_code(fspa: Fspa) -> None:
+def test_hostile_texts_do_not_become_code(fspa: Fspa) -> None:
     module = module_of(fspa)
     assert source_of(fspa).encode().decode() == source_of(fspa)
     # All atoms read the same signal here, so a value above 0 violates the exclusive atoms, which the error names.

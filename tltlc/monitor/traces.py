@@ -106,7 +106,7 @@ def _advice(signal: Signal) -> str:
 def _cell_span(line: str, column: int) -> tuple[int, int] | None:
     """Return where a cell begins and ends in its line.
 
-    Returns None if the line has quotes, which may contain commas.
+    Returns None if the line has quotes, which may contain commas, or has no such column.
     """
     cells = line.split(",")
     if '"' in line or column >= len(cells):

@@ -125,7 +125,8 @@ def _program(fspa: Fspa, names: VariableNames) -> Program:
         prove_ranges(name, arithmetic.assign(name, atom.expression), ranges)
         for name, atom in zip(atoms, fspa.atoms, strict=True)
     ]
-    # A function that may fail can be in the condition of a `when`, where the range of the result says nothing about it.
+    # A function in the condition of a `when` may fail even if the result is always in range. So an atom that calls such
+    # a function does not count as always in range.
     in_range = tuple(
         range_ is not None and range_.low >= -1.0 and range_.high <= 1.0 and not functions_called(statements) & FAILING
         for statements, range_ in values

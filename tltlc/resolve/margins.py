@@ -45,14 +45,18 @@ def robustness(left: Quantity, right: Quantity) -> Expression:
 
 @record
 class _MarginRange:
-    """The range of the margins above 0, or of those below 0. Their sizes go from 0 to ``width``."""
+    """The range of the margins above 0, or of those below 0. Their sizes go from 0 to ``width``.
+
+    ``most`` is the greatest value of one side of the comparison, and ``least`` the least value of
+    the other side.
+    """
 
     most: float
     least: float
 
     @property
     def width(self) -> float:
-        """The greatest size of a margin, ``most - least``; infinite if it overflows."""
+        """The greatest size of a margin; infinite if it overflows."""
         return self.most - self.least
 
     @property

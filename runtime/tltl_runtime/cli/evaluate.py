@@ -59,7 +59,7 @@ Examples:
     type=cli.WholeRange(min=0),
     default=0,
     show_default=True,
-    help="The number of the first episode.",
+    help="The number of the first episode, to play a part of an evaluation again.",
 )
 @click.option(
     "--spec", metavar="SPEC[:NAME]", help="The spec that judges the policy (default: the spec of the training)."

@@ -52,7 +52,7 @@ def _rate(figures: Figures) -> str:
 
 
 def _std(figures: Figures, spread: Spread, places: int) -> str:
-    """Return a standard deviation as text; a single episode has none."""
+    """Return a standard deviation as text; ``-`` for a single episode."""
     return number(spread.std, places) if figures.episodes > 1 else "-"
 
 

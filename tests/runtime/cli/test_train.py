@@ -390,7 +390,7 @@ def test_an_unreachable_goal_is_reported_first(interrupted: TltlcFunction) -> No
 
 
 @pytest.mark.usefixtures("here")
-def test_the_level_beside_the_spec_comes_first(tltlc: TltlcFunction, interrupted: TltlcFunction) -> None:  # noqa: F811
+def test_a_level_file_beside_the_spec_is_preferred(tltlc: TltlcFunction, interrupted: TltlcFunction) -> None:  # noqa: F811
     assert tltlc("new", "mine", "--level", "vault").status == 0
     result = interrupted("mine/vault.tltl", "--config", "small.toml")
     assert result.err.startswith("training unseen on vault v0, seed 0, in training/vault-v0-unseen-0\n")

@@ -34,7 +34,7 @@ def test_the_shipped_suite_plays_the_shipped_policies_in_every_variant() -> None
     assert [case.name for case in suite.cases[:2]] == ["navigation:v0", "navigation:v1"]
 
 
-def test_the_defaults_of_a_case(tmp_path: Path) -> None:
+def test_a_case_without_settings_gets_the_defaults(tmp_path: Path) -> None:
     (case,) = read(tmp_path, '[[case]]\nlevel = "branching"\n')
     assert case == Case(
         name="branching:v0",

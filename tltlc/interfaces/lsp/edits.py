@@ -1,4 +1,4 @@
-"""Convert edits of texts to the editor's protocol, apply them, and compute them."""
+"""Convert edits to the editor's protocol, apply them, and find the edits that turn one text into another."""
 
 from __future__ import annotations
 

@@ -48,8 +48,7 @@ class Prover:
         self.steps = 0
 
     def proves_nonnegative(self, f: Term, limits: Sequence[Term], ranges: Ranges, *, strict: bool) -> bool:
-        """Whether f is provably >= 0 (> 0 if strict) at all points of the ranges where each limit
-        is >= 0.
+        """Whether f is provably >= 0 (> 0 if strict) at the points of the ranges where each limit is >= 0.
 
         Limits are terms, and every symbol has a range. False means that it could not be proved.
         """

@@ -187,7 +187,7 @@ def library_clock_changed(old: float | None, new: float | None, place: Label) ->
 
 
 def exclusive_added(names: Sequence[str], place: Label) -> Diagnostic:
-    """Return TLT0758: a library declares atoms to be exclusive."""
+    """Return TLT0758: a library now declares atoms to be exclusive."""
     help_ = "a sample in which two of them hold is an error to specs that name both: look whether the game has such"
     return Diagnostic("TLT0758", f"{name_list(names)} are exclusive now", (place,), help_, BREAKING)
 

@@ -1,4 +1,4 @@
-"""Build the versions of files that ``tltlc breaking`` compares."""
+"""Compile the two versions of each file that ``tltlc breaking`` compares."""
 
 from __future__ import annotations
 

@@ -230,7 +230,10 @@ def _witness(moves: Moves, accept: bool) -> Witness | None:
 
 
 def _example_trace(fspa: Fspa, witness: Witness | None) -> ExampleTrace | None:
-    """Return a witness in words, with consecutive equal steps merged, or None if there is none."""
+    """Return a witness in words, or None if there is none.
+
+    Consecutive steps with the same condition are merged.
+    """
     if witness is None:
         return None
     steps: list[TraceStep] = []

@@ -37,7 +37,7 @@ class Style:
             return f"{self.prefix[node.op].rstrip()} {bound['words']} "
         spelling = self.prefix[node.op]
         if bound:
-            # `F[2,3]` is easiest to read in letters.
+            # With a bound in brackets, a letter (`F[2,3]`) is easier to read than a word.
             spelling = f"{(self.letters or self.prefix)[node.op].rstrip()}{bound['brackets']} "
         return (
             spelling.rstrip()

@@ -95,7 +95,10 @@ class PrimeSets:
         return literals.view(self._depth, self._width, values.shape[1])
 
     def _table(self, cells: Callable[[Primes], list[int]]) -> Tensor:
-        """Return the ``cells`` of each distinct set, int64 [primes * literals, distinct]."""
+        """Return a table, int64 [primes * literals, distinct].
+
+        Each distinct set of primes has a column, with the numbers that ``cells`` returns for it.
+        """
         rows = [cells(primes) for primes in self._distinct]
         return torch.tensor(rows, dtype=torch.int64).view(len(rows), self._depth * self._width).t().contiguous()
 

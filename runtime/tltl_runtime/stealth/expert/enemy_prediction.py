@@ -100,7 +100,8 @@ class Watch:
     def _outlook(self, models: Sequence[EnemyGuard], decisions: int, unseen: PlayerView) -> Outlook:
         distinct: dict[tuple[object, ...], tuple[EnemyGuard, int]] = {}
         for model in models:
-            # Keep each model that draws random numbers: it moves differently. Keep one of all others in the same state.
+            # Models that draw random numbers move differently even from the same state: keep each of them. Of the
+            # others, keep one for each state.
             draws = model.kind.branches or model.mode == "search"
             key = (id(model),) if draws else model.state
             first, count = distinct.get(key, (model, 0))

@@ -50,7 +50,7 @@ Examples:
     "counterexamples",
     metavar="TRACES",
     multiple=True,
-    help="Traces of failed or wrong play, which must violate the proposed specs: a file or a folder (repeatable).",
+    help="Counterexamples: traces of failed or wrong play, which specs should reject. A file or a folder (repeatable).",
 )
 @click.option(
     "--predicates",

@@ -34,7 +34,7 @@ may import files from the current folder and its subfolders, and the libraries o
     "folder",
     metavar="DIR",
     type=OutputPath("folder"),
-    help="Write the page with the compiler to this folder, and start no server.",
+    help="Write the page, with the compiler in it, to this folder, and start no server.",
 )
 @click.option(
     "--pyodide",
