@@ -13,6 +13,8 @@ from tempfile import gettempdir
 
 import pytest
 
+from tests.waiting import HANG_S
+
 NEEDED = ("gymnasium", "numpy", "pybullet", "torch")
 MISSING = [name for name in NEEDED if find_spec(name) is None]
 
@@ -26,7 +28,19 @@ def pytest_configure(config: pytest.Config) -> None:
         import torch
 
         torch.set_num_threads(1)
+        _wait_for_busy_workers()
         _find_fonts()
+
+
+def _wait_for_busy_workers() -> None:
+    """Let environments of the tests wait for their workers as long as any test waits, instead of 60 s.
+
+    On a machine with too little memory, a step can take minutes.
+    """
+    from tltl_runtime.vector import WorkerVectorEnv
+
+    assert WorkerVectorEnv.__init__.__kwdefaults__ is not None
+    WorkerVectorEnv.__init__.__kwdefaults__["timeout"] = HANG_S
 
 
 def _find_fonts() -> None:
