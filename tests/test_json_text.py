@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -77,8 +78,14 @@ def test_the_first_number_that_is_not_finite_is_named() -> None:
 
 
 @pytest.mark.parametrize(
-    "text", ["[" * 100_000, '{"format": "fspa", "a":' + "[" * 5000, "[" + "[]," * 10_000_000 + "[]]"]
+    "make",
+    [
+        lambda: "[" * 100_000,
+        lambda: '{"format": "fspa", "a":' + "[" * 5000,
+        lambda: "[" + "[]," * 10_000_000 + "[]]",
+    ],
+    ids=["brackets", "an object", "a long list"],
 )
-def test_an_artefact_that_would_fill_the_memory_is_rejected(text: str) -> None:
+def test_an_artefact_that_would_fill_the_memory_is_rejected(make: Callable[[], str]) -> None:
     with pytest.raises(TltlError, match="TLT0006"):
-        read_artefact(SourceFile("x.fspa.json", text))
+        read_artefact(SourceFile("x.fspa.json", make()))

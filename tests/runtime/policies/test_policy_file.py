@@ -259,11 +259,14 @@ def test_an_edited_file_is_rejected_with_the_reason(policy: Policy, change: Chan
         with_header(b'{"__metadata__": []}'),
         with_header(b'{"a":' * 100_000),
         with_header(b"\xff\xfe"),
-        b"\0" * (MAX_BYTES + 1),
     ],
 )
 def test_data_that_is_no_policy_is_rejected(data: bytes) -> None:
     assert "TLT0840" in message_of_refusal(data)
+
+
+def test_data_that_is_larger_than_any_policy_is_rejected() -> None:
+    assert "TLT0840" in message_of_refusal(b"\0" * (MAX_BYTES + 1))
 
 
 def test_a_truncated_file_is_rejected(policy: Policy) -> None:
