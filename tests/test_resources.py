@@ -150,7 +150,7 @@ def test_a_limit_of_a_process_cannot_be_raised() -> None:
 
 
 @pytest.mark.parametrize("error", [OutOfTimeError(), MemoryError(), RecursionError()])
-def test_every_exhausted_resource_has_the_same_code(error: BaseException) -> None:
+def test_all_exhausted_resources_give_the_same_error_code(error: BaseException) -> None:
     reported = exhaustion_error(error)
     assert isinstance(reported, TltlError)
     assert [diagnostic.code for diagnostic in reported.diagnostics] == ["TLT0007"]

@@ -303,6 +303,6 @@ def test_a_repeated_atom_in_a_group_changes_nothing() -> None:
     assert compiled("F a", ("a", "a")).edges == compiled("F a").edges
 
 
-def test_exclusive_atoms_make_skipping_impossible() -> None:
+def test_exclusive_goals_cannot_be_reached_in_the_same_step() -> None:
     assert compiled("F a & F b").spec_size == 1
     assert compiled("F a & F b", ("a", "b")).spec_size == 2

@@ -185,7 +185,7 @@ def test_graphviz_can_read_texts_of_any_length(character: str) -> None:
     assert drawn.get_edge("0", "1").attr["tooltip"].endswith(" …")
 
 
-def test_long_labels_are_wrapped_before_operators_and_cut() -> None:
+def test_labels_break_before_operators_and_lose_their_last_lines() -> None:
     assert wrap_text("aaaa & bbbb & cccc", 9) == ["aaaa", "& bbbb", "& cccc"]
     assert wrap_text("aaaa & bbbb & cccc", 13) == ["aaaa & bbbb", "& cccc"]
     assert wrap_text("a " * 100, 1, most_lines=3) == ["a", "a", "a …"]

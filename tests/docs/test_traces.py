@@ -39,7 +39,7 @@ def test_the_values_are_read_as_documented() -> None:
     assert all(number(cell) is None for cell in cells("an error"))
 
 
-def test_the_examples_are_the_same_trace() -> None:
+def test_both_examples_on_the_page_are_the_same_trace() -> None:
     signals = [Signal(f"distance({name})", "length", 0.0, None) for name in ("key", "door")]
     signals.append(Signal("seen", "bool", 0.0, 1.0))
     examples = re.findall(r"```text\n(.*?)```", TEXT, re.DOTALL)

@@ -129,10 +129,10 @@ def _success_count(reference: Reference) -> int:
 
 
 def _older_reference(reference: Reference, older: tuple[Reference, ...]) -> Reference | None:
-    """Return the older reference of the same level, variant and spec; None if there is none.
+    """Return the entry of the old baseline that ``reference`` replaces; None without such an entry.
 
-    A reference of the same policy is preferred. A reference of another policy is returned only if it
-    is the only one.
+    It is about the same level (name and place), variant and spec. The first one of the same policy
+    wins; otherwise the only candidate, if there is exactly one.
     """
     names = ("level", "variant", "place", "spec")
     played = reference.played

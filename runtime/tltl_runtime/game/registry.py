@@ -10,7 +10,9 @@ from tltl_runtime.game.game import Game
 _MODULE: Final = "tltl_runtime.stealth.stealth_game"
 """The module whose ``GAME`` is the game.
 
-It is imported by its name. So no package that plays games has to import a particular game.
+It is imported by its name, so that evaluation, training and regression tests need not import a
+particular game. To put another game in its place, write a module with a ``GAME`` and name it here.
+The commands in ``tltl_runtime.cli`` still import the stealth game themselves.
 """
 
 

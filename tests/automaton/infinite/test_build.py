@@ -174,7 +174,7 @@ def test_acceptance_is_on_transitions() -> None:
     assert state_rows(fspa) == [("G F a", "holding", 0, True)]
 
 
-def test_exclusive_atoms_make_skipping_impossible() -> None:
+def test_exclusive_goals_cannot_be_reached_in_the_same_step() -> None:
     assert compiled("F a & F b").spec_size == 1
     fspa = compiled("F a & F b", ("a", "b"))
     assert fspa.spec_size == 2

@@ -194,7 +194,7 @@ def test_a_baseline_that_cannot_be_read_is_not_reported_as_missing() -> None:
 
 
 @pytest.mark.parametrize("path", [Path("game.toml"), SHIPPED])
-def test_the_suggested_command_writes_the_missing_baseline(path: Path) -> None:
+def test_the_suggested_command_names_the_output_only_where_it_is_needed(path: Path) -> None:
     """The baseline inside the package is written only with an explicit ``--output``."""
     named = replace(suite(path=path), baseline=Path("a night.json"))
     words = "" if path == SHIPPED else " game.toml"

@@ -59,13 +59,13 @@ class Workspace:
     # --- documents ----------------------------------------------------------------------------
 
     def document(self, uri: str) -> Document | None:
-        """Return the document for the open text, or else for the file; None if there is neither."""
+        """Return the document at an address, as :meth:`document_named` finds it by its name."""
         return self.document_named(name_of(uri))
 
     def document_named(self, name: str) -> Document | None:
-        """Return the document with this name as :meth:`document` does; None if there is none.
+        """Return the document of the text that is open in the editor, else of the file on disk.
 
-        The name is an absolute path, or ``<URI>`` for a text that is not a file.
+        Return None if there is neither. The name is an absolute path, or ``<URI>`` for a text that is not a file.
         """
         opened = self._open.get(name)
         document = self._documents.get(name)

@@ -168,7 +168,10 @@ def _label_lines(fspa: Fspa, run: Sequence[State], notation: Notation) -> list[s
 
 
 def _shorten(texts: Sequence[str], width: int) -> list[str]:
-    """Wrap texts to lines of about that width; an ellipsis replaces what does not fit."""
+    """Wrap texts to at most ``_MOST_LINES`` lines of about ``width`` characters, and never more than twice as many.
+
+    An ellipsis stands for the rest.
+    """
     lines = [line for text in texts for line in wrap_text(text, width, _MOST_LINES)]
     if len(lines) > _MOST_LINES:
         lines = [*lines[: _MOST_LINES - 1], "…"]

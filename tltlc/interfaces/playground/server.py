@@ -61,7 +61,8 @@ class PageHandler:
         self.files = page_files()
         self._children = children
         self._token = token.encode()
-        # One thread for each connection that may wait; the children are fewer.
+        # A connection blocks its thread while it waits for a child, and there may be more connections than children.
+        # So each connection gets a thread.
         self._threads = ThreadPoolExecutor(PLAYGROUND.most)
 
     def check(self, head: Head) -> None:

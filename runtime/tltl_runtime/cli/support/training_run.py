@@ -253,7 +253,10 @@ def _usage(message: str) -> click.UsageError:
 
 
 def _with_file(settings: TrainingSettings, path: Path) -> TrainingSettings:
-    """Return settings with the values that a file sets; the errors are those of reading it."""
+    """Return the settings, with the values that a file sets in place of theirs.
+
+    Raises TltlError: the file cannot be read, or has a wrong key or value (TLT0860 to TLT0862).
+    """
     for table, values in read_values(fileio.read_source(path)).items():
         changed = {table: replace(getattr(settings, table), **values)} if table else values
         settings = replace(settings, **changed)
