@@ -37,9 +37,9 @@ class Trace:
 
 
 def separating(one: Fspa, other: Fspa, work: int = DEFAULT_WORK, impossible: Iterable[Literals] = ()) -> Trace | None:
-    """Return a trace that ``one`` accepts and ``other`` does not; None if there is none.
+    """Return a trace that ``one`` accepts and ``other`` rejects; None if ``other`` accepts all traces of ``one``.
 
-    Over finite traces, the trace is a shortest one.  ``impossible`` lists conjunctions of literals
+    Over finite traces, the trace is a shortest one. ``impossible`` lists conjunctions of literals
     that no letter of the trace may satisfy.
 
     Raises:
@@ -142,9 +142,9 @@ class _Product:
         """Return a lasso (a prefix and a cycle) whose cycle takes only edges of ``part``.
 
         ``part`` is a strongly connected set of edges of the product. A clause of ``accepting``
-        accepts its marks, and no clause of ``rejecting`` does. The same must be true of the cycle.
-        So it takes every ``inf`` mark of the clause that accepts, and each ``fin`` mark of the
-        clauses in ``rejecting`` that occurs in ``part``.
+        accepts the marks of ``part``, and no clause of ``rejecting`` does. The same must be true of
+        the marks of the cycle. So it takes every ``inf`` mark of the clause that accepts, and each
+        ``fin`` mark of the clauses in ``rejecting`` that occurs in ``part``.
         """
         marks_in_part = marks_of(part)
         clause = next(clause for clause in accepting if clause.accepts(marks_in_part))
@@ -254,8 +254,8 @@ class _Product:
     def _values_with_letters(self, step: int) -> dict[Any, list[str]]:
         """Map each value of a function of the letter to one letter that has this value.
 
-        The letter is given by the atoms that hold. Atoms that do not matter for the value do not
-        hold.
+        A letter is the list of the names of the atoms that hold. Atoms that do not matter for the
+        value are not in the list.
         """
         letters = self._letters
         letter_of: dict[Any, list[str]] = {}

@@ -39,7 +39,7 @@ class OutOfSteps(Exception):
 
 
 class StepLimit:
-    """The most steps that each operation may take in total.  Several tables may share a limit.
+    """The most steps that each operation may take, over all its calls. Several tables may share a limit.
 
     An operation takes a step for each pair of nodes that it combines, and caches the result, so the
     limit bounds memory too.
@@ -266,7 +266,7 @@ class Diagrams(Generic[Leaf]):
     def assignment_with(self, x: int, value: Leaf) -> frozenset[int]:
         """Return an assignment on which function ``x`` has this value, as the set of its true variables.
 
-        Raises ValueError if there is none.
+        Raises ValueError if the function has this value nowhere.
         """
         stack: list[tuple[int, tuple[int, ...]]] = [(x, ())]
         seen = {x}

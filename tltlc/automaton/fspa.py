@@ -14,7 +14,7 @@ from tltlc.resolve.spec import Atom, Judge, Param, Signal
 
 Verdict = Literal["satisfied", "holding", "pending", "violated"]
 Implicant = tuple[tuple[int, bool], ...]
-"""A conjunction of literals, each as an index into ``Fspa.atoms`` and whether that atom is true."""
+"""A conjunction of literals. Each is an index into ``Fspa.atoms``, and whether this atom is true."""
 Mark = tuple[int, Literal["fin", "inf"]]
 """One of the two sets of edges of a Rabin pair: the pair's index in ``Fspa.acceptance``, and the set's name."""
 

@@ -56,7 +56,8 @@ def budget_error(spec: Spec, reason: Exception, state_budget: int) -> TltlError:
     def size(part: Conjunct, spec: Spec) -> Size | None:
         nonlocal remaining
         if remaining < 0:
-            # The message names at most three clauses, and more have been measured by now.
+            # The budget for measuring is used up. The message names the three largest clauses, and more have been
+            # measured by now. Size 0 puts this clause behind them.
             return Size(0, "")
         measured = _size(part, spec)
         remaining -= measured.number if measured else 0
@@ -114,7 +115,8 @@ def _guard_advice(spec: Spec, reason: TooManyPrimes) -> str:
     """Return advice on how to make the guards smaller or fewer."""
     pairs = sum(len(group) * (len(group) - 1) // 2 for group in spec.exclusive)
     if reason.subject == "a guard" and 2 * pairs > reason.limit:
-        # The prime implicants are those of `guard or not D`, and `not D` has one for each pair.
+        # D says that no two `exclusive` atoms hold together. The prime implicants are those of `guard or not D`, and
+        # `not D` has one for each pair.
         return f"declare fewer atoms `exclusive`, or several smaller groups: now {pairs} pairs exclude each other"
     if reason.subject == "a guard":
         return "split the spec, or name the condition as a predicate"

@@ -67,9 +67,9 @@ def minimal_machine(
 
 
 def _build(spec: Spec, state_budget: int) -> Fspa:
-    """Build the automaton, with its atoms in another order if their own order takes too many steps.
+    """Build the automaton, with its atoms in another order if the order of the spec takes too many steps.
 
-    The atoms of the result have their own order again.
+    In the result, the atoms have the order of the spec again.
     """
     order = better_order(spec.formula, [atom.name for atom in spec.atoms])
     if order is None:
@@ -269,8 +269,8 @@ def _arrow_forms(source: Formula, labels: Labels) -> dict[Formula, Formula]:
     """Map the negation normal form of each ``->`` and ``<->`` in the source to the formula as written.
 
     Leaves out subformulas of more than :data:`~tltlc.automaton.finite.labels.LONGEST_SIMPLIFIED`
-    operators and atoms. Leaves out the largest of the rest too if they have more operators and
-    atoms than the row "arrow nodes" of ``WORK`` allows.
+    operators and atoms. If the rest together have more operators and atoms than the row "arrow
+    nodes" of ``WORK`` allows, leaves out the largest of them too.
     """
     parts = [part for part in source.walk() if part.op in ("implies", "iff")]
     remaining = WORK["arrow nodes"]

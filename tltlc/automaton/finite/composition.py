@@ -31,9 +31,11 @@ def minimal_machine(successors: Successors, formula: Formula, state_budget: int,
     """Return the minimal machine of a formula in negation normal form.
 
     Explores the formula as a whole if that takes few steps, and builds it part by part otherwise.
-    ``allowed`` and the errors are as in :func:`tltlc.automaton.finite.machine.machine`.  Also
-    raises :class:`OutOfStates` if all machines together need more states than both the row "states
-    of parts" of :data:`~tltlc.io.limits.WORK` and three times ``state_budget``.
+    ``allowed`` is a guard: only letters on which it is true can occur. Raises :class:`OutOfStates`
+    if the machine, or the machine of a part, needs more than ``state_budget`` states, or if all
+    machines on the way together have more states than the row "states of parts" of
+    :data:`~tltlc.io.limits.WORK` and than three times ``state_budget``. Raises :class:`OutOfSteps`
+    if the transitions take too many steps.
     """
     return _Composition(successors, state_budget, allowed).minimal(formula)
 
@@ -86,7 +88,9 @@ class _Composition:
 def _embed(successors: Successors, minimal: Machine) -> int:
     """Return an obligation with the language of a machine.
 
-    Each state of the machine becomes a variable of obligations, with the state's transition.
+    Each state of the machine becomes a new variable of obligations, and gets the state's
+    transition. A state that accepts whatever follows becomes TRUE instead, one that rejects
+    whatever follows FALSE.
     """
     diagrams = successors.diagrams
     obligations: dict[int, int] = {}
@@ -104,9 +108,10 @@ def _embed(successors: Successors, minimal: Machine) -> int:
 
 
 def _constant_obligation(diagrams: TransitionDiagrams, state: int, transition: int) -> int | None:
-    """Return TRUE or FALSE if every letter that can occur leads back to the state, None otherwise.
+    """Return TRUE if a state accepts whatever follows, FALSE if it rejects whatever follows, None otherwise.
 
-    It is TRUE if the state accepts these letters.
+    On every letter that can occur, a constant state leads back to itself. TRUE accepts each of
+    these letters, FALSE none.
     """
     # The letter in which no atom holds can always occur. If it leads to another state, the result is None.
     leaf = transition

@@ -25,9 +25,9 @@ from tltlc.automaton.transitions import IMPOSSIBLE, TransitionDiagrams
 _NONE: Final = -1
 """The letter in which no atom holds; any other letter is the index of the one atom that holds."""
 _FEW: Final = 500
-"""How many states are counted at least.
+"""The count does not give up because of few answers before it has visited this many states.
 
-After that, the count gives up when it has fewer different answers than half its states.
+After that, it gives up when it has found less than half as many different answers as states.
 """
 
 Word = list[int]
@@ -36,7 +36,7 @@ _Table = dict[int, dict[int, tuple[int, int]]]
 
 
 class _EstimateStopped(Exception):
-    """Raised when the count has used up its steps."""
+    """Raised when all counts together have used up their steps."""
 
 
 class Estimate:
@@ -182,8 +182,9 @@ def _words(settling: Sequence[Word | None]) -> list[Word]:
     """Return words that distinguish the states of one machine at a time.
 
     ``settling`` has one word for each machine: for a conjunction one that it accepts, for a
-    disjunction one that it rejects.  For each machine and each suffix of its own word, the result
-    has a word: the words of all other machines, then the suffix.
+    disjunction one that it rejects. For each machine and each suffix of its own word, the result
+    has a word: the words of all other machines, then the suffix. If a machine has no word (None),
+    the result is empty.
     """
     if None in settling:
         return []

@@ -45,10 +45,12 @@ class ObligationWriter:
         return self._with_position(obligation)[1]
 
     def long_bound(self, obligation: int) -> Formula | None:
-        """Return the operator of the source with a long bound that has this obligation, or None.
+        """Return the operator with a long bound in the source that has this obligation, None if no
+        such operator has it.
 
-        A bound of more than :data:`_MOST_FACTORED` samples is long. Callers do not search for a
-        shorter formula for it: there is none, and the search takes n² steps for n samples.
+        A bound of more than :data:`_MOST_FACTORED` samples is long. Callers use this operator as it
+        is: no shorter formula has its obligation, and a search for one takes n² steps for n
+        samples.
         """
         return self._long_bounds.get(obligation)
 
@@ -91,8 +93,8 @@ class ObligationWriter:
     def without_shorter_bounds(self, obligation: int) -> int:
         """Return the obligation without the variables of bounds that a longer bound makes redundant.
 
-        The obligation of ``F[0,n] p`` also has the variables of ``F[0,n-1] p`` and so on. This
-        method saves the labels a proof for each of these variables.
+        The obligation of ``F[0,n] p`` also has the variables of ``F[0,n-1] p`` and so on. Without
+        this method, the search for short labels would need a proof for each of these variables.
         """
         known = self._without_shorter.get(obligation)
         if known is None:

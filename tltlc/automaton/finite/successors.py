@@ -51,8 +51,9 @@ class Successors:
     def number_variables(self, formula: Formula) -> None:
         """Give the temporal subformulas of a formula the next variables, in the order of the formula.
 
-        Variables of the same part are then next to each other, which keeps the diagrams small.  A
-        conjunction of six formulas ``G(a -> F b)`` takes a third of the steps.
+        Variables of the same part are then next to each other, which keeps the diagrams small. With
+        this order, a conjunction of six formulas ``G(a -> F b)`` takes a third of the steps that it
+        takes without.
         """
         for part in formula.walk():
             if part.is_temporal:

@@ -120,11 +120,10 @@ class ObligationAutomaton:
         return known[obligation]
 
     def _by_variable(self, obligation: int, absent: int, present: int) -> int:
-        """Return the function of :meth:`after` for an obligation, from the functions of its
-        cofactors.
+        """Return the result of :meth:`after` for an obligation, given the results for its two cofactors.
 
-        ``absent`` is the function of the cofactor in which the first variable is false, ``present``
-        of the one in which it is true.
+        ``absent`` is the result for the obligation with its first variable false, ``present`` with
+        it true.
         """
         formula, letters = self.formulas[self.obligations.variable[obligation]], self.letters
         if formula.op == "atom":
@@ -144,8 +143,9 @@ class ObligationAutomaton:
         return self.letters.apply(self._with_counter(self.obligations.either), x, y, self._either)
 
     def _with_counter(self, combine: Callable[[int, int], int]) -> Callable[[int, int], int]:
-        """Return ``combine`` as a function that raises OutOfWork when it has had too many different
-        results.
+        """Return ``combine`` as a function that counts its different results.
+
+        It raises OutOfWork if there are more than the work budget can pay for.
         """
         reached: set[int] = set()
         most = self._most_reached

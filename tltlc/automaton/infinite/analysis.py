@@ -90,7 +90,7 @@ class Analysis:
         return "limit" if reached & rejected else "goal"
 
     def _states_on_rejected_cycles(self, edges: Edges) -> set[int]:
-        """Return the states on a cycle that is not accepted."""
+        """Return the states on a cycle of ``edges`` that is not accepted."""
         rejected = (
             cycle for part in parts(edges, self._work) for cycle in rejecting_parts(part, self._clauses, self._work)
         )

@@ -1,6 +1,6 @@
 """Join the automata of all components into one automaton, and merge equal states.
 
-States are equal if they accept the same runs with the same marks.
+States are equal if, on each letter, they have the same marks and lead to equal states.
 """
 
 from __future__ import annotations
@@ -29,7 +29,8 @@ def join_components(
 
     ``initial`` becomes state 0. An exit is an edge of a component to a label of another component;
     ``entry`` maps this label to the state that the edge leads to. States keep the labels of the
-    components. A state whose label is in ``apart`` is not merged with a state whose label is not.
+    components. A state whose label is in ``apart`` is not merged with a state whose label is not in
+    it.
     """
     steps = _steps(letters, components, entry)
     reached = _reachable(letters, steps, initial)

@@ -51,7 +51,8 @@ def assemble(
 
     ``atoms`` are the names of the atoms, ``exclusive`` groups of their indices. ``label`` returns
     the label of a state, given its number in ``automaton``. Successors of a state are sorted by
-    distance. ``first`` may list all states; successors with equal distance then have its order.
+    distance. ``first`` may list all states: successors with the same distance then have the order
+    of this list.
 
     Raises :class:`~tltlc.automaton.guards.TooManyPrimes` and
     :class:`~tltlc.automaton.diagrams.OutOfSteps`.

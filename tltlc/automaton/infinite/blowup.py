@@ -31,7 +31,8 @@ def budget_error(spec: Spec, reason: Exception) -> TltlError:
     def size(part: Conjunct, spec: Spec) -> Size | None:
         nonlocal remaining
         if remaining < _FOR_A_PART:
-            # The message names at most three clauses, and more have been measured by now.
+            # The budget for measuring is used up. The message names the three largest clauses, and more have been
+            # measured by now. Size 0 puts this clause behind them.
             return Size(0, "")
         try:
             automaton = rabin(part.formula, [atom.name for atom in spec.atoms], spec.exclusive, _FOR_A_PART)

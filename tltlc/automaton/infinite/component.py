@@ -49,10 +49,10 @@ def parts_of(
 ) -> tuple[Skeleton, list[LeafAutomaton]]:
     """Return the Boolean structure of a normalised formula over its parts, and an automaton for each part.
 
-    A part is a largest subformula that is no ``and`` or ``or``. If ``in_turn``, the operands
-    ``G F p`` of a conjunction, and ``F G p`` of a disjunction, share one automaton, a
-    :class:`~tltlc.automaton.infinite.leaf_automata.RoundRobin`. ``keep`` is the parameter of
-    :class:`~tltlc.automaton.infinite.leaf_automata.Recurrence`.
+    The parts are the operands that are left when every outermost ``and`` and ``or`` is taken apart.
+    If ``in_turn``, the operands ``G F p`` of a conjunction, and ``F G p`` of a disjunction, share
+    one automaton, a :class:`~tltlc.automaton.infinite.leaf_automata.RoundRobin`. ``keep`` is the
+    parameter of :class:`~tltlc.automaton.infinite.leaf_automata.Recurrence`.
     """
     index_of: dict[Formula | tuple[Formula, ...], int] = {}
     parts: list[LeafAutomaton] = []

@@ -99,8 +99,8 @@ def accepting_parts(edges: Edges, clauses: Sequence[MarkClause], work: Work) -> 
 
 
 def rejecting_parts(edges: Edges, clauses: Sequence[MarkClause], work: Work) -> list[Edges]:
-    """Return strongly connected subsets of ``edges`` that no clause accepts, with all maximal
-    ones.
+    """Return strongly connected subsets of ``edges`` that no clause accepts: all maximal ones, and
+    possibly smaller ones.
     """
     rejected: dict[Edges, None] = {}
     seen: set[Edges] = set()

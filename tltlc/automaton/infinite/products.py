@@ -81,9 +81,9 @@ def separating_component(
 def _separating_part(
     edges: Sequence[Edge], accepting: Sequence[MarkClause], rejecting: Sequence[MarkClause], work: Work
 ) -> Edges | None:
-    """Return a strongly connected subset of ``edges``, None if there is none.
+    """Return a strongly connected subset of ``edges`` that separates the two automata; None if no subset does.
 
-    A clause of ``accepting`` accepts it, and no clause of ``rejecting`` does.
+    A clause of ``accepting`` accepts its marks, and no clause of ``rejecting`` does.
     """
     for clause in accepting:
         # Removing edges is cheap; `parts` counts its own work.
