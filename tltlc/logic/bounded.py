@@ -29,7 +29,7 @@ _counted_down: WeakKeyDictionary[Formula, Formula | None] = WeakKeyDictionary()
 
 
 def bounded_operator(node: Formula) -> Bounded | None:
-    """Return the bounded operator whose expansion is ``node``, or None if there is none.
+    """Return the bounded operator whose expansion is ``node``, or None if ``node`` is not such an expansion.
 
     ``p | X(p | X p)`` is the expansion of ``F[0,2] p``. Results are cached, so that the labels of n
     states that count down a bound take time proportional to n, not n².
@@ -49,12 +49,11 @@ def bounded_operator(node: Formula) -> Bounded | None:
 
 
 def count_down(node: Formula) -> Formula | None:
-    """Return ``node`` with a bound that is one step shorter, or None.
+    """Return ``node`` with a bound that is one step shorter; None if ``node`` counts down no bound.
 
     For ``X(p | X(p | X p))`` the result is ``X(p | X p)``, and for ``X(p | X p)`` it is ``X p``.
-    The formula may have ``N`` in place of ``X``, and ``and`` in place of ``or``. For all other
-    formulas the result is None. Over ``or``, the shorter formula implies the longer one; over
-    ``and``, the longer one implies the shorter.
+    The formula may have ``N`` in place of ``X``, and ``and`` in place of ``or``. Over ``or``, the
+    shorter formula implies the longer one; over ``and``, the longer one implies the shorter.
     """
     chain: list[Formula] = []
     inner: Formula | None = node
@@ -88,9 +87,9 @@ def _last_step(node: Formula) -> Formula | None:
 
 
 def _repeats_operands(body: Formula, last: Formula) -> bool:
-    """Whether ``last``, the end of ``body``, repeats the other operands of ``body``.
+    """Whether ``last``, the last operand of ``body``, is ``X`` or ``N`` over the other operands of ``body``.
 
-    Behind the repeated operands, ``last`` may contain a further repetition.
+    After these operands, ``last`` may have one more, which repeats them in the same way.
     """
     operands, inner = body.args[:-1], last.args[0]
     if inner == (operands[0] if len(operands) == 1 else rebuild(body, operands)):

@@ -15,10 +15,11 @@ _Signed = tuple[Formula, bool]
 def negation_normal_form(formula: Formula) -> Formula:
     """Return an equivalent formula over literals, ``and``, ``or`` and temporal operators.
 
-    The two formulas are equal on every finite trace. ``a -> b`` becomes ``!a | b``, and ``a <-> b``
-    becomes ``a & b | !a & !b``. Negation turns each operator into its dual (``!X a`` is ``N !a``).
-    Operands keep source order, and repeated operands of one ``and`` or ``or`` are dropped. Each
-    subformula is visited once per sign and without recursion, so shared subformulas stay shared.
+    The two formulas have the same truth on every finite trace. ``a -> b`` becomes ``!a | b``, and
+    ``a <-> b`` becomes ``a & b | !a & !b``. Negation turns each operator into its dual (``!X a`` is
+    ``N !a``). Operands keep source order, and repeated operands of one ``and`` or ``or`` are
+    dropped. Each subformula is visited once per sign and without recursion, so shared subformulas
+    stay shared.
     """
     if all(map(_is_normal, formula.walk())):
         return formula

@@ -44,8 +44,8 @@ def english_text(formula: Formula, *, endless: bool = False) -> str:
 
     Atoms appear by name. ``F(near(s1) & X F near(exit)) & G alive`` reads "Reach near(s1), then
     near(exit), and keep alive throughout." "Reach" means now or later, "then" strictly later,
-    "throughout" from now to the end. Formulas with equal sentences are equal on all traces. A
-    formula that has a constant elsewhere than in ``X true`` and ``N false`` is simplified first.
+    "throughout" from now to the end. Formulas with the same sentence are equivalent. A formula that
+    has a constant elsewhere than in ``X true`` and ``N false`` is simplified first.
 
     ``endless`` says that the sentence is about traces that never end. The formula must then be a
     constant, or contain no constant.

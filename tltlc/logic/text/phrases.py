@@ -32,7 +32,7 @@ def phrase(state: Formula) -> str:
 
 
 def _opposite(node: Formula) -> Formula | None:
-    """Return the negation of a comparison as a comparison, or None."""
+    """Return the negation of a comparison as a comparison; None for any other formula."""
     comparison = _COMPARISON.fullmatch(node.args[0].name) if node.op == "not" and node.args[0].op == "atom" else None
     return comparison and atom(f"{comparison[1]} {_OPPOSITE[comparison[2]]} {comparison[3]}")
 
