@@ -54,7 +54,7 @@ class Range:
 def range_between(low: float | None, high: float | None) -> Range:
     """Return the interval of a finite value from ``low`` to ``high``.
 
-    None means that there is no bound on this side.
+    For None, the end is the largest finite double on that side.
     """
     return Range(-_MOST if low is None else low, _MOST if high is None else high)
 

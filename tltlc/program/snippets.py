@@ -69,7 +69,7 @@ def _character(character: str, escape: Callable[[str], str], plain: Callable[[st
 
 
 def is_plain_ascii(character: str) -> bool:
-    """Whether the character needs no escape in an ASCII source."""
+    """Whether the character is a printable ASCII character."""
     return " " <= character <= "~"
 
 
