@@ -16,9 +16,10 @@ ArithmeticOp = Literal["+", "-", "*", "/", "^", "neg", "min", "max", "abs", "cla
 ConditionOp = Literal["<", "<=", ">", ">=", "and", "or", "not"]
 
 LEAST: Final = 1e-30
-"""The least value of a comparison that is true by at least this margin.
+"""The least robustness of a true comparison whose margin is at least this, where the scaled margin may round to 0.
 
-It is tiny, but does not become 0 when it is converted to a 32-bit float.
+:mod:`tltlc.resolve.margins` explains it. It is tiny, but does not become 0 when it is converted to
+a 32-bit float.
 """
 
 
