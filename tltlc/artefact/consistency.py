@@ -123,8 +123,8 @@ def _parallel_edges(fspa: Fspa) -> Iterator[Problem]:
 def _numbering(fspa: Fspa) -> Iterator[Problem]:
     """Check that states are numbered breadth-first.
 
-    The parent of a state is the lowest state with an edge to it. In breadth-first order, the parent
-    of a state has a lower number than the state, and the parents of later states are never lower.
+    The parent of a state is the lowest state with an edge to it. In breadth-first order, a parent
+    has a lower number than its child, and the parents of states 1, 2, 3, … never decrease.
     """
     parents = [len(fspa.states)] * len(fspa.states)
     for edge in fspa.edges:

@@ -1,7 +1,8 @@
 """Generate ``validator.py`` from ``fspa.schema.json``: run ``python -m tltlc.artefact.generate``.
 
-The generated module validates artefacts without a schema library: to import one takes longer than
-most compilations. Generating needs fastjsonschema, which ``pip install tltlc[dev]`` installs.
+The generated module validates artefacts without a schema library, because the import of such a
+library takes longer than most compilations. Generating needs fastjsonschema, which ``pip install
+tltlc[dev]`` installs.
 """
 
 from __future__ import annotations

@@ -33,9 +33,9 @@ class _TooManyCubesError(Exception):
 
 
 class _CubeBudget:
-    """Counts operations on cubes.
+    """Counts operations on cubes, and stops the check when they are too many.
 
-    A limit in seconds would make the result depend on the machine.
+    The limit is not in seconds, because then the result would depend on the machine.
     """
 
     def __init__(self) -> None:
@@ -51,8 +51,8 @@ def guard_problems(fspa: Fspa) -> Iterator[tuple[Path, str]]:
     """Yield the first problem of the guards, as a path in the document and a message.
 
     Yields nothing if there is no problem. A problem is a guard that is not the complete list of its
-    prime implicants, or a state in which not exactly one guard is true at some sample. The check
-    stops after :data:`WORK_LIMIT` operations. The indices in ``fspa`` must be in range.
+    prime implicants, or a state in which several guards, or no guard, are true at some sample. The
+    check stops after :data:`WORK_LIMIT` operations. The indices in ``fspa`` must be in range.
     """
     work = _CubeBudget()
     leaving: list[list[int]] = [[] for _ in fspa.states]
@@ -97,9 +97,9 @@ def _guard_problem(
 ) -> str | None:
     """Return in words why ``cubes`` are not all prime implicants of a guard, or None if they are.
 
-    ``pairs`` has a cube for each two atoms that are exclusive. A set of cubes has all prime
-    implicants of its disjunction if and only if no cube implies another one, and the consensus of
-    every two cubes implies a cube of the set (Quine 1955).
+    ``pairs`` has a cube for each pair of exclusive atoms, which is true if both hold. A set of
+    cubes has all prime implicants of its disjunction if and only if no cube implies another one,
+    and the consensus of every two cubes implies a cube of the set (Quine 1955).
     """
     for prime, cube in zip(primes, cubes, strict=True):
         if len({atom for atom, _ in prime}) < len(prime):
