@@ -112,8 +112,8 @@ _RESERVED = (
 )
 """Names that no variable may have.
 
-The last five are variables of the step function. :mod:`tltlc.program.build` adds the remaining
-variables of that function.
+The last row has names that the template uses. :mod:`tltlc.program.build` adds the variables of the
+step function.
 """
 
 
@@ -304,9 +304,9 @@ class _Source:
         return [*lines, *(f"const double {name} = monitor->params.{name};" for name in program_.params if name in used)]
 
     def _bools(self, state: int | None) -> list[str]:
-        """Return the code that makes numbers, 0 or 1, of the bool signals that only this state reads.
+        """Return the code that converts to numbers (0 or 1) the bool signals that only this state reads.
 
-        If ``state`` is None, it does so with the bool signals that every step reads.
+        If ``state`` is None, it converts the bool signals that every step reads.
         """
         return [f"const double {name} = sample->{name} ? 1.0 : 0.0;" for name in self._program.bools_read_in(state)]
 

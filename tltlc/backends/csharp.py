@@ -191,9 +191,9 @@ class _Source:
         return [*lines, *(f"double {name} = _params.{name};" for name in self._program.params if name in used)]
 
     def _bools(self, state: int | None) -> list[str]:
-        """Return the code that makes numbers, 0 or 1, of the bool signals that only this state reads.
+        """Return the code that converts to numbers (0 or 1) the bool signals that only this state reads.
 
-        If ``state`` is None, it does so with the bool signals that every step reads.
+        If ``state`` is None, it converts the bool signals that every step reads.
         """
         return [f"double {name} = sample.{name} ? 1.0 : 0.0;" for name in self._program.bools_read_in(state)]
 

@@ -171,7 +171,8 @@ def _edge_style(source: State, target: State) -> dict[str, str]:
     and may bend.
     """
     if source.id == target.id:
-        # Only its loop leaves a satisfied or violated state: draw it on the right, where no edge arrives.
+        # The only edge that leaves a satisfied or violated state is its loop: draw it on the right, where no edge
+        # arrives.
         return {"headport": "e", "tailport": "e"} if source.verdict in ("satisfied", "violated") else {}
     if source.distance is not None and target.distance is None:
         return {"color": "#f87171", "weight": "0"}

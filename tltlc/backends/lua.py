@@ -82,7 +82,7 @@ class _Lua(Printer):
     COMMENT = "--"
     """The start of a comment.
 
-    The blank after it is needed, because ``--[[`` would begin a long comment.
+    :meth:`comment` writes a blank after it, because ``--[[`` would begin a long comment.
     """
     WORDS: ClassVar = {"and": "and", "or": "or", "not": "not ", "true": "true", "false": "false"}
     END = ""
@@ -413,9 +413,9 @@ def _field(name: str, type_: str, doc: str) -> str:
 
 
 def _accepting_cases(signal: Signal, variable: str) -> list[str]:
-    """Return the cases of the ``if`` that checks a signal in which the value is valid.
+    """Return the first cases of the ``if`` that checks a signal: those in which the value is valid.
 
-    They convert the value to a float.
+    These cases convert the value to a float.
     """
     if signal.type == "bool":
         return [

@@ -13,6 +13,6 @@ def emit(fspa: Fspa, options: Options) -> Files:
     """Return ``NAME.png``, or ``NAME.dot`` if the picture cannot be drawn in time.
 
     Raises:
-        TltlError: the errors of :func:`tltlc.backends.drawing.layout.draw`.
+        TltlError: TLT0730 pygraphviz is not installed, TLT0712 the layout itself failed.
     """
     return draw(fspa, options, "png")

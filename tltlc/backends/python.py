@@ -250,7 +250,7 @@ class _Source:
         return [*lines, params] if self._program.params else lines
 
     def _compute(self) -> list[str]:
-        """Return the code that computes all atoms that anything needs.
+        """Return the code that computes all atoms that a step may need.
 
         The atoms that every step needs come first, then the atoms that a single state needs.
         """

@@ -56,7 +56,8 @@ def emit(fspa: Fspa, options: Options) -> Files:
 class _Rust(Printer):
     """Prints a program in Rust.
 
-    ``atom`` is the index of the atom whose value is being printed; calls that may fail pass it on.
+    ``atom`` is the index of the atom whose value is being printed. Calls of functions that have no
+    value for some arguments pass it on, for the error.
     """
 
     TYPES: ClassVar[dict[Type, str]] = {"real": "f64", "int": "i64", "bool": "bool"}
@@ -205,9 +206,9 @@ class _Source:
         return [*lines, *(f"let {name} = self.params.{name};" for name in self._program.params if name in used)]
 
     def _bools(self, state: int | None) -> list[str]:
-        """Return the code that makes numbers, 0 or 1, of the bool signals that only this state reads.
+        """Return the code that converts to numbers (0 or 1) the bool signals that only this state reads.
 
-        If ``state`` is None, it does so with the bool signals that every step reads.
+        If ``state`` is None, it converts the bool signals that every step reads.
         """
         names = self._program.bools_read_in(state)
         return [f"let {name} = if sample.{name} {{ 1.0 }} else {{ 0.0 }};" for name in names]

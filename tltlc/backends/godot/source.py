@@ -207,9 +207,9 @@ class _Source:
         return [*lines, *self._stop()] if checked else lines
 
     def _bools(self, state: int | None) -> list[str]:
-        """Return the code that makes numbers, 0 or 1, of the bool signals that only this state reads.
+        """Return the code that converts to numbers (0 or 1) the bool signals that only this state reads.
 
-        If ``state`` is None, it does so with the bool signals that every step reads.
+        If ``state`` is None, it converts the bool signals that every step reads.
         """
         names = map(self._printer.name, self._program.bools_read_in(state))
         return [f"var {name}: float = 1.0 if sample.{name} else 0.0" for name in names]
