@@ -15,7 +15,7 @@ def automaton_argument(given: object) -> Fspa:
 
 
 def reward_options_argument(given: object) -> RewardOptions:
-    """Return ``given`` if it is RewardOptions, and the default options if it is None; raise TypeError otherwise."""
+    """Return ``given`` if it is a RewardOptions, the default options if it is None; raise TypeError otherwise."""
     if given is None:
         return RewardOptions()
     if isinstance(given, RewardOptions):

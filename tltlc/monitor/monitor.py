@@ -24,8 +24,8 @@ class Step(NamedTuple):
     - ``reward``: the reward of this step; 0 after the end of the episode.
     - ``robustness``: the robustness of the edge taken, in [-1, 1].
     - ``limiting``: the name of the atom that kept the automaton from a state with a smaller
-      distance. Of the edges to these states, the most robust counts, and this atom determines its
-      robustness. None if the state changed, or if no edge leads to a smaller distance.
+      distance. This atom determines the robustness of the most robust edge to such a state. None if
+      the state changed, or if no edge leads to a smaller distance.
     """
 
     state: int

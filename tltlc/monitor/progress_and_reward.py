@@ -1,7 +1,7 @@
 """Progress, reward and the end of an episode: Algorithm 1 of Gutiérrez-Sánchez et al. 2024.
 
-The paper is in IEEE Trans. Games 2024. "The listing" is the printed algorithm, and "line" a line of
-it. A ▲ marks where the code deviates from the listing.
+The paper is in IEEE Trans. Games 2024. "The listing" is the algorithm as the paper prints it, and
+"line 11" is a line of the listing. A ▲ marks where the code deviates from the listing.
 """
 
 from __future__ import annotations
@@ -63,7 +63,7 @@ class RewardOptions:
 
 @record
 class RewardStep:
-    """The outcome of one step.
+    """The outcome of one step: its reward, and what follows for the episode.
 
     ``progress`` is the best progress so far, in [0, 1]. ``done`` says whether the episode ends with
     this step. ``success`` is true if the episode ends in success, and false if the episode fails or
@@ -176,8 +176,8 @@ def ends_episode(tables: MonitorTables, state: int, target: int, options: Reward
 def _succeeds_early(tables: MonitorTables, target: int, options: RewardOptions) -> bool:
     """Whether an episode that is cut off in the state ``target`` is a success.
 
-    It is one if the state is accepting. But if the spec is judged at its limit, and has one, no
-    episode that is cut off earlier is a success.
+    It is a success if the state is accepting. But a spec that is judged at its limit, and has a
+    limit, counts no episode as a success that is cut off earlier.
     """
     at_goal = tables.fspa.judge == "goal" or options.termination == "paper"
     return tables.fspa.states[target].accepting and (at_goal or tables.fspa.limit_steps is None)
@@ -187,7 +187,7 @@ def terminal_penalty(limit: int, step: int, options: RewardOptions) -> float:
     """Return the penalty for an episode that fails after ``step`` of ``limit`` steps.
 
     It is the sum of the penalties ``1 / limit`` of all steps that are left:
-    ``(limit - step) / limit``. With the ``discounted`` penalty, the penalty of the n-th of them
+    ``(limit - step) / limit``. With the ``discounted`` penalty, the penalty of the n-th step left
     (from 0) is multiplied by ``gamma ** n``.
     """
     left, gamma = limit - step, options.gamma

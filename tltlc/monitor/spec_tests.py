@@ -50,8 +50,8 @@ def run_test(test: Test, fspa: Fspa) -> TestResult:
     """Return the result of one test.
 
     At each ``step`` of the test, the atoms that the step names have the value 1, and all other
-    atoms -1. An ``expect`` is about the trace up to this place in the test. The failure has the
-    code TLT0640 if an expectation fails, or TLT0614 if exclusive atoms hold at the same step.
+    atoms -1. An ``expect`` is about the trace of all steps before it. The failure has the code
+    TLT0640 if an expectation fails, or TLT0614 if exclusive atoms hold at the same step.
     """
     monitor = Monitor(fspa)
     last: Step | None = None
@@ -77,7 +77,7 @@ def run_test(test: Test, fspa: Fspa) -> TestResult:
 def _failed_expectation(expect: Expect, step: Step | None, fspa: Fspa) -> Diagnostic | None:
     """Return a diagnostic if an expectation fails; None if it holds.
 
-    ``step`` is the last step before the expectation; None if there is none.
+    ``step`` is the last step before the expectation; None if the test begins with the expectation.
     """
     if step is None:
         return _failure(expect, "a trace has at least one sample", "put a `step` before the first `expect`")

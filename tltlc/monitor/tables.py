@@ -8,12 +8,12 @@ from tltlc.core.record import record
 
 @record
 class MonitorTables:
-    """What the monitor needs to know about each state. Each tuple has an entry for each state.
+    """What the monitor needs to know about each state. Each of the tuples below has one entry for each state.
 
     ``edges`` has the edges that leave the state, and ``improving`` only the edges that lead from it
-    to a smaller distance. ``base_progress`` is the share of the distance that is done, in [0, 1].
-    ``ends_on_entry`` says whether an episode ends when it enters the state, with
-    ``termination="entry"``.
+    to a smaller distance. ``base_progress`` is the share of the greatest distance (``spec_size``)
+    that is done in the state, in [0, 1]. ``ends_on_entry`` says whether an episode ends when it
+    enters the state, with ``termination="entry"``.
     """
 
     fspa: Fspa

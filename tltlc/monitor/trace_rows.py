@@ -44,7 +44,7 @@ class TraceObjects:
 
 
 def read_rows(lines: TraceLines) -> TraceTable | TraceObjects | None:
-    """Return the trace, in CSV or in JSON lines; None if it is blank.
+    """Return the trace, which is in CSV or in JSON lines; None if the stream has only blank lines.
 
     Raises:
         TltlError: TLT0622 the first line cannot be read. Iteration over ``rows`` raises the same
@@ -72,7 +72,7 @@ def cell_number(cell: str) -> float | None:
 
 
 class TraceLines:
-    """Reads the lines of a stream, and remembers where the current row begins, for messages.
+    """Reads the lines of a stream, and remembers for messages where the current row begins.
 
     ``name`` is the trace's name in messages. A row is one line, or several if a quoted cell has
     line breaks, and has at most ``TRACE_LINE.size`` bytes. At most one row is kept in memory.
@@ -93,7 +93,7 @@ class TraceLines:
         Returns None at the end of the stream.
 
         Raises:
-            TltlError: TLT0622, as in :meth:`next_of_row`.
+            TltlError: TLT0622 the line is too long, is not UTF-8, or contains a NUL.
         """
         line: str | None = ""
         while line is not None and not line.removesuffix("\r").strip(_BLANKS):
@@ -151,7 +151,8 @@ class TraceLines:
     def label(self, remark: str, columns: tuple[int, int] | None = None) -> Label:
         """Return a label on the first line of the current row.
 
-        ``columns`` are as in :meth:`error`.
+        ``columns`` are the start and the end of the part of the line to mark, in characters from 0;
+        by default the whole line.
         """
         start, end = columns or (0, len(self.text))
         offset = self._first - 1
@@ -230,7 +231,9 @@ def _quoted_cell(line: str, start: int, lines: TraceLines) -> tuple[str, str, in
 
 
 def _closing_quote(line: str, start: int) -> int:
-    """Return the position of the closing quote of a cell that continues at ``start``; -1 if it is not in this line."""
+    """Return the position of the closing quote of a cell that goes on at ``start``; -1 if the cell
+    goes on in the next line.
+    """
     end = line.find('"', start)
     while end >= 0 and line.startswith('""', end):
         end = line.find('"', end + 2)

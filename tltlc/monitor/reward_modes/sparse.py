@@ -10,9 +10,9 @@ from tltlc.monitor.tables import MonitorTables
 Widths = dict[int, float]
 """The width of the widest run to each state, after the samples so far.
 
-A run is any path in the automaton with one edge for each sample, also if the samples do not take
-these edges. Its width is the least robustness of its edges at their samples. States that no run
-reaches are left out.
+A run is any path in the automaton with one edge for each sample, whether or not the guards of these
+edges are true at the samples. Its width is the least robustness of its edges at their samples.
+States that no run reaches are left out.
 """
 
 
@@ -22,11 +22,11 @@ def reward(
     """Return 0, and at the end of the episode the robustness of its trace, in [-1, 1].
 
     The robustness of a trace is positive if and only if the trace is accepted. Its absolute value
-    is the distance to the nearest trace that is judged in the opposite way: how much the values of
-    the atoms must change at least, at any sample. The distance follows from the widest run to a
-    state with the opposite acceptance, since the width of a run tells how much the values must
-    change for the trace to take it. If no run reaches a state with the opposite acceptance, the
-    robustness is 1 or -1.
+    is the distance to the nearest trace with the opposite acceptance: the least size of changes of
+    the atoms' values, at any samples, that lead to such a trace. The distance follows from the
+    widest run to a state with the opposite acceptance, since the width of a run tells how much the
+    values must change for the trace to take it. If no run reaches a state with the opposite
+    acceptance, the robustness is 1 or -1.
 
     ▲ The paper uses the robustness of the formula. Both values agree if no atom's value is 0 and no
     equivalent formula has a robustness nearer to 0.
