@@ -13,7 +13,7 @@ from tltlc.resolve.scope import Binding, Scope
 def match(
     use: NameExpr | CallExpr, binding: Binding, parameters: tuple[Parameter, ...], scope: Scope
 ) -> tuple[tuple[Parameter, Expr | None], ...]:
-    """Return each parameter with its argument, or None where the default applies.
+    """Return each parameter with its argument, which is None where the default applies.
 
     Raises ResolutionError (TLT0210) for missing, surplus, repeated and unknown arguments.
     """

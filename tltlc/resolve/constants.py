@@ -97,9 +97,10 @@ _OVERRIDE = re.compile(r"([-+]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]
 
 
 def parse_override(text: str) -> tuple[float, Dimension | None] | None:
-    """Return the value of an option ``--param NAME=25 m`` in SI units, and its dimension.
+    """Return the number in a text such as ``25 m``, in SI units, and its dimension.
 
-    The dimension is None if the text has no unit. Returns None if the text is not a finite value.
+    The text is the value of an option ``--param NAME=25 m``. The dimension is None if the text has
+    no unit. Returns None if the text is not a finite number with a unit or without one.
     """
     matched = _OVERRIDE.fullmatch(text.strip())
     if matched is None:

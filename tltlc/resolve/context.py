@@ -56,7 +56,7 @@ class Instance:
     source: SourceFile
     span: Span
     use: Label | None = None
-    """The place that passes numbers to the predicate, or None.
+    """The place that passes numbers to the predicate; None if no numbers are passed.
 
     The findings depend on these numbers.
     """
@@ -167,9 +167,10 @@ class Context:
         return size
 
     def recursion_error(self, declaration: int, source: SourceFile, span: Span) -> ResolutionError:
-        """Return the error for a let or predicate that uses itself; mark its cycle as reported.
+        """Return the error for a let or predicate that uses itself; mark the whole cycle as reported.
 
-        The diagnostic of the error is None if the cycle was already reported.
+        ``declaration`` is the identity of its declaration, a key of ``expanding``. The diagnostic
+        of the error is None if the cycle was already reported.
         """
         active = list(self.expanding)
         cycle = active[active.index(declaration) :]
@@ -213,7 +214,8 @@ class Context:
     ) -> Formula:
         """Return the formula unchanged; raise ResolutionError (TLT0315) if it became too large.
 
-        ``subject`` and ``is_bound`` are as in :func:`expansion_error`.
+        ``subject`` names in the error what expands. ``is_bound`` is True for a bound, which gets an
+        advice of its own.
         """
         if self.tree_size(formula) > LARGEST_EXPANSION:
             raise expansion_error(subject, source, span, is_bound=is_bound)

@@ -24,7 +24,8 @@ from tltlc.resolve.values import Env, Quantity
 def same_dimension(left: Quantity, right: Quantity, at: Expr, env: Env) -> Dimension | None:
     """Return the dimension of two quantities that are added or compared.
 
-    None fits any dimension. Raises ResolutionError (TLT0305) at ``at`` if the dimensions differ.
+    A dimension that is None fits any other. Raises ResolutionError (TLT0305) at ``at`` if the
+    dimensions differ.
     """
     if left.dimension is None or right.dimension is None or left.dimension == right.dimension:
         return left.dimension if left.dimension is not None else right.dimension

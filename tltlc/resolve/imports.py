@@ -76,16 +76,16 @@ def standard_library() -> Path:
 
 
 def library_with(name: str) -> str | None:
-    """Return the name of the standard library that declares ``name``, or None.
+    """Return the library of the standard library that declares ``name``; None if no library declares it.
 
-    Messages suggest to import it.
+    Messages suggest to import this library.
     """
     return _names_of_libraries().get(name)
 
 
 @lru_cache(maxsize=1)
 def _names_of_libraries() -> Mapping[str, str]:
-    """Map each name to the first standard library that declares it.
+    """Map each name to the first library of the standard library that declares it, in alphabetical order.
 
     Reads the library files, so it is used only for messages.
     """
@@ -216,7 +216,7 @@ def _similar_help(suggestion: str | None) -> str | None:
 
 
 def _quoted_library(target: str, folders: tuple[Path, ...]) -> str | None:
-    """Return the name of the library that the user wrote like a path, in quotes, or None."""
+    """Return the name of a library that the user wrote like a path, in quotes; None if there is no such library."""
     name = target.removesuffix(".tltl")
     return name if any(is_file(folder / f"{name}.tltl") for folder in folders) and "/" not in name else None
 

@@ -47,7 +47,8 @@ def quantity(expr: Expr, env: Env, depth: int = 0) -> Quantity:
 def condition(expr: Expr, env: Env, depth: int = 0) -> tuple[Condition, str]:
     """Resolve the condition of a ``when``; return it and its text.
 
-    ``depth`` is as in :func:`quantity`. Raises ResolutionError if the expression is no condition.
+    ``depth`` is the number of operators around the expression. Raises ResolutionError if the
+    expression is no condition.
     """
     while isinstance(expr, GroupExpr):
         expr = expr.inner

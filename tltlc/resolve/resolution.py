@@ -74,7 +74,8 @@ def resolve_atoms(
     """Resolve texts from outside a module, such as an imported automaton, to atoms of the module.
 
     Each of the ``texts`` is a formula of one atom, or the name of an atom of the module's own
-    specs. (Such a name has no units.) Returns three things:
+    specs. (Names of atoms have no units, so not every name is a valid formula.) Returns three
+    things:
 
     - the vocabulary of the atoms, None if the module or a text is in error, or if two texts name
       the same atom;

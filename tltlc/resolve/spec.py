@@ -100,7 +100,7 @@ class Spec:
     ``atoms`` are the atoms of the formula in order of appearance, then those only in ``exclusive``.
     ``exclusive`` holds groups of indices into ``atoms``. ``signals`` and ``params`` are those that
     the atoms use, in order of first use. ``judge`` is None if no clause sets it (semantics, section
-    4). ``clock_s`` is the sampling period in seconds, or None.
+    4). ``clock_s`` is the sampling period in seconds, or None if no clock is declared.
     """
 
     name: str
@@ -125,8 +125,8 @@ class Spec:
 class Vocabulary:
     """A list of atoms without a formula, with the signals and params that they use.
 
-    The fields are as in :class:`Spec`. ``atoms`` are the requested atoms in order, then those that
-    are only in ``exclusive``.
+    ``atoms`` are the requested atoms in order, then those that are only in ``exclusive``. The other
+    fields are as in :class:`Spec`.
     """
 
     atoms: tuple[Atom, ...]
@@ -148,7 +148,8 @@ class RepeatedSample:
 class Expect:
     """An ``expect`` of a test: what must be true after the steps before it.
 
-    The fields are as in :class:`tltlc.grammar.tree.TestExpect`.
+    ``kind`` is ``verdict``, ``progress`` or ``state``. ``value`` is the verdict, the number or the
+    label. ``comparison`` is one of ``< <= > >=`` for progress, else None.
     """
 
     kind: Literal["verdict", "progress", "state"]

@@ -57,7 +57,7 @@ class Quantity:
         return isinstance(self.expression, Const)
 
     def operand_text(self, binding: int) -> str:
-        """Return the text, in brackets if it binds more loosely than ``binding``."""
+        """Return the text, in brackets if its operator binds more loosely than ``binding``."""
         return self.text if self.binding >= binding else f"({self.text})"
 
 

@@ -218,7 +218,7 @@ def _join(a: Monomial, b: Monomial) -> Monomial:
 
 
 def _multiple(a: Polynomial, b: Polynomial) -> Fraction | None:
-    """Return ``c`` with ``a = c * b``, or None."""
+    """Return the number ``c`` with ``a = c * b``, or None if there is no such number."""
     if not b or a.keys() != b.keys():
         return None
     first = next(iter(b))
@@ -227,7 +227,7 @@ def _multiple(a: Polynomial, b: Polynomial) -> Fraction | None:
 
 
 def _ratio(a: Polynomial, b: Polynomial) -> Fraction | None:
-    """Return ``c`` with ``a = c * b`` except for the constant terms, or None."""
+    """Return the number ``c`` with ``a = c * b`` except for the constant terms, or None if there is no such number."""
     return _multiple({m: c for m, c in a.items() if m}, {m: c for m, c in b.items() if m})
 
 

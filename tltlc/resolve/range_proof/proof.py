@@ -63,7 +63,10 @@ def proves_within(value: Expression, region: ConstrainedBox, low: float, high: f
 
 
 def holds_at_once(value: Expression, region: ConstrainedBox, low: float, high: float) -> bool:
-    """Like :func:`proves_within`, but with a single interval evaluation on the whole region."""
+    """Whether one interval evaluation proves that the value is defined and in ``[low, high]``.
+
+    The evaluation is on the whole region, and the bounds have a margin of TOLERANCE.
+    """
     try:
         return is_within(bound(value, region), low, high)
     except UndefinedError:

@@ -1,4 +1,4 @@
-"""Cache the answers that need sympy, so that sympy is imported at most once for each question.
+"""Cache the answers that need sympy, so that sympy is imported only for new questions.
 
 Answers are stored in ``$TLTLC_CACHE_DIR`` (nowhere if it is set but empty) or in the system's cache
 folder. A file that cannot be read or written is ignored.
@@ -70,7 +70,10 @@ def question(kind: str, expression: Expression, box: Box, bools: frozenset[Varia
 
 
 def cache_folder() -> Path | None:
-    """Return the folder of the user's cached answers, or None if there is none."""
+    """Return the folder of the user's cached answers, or None if answers are not stored.
+
+    They are not stored if ``TLTLC_CACHE_DIR`` is set but empty, or if the user has no home folder.
+    """
     chosen = os.environ.get("TLTLC_CACHE_DIR")
     if chosen is not None:
         return Path(chosen) if chosen else None

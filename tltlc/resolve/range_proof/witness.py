@@ -112,7 +112,11 @@ def points(expression: Expression, box: Box, bools: frozenset[Variable]) -> Iter
 
 
 def _grid(axes: list[tuple[float, ...]]) -> Iterator[tuple[float, ...]]:
-    """Yield the finest grid of at most _LARGEST_GRID points, or that many corners."""
+    """Yield the finest grid of at most _LARGEST_GRID points.
+
+    If the grid of the first two values of each axis has more points, yields its first _LARGEST_GRID
+    points.
+    """
     depth = 2
     while depth < 12 and prod(min(len(axis), depth + 1) for axis in axes) <= _LARGEST_GRID:
         depth += 1

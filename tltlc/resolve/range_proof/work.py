@@ -30,7 +30,7 @@ _CURRENT: ContextVar[ProofBudget | None] = ContextVar("work", default=None)
 
 
 def current_budget() -> ProofBudget | None:
-    """Return the budget of the innermost active :func:`step_limit`, or None."""
+    """Return the budget of the innermost active :func:`step_limit`, or None if no limit is active."""
     return _CURRENT.get()
 
 
