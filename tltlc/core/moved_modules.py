@@ -14,8 +14,8 @@ if TYPE_CHECKING:
 class OldNames:
     """An import finder for old names of modules; insert it at the front of :data:`sys.meta_path`.
 
-    Behind Python's own finders, a folder that an update left behind, with nothing but compiled
-    files in it, would be taken for a package with an old name.
+    It must come before Python's own finders. An update may leave a folder with an old name that has
+    only compiled files in it, and Python's finders would import this folder as a package.
 
     ``new_names`` maps old names to new names. The import of an old name imports the module with the
     new name, and returns another module object with the same attributes.

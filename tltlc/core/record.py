@@ -1,7 +1,7 @@
 """Frozen records with slots, like ``dataclass(frozen=True, slots=True)`` but twenty times faster to define.
 
-The compiler defines about ninety small classes. For each of them, ``dataclasses`` would generate
-and compile the source of several methods, which takes 0.4 ms: for all classes, a quarter of the
+The compiler defines about ninety small classes. ``dataclasses`` would generate and compile the
+source of several methods for each, in 0.4 ms. For all classes, this would take a quarter of the
 time of ``tltlc compile``. Here, the methods are closures, which need no compilation
 (``docs/adr/0003``).
 """
@@ -84,7 +84,7 @@ def record(cls: type[R]) -> type[R]:
 
 
 class MissingFieldsError(TypeError):
-    """Raised when a record lacks a value for a field without a default; ``names`` lists these fields."""
+    """Raised for a new record without values for some fields that have no default; ``names`` lists these fields."""
 
     def __init__(self, owner: str, names: list[str]) -> None:
         super().__init__(f"{owner} lacks {', '.join(names)}")
