@@ -20,14 +20,14 @@ MAX_ARTEFACT_BYTES: Final = ARTEFACT.size
 _BYTE_ORDER_MARK: Final = b"\xef\xbb\xbf"
 
 Stamp = Union[tuple[int, ...], None]
-"""What to compare to see whether a file has changed: its time of change, size and inode number.
+"""The state of a path, to see later whether it has changed: the file's time of change, size and inode number.
 
 For a folder, a device or a pipe, only its kind. None if nothing is at the path.
 """
 
 
 class AccessLog(dict[str, Stamp]):
-    """Maps each path that was looked up or read to its stamp before that.
+    """Maps each path that was looked up or read to the stamp that it had before.
 
     ``read`` has the device and inode numbers of the regular files that were read.
     """
@@ -262,8 +262,11 @@ def read_source(
 ) -> SourceFile:
     """Return the text of a file.
 
-    ``name`` is the name of the file in messages, by default its path. Errors (:class:`TltlError`)
-    are those of :func:`read_bytes` and :func:`decode`.
+    ``name`` is the name of the file in messages, by default its path.
+
+    Errors (:class:`TltlError`): TLT0001 if the system cannot read the file, TLT0002 if it is not
+    UTF-8, TLT0003 if it is binary, TLT0004 if it is larger than ``max_bytes``, TLT0777 if
+    :func:`confine_reads` forbids to read it.
     """
     display_name = name if name is not None else os.fspath(path)
     return decode(read_bytes(path, display_name, max_bytes), display_name, max_bytes=max_bytes)
@@ -340,7 +343,7 @@ def reason(error: OSError | ValueError) -> str:
 
 
 def _missing_file_help(name: str) -> str | None:
-    """Return advice for a missing file, for example a file with a similar name in its folder, or None."""
+    """Return advice for a missing file, such as a similar name in its folder; None if there is no advice."""
     from difflib import get_close_matches
 
     folder, file = os.path.split(name)

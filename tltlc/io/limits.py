@@ -207,7 +207,7 @@ WORK: Final[Mapping[str, int]] = {
     "mined sequences": 800_000,
     "mined candidates": 50_000,
 }
-"""The most steps of computations that could take very long, by what a step is."""
+"""For each computation that could take very long, the most of what it counts: steps, states, edges, pairs, …."""
 
 
 def too_deep_error(source: SourceFile, limit: Limit, span: Span | None = None) -> TltlError:

@@ -95,7 +95,7 @@ def project_for(path: str) -> Project:
 
 
 def project_file(folder: Path) -> Path | None:
-    """Return the nearest project file in an absolute folder or above it, or None."""
+    """Return the nearest project file in an absolute folder or above it; None if none of these folders has one."""
     files = (parent / FILE_NAME for parent in (folder, *folder.parents))
     # A broken link counts, so that reading it reports the problem.
     return next((file for file in files if is_file(file) or (os.path.lexists(file) and may_read(file))), None)

@@ -46,7 +46,7 @@ class OutOfTimeError(BaseException):
 def permit(process: ProcessLimit) -> None:
     """Set the limits that :func:`resource_limits` applies in this process.
 
-    0 instead of a number of bytes or seconds means that there is no limit.
+    A number of bytes or seconds that is 0 means that there is no limit.
     """
     _command_limits[:] = [process]
 

@@ -58,10 +58,11 @@ def write_files(
 def write_file(
     path: Path, content: str | bytes, advice: str = _OPTION, *, durable: bool = False, over_inputs: bool = False
 ) -> None:
-    """Write one file into a folder that exists, as :func:`write_files` does.
+    """Write one file into a folder that exists.
 
-    A device, a pipe, or the file to which standard output or standard error is redirected is not
-    replaced: the content is written into it.
+    ``content``, the options and the errors are those of :func:`write_files`. A device, a pipe, or
+    the file to which standard output or standard error is redirected is not replaced: the content
+    is written into it.
     """
     _write({path: content}, advice, durable=durable, over_inputs=over_inputs)
 
@@ -76,11 +77,11 @@ def check_not_read(path: Path, advice: str = _OPTION) -> None:
 
 
 def rewrite(path: Path, content: str) -> None:
-    """Replace the content of a source file, as :func:`write_files` does.
+    """Replace the content of a source file; if this fails, the file keeps its old content.
 
     Raises:
-        TltlError: TLT0005 if the file is read-only; TLT0004 if the new content would be too large to
-            read. In both cases, the file does not change.
+        TltlError: TLT0005 if the file is read-only, or the system refuses to write; TLT0004 if the
+            new content would be too large to read.
     """
     if len(content.encode(errors="replace")) > SOURCE.size:
         title = f"`{path}` would be larger than {SOURCE.size >> 20} MiB"
