@@ -56,7 +56,8 @@ def separating(one: Fspa, other: Fspa, work: int = DEFAULT_WORK, impossible: Ite
 def is_included(one: Fspa, other: Fspa, work: int = DEFAULT_WORK) -> bool:
     """Whether ``other`` accepts every trace that ``one`` accepts.
 
-    ``work`` and the errors are as in :func:`separating`.
+    Raises OutOfWork after ``work`` steps, and ValueError if only one of the automata is over
+    infinite traces.
     """
     return separating(one, other, work) is None
 
@@ -64,8 +65,8 @@ def is_included(one: Fspa, other: Fspa, work: int = DEFAULT_WORK) -> bool:
 def are_equivalent(one: Fspa, other: Fspa, work: int = DEFAULT_WORK) -> bool:
     """Whether two automata accept the same traces.
 
-    ``work`` and the errors are as in :func:`separating`.  Each of the two inclusions may take
-    ``work`` steps.
+    Raises OutOfWork if one of the two inclusions takes more than ``work`` steps, and ValueError if
+    only one of the automata is over infinite traces.
     """
     return is_included(one, other, work) and is_included(other, one, work)
 
@@ -115,7 +116,7 @@ class _Product:
         ]
 
     def trace(self, start: StatePair = (0, 0)) -> Trace | None:
-        """Return a shortest finite trace that the first automaton accepts and the second one rejects, or None.
+        """Return a shortest finite trace that only the first automaton accepts; None if no trace is like this.
 
         ``start`` is a pair: the state where the first automaton starts, and the state where the
         second one starts.
@@ -129,7 +130,7 @@ class _Product:
         return None if path is None else Trace(path)
 
     def lasso(self) -> Trace | None:
-        """Return an infinite trace that the first automaton accepts and the second one rejects, or None."""
+        """Return an infinite trace that only the first automaton accepts; None if no trace is like this."""
         accepting, rejecting = conditions(*(len(fspa.acceptance) for fspa in self._pair))
 
         def leaves(both: StatePair) -> list[Leaf]:

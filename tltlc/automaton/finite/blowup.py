@@ -80,11 +80,14 @@ def failure_text(reason: Exception) -> str:
 def error_with_clauses(
     spec: Spec, reason: Exception, too_large: str, size: Callable[[Conjunct, Spec], Size | None], advice: str = ADVICE
 ) -> TltlError:
-    """Return the error, with labels on the clauses that make the automaton large, three at most.
+    """Return the error for a spec whose automaton is too large, with labels on at most three clauses.
 
-    ``too_large`` says why the automaton could not be built; it is not used if ``reason`` is
-    TooManyPrimes. ``size`` returns the size of the automaton of one clause alone, or None if it is
-    too large to build. ``advice`` is the suggestion of the message.
+    The labels mark the clauses that make the automaton large.
+
+    ``too_large`` says in the title why the automaton could not be built, for example
+    ``needs too much memory``; it is not used if ``reason`` is TooManyPrimes. ``size`` returns the
+    size of the automaton of one clause alone, or None if it is too large to build. ``advice`` is
+    the suggestion of the message.
     """
     sizes: dict[Conjunct, Size | None] = {}
     alone: list[Conjunct] = []

@@ -56,7 +56,8 @@ def minimal_machine(
     """Return three things: the :class:`Successors` of a formula, its minimal machine, and a guard.
 
     The :class:`Successors` has the obligations and transitions of the machine. The guard is true on
-    the letters that ``exclusive`` allows.
+    the letters with at most one atom of each group in ``exclusive``. A group lists indices into
+    ``atoms``.
     """
     normal = negation_normal_form(formula)
     diagrams = TransitionDiagrams() if diagrams is None else diagrams
@@ -140,9 +141,10 @@ def _build_in_order(spec: Spec, state_budget: int, steps: int | None = None) -> 
 def state_leaves(minimal: Machine, diagrams: TransitionDiagrams) -> list[int]:
     """Return the states of the automaton, the initial one first.
 
-    No trace is empty, so it does not matter whether the initial state accepts. It is accepting if
-    transitions lead back to its obligation and all of them accept: then no second state is needed.
-    Otherwise it is rejecting.
+    No trace is empty, so it does not matter whether the initial state accepts. It accepts if some
+    transition leads back to its obligation and all transitions that do so accept: then these
+    transitions lead to the initial state, and no second state with its obligation is needed.
+    Otherwise it rejects.
     """
     reached = diagrams.leaves(*minimal.transitions.values())
     rejecting, accepting = diagrams.leaf((minimal.initial, 0)), diagrams.leaf((minimal.initial, 1))
@@ -185,9 +187,10 @@ def distances(targets: Mapping[int, list[int]], accepting: Callable[[int], bool]
 
 
 def breadth_first(initial: int, targets: Mapping[int, list[int]], distance: Mapping[int, int | None]) -> list[int]:
-    """Return the states in breadth-first order.
+    """Return the states that ``initial`` can reach, in breadth-first order.
 
-    The successors of a state come in the order of their distance, with traps last.
+    The successors of a state are sorted by their distance to a goal, with traps last. Successors
+    with the same distance have the order of ``targets``.
     """
     position = {state: index for index, state in enumerate(targets)}
 

@@ -50,7 +50,9 @@ def machine(successors: Successors, obligation: int, state_budget: int, allowed:
 def explore(successors: Successors, initial: int, state_budget: int, allowed: int = ACCEPT) -> dict[int, int]:
     """Map every reachable obligation to its transition, in breadth-first order from ``initial``.
 
-    ``allowed`` and the errors are as in :func:`machine`.
+    Only letters on which the guard ``allowed`` is true can occur. Raises :class:`OutOfStates` if
+    there are more than ``state_budget`` obligations, and :class:`OutOfSteps` if their transitions
+    take too many steps.
     """
     diagrams = successors.diagrams
     atom, low, high, value = diagrams.variable, diagrams.low, diagrams.high, diagrams.value

@@ -62,7 +62,7 @@ def restore_order(fspa: Fspa, spec: Spec, order: Sequence[int]) -> Fspa:
 def _primes(primes: Iterable[Implicant], order: Sequence[int]) -> tuple[Implicant, ...]:
     """Return the prime implicants with atom ``i`` replaced by ``order[i]``.
 
-    They are sorted as :meth:`~tltlc.automaton.guards.Guards.primes` sorts them.
+    They are sorted by length, then by atom, as by :meth:`~tltlc.automaton.guards.Guards.primes`.
     """
     renumbered = (tuple(sorted((order[atom], polarity) for atom, polarity in prime)) for prime in primes)
     return tuple(sorted(renumbered, key=lambda prime: (len(prime), [(atom, not polarity) for atom, polarity in prime])))

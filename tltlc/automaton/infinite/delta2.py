@@ -167,7 +167,10 @@ def _push_next(formula: Formula) -> Formula:
 
 
 def _outermost(formula: Formula, op: str) -> Formula | None:
-    """Return the first outermost subformula with operator ``op`` that is not within ``G F p`` or ``F G p``, or None."""
+    """Return the first of the outermost subformulas with operator ``op``, or None if there is no such subformula.
+
+    Subformulas within ``G F p`` and ``F G p`` do not count.
+    """
     if formula.op == op:
         return formula
     if formula.op in ("G", "F") or not contains(formula, op):

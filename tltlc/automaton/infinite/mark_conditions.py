@@ -47,7 +47,11 @@ def pair_marks(marks: Iterable[Mark], first: int = 0) -> Marks:
 
 
 def pair_clauses(pairs: int, first: int = 0) -> list[MarkClause]:
-    """Return the conditions of ``pairs`` Rabin pairs, with marks numbered as in :func:`pair_marks`."""
+    """Return the conditions of ``pairs`` Rabin pairs.
+
+    As in :func:`pair_marks`, the marks of pair ``i`` are ``first + 2 * i`` for ``fin`` and
+    ``first + 2 * i + 1`` for ``inf``.
+    """
     return [MarkClause(frozenset((fin,)), frozenset((fin + 1,))) for fin in range(first, first + 2 * pairs, 2)]
 
 

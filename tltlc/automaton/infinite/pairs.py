@@ -39,7 +39,8 @@ several children at once: the positions below all children that contain the run'
 class RabinComponent:
     """A component whose acceptance condition is ``pairs`` Rabin pairs.
 
-    ``labels`` and ``steps`` are as in :class:`ComponentAutomaton`, with marks of Rabin pairs.
+    ``labels`` maps each state to its label. ``steps`` maps each state to a function from the letter
+    to the next state and the marks of Rabin pairs that the edge has.
     """
 
     labels: dict[State, int]

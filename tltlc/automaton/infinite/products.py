@@ -28,7 +28,10 @@ A cycle meets a pair if a clause of its first list accepts it, and none of its s
 
 
 def conditions(pairs: int, others: int) -> tuple[list[MarkClause], list[MarkClause]]:
-    """Return the clauses of two automata with ``pairs`` and ``others`` Rabin pairs, numbered as in :data:`Leaf`."""
+    """Return the clauses of two automata with ``pairs`` and ``others`` Rabin pairs.
+
+    The marks of the second automaton are numbered after the marks of the first.
+    """
     return pair_clauses(pairs), pair_clauses(others, first=2 * pairs)
 
 
@@ -58,10 +61,10 @@ def product_leaves(
 def separating_component(
     starts: Iterable[StatePair], leaves: Callable[[StatePair], Sequence[Leaf]], alternatives: Alternatives, work: Work
 ) -> Edges | None:
-    """Return a strongly connected set of edges of the product that meets one of ``alternatives``, or None.
+    """Return a strongly connected set of edges of the product that meets one of ``alternatives``; None if no set does.
 
-    The set can be reached from ``starts``.  ``leaves`` returns the successors of a pair of states
-    and is called once for each pair.  Raises OutOfWork.
+    The set can be reached from ``starts``. ``leaves`` returns the successors of a pair of states
+    and is called once for each pair. Raises OutOfWork.
     """
     known: dict[StatePair, Sequence[Leaf]] = {}
 
