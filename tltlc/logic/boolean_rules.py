@@ -91,7 +91,7 @@ def resolve(node: Formula) -> Formula:
 
 
 def _rules_out(op: str, operand: Formula, inner: Formula) -> bool:
-    """Whether ``operand`` makes ``inner``, a part of another operand, redundant there."""
+    """Whether ``operand`` makes ``inner``, which is a part of another operand, redundant in this other operand."""
     if op == "and":
         return syntactically_implies(operand, complement(inner))
     return syntactically_implies(complement(operand), inner)

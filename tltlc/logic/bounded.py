@@ -114,7 +114,7 @@ def operands_with_bounds(node: Formula) -> list[Formula]:
 
 
 def _bounded_ending_in(last: Formula, node: Formula, before: Sequence[Formula]) -> Bounded | None:
-    """Return the bounded operator whose expansion ends with the operand ``last``, or None.
+    """Return the bounded operator whose expansion ends with the operand ``last``, or None if no expansion does.
 
     ``before`` are the operands before ``last``; the expansion begins among them.
     """

@@ -1,6 +1,6 @@
 """Quick proofs about formulas on finite traces, such as that one implies another.
 
-What a function proves is true. Where a proof would be long, it gives up.
+The functions prove nothing that is false, but they give up where a proof would be long.
 """
 
 from __future__ import annotations

@@ -62,7 +62,7 @@ def english_text(formula: Formula, *, endless: bool = False) -> str:
 def clause_text(formula: Formula, *, endless: bool = False) -> str:
     """Return a formula that is no constant as a clause: ``keep alive throughout`` for ``G alive``.
 
-    ``endless`` has the same meaning as in :func:`english_text`.
+    ``endless`` says that the clause is about traces that never end.
     """
     return _clause(formula, "now", _SentenceContext(_DEEPEST, endless))[0]
 

@@ -111,9 +111,10 @@ def is_written_as(formula: Formula, text: str, spelling: Spelling) -> bool:
 
 
 def _pieces(formula: Formula, spelling: Spelling, least: int) -> Iterator[str]:
-    """Yield the text of the formula, from left to right; ``least`` as for :func:`write`.
+    """Yield the text of the formula, from left to right.
 
-    An explicit stack replaces recursion, since formulas nest deep.
+    If the formula is an operand, ``least`` is the least strength at which it needs no brackets. An
+    explicit stack replaces recursion, since formulas nest deep.
     """
     stack: list[_Item] = [(formula, least)]
     while stack:
@@ -139,7 +140,9 @@ def _pieces(formula: Formula, spelling: Spelling, least: int) -> Iterator[str]:
 
 
 def _bound(node: Formula) -> Bounded | None:
-    """Return the bounded operator that is printed in place of its expansion ``node``, or None."""
+    """Return the bounded operator that is printed in place of its expansion ``node``; None if
+    ``node`` is printed as it is.
+    """
     operator = bounded_operator(node) if node.op in ("or", "and") else None
     return operator if operator is not None and operator.steps >= LEAST else None
 
