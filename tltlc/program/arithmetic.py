@@ -60,9 +60,10 @@ _Node = Union[source.Expression, source.Condition]
 
 
 class _Path:
-    """The conditions that are all true when an expression is computed: ``condition``, after those of ``before``.
+    """The conditions that are all true where an expression is computed: those of ``before``, then ``condition``.
 
-    ``variable`` is true if all of them are. It is None until the first statement needs it.
+    ``variable`` is the variable of the program that says whether all of them are true. It is None
+    until the first statement needs it.
     """
 
     __slots__ = ("before", "condition", "variable")
@@ -122,10 +123,10 @@ class ExpressionTranslator:
     def _cases(self, name: str, node: source.When, depth: int = 1) -> list[Statement]:
         """Return statements that assign the value of a ``when`` to the variable ``name``.
 
-        They are one ``if`` with a case for each case of the ``when``. If a condition needs
-        statements of its own, they are in the ``else``, followed by an ``if`` for this case and
-        those after it. ``depth`` is the number of ``if`` statements that are nested for this
-        reason, from 1.
+        The statements are one ``if`` with a case for each case of the ``when``. If the condition of
+        a later case needs statements of its own, these are in the ``else``, followed by a further
+        ``if`` for this case and the cases after it. ``depth`` is the number of ``if`` statements
+        that are nested for this reason, from 1.
         """
         condition, value = node.cases[0]
         before: list[Statement] = []

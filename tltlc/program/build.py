@@ -159,7 +159,7 @@ def _program(fspa: Fspa, names: VariableNames) -> Program:
 def _only_in(
     atoms: Sequence[str], silent: Sequence[bool], transitions: Sequence[tuple[Statement, ...]]
 ) -> tuple[int | None, ...]:
-    """Return :attr:`Program.only_in`.
+    """Return which state alone needs each atom, in the form of :attr:`Program.only_in`.
 
     ``silent`` says, for each atom, that its computation never gives an error or a notice. Every
     step computes the atoms that are not silent, so that all monitors give the same errors and
@@ -177,7 +177,7 @@ def _only_in(
 def _read_in(
     signals: Sequence[str], only_in: Sequence[int | None], values: Sequence[Sequence[Statement]]
 ) -> tuple[int | None, ...]:
-    """Return :attr:`Program.read_in`.
+    """Return which state alone reads each signal, in the form of :attr:`Program.read_in`.
 
     A signal that atoms of several states read has None, as if every step read it. ``values`` has
     the statements of each atom.
@@ -190,7 +190,7 @@ def _read_in(
 
 
 def _remarks(fspa: Fspa, only_in: Sequence[int | None]) -> tuple[str, ...]:
-    """Return :attr:`Program.remarks`.
+    """Return the text of the comment of each atom (:attr:`Program.remarks`).
 
     The documentation of a predicate is in the remark of only one of its atoms, the first in the
     generated code. There, the atoms that every step computes come before those of single states.

@@ -124,8 +124,8 @@ class _StateCode:
     def _nearest(self, primes: Sequence[Sequence[tuple[int, bool]]]) -> list[Statement]:
         """Return statements that find the most robust prime implicant and its least literal.
 
-        Of equal prime implicants or literals, the first one counts. The robustness is assigned to
-        ``NEAREST``, the index of the literal's atom to ``LIMITING``.
+        Of prime implicants or literals with the same value, the first one counts. The robustness is
+        assigned to ``NEAREST``, the index of the literal's atom to ``LIMITING``.
         """
         first, *following = primes
         lines: list[Statement] = [Declare(NEAREST, "real", self._least(first), changes=bool(following))]
