@@ -15,7 +15,12 @@ TARGET = Target("json", "the automaton as JSON, for every tool that loads one", 
 
 
 def emit(fspa: Fspa, options: Options) -> Files:
-    """Return ``NAME.fspa.json``. Errors are those of :func:`document_and_text`."""
+    """Return ``NAME.fspa.json``.
+
+    Raises:
+        TltlError: TLT0004 the file would be too large to be read again; TLT0006 it would have too
+            many values.
+    """
     return {f"{fspa.name}.fspa.json": document_and_text(fspa)[1]}
 
 

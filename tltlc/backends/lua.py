@@ -82,7 +82,7 @@ class _Lua(Printer):
     COMMENT = "--"
     """The start of a comment.
 
-    :meth:`comment` writes a blank after it, because ``--[[`` would begin a long comment.
+    :meth:`Printer.comment` writes a blank after it, because ``--[[`` would begin a long comment.
     """
     WORDS: ClassVar = {"and": "and", "or": "or", "not": "not ", "true": "true", "false": "false"}
     END = ""
