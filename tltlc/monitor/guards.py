@@ -46,7 +46,7 @@ def prime_robustness(prime: Implicant, values: Sequence[float]) -> float:
 
 
 def bounding_atom(guards: Sequence[Guard], values: Sequence[float]) -> int:
-    """Return the index of the atom in the literal that :func:`bounding_literal` returns."""
+    """Return the index of the atom that determines the robustness of the most robust of the guards."""
     return bounding_literal(guards, values)[0]
 
 

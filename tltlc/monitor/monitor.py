@@ -95,7 +95,8 @@ class Monitor:
     def step_atoms(self, values: Sequence[float], *, last: bool = False) -> Step:
         """Take one sample, given as the values of the atoms in order, and return the result.
 
-        Each value is in [-1, 1]. ``last`` has the same meaning as in :meth:`step`.
+        Each value is in [-1, 1]. If ``last``, the episode ends with this sample, whatever the spec
+        says.
 
         Raises:
             MonitorError: TLT0614 exclusive atoms that hold at once. The state stays unchanged.

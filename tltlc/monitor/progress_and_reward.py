@@ -63,11 +63,11 @@ class RewardOptions:
 
 @record
 class RewardStep:
-    """The outcome of one step: its reward, and what follows for the episode.
+    """The outcome of one step.
 
-    ``progress`` is the best progress so far, in [0, 1]. ``done`` says whether the episode ends with
-    this step. ``success`` is true if the episode ends in success, and false if the episode fails or
-    goes on.
+    ``reward`` is the reward of this step, and ``progress`` the best progress so far, in [0, 1].
+    ``done`` says whether the episode ends with this step. ``success`` is true if the episode ends
+    in success, and false if the episode fails or goes on.
     """
 
     reward: float
@@ -132,7 +132,8 @@ def step_progress(
 ) -> float:
     """Return the progress of this step alone (``step progress``, lines 11 to 18), in [0, 1].
 
-    The arguments are those of :func:`reward_step`.
+    The step leads from ``state`` to ``target``. ``values`` are the values of the atoms at its
+    sample, and ``step`` is the number of this sample in the episode, from 1.
     """
     if tables.fspa.judge == "limit" and options.termination == "entry":
         return _share_survived(tables, target, step)
