@@ -42,7 +42,8 @@ class PredicateUse:
 def predicate(use: NameExpr | CallExpr, binding: Binding, env: Env, depth: int = 0) -> PredicateUse:
     """Return one use of a predicate, with its arguments filled in.
 
-    The name of the value is the name of the atom, e.g. ``near(s1, close=3)``.
+    The name of the value is the name of the atom, e.g. ``near(s1, close=3)``. ``depth`` is the
+    number of operators around the use.
     """
     declaration = binding.declaration
     assert isinstance(declaration, PredicateDecl)

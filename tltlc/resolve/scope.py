@@ -22,7 +22,11 @@ _MERGED = ("signal", "param", "entity")
 
 @record
 class Binding:
-    """What a name means: its declaration, the scope of the declaration, and its import, if any."""
+    """What a name means: its declaration, and the scope of the declaration.
+
+    ``via`` is the library or file from which the name is imported, None for a name of the module
+    itself.
+    """
 
     kind: Kind
     declaration: NamedDeclaration

@@ -15,7 +15,7 @@ MOST_MEETING_CASES = 24
 
 
 class TooManyCasesError(Exception):
-    """The expression splits into more cases than are worth checking."""
+    """Raised when an expression splits into more cases than are worth checking."""
 
 
 @record

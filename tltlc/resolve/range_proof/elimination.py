@@ -38,7 +38,7 @@ Ranges = Mapping[Term, Interval]
 
 
 class GiveUpError(Exception):
-    """A proof needs more than this module can do, or too much work."""
+    """Raised when a proof needs a method that this module does not have, or too much work."""
 
 
 class Prover:

@@ -18,7 +18,7 @@ _LARGEST_POWER = 64
 
 
 class UndefinedError(Exception):
-    """The operation is undefined for some members of its arguments; the text says why."""
+    """Raised when an operation is undefined for some values in the intervals of its arguments; the text says why."""
 
 
 def add(a: Interval, b: Interval) -> Interval:

@@ -26,7 +26,7 @@ MOST_BITS = 10_000
 
 
 class TooLargeError(Exception):
-    """The normal form of the expression would be too large."""
+    """Raised when the normal form of an expression would be too large."""
 
 
 @record

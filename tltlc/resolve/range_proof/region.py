@@ -174,7 +174,7 @@ _BINARY = {
 
 
 class _EmptyError(Exception):
-    """No point of the box satisfies the constraints."""
+    """Raised when no point of a box satisfies the constraints."""
 
 
 class _Narrowing:

@@ -13,7 +13,7 @@ from typing import Any
 
 
 class OutOfWorkError(Exception):
-    """A check has used all its steps."""
+    """Raised when a check has used all its steps."""
 
 
 class ProofBudget:
