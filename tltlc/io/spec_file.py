@@ -57,7 +57,8 @@ def read(path: str) -> tuple[SourceFile, bool]:
     """Return the text of a file or of standard input, and whether it is an artefact.
 
     A text is an artefact if it begins with a brace, which no source text does, or if its path ends
-    with ``.json``. Errors are those of :func:`tltlc.io.files.read_source`.
+    with ``.json``. Errors (:class:`TltlError`): TLT0001 if the system cannot read the file, TLT0002
+    if it is not UTF-8, TLT0003 if it is binary, TLT0004 if it is too large.
     """
     name = STDIN_NAME if path == STDIN else path
     try:
