@@ -104,7 +104,7 @@ class Estimate:
         return table
 
     def _leaves(self, node: int) -> dict[int, int]:
-        """Map letters to the leaves of a transition.
+        """Map letters to the leaves of a transition, given its node.
 
         A letter that is missing has the same leaf as ``_NONE``.
         """

@@ -41,8 +41,8 @@ def product_leaves(
     """Return a function that maps the steps of two states to the successors of the two states in the product.
 
     A step is a function from the letter to a target and marks. Each automaton has ``pairs`` Rabin
-    pairs. ``is_over`` returns True for a value of a step without a target. On letters with such a
-    value, the product has no successor. These letters must be the same in both automata.
+    pairs. ``is_over`` returns True for the values of a step that have no target. On letters with
+    such a value, the product has no successor. These letters must be the same in both automata.
     """
     memo: dict[tuple[int, int], int] = {}
 
