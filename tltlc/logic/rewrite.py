@@ -155,7 +155,7 @@ def simplify(formula: Formula, known: dict[Formula, Formula] | None = None) -> F
     """Return a formula that is equivalent on every finite trace and not larger (see :func:`size`).
 
     Operands keep their order. Passes from the leaves to the root repeat until nothing changes, at
-    most 12 times. ``known`` caches the result of a pass for each subformula, for further calls with
+    most 12 times. ``known`` caches the result of a pass for each subformula; pass the same dict for
     formulas that share subformulas.
     """
     known = {} if known is None else known
