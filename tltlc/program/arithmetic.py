@@ -10,9 +10,9 @@ As in Python, later operands of ``and`` and ``or`` are computed only if they are
 operand needs statements of its own, they are inside an ``if``.
 
 ``if`` statements are nested at most about :data:`_MOST_BRANCHES` deep, since Python allows 100
-levels of indentation, and Lua 200 levels of blocks. A ``when`` that is nested deeper is computed
-before the whole expression, if all the conditions that lead to it are true, and assigned to a
-variable.
+levels of indentation, and Lua 200 levels of blocks. A ``when`` that is nested deeper gets a
+variable. Its value is computed before the whole expression, but only if all the conditions that
+lead to it are true.
 """
 
 from __future__ import annotations
