@@ -32,8 +32,8 @@ FormulaOf = Callable[[Expr], "Formula | None"]
 class Resolution:
     """The result of resolution: the program, its environment, its modules and the diagnostics.
 
-    ``env`` holds all declarations that are visible in the module. ``modules`` are in import order,
-    the module itself last.
+    ``env`` holds all declarations that are visible in the module. ``modules`` has the imported
+    modules before the modules that import them, and the module itself last.
     """
 
     program: ResolvedFile

@@ -1,9 +1,9 @@
 """Check whether a value is continuous in its signals where ``when`` cases meet.
 
-A value is continuous if each ``when`` in it is. For fixed params, two cases of a ``when`` meet at
-most where all their constraints hold with ``>`` read as ``>=``. If both values agree there, for
-every pair of cases, the ``when`` is continuous. Bool signals take only two values and are treated
-like params.
+A value is continuous if each ``when`` in it is. For fixed params, two cases of a ``when`` can meet
+only where all their constraints hold if ``>`` is read as ``>=``. The ``when`` is continuous if, for
+every pair of cases, both values agree at these points. Bool signals take only two values and are
+treated like params.
 """
 
 from __future__ import annotations

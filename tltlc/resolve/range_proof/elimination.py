@@ -104,7 +104,8 @@ class Prover:
         numerator = sympy.fraction(_simplify(sympy.diff(f, x)))[0]
         polynomial = sympy.Poly(numerator, x)
         factors = [sympy.Poly(factor, x) for factor, _ in sympy.factor_list(polynomial.as_expr())[1]]
-        # A factor of degree 1 whose leading coefficient is 0 has no root, or f is constant in x, so an end covers it.
+        # If the leading coefficient of a factor of degree 1 is 0, either the factor has no root, or f is constant in x.
+        # Then an end of the range covers it.
         for part in factors:
             may_lose_roots = part.degree() > 1 or not ends
             if may_lose_roots and not self._holds_where_zero(part.LC(), f, limits, ranges, strict):
