@@ -189,7 +189,11 @@ def stamp(path: str) -> Stamp:
 
 
 def exists(path: str | os.PathLike[str]) -> bool:
-    """Whether something exists at a path; False if the system rejects the name or denies access."""
+    """Whether something exists at a path.
+
+    Returns False if the system rejects the name or denies access, or if :func:`confine_reads`
+    forbids access.
+    """
     if not may_read(path):
         return False
     log_lookup(path)
