@@ -54,7 +54,8 @@ def settled_end(success: bool, verdict: str) -> End:
 def progress_return(success: bool, progress: float, steps: int, limit_steps: int | None) -> float:
     """Return the sum of the rewards in mode ``progress`` with the undiscounted terminal penalty.
 
-    ``limit_steps`` is the spec's limit, or None. See ``docs/semantics.md``, section 4.
+    ``limit_steps`` is the spec's limit; None if it has no limit. See ``docs/semantics.md``, section
+    4.
     """
     if limit_steps is None:
         return progress

@@ -14,9 +14,10 @@ def next_goals(
     """Return the entities to approach so that the automaton leaves ``state`` towards acceptance.
 
     The player may approach any one of them. Entities that lead nearer to acceptance come first.
-    Only entities in ``places`` are returned; none if the state is accepting or a trap. An edge
-    counts only if its atoms that do not depend on a distance have, in ``sample``, the truth values
-    that its guard requires. ``sample`` and ``params`` are in SI units.
+    Only entities in ``places`` are returned. If the state is accepting or a trap, the result is
+    empty. An implicant of a guard counts only if its atoms that do not depend on the distance to
+    one of these entities already have, in ``sample``, the truth values that it requires. ``sample``
+    and ``params`` are in SI units.
     """
     current = fspa.states[state].distance
     if not current:
@@ -43,9 +44,9 @@ def next_goals(
 def _goals(implicant: Implicant, entities: list[str | None], settled: list[bool | None]) -> list[str]:
     """Return the entities that an implicant requires to be near.
 
-    ``entities`` has, for each atom, the entity on whose distance it depends, or None. ``settled``
-    says, for each atom without an entity, whether it holds now. The list is empty if such an atom
-    does not have the truth value that the implicant requires.
+    ``entities`` has, for each atom, the entity on whose distance it depends; None if it depends on
+    no distance. ``settled`` says, for each atom without an entity, whether it holds now. The list
+    is empty if such an atom does not have the truth value that the implicant requires.
     """
     goals = []
     for atom, holds in implicant:
@@ -59,7 +60,7 @@ def _goals(implicant: Implicant, entities: list[str | None], settled: list[bool 
 
 
 def _entity(atom: Atom, distances: Mapping[str, str]) -> str | None:
-    """Return the entity whose distance an atom depends on, or None."""
+    """Return the entity whose distance an atom depends on; None if it depends on no distance."""
     read = (node.name for node in expressions.nodes(atom.expression) if isinstance(node, expressions.SignalValue))
     return next((distances[name] for name in read if name in distances), None)
 

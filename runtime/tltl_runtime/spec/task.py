@@ -111,14 +111,14 @@ def read_spec(spec: str | Path | Fspa) -> tuple[Fspa, Spec | None]:
 
 
 def _is_text(spec: str) -> bool:
-    """Whether this is the text of a spec or of an artefact, not a path."""
+    """Whether ``spec`` is the text of a spec or of an artefact, not a path."""
     if "\n" in spec or _is_artefact(spec):
         return True
     return " " in spec and not _FILE.match(spec)
 
 
 def _is_artefact(text: str) -> bool:
-    """Whether this is the text of an artefact, not of a spec: no spec begins with a brace."""
+    """Whether ``text`` is an artefact, not a spec: no spec begins with a brace."""
     return text.lstrip().startswith("{")
 
 

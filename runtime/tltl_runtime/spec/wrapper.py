@@ -39,13 +39,13 @@ class TltlEnv(gymnasium.Wrapper[Observation, Any, Any, Any], RecordConstructorAr
     vector, shape (states,). ``progress`` is the best progress so far, shape (1,), in [0, 1]. An
     observation of any other space becomes the key ``observation`` beside them.
 
-    Reward: the reward of the chosen mode; the environment's own reward is ``info["env_reward"]``.
-    The episode is ``terminated`` by success, by violation and by the environment, and ``truncated``
-    at the spec's limit and by the environment. If the environment ends an episode before the spec
-    does, the episode is a success iff two things hold: the trace so far is accepted, and the spec
-    is not judged at a limit that is still ahead. If the spec has a limit, a failure costs the step
-    penalties that remained unspent, as a violation does. So every failed episode has a total reward
-    of progress - 1.
+    Reward: the reward in the mode that ``reward`` names; the environment's own reward is
+    ``info["env_reward"]``. The episode is ``terminated`` by success, by violation and by the
+    environment, and ``truncated`` at the spec's limit and by the environment. If the environment
+    ends an episode before the spec does, the episode is a success iff two things hold: the trace so
+    far is accepted, and the spec is not judged at a limit that is still ahead. If the spec has a
+    limit, such an episode without success costs the penalties of all remaining steps, as a
+    violation does. So every failed episode has a total reward of progress - 1.
 
     ``info`` gains these keys, which replace entries of the environment with the same names:
 
@@ -53,7 +53,8 @@ class TltlEnv(gymnasium.Wrapper[Observation, Any, Any, Any], RecordConstructorAr
     - ``unmet``: the state whose label names what was not met. After a violation this is the state
       before the step, otherwise the current one;
     - ``success``: whether the episode ended with this step, in success;
-    - ``limiting``: the name of the atom that bounds the nearest edge towards the goal, or None;
+    - ``limiting``: the name of the atom that bounds the nearest edge towards the goal; None after a
+      reset, if the state changed, and if no edge leads nearer to the goal;
     - ``atoms``: the values of the atoms by name, empty after a reset;
     - ``env_reward``: 0 after a reset.
 

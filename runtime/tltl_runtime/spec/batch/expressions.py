@@ -2,7 +2,7 @@
 
 The values are those of :func:`tltlc.expression.evaluate.evaluate`. For an environment in which that
 function raises an error, the value here is arbitrary, and the environment is marked as failed. A
-case of a ``when`` fails only in environments that take it.
+case of a ``when`` expression fails only in environments that take it.
 
 On a CPU in float64 the values are equal to the last bit, except for the sign of zeros, and except
 for ``exp``, ``tanh``, ``sqrt`` and powers other than 2 and 3. Torch rounds these differently from
@@ -25,8 +25,8 @@ from tltlc.api import expressions
 class TensorExpressions:
     """Expressions, compiled to one function of the signals of N environments, [signals, N].
 
-    ``signals`` are the names of the signals, in order. ``params`` are in SI units. ``source`` is
-    the Python text of the function.
+    ``signals`` are the names of the signals, in the order of the rows of that array. ``params`` are
+    in SI units. ``source`` is the Python text of the function.
     """
 
     def __init__(
@@ -58,8 +58,8 @@ class TensorExpressions:
     def run(self, columns: Tensor) -> tuple[Tensor, tuple[Tensor | None, ...]]:
         """Return the values [expressions, N], and for each expression a mask [N] of failures.
 
-        ``columns`` are the values of the signals, [signals, N]. The mask is None for an expression
-        that cannot fail.
+        The mask says in which environments the expression has no value. ``columns`` are the values
+        of the signals, [signals, N]. The mask is None for an expression that cannot fail.
         """
         values, failures = self._function(columns)
         if not values:
@@ -70,7 +70,7 @@ class TensorExpressions:
 def _release_tensors(lines: Sequence[str], outputs: Collection[str]) -> list[str]:
     """Return the lines with a ``del`` for each tensor after its last use.
 
-    So torch can use its memory again. The tensors in ``outputs`` are kept.
+    So torch can use the memory of these tensors again. The tensors in ``outputs`` are kept.
     """
     seen: set[str] = set()
     lines_with_releases: list[str] = []

@@ -1,4 +1,4 @@
-"""Floating-point formats: check that numbers fit, and convert values so that their sign stays."""
+"""Floating-point formats: check that numbers fit, and convert values without losing their sign."""
 
 from __future__ import annotations
 

@@ -57,9 +57,10 @@ class PrimeSets:
         return self._literals_of(rows, values).amin(1).amax(0)
 
     def bounding_atom(self, choice: Tensor, values: Tensor) -> Tensor:
-        """Return the atom that bounds the robustness of the chosen sets, int64 [N]; -1 for none.
+        """Return the number of the atom that bounds the robustness of the chosen sets, int64 [N].
 
-        It is the atom of the least literal in the best prime of the set, the first one on ties.
+        It is the atom of the least literal in the most robust prime of the set; on ties, the first
+        one. It is -1 if the set has no primes, or if this prime has no literals.
         """
         rows = self._rows.index_select(0, choice)
         literals = self._literals_of(rows, values)
@@ -103,7 +104,10 @@ class PrimeSets:
         return torch.tensor(rows, dtype=torch.int64).view(len(rows), self._depth * self._width).t().contiguous()
 
     def _literal_rows(self, primes: Primes) -> list[int]:
-        """Return the row of each literal of a set in the stack (values, negated values, 1, empty).
+        """Return the rows in which the literals of a set are found in a stack of arrays.
+
+        The stack has the values of the atoms, the negated values, a row of 1, and a row of
+        ``empty``.
 
         All sets have the same number of rows: padding repeats the first literal or prime, which
         changes no minimum or maximum.
@@ -124,8 +128,9 @@ class PrimeSets:
 class Transitions:
     """Finds the edges that N automata take.
 
-    Of the edges that leave a state, exactly one has a true guard. Unless ``checked``, exclusive
-    atoms may hold at once. Then some edge of the state is taken.
+    Of the edges that leave a state, exactly one has a true guard, except where atoms hold at once
+    that the spec declares ``exclusive``. If ``checked``, this is an error; otherwise some edge of
+    the state is taken.
     """
 
     def __init__(self, fspa: Fspa, device: torch.device, checked: bool) -> None:

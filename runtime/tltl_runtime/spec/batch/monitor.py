@@ -73,7 +73,7 @@ class BatchStep:
     def limiting(self) -> Tensor:
         """The index of the atom that bounds the nearest edge towards acceptance, int64.
 
-        It is -1 where ``limiting`` of :class:`tltlc.monitor.Step` is None.
+        It is -1 if the state changed, or if no edge leads to a state nearer to acceptance.
         """
         return self._monitor.outcomes.nearest.bounding_atom(self.edge, self.values)
 
@@ -83,12 +83,12 @@ class BatchMonitor:
 
     The environments may be in different states and episodes. The results equal those of ``count``
     :class:`tltlc.monitor.Monitor` objects. On a CPU in float64 they are equal to the last bit,
-    except for the sign of zeros, where torch computes an operation as C does. The other operations
-    (``exp``, ``tanh``, ``sqrt``, powers other than 2 and 3, the discounted penalty) agree within
-    1e-12. An atom whose value is that close to 0, or to a border between cases, may be true in one
-    monitor and false in the other. In float32 all of this holds within 1e-6. If a number of the
-    spec, such as the end of a range, is too large or too small for ``dtype``, atoms are computed in
-    float64.
+    except for the sign of zeros, and except for operations that torch and the C library round
+    differently (``exp``, ``tanh``, ``sqrt``, powers other than 2 and 3, the discounted penalty).
+    These agree within 1e-12. An atom whose value is that close to 0, or to a border between cases,
+    may be true in one monitor and false in the other. In float32 all results agree within 1e-6. If
+    a number of the spec, such as the end of a range, is too large or too small for ``dtype``, atoms
+    are computed in float64.
 
     After the end of an episode, the automaton of its environment continues with reward 0 until it
     is reset, as in the scalar monitor.
@@ -104,7 +104,7 @@ class BatchMonitor:
     is taken.
 
     Raises:
-        MonitorError: TLT0307, TLT0308 for ``params`` that do not fit.
+        MonitorError: TLT0307 and TLT0308, a param has an invalid value or does not exist.
         TypeError: ``fspa`` is not an automaton, or ``reward`` is not RewardOptions.
         ValueError: ``count`` is below 1.
     """

@@ -1,7 +1,8 @@
 """Algorithm 1 for N environments (``docs/semantics.md``, section 4).
 
 The order of operations is the same as in :mod:`tltlc.monitor.progress_and_reward`, which lists the
-deviations from the paper. Lookup tables by edge store what depends only on states.
+deviations from the paper. What depends only on the states is looked up in tables, by the number of
+the edge.
 """
 
 from __future__ import annotations
@@ -49,7 +50,10 @@ class Outcomes:
         staying = [scalar.improving[e.source] if e.source == e.target else () for e in edges]
         primes = [tuple(prime for edge in chosen for prime in edge.guard.primes) for chosen in staying]
         self.nearest = PrimeSets(primes, len(fspa.atoms), device, -1.0)
-        """For each self-loop, the primes of the edges from its state towards acceptance."""
+        """For each self-loop, the primes of the edges from its state towards acceptance.
+
+        There is a set for each edge; for edges that are no self-loops, it is empty.
+        """
         self._approaches = any(primes) and not self._by_share
         self._size = numbers([float(fspa.spec_size or 1)])
         self._limit_number = numbers([float(self._limit or 1)])
@@ -93,11 +97,10 @@ class Outcomes:
         return reward.sub_(self._penalty(steps).mul_(violated))
 
     def _penalty(self, steps: Tensor) -> Tensor:
-        """Return the sum of the step penalties that a violation saves.
+        """Return the sum of the penalties of the remaining steps, which a violation would save.
 
-        It is ``(T - t) / T``, or the discounted sum.
-
-        T is the spec's limit, and t are the ``steps`` so far.
+        It is ``(T - t) / T``, or the discounted sum. T is the spec's limit, and t are the ``steps``
+        so far.
         """
         assert self._limit is not None
         remaining = self._limit - steps

@@ -166,7 +166,7 @@ class BatchSamples:
 
 
 def _constants(fspa: Fspa, params: Mapping[str, float]) -> Iterator[float]:
-    """Yield the numbers in the expressions of the atoms, the ends of ranges, and the params."""
+    """Yield the numbers in atoms' expressions, the ends of signals' ranges, and the params."""
     for atom in fspa.atoms:
         yield from (node.value for node in expressions.nodes(atom.expression) if isinstance(node, expressions.Const))
     for signal in fspa.signals:

@@ -176,7 +176,7 @@ class TensorWriter:
         return result
 
     def _fold_constants(self, node: expressions.Op, args: list[TensorTerm], fails: str | None) -> TensorTerm:
-        """Return the value of an operation on constants."""
+        """Return the term of an operation on constants, which is computed now."""
         # The evaluator multiplies only where the exponent is a literal of the spec. A computed constant exponent must
         # stay a power, so it is not passed on as a literal.
         parts = tuple(expressions.Const(term.constant if term.constant is not None else math.nan) for term in args)

@@ -71,10 +71,10 @@ def reward_mode(fspa: Fspa, options: RewardOptions, device: torch.device, dtype:
 class RowByRow:
     """A reward mode that calls the scalar function of the mode for each environment, on the CPU.
 
-    Each step reads its tensors, so it waits for the device. The memory has an index for each
-    environment, int64 [N], into a list of what the function remembers; it is -1 after the end of
-    the episode, when the function is not called. Each step makes a new list, so only the memory of
-    the last step is valid.
+    Each step reads its tensors, so it waits for the device. The memory, int64 [N], has an index for
+    each environment into a list of the values that the function remembers. After the end of an
+    episode the index is -1, and the function is not called. Each step makes a new list, so only the
+    memory of the last step is valid.
     """
 
     def __init__(self, fspa: Fspa, options: RewardOptions, device: torch.device, dtype: torch.dtype) -> None:
@@ -83,7 +83,7 @@ class RowByRow:
         self._remembered: list[Any] = [None]
 
     def start(self, count: int) -> Tensor:
-        """Return the index of None for each environment."""
+        """Return 0 for each environment, the index of None: the function remembers nothing yet."""
         return torch.zeros(count, dtype=torch.int64, device=self._device)
 
     def reward(self, step: BatchTransition, memory: Tensor) -> tuple[Tensor, Tensor]:

@@ -16,8 +16,9 @@ from tltlc.api import Fspa, RewardOptions
 class Reward:
     """The robustness of the whole trace, once, at the end of the episode.
 
-    The width of a run is the least robustness of its edges. The memory has the width of the widest
-    run to each state, shape [states, N]; -2 if no run leads there.
+    A run is a path through the automaton with one edge for each sample, whether its guard is true
+    or not. The width of a run is the least robustness of its edges. The memory has the width of the
+    widest run to each state, shape [states, N]; -2 if no run leads there.
     """
 
     def __init__(self, fspa: Fspa, _: RewardOptions, device: torch.device, dtype: torch.dtype) -> None:
