@@ -121,7 +121,7 @@ class Game(ABC, Generic[LevelT, EpisodeT]):
     ) -> TltlEnv:
         """Make an environment of a level with a spec, by default the spec that the level is made for.
 
-        Equal seeds of its reset and equal actions give equal episodes.
+        After resets with the same seed, equal actions give equal episodes.
 
         Raises:
             TltlError: the errors of :meth:`load_level`, :meth:`check_fit` and ``TltlEnv``; the level

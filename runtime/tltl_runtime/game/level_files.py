@@ -50,8 +50,8 @@ class LevelFiles(ABC, Generic[LevelT]):
     def dependencies(self, name: str, variant: str) -> Iterator[Path]:
         """Yield the files that a level depends on, among them its spec.
 
-        The level need not load: if a file has errors, this uses what can be read of it. Also yield
-        the paths where a new file would take precedence over an existing one.
+        The level need not load: if a file has errors, the method uses what can be read of it. Also
+        yield the paths where a new file would take precedence over an existing one.
         """
 
     @abstractmethod

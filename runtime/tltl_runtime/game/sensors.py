@@ -36,5 +36,6 @@ class Sensors:
 SensorChoice = Sensors | Mapping[str, Any]
 """All sensors, or a mapping with some fields of :class:`Sensors`.
 
-The level's own sensors give the remaining fields. ``map`` may be such a mapping, too.
+The level's own sensors give the remaining fields. ``map`` may be a mapping with some fields of
+:class:`MapSensor`; None removes the map.
 """
