@@ -11,7 +11,7 @@ from tltlc.api import record
 
 @record
 class FailureGroup:
-    """Failed episodes with the same end.
+    """Failed episodes that ended in the same way and in the same state.
 
     ``state`` is the automaton state at the end, or before the violation. ``label`` says what
     remained to be done in that state. ``share`` is the share among all episodes that were played,
@@ -30,9 +30,9 @@ class FailureGroup:
 class Figures:
     """The statistics of ``episodes`` episodes.
 
-    ``pass_rate`` is in [0, 1]; ``pass_interval`` is its 95 % Wilson interval. ``progress``,
-    ``reward`` and ``steps`` are means and deviations over the episodes: of the best progress of
-    each, in [0, 1], of its undiscounted return, and of its number of decisions.
+    ``pass_rate`` is in [0, 1]; ``pass_interval`` is its 95 % Wilson interval. The others are means
+    and deviations over the episodes: ``progress`` of the best progress of an episode, in [0, 1],
+    ``reward`` of its undiscounted return, and ``steps`` of its number of decisions.
     """
 
     episodes: int
