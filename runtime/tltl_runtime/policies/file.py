@@ -35,9 +35,9 @@ _RECORD_BYTES: Final = 1 << 20
 
 _PREFIX: Final = "actor."
 _KEY: Final = "card"
-"""The only metadata key.
+"""The only metadata key of a file.
 
-The order of several keys could differ between the files of equal policies.
+With several keys, their order could differ, and then the files of equal policies would differ.
 """
 
 _ERRORS: Final = LoadErrors("a", "policy", "TLT0840", "TLT0841", "TLT0842", again="train the policy again")
@@ -47,7 +47,8 @@ _HASH: Final = re.compile(r"[0-9a-f]{64}\Z")
 def write_policy(path: str | os.PathLike[str], policy: Policy, advice: str = "name another place") -> None:
     """Write a policy to a file, so that even a power failure leaves no partial file.
 
-    Equal policies give equal bytes. ``advice`` is the help of the error if the system refuses.
+    Equal policies give equal bytes. ``advice`` is the help of the error if the system refuses to
+    write.
 
     Raises:
         TltlError: TLT0005, the system refuses to write; TLT0862, the file would be larger than
@@ -155,7 +156,7 @@ def _card(header: dict[str, Any], name: str) -> Card:
 
 
 def _fault(card: Card) -> str | None:
-    """Return what is wrong with a card whose fields have the right types, or None."""
+    """Return what is wrong with a card whose fields have the right types; None if it is valid."""
     shapes = dict(card.shapes)
     expected = _observation_shapes(card.fspa, card.sensors)
     if len(shapes) < len(card.shapes) or shapes != expected or max(map(prod, shapes.values())) > MAX_BYTES:
@@ -180,7 +181,7 @@ def _observation_shapes(fspa: Fspa, sensors: Sensors) -> dict[str, tuple[int, ..
 def _check_tensors(header: dict[str, Any], card: Card, name: str) -> None:
     """Raise TLT0842 unless the header lists exactly the weights of the network.
 
-    Nothing is loaded yet.
+    This check comes before any weights are loaded.
     """
     try:
         expected = {f"{_PREFIX}{key}": list(tensor.shape) for key, tensor in blank_actor(card).state_dict().items()}

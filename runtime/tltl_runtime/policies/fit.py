@@ -17,11 +17,11 @@ _MOST: Final = 3
 
 
 def check_policy(card: Card, level: Level, fspa: Fspa | None = None) -> None:
-    """Check that a policy can play ``level`` by the spec ``fspa``, by default its own spec.
+    """Check that a policy can play ``level`` by the spec ``fspa``.
 
-    Any variant of the policy's own level fits. Another level fits if it has everything that the
-    policy observes. Another spec fits if it judges episodes in the same way; its name does not
-    matter.
+    By default, this is the spec that the policy was trained for. Any variant of the policy's own
+    level fits. Another level fits if it has everything that the policy observes. Another spec fits
+    if it judges episodes in the same way; its name does not matter.
 
     Raises:
         TltlError: TLT0843, the policy does not fit; the message says what differs.
@@ -49,8 +49,8 @@ def check_policy(card: Card, level: Level, fspa: Fspa | None = None) -> None:
 def differences(own: Fspa, fspa: Fspa) -> str:
     """Describe how the spec ``fspa`` differs from the spec ``own``.
 
-    The two judge episodes differently. Differences in what a designer wrote come before differences
-    in the automaton.
+    The two specs must judge episodes differently. Differences in what a designer wrote come before
+    differences in the automaton.
     """
     return short_list([*_differences(own, fspa)], _MOST)
 
@@ -89,7 +89,10 @@ def _differing(kind: str, before: Mapping[str, Any], after: Mapping[str, Any]) -
 
 
 def _states(before: Fspa, after: Fspa) -> Iterator[str]:
-    """Yield a sentence for each state whose verdict or edges differ, and one on exclusive atoms."""
+    """Yield a text for each state that is judged differently or has other edges.
+
+    One more text follows if the declarations of exclusive atoms differ.
+    """
     for old, new in zip(before.states, after.states, strict=True):
         judged = (old.accepting, old.verdict, old.distance) == (new.accepting, new.verdict, new.distance)
         primes = [[(edge.target, edge.guard.primes) for edge in fspa.edges_from(new.id)] for fspa in (before, after)]

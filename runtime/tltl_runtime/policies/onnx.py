@@ -110,7 +110,7 @@ def _forget_source(model: ModelProto) -> None:
 def _silence_exporter() -> Iterator[None]:
     """Silence the messages of torch's exporter within this context.
 
-    Tests check the exported model instead.
+    Nobody needs them: tests check the exported model.
     """
     log = logging.getLogger("torch.onnx")
     before = log.level

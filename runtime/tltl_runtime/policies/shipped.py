@@ -16,5 +16,5 @@ def shipped_policies() -> dict[str, Path]:
 
 
 def shipped_policy(level: str) -> Path | None:
-    """Return the file of the policy for the level with this name, or None."""
+    """Return the file of the policy for the level with this name; None if none ships for it."""
     return shipped_policies().get(level)

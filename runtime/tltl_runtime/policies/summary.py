@@ -16,7 +16,7 @@ _ENDS: Final[Mapping[str, str]] = {
     "steps": "by the limit of steps",
     "minutes": "by the limit of minutes",
 }
-"""Why a training ended, by the ``end`` of its record."""
+"""Why a training ended, in words, by the ``end`` of its record."""
 
 
 def summary(policy: Policy) -> dict[str, Any]:
