@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 
 def check_batch(space: Space[Any], batch: Any, count: int) -> None:
-    """Raise ValueError unless ``batch`` has ``count`` values of a space.
+    """Raise ValueError unless ``batch`` has ``count`` values of ``space``.
 
     The range of a Box is not checked here; the environment does that.
     """

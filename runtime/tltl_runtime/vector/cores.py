@@ -16,7 +16,7 @@ def torchrun_variable(variable: str, default: int) -> int:
     """Return the integer in an environment variable that torchrun sets, by default ``default``.
 
     Raises:
-        TltlError: TLT0862, the value is not an integer from ``default`` on.
+        TltlError: TLT0862, the value is not an integer, or is below ``default``.
     """
     text = os.environ.get(variable, str(default))
     if len(text) <= 9 and text.isascii() and text.isdecimal() and int(text) >= default:

@@ -48,10 +48,10 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
     """A vector environment whose environments are stepped by ``workers`` processes.
 
     ``functions`` make the environments, which must have equal spaces. A worker steps its share of
-    the environments one after the other. Observations, actions and numbers are in shared memory. By
-    default there are as many ``workers`` as cores, but never more than environments. The same seeds
-    and actions give the same episodes, bit for bit, for any number of workers and in this process.
-    With ``workers="ray"`` the workers are actors of a Ray cluster (see
+    the environments one after the other. Observations, actions and the results of steps are in
+    shared memory. By default there are as many ``workers`` as cores, but never more than
+    environments. The same seeds and actions give the same episodes, bit for bit, for any number of
+    workers and in this process. With ``workers="ray"`` the workers are actors of a Ray cluster (see
     :func:`~tltl_runtime.vector.cluster.cluster`), one on each free core; processes of torchrun
     share these cores.
 
@@ -66,9 +66,9 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
     A worker is lost if it ends, raises or is silent for ``timeout`` seconds. The report says what
     happened, and the name (``names``, one for each environment), seed, episode and step of each of
     the worker's environments. With ``on_death="stop"``, a :class:`WorkerError` with this report is
-    raised, and this environment is closed. With ``"replace"``, a new worker takes over, the report
-    goes to this module's logger, and the affected environments begin episodes with new seeds. Their
-    step is ``truncated`` with reward 0, ``final_obs`` is their last observation, and
+    raised, and this vector environment is closed. With ``"replace"``, a new worker takes over, the
+    report goes to this module's logger, and the affected environments begin episodes with new
+    seeds. Their step is ``truncated`` with reward 0, ``final_obs`` is their last observation, and
     ``infos["lost"]`` is True for them.
 
     If an environment has a method ``prepare``, its worker calls the method while idle, until it
@@ -226,7 +226,7 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         return tuple(self._workers.pid(worker) for worker in range(len(self._workers.shares)))
 
     def _ask_all(self, command: str, arguments: Sequence[tuple[Any, ...]]) -> tuple[Any, ...]:
-        """Return the results of all environments, in order.
+        """Send a command to all workers; return the results of all environments, in order.
 
         A lost worker is not replaced: this vector environment is closed, and WorkerError is raised.
         """
@@ -273,7 +273,7 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
     # --- lost workers -----------------------------------------------------------------------------
 
     def _continue(self, loss: Loss) -> list[tuple[int, dict[str, Any]]]:
-        """Replace a worker in the middle of a step; return its environments' infos, by row."""
+        """Replace a worker during a step; return pairs of row and info of its environments."""
         share = self._workers.shares[loss.worker]
         resets = self._replace(loss)
         self._rows.truncated[share] = True
@@ -286,8 +286,8 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
     def _replace(self, loss: Loss) -> list[tuple[int, dict[str, Any]]]:
         """Replace the lost worker, begin episodes in its environments, and return their infos.
 
-        If workers are not to be replaced, or if the new worker takes no step, raise WorkerError
-        instead.
+        Raise WorkerError instead if workers are not to be replaced, if the lost worker is itself
+        new and has not taken a step, or if the new worker is lost before its episodes begin.
         """
         if not self._replaces or loss.worker in self._unproven:
             self._stop(loss)

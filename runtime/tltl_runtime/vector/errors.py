@@ -43,10 +43,11 @@ class Playing:
 class Loss:
     """How a worker was lost.
 
-    ``status`` is its exit status. If it is negative, the signal ``-status`` ended the worker.
-    ``silent`` is the number of seconds for which it was silent before it was killed; None if it
-    ended by itself. ``traceback`` is that of the exception that ended the worker, if any.
-    ``starting`` means that the worker had not made its environments yet.
+    ``status`` is its exit status; None for an actor of Ray, and for a process that had to be
+    killed. If it is negative, the signal ``-status`` ended the worker. ``silent`` is the number of
+    seconds for which it was silent before it was killed; None if it ended by itself. ``traceback``
+    is that of the exception that ended the worker; empty if it ended without one. ``starting``
+    means that the worker had not made its environments yet.
     """
 
     worker: int

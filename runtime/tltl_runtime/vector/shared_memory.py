@@ -23,9 +23,11 @@ This is an array. For a Dict or Tuple space, it is a dict or tuple of columns.
 
 
 class Rows:
-    """``count`` rows, one for each environment; ``spaces`` are their two common spaces, by name.
+    """``count`` rows, one for each environment.
 
-    An instance can only be passed to a process while that process is being started.
+    ``spaces`` are the observation space and the action space that all environments share, under the
+    keys ``observation_space`` and ``action_space``. An instance can only be passed to a process
+    while that process is being started.
 
     - ``observation`` and ``action`` are the columns of the two spaces.
     - ``reward``, ``terminated`` and ``truncated`` are the results of a step.

@@ -20,7 +20,10 @@ from tltl_runtime.vector.worker import CLOSE, FAILED, EnvFunction, work
 from tltlc.api import replace
 
 TO_START_S: Final = 120.0
-"""The least time that a worker has to import its modules and make its environments, in seconds."""
+"""Seconds that a worker has to import its modules and make its environments.
+
+If ``timeout`` is longer, it has that time.
+"""
 _TO_END_S: Final = 5.0
 """How many seconds a worker may take to end after a command to close, or after it was killed."""
 
