@@ -124,8 +124,8 @@ class Runner(OnPolicyRunner):
     def _imitate(self) -> dict[str, float]:
         """Take the steps of self-imitation; return their mean loss as ``imitation``.
 
-        Return nothing if there is nothing to imitate. If any process has a batch, all processes
-        take the step together, so that their weights stay equal.
+        Return an empty dict if there is nothing to imitate. If any process has a batch, all
+        processes take the step together, so that their weights stay equal.
         """
         self_imitation, losses = self.env.self_imitation, []
         for _ in range(self.cfg["imitation"] if self_imitation else 0):

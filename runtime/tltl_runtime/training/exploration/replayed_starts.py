@@ -71,7 +71,7 @@ class ReplayedStartEnv(gymnasium.Wrapper[Any, Any, Any, Any]):
             self._replay = self._replay_in_spare(*next_start)
 
     def prepare(self) -> bool:
-        """Take one step of the replay for the next episode; return False if none is left."""
+        """Take one step of the replay for the next episode; return False if no step is left."""
         return self._replay is not None and next(self._replay, self) is None
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:

@@ -30,8 +30,9 @@ _MAX_ENDS = 8
 _START_SHARES = 0.2, 0.97
 """The least share of decisions and the greatest share of episodes from the level's start.
 
-The least share counts decisions, because failed episodes differ in length: some last until the
-spec's limit, others end soon in a violation.
+At least the first share of decisions is made in episodes that begin at the level's start. At most
+the second share of episodes begins there. The first counts decisions, because failed episodes
+differ in length: some last until the spec's limit, others end soon in a violation.
 """
 _MIN_WEIGHT = 0.005
 """This is added to the weight of each segment.
@@ -41,7 +42,7 @@ A segment that teaches nothing now may be useful later.
 _LEARNED_RATE = 0.2
 """A segment counts as learned, at least partly, if its success rate is at least this."""
 _WEIGHTS_BEFORE = 0.1, 0.6
-"""The weight of the segment before the first learned one, and the factor for each step back.
+"""The weight just before the first learned segment, and the factor for each segment before that.
 
 Segments far from everything learned give long episodes without success, and PPO would learn only
 from their noise. So their weights are small.

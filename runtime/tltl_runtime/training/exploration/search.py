@@ -110,7 +110,7 @@ class SearchProgress:
 
 
 def combined_progress(before: SearchProgress, later: SearchProgress) -> SearchProgress:
-    """Combine the progress of two searches of one training: add up numbers and demonstrations.
+    """Combine the progress of two searches of one training: add numbers, and join ``lengths``.
 
     ``places`` and ``complete`` are those of the later search.
     """
@@ -210,7 +210,9 @@ class TrajectorySearch:
     def _record_cell(self, episodes: Episodes, row: int, infos: dict[str, NDArray[np.int64]]) -> bool:
         """Record the current cell of an environment; return whether it is new.
 
-        A cell that the search does not explore is not recorded and counts as not new.
+        In these cases the cell is not recorded and counts as not new: it has no number, because the
+        player is in the air; there is a demonstration with the seed of the episode; or the search
+        began with failures, and none of them failed in the current state.
         """
         state, cell, seed = int(infos["state"][row]), int(infos["cell"][row]), episodes.starts[row].seed
         is_done = any(demonstration.seed == seed for demonstration in self.demonstrations)
@@ -277,7 +279,7 @@ class _CellArchive:
         return self._starts[state][cell]
 
     def remove(self, seed: int) -> None:
-        """Remove the cells that are reached by an episode with this seed."""
+        """Remove the cells whose shortest actions are for this seed."""
         for state in list(self._starts):
             remaining = {cell: start for cell, start in self._starts[state].items() if start.seed != seed}
             if remaining:

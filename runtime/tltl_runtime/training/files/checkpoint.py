@@ -74,18 +74,18 @@ class Checkpoint:
     standstill: tuple[float, int]
 
     def reason(self, stop: Stop) -> StopReason | None:
-        """Return why a training with these limits is over, or None if it is not."""
+        """Return why a training with these limits is over; None if it goes on."""
         return "met" if self.met else stop.reached_limit(self.steps, self.seconds)
 
     @property
     def weights(self) -> Mapping[str, Tensor]:
-        """The weights, by name, of the best actor, or of the current one if there is no best."""
+        """The weights, by name, of the best actor; of the current actor if there is no best one."""
         last: Mapping[str, Tensor] = self.algorithm["actor_state_dict"]
         return self.best.actor if self.best else last
 
 
 _RECORDS: Final[Mapping[str, Any]] = {"best": BestPolicy, "searched": SearchProgress}
-"""The fields that are records.
+"""The fields of a checkpoint that are records, and their classes.
 
 They are saved as dicts, because torch refuses to load classes that it does not know.
 """

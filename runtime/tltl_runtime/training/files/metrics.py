@@ -96,7 +96,7 @@ def means(window: EpisodeWindow) -> dict[str, float]:
 
 
 def read_metrics(path: Path) -> list[dict[str, Any]]:
-    """Read the lines of ``metrics.jsonl`` in order; none if there is no file.
+    """Read the lines of ``metrics.jsonl`` in order; an empty list if there is no file.
 
     Lines that are incomplete, or lack a field that is read back, are left out.
 

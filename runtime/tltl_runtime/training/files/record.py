@@ -94,9 +94,10 @@ def training_record(
 
 
 def _initial_policy(run: TrainingRun) -> dict[str, Any] | None:
-    """Return the entry for the initial policy; None if there is none.
+    """Return what the record says of the policy that the training began with.
 
-    The entry lacks the path, which is only valid on this machine.
+    None if the training began without one. The path is left out, because it is valid only on this
+    machine.
     """
     return (
         None if run.initial is None else {name: value for name, value in to_json(run.initial).items() if name != "path"}
@@ -104,7 +105,7 @@ def _initial_policy(run: TrainingRun) -> dict[str, Any] | None:
 
 
 def record_so_far(folder: Path) -> dict[str, Any]:
-    """Return the known fields of the record of the unfinished training in a folder.
+    """Return the fields of the record that are already known of an unfinished training in a folder.
 
     Raises:
         TltlError: the files of the training cannot be read.
@@ -124,7 +125,7 @@ def record_so_far(folder: Path) -> dict[str, Any]:
 
 
 def _best_policy(pass_rate: float | None, steps: int | None, *, confirmed: bool) -> dict[str, Any] | None:
-    """Return the entry for the best policy; None if there is none."""
+    """Return what the record says of the best policy; None if there is no best policy yet."""
     return None if pass_rate is None else {"pass_rate": round(pass_rate, 6), "steps": steps, "confirmed": confirmed}
 
 
@@ -167,7 +168,7 @@ class _EndFields:
 
 
 def _cloning_steps(metrics: Sequence[Mapping[str, Any]]) -> int:
-    """Return the number of steps, from the first one, in which the actor was cloned."""
+    """Return after how many steps the behavioural cloning ended; 0 without cloning."""
     return max((line["steps"] for line in metrics if "cloning" in line["losses"]), default=0)
 
 

@@ -37,8 +37,8 @@ class Iteration:
 class EpisodeWindow:
     """Statistics of the last ``count`` episodes, of which ``successes`` met the spec.
 
-    ``progress`` in [0, 1], ``reward`` and ``steps`` (of an episode) are means; they are 0 if there
-    is no episode. ``reward`` always has the undiscounted terminal penalty. ``states`` maps an
+    ``progress`` in [0, 1], ``reward`` and ``steps`` are means over the episodes; they are 0 if
+    there is no episode. ``reward`` always has the undiscounted terminal penalty. ``states`` maps an
     automaton state to the share of episodes that ended in it, or were in it before a violation.
     ``violated`` counts only the episodes that ended in a violation. Both are shares of all
     episodes, in [0, 1], and leave out states in which none ended.
@@ -83,14 +83,15 @@ class TrainingReport:
     - ``seconds`` is the training time so far, over all resumptions.
     - ``unbroken`` is the number of successive episodes, up to the last one, that met the spec; a
       failed confirmation resets it.
-    - ``confirmation`` is the result of the confirmation in this iteration, None if none was due.
+    - ``confirmation`` is the result of the confirmation in this iteration, None if no confirmation
+      was due.
     - ``best_pass_rate`` and ``best_steps`` are the pass rate of the best policy and the number of
       steps at which it had its weights; None if there is no best policy yet.
     - ``stop`` says why the training ends here; None if it goes on.
     - ``checkpointed`` says whether a checkpoint is written for this iteration.
-    - ``searched`` is the progress of the searches, None if there was none.
+    - ``searched`` is the progress of the searches, None if there was no search.
     - ``replayed`` counts the decisions that were replayed to reach the starts of episodes.
-    - ``imitated`` describes the demonstrations, None without imitation.
+    - ``imitated`` describes the demonstrations that the agent imitates; None for other trainings.
     """
 
     iteration: Iteration

@@ -145,7 +145,7 @@ def read_level_and_variant(folder: Path) -> tuple[str, str]:
 
 
 def read_level_hash(folder: Path) -> str | None:
-    """Return the hash of the level on which the training in a folder began; None if not stored.
+    """Return the hash of the level on which the training began; None if the file does not have it.
 
     Raises the errors of :func:`read_run`.
     """
@@ -228,7 +228,7 @@ def demonstrations_of(run: TrainingRun) -> Path:
 
 
 def leaves(settings: object, path: str = "") -> Iterator[tuple[str, Any]]:
-    """Yield each setting in the JSON data of settings: its name, ``table.key``, and its value."""
+    """Yield the name, ``table.key``, and the value of each setting in the JSON data of settings."""
     if not isinstance(settings, dict):
         yield path, settings
         return
@@ -242,7 +242,7 @@ def resume_command(folder: Path) -> str:
 
 
 def named_trainings(folder: Path) -> str:
-    """Return a help text that names the trainings directly below a folder; empty without any."""
+    """Return a help text that names the trainings directly in a folder; empty if there are none."""
     trainings = sorted(path.parent for path in folder.glob(f"*/{RUN}"))
     return f"name one of them: {short_list([f'`{path}`' for path in trainings], _MOST_NAMED)}" if trainings else ""
 

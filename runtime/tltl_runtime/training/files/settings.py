@@ -128,7 +128,7 @@ class Stop:
         return 0 < self.minutes * 60 <= seconds
 
     def reached_limit(self, steps: int, seconds: float) -> Literal["steps", "minutes"] | None:
-        """Return the limit that a training has reached after these steps and seconds, or None."""
+        """Return the limit that a training has reached; None if it has reached neither."""
         if steps >= self.steps:
             return "steps"
         return "minutes" if self.is_out_of_time(seconds) else None
@@ -146,10 +146,10 @@ class Classes:
 class TrainingSettings:
     """All settings of a training except its seed.
 
-    With the ``method`` ``imitation``, the settings ``imitation`` apply, and ``exploration`` and
-    ``reward`` do not. A checkpoint is written after the first iteration that ends ``checkpoint_s``
-    seconds or more after the last checkpoint. ``threads`` is the number of torch's threads during
-    updates, ``device`` the device of the network.
+    The settings ``imitation`` apply only with the ``method`` ``imitation``, and ``exploration`` and
+    ``reward`` only with ``automaton``. A checkpoint is written after the first iteration that ends
+    ``checkpoint_s`` seconds or more after the last checkpoint. ``threads`` is the number of torch's
+    threads during updates, ``device`` the device of the network.
     """
 
     ppo: Ppo
@@ -179,7 +179,7 @@ class TrainingSettings:
     def searches(self) -> bool:
         """Whether the training first searches for demonstrations.
 
-        Episodes of the training may then begin in them.
+        Episodes of the training may then begin in these demonstrations.
         """
         return self.exploration.ways > 0 and not self.imitates
 

@@ -219,7 +219,7 @@ def _read(table: str, key: str, entry: Entry, values: dict[str, Any], log: list[
 
 
 def _suggestion(key: str, known: Iterable[str], log: list[Diagnostic]) -> str | None:
-    """Suggest a setting whose name is similar; None if there is none.
+    """Suggest a setting whose name is similar to ``key``; None if no name is.
 
     After too many errors there are no suggestions, because each takes time.
     """

@@ -126,8 +126,8 @@ def _check_calls(pickled: bytes) -> None:
 def _pop_operands(stack: list[str], marks: list[int], opcode: pickletools.OpcodeInfo) -> list[str]:
     """Take the operands of an operation from the stack; return their kinds, without the mark.
 
-    ``marks`` are the positions at which marks were put on the stack. Some marks may have been taken
-    from it since.
+    ``marks`` are the positions at which marks were put on the stack. Some of these marks may no
+    longer be there.
     """
     if opcode.name in ("BINPUT", "LONG_BINPUT", "PUT"):
         return []

@@ -109,7 +109,7 @@ class Demonstrations:
 def recordings(folder: Path) -> list[Path]:
     """Return the paths of the recordings in a folder, sorted by name.
 
-    There are none if the folder does not exist. Pipes and devices are left out.
+    The list is empty if the folder does not exist. Pipes and devices are left out.
     """
     return sorted(filter(fileio.may_be_file, folder.glob(f"*{SUFFIX}")))
 

@@ -76,8 +76,8 @@ class Gail(PPO):
         self.cloning_steps, self.cloning_s = int(gail["cloning_steps"]), float(gail["cloning_s"])
         """The actor is cloned until this many steps or seconds of the training are over.
 
-        Both are computed from the limits when the training begins, and stay if the limits change
-        later.
+        The limit that is reached first counts. Both are computed from the limits when the training
+        begins, and stay if the limits change later.
         """
         example = storage.observations[0].to("cpu")
         self.discriminator = Discriminator(example, gail["branches"], gail["discriminator"]).to(self.device)
@@ -137,7 +137,11 @@ class Gail(PPO):
         }
 
     def load(self, loaded_dict: dict[str, Any], load_cfg: dict[str, Any] | None, strict: bool) -> bool:
-        """Restore what :meth:`save` returned. ``load_cfg`` selects among the parts of PPO only."""
+        """Restore what :meth:`save` returned.
+
+        ``load_cfg`` selects which parts of PPO are restored, as in rsl-rl. The discriminator is
+        always restored.
+        """
         self.discriminator.load_state_dict(loaded_dict["discriminator_state_dict"], strict=strict)
         self._discriminator_optimizer.load_state_dict(loaded_dict["discriminator_optimizer_state_dict"])
         self.steps, self.cloning_steps = loaded_dict["steps"], loaded_dict["cloning_steps"]

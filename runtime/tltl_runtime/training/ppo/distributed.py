@@ -61,7 +61,7 @@ def process_group() -> ProcessGroup:
 
 
 def cores() -> int:
-    """Return the number of cores for each process on this machine, at least one."""
+    """Return how many cores of this machine each process of the training has, at least one."""
     return max(1, usable_cores() // process_group().local_count)
 
 

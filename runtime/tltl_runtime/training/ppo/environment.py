@@ -37,9 +37,9 @@ class TrainingEnv(VecEnv):
 
     ``self_imitation`` draws decisions for the runner to imitate; ``imitation_data`` are decisions
     for the algorithm to imitate. ``extra_penalty`` maps the length of a failed episode, in steps,
-    to the greatest extra penalty. ``penalty_weight``, in [0, 1] and initially 0, is the share of
-    the extra penalty that is subtracted from the reward. ``limit_steps`` is the spec's limit, or
-    None.
+    to the undiscounted penalty minus the penalty that the environment's reward already contains.
+    ``penalty_weight``, in [0, 1] and initially 0, is the share of this difference that is
+    subtracted from the reward. ``limit_steps`` is the spec's limit; None if it has no limit.
 
     Raises:
         TypeError: the spaces are not a Dict of Boxes and a MultiDiscrete.
@@ -91,8 +91,8 @@ class TrainingEnv(VecEnv):
         """Step all environments with actions [num_envs, branches].
 
         Returns observations, rewards [num_envs], bools [num_envs] that say which episodes are over,
-        and extras. The extras are bools [num_envs]: ``time_outs`` says whether a limit ended the
-        episode, ``successes`` whether it met the spec.
+        and extras. The extras are bools [num_envs]: ``time_outs`` says whether the episode ended at
+        a limit or was cut off, ``successes`` whether it met the spec.
         """
         choices = actions.to("cpu", torch.int64).numpy()
         step = self._episodes.step if self._episodes else self.env.step

@@ -14,7 +14,7 @@ _STANDSTILL_STEPS = 100_000
 _MIN_EPISODES = 50
 """A pass rate counts as risen only if its window has at least this many episodes."""
 _RISE = 0.05
-"""The least increase of the best pass rate that counts."""
+"""A pass rate counts as risen only if it is greater than the best one by at least this."""
 _BETWEEN = 0.1, 0.8
 """A standstill is detected only if the best pass rate is between these numbers.
 
@@ -26,9 +26,9 @@ little is left to find.
 class RecentEpisodes:
     """The last ``windows * episodes`` episodes of a training, in windows of ``episodes`` each.
 
-    ``limit_steps`` is the spec's limit, or None. ``unbroken`` is the number of successive episodes,
-    up to the last one, that met the spec, at most ``windows * episodes``. A failed confirmation of
-    the policy resets it.
+    ``limit_steps`` is the spec's limit; None if it has no limit. ``unbroken`` is the number of
+    successive episodes, up to the last one, that met the spec, at most ``windows * episodes``. A
+    failed confirmation of the policy resets it.
     """
 
     def __init__(self, windows: int, episodes: int, limit_steps: int | None) -> None:

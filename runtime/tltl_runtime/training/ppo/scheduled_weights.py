@@ -13,7 +13,7 @@ from tltlc.api import monitors, record, replace
 class ScheduledWeights:
     """The weights that change during a training.
 
-    ``entropy`` is the weight of the entropy bonus, or None if it stays as it is.
+    ``entropy`` is the weight of the entropy bonus; None if this weight is fixed.
     ``penalty_weight``, in [0, 1], is that of
     :class:`~tltl_runtime.training.ppo.environment.TrainingEnv`. ``inverse_temperature``, at least
     1, is the total factor on the actor's logits.

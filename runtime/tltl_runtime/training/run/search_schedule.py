@@ -30,8 +30,8 @@ def search_before_training(
 
     ``env`` are the environments of this process. A ``player`` plays their first episodes. Return
     the progress of the search, or None if no search is needed. With a ``checkpoint``, a search is
-    needed only if a limit broke off the earlier one before it found a demonstration, and if time is
-    left.
+    needed only if the earlier search ended at a limit before it found a demonstration, and if time
+    is left.
     """
     iteration, seconds = 0, 0.0
     if checkpoint:

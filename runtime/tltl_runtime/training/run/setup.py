@@ -42,7 +42,9 @@ from tltlc.api import Diagnostic, TltlError
 
 
 def start_or_resume(run: TrainingRun, resume: bool) -> Checkpoint | None:
-    """Write ``run.json`` if needed; return the checkpoint to resume from, None if there is none.
+    """Write ``run.json`` if needed; return the checkpoint to resume from.
+
+    Return None if the training starts from its beginning.
 
     Raises:
         TltlError: TLT0864, the checkpoint cannot be resumed from; TLT0868, the level has changed;
@@ -85,7 +87,7 @@ def make_environments(run: TrainingRun) -> WorkerVectorEnv:
 def load_imitation_data(
     run: TrainingRun, group: ProcessGroup, on_attempt: Callable[[Attempt], None]
 ) -> ImitationData | None:
-    """Return the data to imitate, None without imitation.
+    """Return the data to imitate; None if the agent does not learn from demonstrations.
 
     If no demonstrations are given, demonstrations of the expert are recorded first. ``on_attempt``
     is called with each attempt.
@@ -108,7 +110,7 @@ def load_imitation_data(
 def initial_policy(run: TrainingRun, group: ProcessGroup, checkpoint: Checkpoint | None) -> Policy | None:
     """Return the policy that the training begins with.
 
-    None if the training begins with random weights or goes on from a checkpoint.
+    Return None if the training begins with random weights or goes on from a checkpoint.
 
     Raises:
         TltlError: TLT0940, the policy's file is missing or has changed; the errors of
@@ -129,13 +131,13 @@ def prepare_environment(
     imitation_data: ImitationData | None,
     initial: Policy | None,
 ) -> tuple[TrainingEnv, SearchProgress | None]:
-    """Search for demonstrations if needed; return the environment for rsl-rl and the progress.
+    """Search for demonstrations if needed; return rsl-rl's environment and the search's progress.
 
     The environment has begun new episodes. Their seeds depend on process and iteration, so that
-    they differ from those of episodes played before. The progress is that of the search, or None
-    without a search. A search is not repeated, unless a limit broke it off before it found a
-    demonstration. In the search, ``initial``, the policy that the training begins with, plays
-    first. ``on_search`` is called with the progress of the search.
+    they differ from those of episodes played before. The progress is None without a search. A
+    search is not repeated, unless a limit broke it off before it found a demonstration. In the
+    search, ``initial``, the policy that the training begins with, plays first. ``on_search`` is
+    called with the progress of the search.
     """
     progress, curriculum, self_imitation = None, None, None
     iteration = checkpoint.iteration if checkpoint else 0
@@ -156,7 +158,7 @@ def prepare_environment(
 
 
 def _player(run: TrainingRun, group: ProcessGroup, policy: Policy | None) -> Player | None:
-    """Return a player that samples the actions of a policy.
+    """Return a player that samples the actions of a policy; None without a policy.
 
     The player raises TltlError, TLT0854, if the observation or the policy's output is not finite.
     """

@@ -52,21 +52,22 @@ def train(
     """Train in ``run.folder``; yield a report after each iteration.
 
     The last report says why the training ends. The folder gets ``run.json``, ``checkpoint.pt``,
-    ``policy.safetensors`` and the files of :class:`~tltl_runtime.training.files.metrics.Metrics`,
-    each before the report of its iteration. Any end of the training, even by Ctrl-C or by closing
-    the iterator, leaves a checkpoint of the last complete iteration. Only if the process is killed,
-    the iterations after the last checkpoint are lost. With ``resume``, the training continues from
-    the checkpoint; a training that is over yields its last report again.
+    ``policy.safetensors`` and the files of :class:`~tltl_runtime.training.files.metrics.Metrics`.
+    What is written for an iteration is written before its report is yielded. Any end of the
+    training, even by Ctrl-C or by closing the iterator, leaves a checkpoint of the last complete
+    iteration. Only if the process is killed, the iterations after the last checkpoint are lost.
+    With ``resume``, the training continues from the checkpoint; a training that is over yields its
+    last report again.
 
     First, a search finds demonstrations that meet the spec; ``on_search`` is called with its
     progress. If the training begins with a policy, that policy plays first in the search. With
     imitation, there is no search. If no demonstrations are given, demonstrations of the expert are
     recorded first; ``on_attempt`` is called with each attempt.
 
-    Equal runs give equal numbers, and so do equal checkpoints that are resumed. With torchrun, each
-    process trains with its own environments. The reports of all processes are equal, except for
-    losses, times and searches, which each process has for itself, and for checkpoints, which only
-    the first process writes.
+    Trainings of equal runs give equal numbers, and so do trainings that resume equal checkpoints.
+    With torchrun, each process trains with its own environments. The reports of all processes are
+    equal, except for losses, times and searches, which each process has for itself, and for
+    checkpoints, which only the first process writes.
 
     Raises:
         TltlError: TLT0005, a file cannot be written; TLT0854, the environment gave values that are
@@ -248,7 +249,7 @@ class _Training:
             self._runner.alg.seconds = self._state.seconds
 
     def _best_policy(self) -> BestPolicy | None:
-        """Return the best policy so far, None if there is none yet.
+        """Return the best policy so far; None until a window of episodes is full.
 
         It is the policy that played the end of the last window, unless an older one has a better
         score. If all episodes of all windows met the spec, it is always the policy of the last
