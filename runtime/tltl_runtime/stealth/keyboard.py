@@ -141,7 +141,7 @@ class KeyboardPlayer:
         self._window.show(self._renderer.frame(snapshot, self._view), display, names)
 
     def _save(self) -> str | None:
-        """Save the episode if it has unsaved decisions; return the name of the file."""
+        """Save the episode and return the name of its file; None if it has no unsaved decisions."""
         if not self._unsaved:
             return None
         file = self._recordings.save(self._env.episode)

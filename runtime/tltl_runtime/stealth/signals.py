@@ -26,7 +26,7 @@ AXES: Final = {"position.x": 0, "position.y": 1, "position.z": 2}
 class LevelSignal:
     """A signal of a level.
 
-    It has a name, arguments, and a function that reads its value from a simulation.
+    ``base`` is its name without its ``arguments``. ``read`` returns its value in a simulation.
     """
 
     base: str

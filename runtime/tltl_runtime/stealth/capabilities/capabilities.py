@@ -64,7 +64,7 @@ def params_from_level(level: StealthLevel, fspa: Fspa) -> dict[str, float]:
 
 
 def used_entities(level: StealthLevel, fspa: Fspa) -> tuple[str, ...]:
-    """Return the names of the level's entities that occur in a spec's signals, in their order."""
+    """Return the names of the level's entities in a spec's signals, in the order of the signals."""
     entities = entity_names(level)
     return tuple(dict.fromkeys(name for signal in fspa.signals for name in signal.arguments if name in entities))
 

@@ -144,8 +144,8 @@ def _may_accept(fspa: Fspa, impossible: frozenset[int]) -> bool:
 class _ObstacleSearch:
     """Finds the obstacle that keeps the player from an entity.
 
-    It removes an obstacle, or lets the player jump higher, and checks whether the player then
-    reaches the entity.
+    The search removes an obstacle, or lets the player jump higher, and checks whether the player
+    then reaches the entity.
     """
 
     def __init__(self, level: StealthLevel, reach: Reach) -> None:
@@ -157,7 +157,7 @@ class _ObstacleSearch:
     def describe(self, entity: str) -> str:
         """Describe what blocks the way to ``entity``, which is unreachable.
 
-        If no single obstacle does, or the budget is spent, say how near the player gets.
+        If no single obstacle does, or if the search is too long, say how near the player gets.
         """
         nearest = f"one gets no nearer to it than {self._reach.distances[entity]:.1f} m"
         try:

@@ -69,9 +69,9 @@ class SpaceGrid:
 
     Slabs end where ``boxes`` begin or cease to block the body of ``kind``, and at the heights
     ``cuts``. ``origin`` is the south-west corner, ``cell`` the side of a cell. ``west`` [columns]
-    and ``south`` [rows] are the low edges of the cells, ``lows`` and ``highs`` [slabs] the ends of
-    the slabs, upwards. All are in metres. ``shape`` is the shape of a space: slabs, rows, columns.
-    ``budget`` counts the cells that each method examines.
+    and ``south`` [rows] are the west and south edges of the cells, ``lows`` and ``highs`` [slabs]
+    the ends of the slabs, upwards. All are in metres. ``shape`` is the shape of a space: slabs,
+    rows, columns. ``budget`` counts the cells that each method examines.
     """
 
     def __init__(
@@ -158,7 +158,8 @@ class SpaceGrid:
     def _blocked_heights(self, box: Box, shorter: float) -> tuple[float, float]:
         """Return the least and greatest height of the feet at which ``box`` blocks the body.
 
-        The box is near the body's axis. The body is shortened by ``shorter`` metres at both ends.
+        This is for a box so near to the body's axis that it is in the way. Each end of the body is
+        shorter there by ``shorter`` metres.
         """
         return box.low[2] - self._height + shorter, box.high[2] - shorter
 
@@ -172,7 +173,7 @@ def _interval_distances(lows: NDArray[np.float64], highs: NDArray[np.float64], v
 def flood(free: Space, seeds: Space, budget: Budget) -> Space:
     """Return the part of ``free`` that is connected with ``seeds`` through shared faces.
 
-    Each round spreads along whole lines of each axis in turn, so few rounds go around many corners.
+    Each round spreads along whole lines of each axis in turn, so even many corners take few rounds.
     """
     budget.spend(3 * free.size)
     reached: Space = seeds & free

@@ -51,7 +51,10 @@ class SpecPlaces:
         return self._label(self._text_span(name) or next(filter(None, spans), None) or self._declaration_span(name))
 
     def declaration(self, signal: str) -> tuple[Label, ...]:
-        """Return the declaration of a signal. If it is in another file, return :meth:`signal`."""
+        """Return the declaration of a signal.
+
+        If it is in another file, return the first use of the signal instead.
+        """
         place = self._declaration_span(signal)
         return self._label(place) if place else self.signal(signal)
 
@@ -85,9 +88,9 @@ class SpecPlaces:
         )
 
     def _text_span(self, text: str) -> Span | None:
-        """Return the span of the first expression in the spec that has this text, or None.
+        """Return the span of the first expression in the spec that has this text.
 
-        Blanks do not count.
+        Return None if no expression has it. Differences in blanks do not count.
         """
         if self._spec is None:
             return None

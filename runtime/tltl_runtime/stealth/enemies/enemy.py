@@ -83,7 +83,7 @@ class Enemies:
             guard.forget_path()
 
     def step(self, dt: float, player: PlayerView, movers: Sequence[Bounds] = ()) -> None:
-        """Advance by ``dt`` seconds. ``movers`` are their current boxes, which block sight, too."""
+        """Advance by ``dt`` seconds. ``movers`` are the movers' current boxes; they block sight."""
         self._boxes[self._standing :] = [(*low, *high) for low, high in movers]
         self.damage = 0.0
         for guard in self.guards:
@@ -96,7 +96,7 @@ class Enemies:
 
     @property
     def yaws(self) -> tuple[float, ...]:
-        """The enemies' yaws, from -pi to pi."""
+        """The enemies' yaws in radians, from -pi to pi."""
         return tuple(guard.yaw for guard in self.guards)
 
     @property

@@ -142,18 +142,18 @@ class Floor:
         return not any(a < x < c and b < y < d for a, b, c, d in self.obstacles)
 
     def is_clear(self, a: Place, b: Place) -> bool:
-        """Whether an enemy can walk straight from a to b; both must be inside the bounds."""
+        """Whether an enemy can walk straight from ``a`` to ``b``, both inside the bounds."""
         return not crosses(*a, *b, self.obstacles)
 
     def next_point(self, a: Place, b: Place) -> Place | None:
-        """Return the first stop on an enemy's path from a to b; it walks there in a straight line.
+        """Return the first stop on an enemy's path from ``a`` to ``b``.
 
-        An enemy must be able to stand at a. If b cannot be reached, the path leads to the reachable
-        place nearest to b.
+        The enemy can walk to this stop in a straight line. An enemy must be able to stand at ``a``.
+        If ``b`` cannot be reached, the path leads to the reachable place nearest to ``b``.
 
-        - The result is b if the straight line to b is free.
-        - It is a if no path leads nearer to b.
-        - It is None if no cell's centre can be reached from a in a straight line.
+        - The result is ``b`` if the straight line to ``b`` is free.
+        - It is ``a`` if no path leads nearer to ``b``.
+        - It is None if no cell's centre can be reached from ``a`` in a straight line.
         """
         entry = self.entry(a)
         if entry is None:
@@ -163,7 +163,7 @@ class Floor:
         return self._furthest_straight(a, self._cell_path(entry, self.nearest(b, self._area[entry])))
 
     def path(self, a: Place, b: Place) -> list[Place]:
-        """Return the centres of the cells on a path from a to b; empty if there is no path."""
+        """Return the centres of cells on a path from ``a`` to ``b``; empty if there is no path."""
         entry = self.entry(a)
         goal = self.entry(b)
         if entry is None or goal is None or self._area[entry] != self._area[goal]:
@@ -258,7 +258,7 @@ class Floor:
         return path
 
     def _furthest_straight(self, a: Place, path: Sequence[int]) -> Place:
-        """Return the centre of a cell far along ``path`` to which an enemy at a can walk straight.
+        """Return the centre of a cell far along ``path`` that can be reached straight from ``a``.
 
         The search doubles its stride, so it makes few tests and may miss cells even farther along.
         """

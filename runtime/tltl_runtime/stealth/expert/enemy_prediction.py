@@ -28,7 +28,10 @@ _MODELS: Final = 12
 _SAME: Final = 0.02
 """A model is right if it differs from its enemy by less than this, in metres and in radians."""
 _GUESSED: Final = 0.7
-"""If no model was right, the probability that a patrolling model gets a new goal."""
+"""If no model was right, the probability that a patrolling model gets a new goal.
+
+If the enemy has optional branches, it is also the probability that this goal is a narrow place.
+"""
 _BURIED: Final = -1000.0
 """The height of the feet of a player whom no enemy can see, in metres."""
 
@@ -66,7 +69,7 @@ class Watch:
         self._player = self.level.start.position
 
     def see(self, snapshot: Snapshot) -> bool:
-        """Update the models from a snapshot; return whether all models of an enemy were wrong."""
+        """Update the models from a snapshot; return whether all models of some enemy were wrong."""
         surprised = False
         if snapshot.time > self._time:
             player = player_view(snapshot.player)
@@ -92,7 +95,7 @@ class Watch:
         return surprised
 
     def outlook(self, decisions: int) -> list[Outlook]:
-        """Predict each enemy for the next ``decisions``, in which it does not see the player."""
+        """Predict each enemy for the next ``decisions``, as if no enemy saw the player in them."""
         x, y, _ = self._player
         unseen = PlayerView((x, y, _BURIED))
         return [self._outlook(models, decisions, unseen) for models in self.models]

@@ -67,7 +67,7 @@ class Expert:
         return (self._sneaker if self._sneaks else self._walker).act(snapshot, self._destination)
 
     def goal(self, snapshot: Snapshot) -> Point | None:
-        """Return the position to reach next, according to the automaton; None if it names none."""
+        """Return the position to reach next; None if the automaton has no goal for the player."""
         taken, sample = (self._env.get_wrapper_attr(name) for name in ("taken", "sample"))
         state = 0 if taken is None else taken.state
         positions = places(self.level, snapshot)
@@ -116,7 +116,7 @@ def expert_episodes(
 def play_episode(env: gymnasium.Env[Any, Any], expert: Expert, seed: int) -> dict[str, Any]:
     """Play one episode to its end and return its last ``info``.
 
-    If ``env`` is a ``RecordEpisode``, its ``episode`` is then the episode itself.
+    If ``env`` is a ``RecordEpisode``, its ``episode`` is then the recording of this episode.
     """
     _, info = env.reset(seed=seed)
     expert.reset()

@@ -61,7 +61,7 @@ class _Bodies:
     began: NDArray[np.int64]
     """When the last move of each body began, in decisions from now."""
     parents: NDArray[np.int64]
-    """The index of the body that made each last move, among the bodies at ``began``."""
+    """The index of the body from which each last move began, among the bodies at that time."""
     moves: NDArray[np.int64]
     """The indices of the last moves, among the moves to choose from."""
     trails: Floats
@@ -155,9 +155,9 @@ class Foresight:
         return landed
 
     def _best(self, bodies: _Bodies) -> _Bodies:
-        """Keep the best body in each quarter of a metre, and of these the ``kept`` best.
+        """Keep the best standing and crouching body in each cube, and of these the ``kept`` best.
 
-        Standing and crouching bodies count separately.
+        The sides of a cube are a quarter of a metre.
         """
         poses = bodies.poses
         order = bodies.scores().argsort(kind="stable")

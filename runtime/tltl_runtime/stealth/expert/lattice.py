@@ -131,7 +131,8 @@ class Lattice:
     def decisions_to(self, goal: Point, within: float) -> Costs:
         """Return how many decisions a walk from each place to the goal takes.
 
-        It ends at most ``within`` metres from the goal. The value is FAR where there is no path.
+        The walk ends at most ``within`` metres from the goal. The value is FAR where there is no
+        path.
         """
         at_goal = np.hypot(*(self.places - goal[:2]).T) <= within
         decisions: Costs = np.where(at_goal, np.float32(0), FAR)

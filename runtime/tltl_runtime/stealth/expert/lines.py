@@ -43,7 +43,7 @@ class LinesOfSight:
         self._cache: OrderedDict[tuple[int, int], NDArray[np.float32]] = OrderedDict()
 
     def visible_shares(self, x: float, y: float) -> NDArray[np.float32]:
-        """Return how much of each place an enemy with its eyes at x, y sees.
+        """Return how much of each place an enemy with its eyes at ``x``, ``y`` sees.
 
         The result is float32 [2, places], for a standing and for a crouched player: the share, in
         [0, 1], of the five points of the place at which the enemy would see the player.

@@ -134,7 +134,7 @@ class Motion:
         return _Boxes(low[:, near], high[:, near])
 
     def _stairs(self, poses: Poses, vx: Floats, vy: Floats, height: Floats, boxes: _Boxes) -> Floats:
-        """Return how high a stair in its way lifts each body, in metres; 0 if there is none."""
+        """Return how high a stair in its way lifts each body, in metres; 0 without a stair."""
         lift = np.zeros(poses.x.shape)
         kind = self.kind
         low, high = boxes.low, boxes.high

@@ -175,7 +175,8 @@ class Routes:
                     pending.append(target)
         return reached
 
-    # Groups of edges, each for one direction and one pair of layers: arrays of sources, targets, seconds and kinds.
+    # The next methods make groups of edges, each for one direction and one pair of layers. A group has arrays of
+    # sources, targets, seconds and kinds.
 
     def _edges(self) -> Iterator[_Edges]:
         heights = self.surfaces.heights
@@ -243,7 +244,7 @@ class Routes:
     def _place_pairs(
         self, layer: int, target: int, direction: tuple[int, int], begin: Cells, steps: int = 1
     ) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-        """Return the first places of pairs, and the second places, as flat indices.
+        """Return pairs of places: the flat indices of the first places, and those of the second.
 
         The first place of a pair is in ``layer``, within the mask ``begin`` [rows, columns]. The
         second is in the layer ``target``, ``steps`` cells away in ``direction``.
@@ -278,7 +279,7 @@ def shut_barriers(snapshot: Snapshot) -> frozenset[int]:
 
 
 def _reaches(direction: tuple[int, int], least: int, reach: float) -> Iterator[tuple[int, float]]:
-    """Yield the numbers of steps from ``least`` up to ``reach`` metres, each with its length."""
+    """Yield numbers of steps, from ``least`` up to ``reach`` metres, and the length of each."""
     length = CELL * hypot(*direction)
     for steps in range(least, int(reach / length + 1e-6) + 1):
         yield steps, steps * length

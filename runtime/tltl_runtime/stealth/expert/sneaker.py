@@ -95,10 +95,10 @@ class Sneaker:
         return ACTIONS[int(costs.argmin())]
 
     def _make_plan(self, lattice: Lattice, lines: LinesOfSight, decisions: Costs) -> list[tuple[Costs, Costs]]:
-        """Return, for each decision, the costs of being at each place at its end.
+        """Return for each decision what it costs to stand and to crouch at each place at its end.
 
-        There is one cost for standing there, and one for crouching. It includes the rest of the
-        route. ``decisions`` is the length of the route from each place if there were no enemies.
+        A cost includes that of the rest of the route. ``decisions`` is the length of the route from
+        each place if there were no enemies.
         """
         seen = self._sight_prices(lattice, lines, self._watch.outlook(_HORIZON))
         at_goal = decisions <= 0.0

@@ -88,7 +88,7 @@ def _check_routes(level: StealthLevel, solids: _Boxes, places: NamedParts) -> It
 
 
 def _first_overlap(body: Box, solids: _Boxes) -> str | None:
-    """Return the name of the first solid that overlaps a body, or None."""
+    """Return the name of the first solid that overlaps a body; None if no solid does."""
     return next((name for name, box in solids if _overlaps(body, box)), None)
 
 

@@ -26,7 +26,7 @@ def read_default_spec(table: CheckedTable, level: Path) -> str:
     - If there is no key, return an empty text.
     - If the value of the key is wrong, log TLT0803 and return an empty text.
     - If there is no such file, log TLT0805 and return an empty text.
-    - If the file does not contain the spec, log TLT0805.
+    - If the file does not contain the spec, log TLT0805, but return FILE:NAME all the same.
     """
     text = table.text("spec", "")
     file, _, name = text.rpartition(":")

@@ -49,7 +49,7 @@ def variants(name_or_path: str) -> tuple[str, ...]:
 
 @fileio.resource_limits()
 def changes(name_or_path: str, variant: str) -> tuple[str, ...]:
-    """Return the descriptions of a variant's overlays, in their order.
+    """Return the descriptions of a variant's overlays, in the order in which they are applied.
 
     Raises the errors of :func:`load_level`.
     """
@@ -294,7 +294,7 @@ class _Loading:
     def _overlay_path(self, name: str) -> Path | None:
         """Return the path of an overlay that an argument adds to a variant.
 
-        Log TLT0800 if there is no overlay of this name.
+        If there is no overlay of this name, log TLT0800 and return None.
         """
         return Path(name) if name.endswith(".toml") else self._find_shared("overlays", name)
 

@@ -14,7 +14,7 @@ from tltl_runtime.support.suggestion import suggestion
 from tltlc.api import Diagnostic, TltlError
 
 DEFAULT_MAP: Final = MapSensor(CELL_TYPES, 0.5, 15)
-"""The values of the keys that a mapping leaves out, if the level has no map of its own."""
+"""The values of keys that the mapping for ``map`` leaves out, if the level has no map."""
 
 _CELL: Final = f"give a width from {CELL_WIDTH[0]:g} to {CELL_WIDTH[1]:g} m"
 _EXTENT: Final = f"give an odd number of cells from {MAP_EXTENT[0]} to {MAP_EXTENT[1]}, so that one is in the middle"
@@ -54,9 +54,9 @@ def missing_sensors(level: StealthLevel, sensors: Sensors) -> Iterator[str]:
 
 
 def _read(level: StealthLevel, choice: Mapping[str, Any], log: list[Diagnostic]) -> Sensors:
-    """Build the record from a mapping.
+    """Build the record of the sensors from a mapping.
 
-    A value of a wrong type is logged, and the level's own value takes its place.
+    If a value has a wrong type, an error is logged, and the level's own value takes its place.
     """
     declared = level.sensors
     _check_names(map(str, choice), Sensors.__match_args__, "sensors have no key", log)

@@ -86,7 +86,7 @@ def _reads_health(atom: Atom) -> bool:
 def _limit_cause(episode: Episode) -> Cause:
     """Return the cause of an episode that reached its limit.
 
-    It says so if the player is the expert and had no route to its next goal.
+    If the player is the expert and had no route to its next goal, the cause says so.
     """
     last, steps = episode.snapshots[-1], len(episode.actions)
     remaining = f"limit after {steps} steps, remaining: {_remaining_text(episode)}"

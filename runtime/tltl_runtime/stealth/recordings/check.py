@@ -16,8 +16,8 @@ def check(episode: Episode) -> tuple[Diagnostic, ...]:
     """Run the spec's automaton again on the recorded signals, and compare the results.
 
     Atoms, states, progress, rewards and the end must equal the recorded ones. Return TLT0823 for
-    the first step that differs, or no diagnostics. If the monitor rejects the signals, return its
-    diagnostics.
+    the first step that differs, and an empty tuple if none does. If the monitor rejects the
+    signals, return its diagnostics.
     """
     try:
         first = next(_differences(episode), None)
@@ -32,10 +32,10 @@ def check(episode: Episode) -> tuple[Diagnostic, ...]:
 
 
 def resimulate(episode: Episode) -> int | None:
-    """Play the actions again from the seed; return the first step that differs in any bit, or None.
+    """Play the actions again from the seed; return the first step that differs in any bit.
 
-    Step 0 is the moment of the reset. A step differs if its snapshot differs, or one of the spec's
-    signals that the game supplies.
+    Return None if no step differs. Step 0 is the moment of the reset. A step differs if its
+    snapshot differs, or one of the spec's signals that the game supplies.
 
     Raises:
         TltlError: TLT0730, pybullet is not installed. The other functions here do not need it.

@@ -179,7 +179,11 @@ def exit_mark() -> Line2D:
 
 
 def natural_size(level: StealthLevel) -> tuple[float, float]:
-    """Return the natural width and height of a level's plan, in inches."""
+    """Return the natural width and height of a level's plan, in inches.
+
+    An inch shows two metres, unless the level is so large that it is scaled down. The height has
+    0.4 inches more than the level needs.
+    """
     (x0, y0, _), (x1, y1, _) = level.bounds.low, level.bounds.high
     width, height = (x1 - x0) / _METRES_PER_INCH, (y1 - y0) / _METRES_PER_INCH
     shrink = min(1.0, _LONGEST_SIDE / max(width, height))
@@ -276,8 +280,8 @@ def _mark(axes: Any, place: Point, marker: str, colour: str, label: str, size: f
 def state_label(fspa: Fspa, state: int, letters: int, notation: Notation = "english") -> str:
     """Return the label of a state in the legend.
 
-    It has the state's number, what remains to be satisfied, and the verdict if that is settled. The
-    middle part is cut to ``letters`` characters.
+    It has the state's number and what remains to be satisfied, cut to ``letters`` characters. In
+    notations other than English, a settled verdict follows.
     """
     automaton_state = fspa.states[state]
     text = label_text(fspa, state, notation)

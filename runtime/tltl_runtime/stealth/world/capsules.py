@@ -65,7 +65,7 @@ class Capsules:
         pybullet.resetBaseVelocity(self._parked, _STILL, _STILL, self._client)
 
     def misfiltered_capsule(self) -> str | None:
-        """Return the name of the capsule whose collision filter is wrong, or None.
+        """Return the name of a capsule whose collision filter is wrong; None if both are right.
 
         A ray down through the active capsule must hit that capsule. A ray down through the inactive
         capsule must not hit it.

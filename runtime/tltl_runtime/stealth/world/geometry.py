@@ -15,7 +15,7 @@ TOUCH = 0.02
 def group_boxes(boxes: list[Bounds], size: int) -> list[list[Bounds]]:
     """Split boxes into groups of at most ``size`` neighbours.
 
-    It halves the boxes along the longer side of their area until the groups are small enough.
+    A set of boxes is halved across the longer side of its area until all groups are small enough.
     """
     if len(boxes) <= size:
         return [boxes] if boxes else []
