@@ -55,7 +55,7 @@ class Evaluation:
 def figures_of(episodes: Sequence[EpisodeSummary]) -> Figures:
     """Return the figures of some episodes. Raises ValueError if there are none."""
     passed = sum(episode.success for episode in episodes)
-    # First: without episodes, this raises the error with a clear message.
+    # Compute this first: without episodes, it raises an error with a clear message.
     interval = wilson(passed, len(episodes))
     return Figures(
         episodes=len(episodes),
