@@ -44,7 +44,7 @@ class BatchSamples:
         self._result_dtype = dtype
         self._dtype = dtype = dtype if fits(_constants(fspa, values), dtype) else torch.float64
         self._program = TensorExpressions([atom.expression for atom in fspa.atoms], self.names, values, device, dtype)
-        # An open end is the greatest finite number: only infinite values are clamped to it.
+        # An open end of a range counts as the greatest finite number, so that only infinite values are clamped to it.
         most = torch.finfo(dtype).max
         low = [0.0 if s.type == "bool" else -most if s.low is None else s.low for s in fspa.signals]
         high = [1.0 if s.type == "bool" else most if s.high is None else s.high for s in fspa.signals]
