@@ -122,7 +122,7 @@ class RayWorkers:
 
     def _start_actors(self, most: int) -> list[Any]:
         """Start ``most`` actors; return those that get a core, and end those that do not."""
-        # Ray would restart a lost actor and continue silently, with its environments back at their beginning.
+        # No restarts: Ray would continue silently with a new actor, and with its environments back at their beginning.
         actors = [self._ray.remote(num_cpus=1, max_restarts=0)(_EnvironmentActor).remote() for _ in range(most)]
         started: list[Any] = []
         try:
