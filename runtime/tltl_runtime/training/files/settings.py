@@ -112,9 +112,10 @@ class RewardSettings:
 class Stop:
     """The settings that say when a training ends.
 
-    It ends when all episodes of ``windows`` successive windows of ``episodes`` each have met the
-    spec, and the policy then meets it in ``confirmation`` fresh episodes. It also ends after
-    ``steps`` decisions of all environments, or after ``minutes`` of training (0: no such limit).
+    A training ends when all episodes of ``windows`` successive windows of ``episodes`` each have
+    met the spec, and the policy then meets it in ``confirmation`` fresh episodes. It also ends
+    after ``steps`` decisions of all environments, or after ``minutes`` of training (0: no such
+    limit).
     """
 
     windows: int

@@ -75,7 +75,8 @@ def _is_count(value: Any) -> bool:
 def _check_optimizer(saved: object, expected: Mapping[str, Any], where: str) -> None:
     """Raise RecordJsonError unless the saved state of an optimiser fits that of a new optimiser.
 
-    It must be for the same weights, its options must fit, and its averages must be tensors.
+    The saved state must be for the same weights, its options must fit, and its averages must be
+    tensors.
     """
     if not isinstance(saved, Mapping) or saved.keys() != expected.keys():
         raise RecordJsonError(f"`{where}` is no state of an optimizer")

@@ -56,7 +56,8 @@ def start_or_resume(run: TrainingRun, resume: bool) -> Checkpoint | None:
         if checkpoint is None and read_level_hash(run.folder) != identity(run)["level"]:
             raise level_changed_error(run.folder)
         if read_run(run.folder) != run:
-            # The limits or the path of the level's file have changed: store them, for the next time it is resumed.
+            # The limits or the path of the level's file have changed: store them, for the next time the training is
+            # resumed.
             write_run(run)
         return checkpoint
     if (run.folder / RUN).exists():

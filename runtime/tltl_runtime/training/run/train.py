@@ -229,7 +229,7 @@ class _Training:
     def _seconds(self) -> float:
         """Return the training time so far, in seconds.
 
-        It is from the clock of the first process, so that all processes decide alike.
+        The clock of the first process measures this time, so that all processes decide alike.
         """
         return self._group.broadcast(self._seconds_before + time.perf_counter() - self._started)
 
