@@ -140,7 +140,7 @@ class EnemyGuard:
         self.in_reach = False
         """Whether the guard can hit the player.
 
-        It must know the player's position and be near enough, with nothing between them.
+        The guard must know the player's position and be near enough, with nothing in between.
         """
         self.last_known: Point = (self.x, self.y, 0.0)
         self.search_left = 0.0

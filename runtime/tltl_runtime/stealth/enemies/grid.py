@@ -216,7 +216,7 @@ class Floor:
     def gaps(self, area: int = 0) -> tuple[Place, ...]:
         """Return the middles of the gaps in an area: passages at most 2 m wide.
 
-        They are at least 2 m apart.
+        These middles are at least 2 m apart.
         """
         if area not in self._gaps:
             self._gaps[area] = self._find_gaps(area)

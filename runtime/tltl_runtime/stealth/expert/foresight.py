@@ -124,8 +124,8 @@ class Foresight:
     def _apply_moves(self, bodies: _Bodies, time: int) -> list[tuple[int, _Bodies]]:
         """Apply every move to every body, and return the bodies that land.
 
-        They are in groups, each with the number of decisions until it lands. ``time`` is when the
-        moves begin, in decisions from now.
+        The bodies are in groups. Each group comes with the number of decisions until its bodies
+        land. ``time`` is when the moves begin, in decisions from now.
         """
         count, choices = bodies.costs.size, len(self._moves)
         parents, moves = np.repeat(np.arange(count), choices), np.tile(np.arange(choices), count)

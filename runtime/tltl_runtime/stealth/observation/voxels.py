@@ -36,7 +36,7 @@ _TOUCH: Final = 1e-6
 Layers = tuple[tuple[NDArray[np.uint8], ...], tuple[NDArray[np.uint8], ...]]
 """The layers for a standing body, and those for a crouched body.
 
-They go from the lowest up; each is uint8 [rows, columns].
+Both are tuples of layers, the lowest first; each layer is uint8 [rows, columns].
 """
 
 

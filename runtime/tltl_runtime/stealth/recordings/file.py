@@ -54,7 +54,7 @@ class AxisNames:
 class Meta:
     """The content of the array ``meta``, which is JSON.
 
-    It is an episode without its arrays and without the artefact of its spec.
+    It contains everything of an episode but the other arrays and the artefact of its spec.
     """
 
     format: str

@@ -79,9 +79,9 @@ def draw_level(level: StealthLevel, reach: Reach) -> bytes:
 def draw_episode(episode: Episode, size: tuple[int, int] | None = None, notation: Notation = "english") -> bytes:
     """Draw the plan of an episode as a PNG.
 
-    It is ``size`` (width, height) pixels large. By default, the plan has its :func:`natural_size`.
-    The PNG shows the player's path, where the state changed, and how the episode ended. Its legend
-    says what remained to be satisfied in each state.
+    The PNG is ``size`` (width, height) pixels large. By default, the plan has its
+    :func:`natural_size`. It shows the player's path, where the state changed, and how the episode
+    ended. The legend says what remained to be satisfied in each state.
     """
     states = episode.states.tolist()
     path = [shot.player.position for shot in episode.snapshots]
@@ -191,9 +191,9 @@ def natural_size(level: StealthLevel) -> tuple[float, float]:
 
 
 def _text_scale(figure: Figure, level: StealthLevel) -> float:
-    """Return the size of text, from 0.6 to 1: small plans have smaller text.
+    """Return the size of text, relative to that in a plan of natural size, from 0.6 to 1.
 
-    It is relative to the text in a plan of natural size.
+    Small plans have smaller text.
     """
     roomy = np.minimum(natural_size(level), _ROOMY)
     return float(np.clip((figure.get_size_inches() / roomy).min(), 0.6, 1.0))

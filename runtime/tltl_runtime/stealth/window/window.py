@@ -152,7 +152,7 @@ class Window:
     def _draw_name(self, name: str, x: float, y: float) -> None:
         """Draw a name above a position.
 
-        It is light with a dark outline, so that it can be read everywhere.
+        The text is light with a dark outline, so that it can be read everywhere.
         """
         light, dark = (self._text(name, tone, _NAME_HEIGHT) for tone in ("plain", "dark"))
         left = self._side + round(x) - light.get_width() // 2

@@ -192,7 +192,8 @@ class World:
     def has_room(self, feet: Point, height: float, ignored: MoverBody | None = None) -> bool:
         """Whether a capsule of this height would be free of everything that stops bodies.
 
-        It has the player's radius and stands at ``feet``. The mover ``ignored`` does not count.
+        The capsule has the player's radius and stands at ``feet``. The mover ``ignored`` does not
+        count.
         """
         radius = self.kind.radius
         return all(
