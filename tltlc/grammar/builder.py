@@ -43,6 +43,7 @@ OPERATORS = {
 
 MOST_REPETITIONS = 100_000
 """The most times that a test may repeat a step, as in ``step 3x alive``."""
+_EXPECT_HELP = f"the form is {TEST_ITEMS['expect']}"
 
 
 class Builder:
@@ -170,7 +171,7 @@ class Builder:
         self, span: Span, _expect: Token, name: Token, comparator: Token, number: tree.NumberExpr
     ) -> tree.TestExpect:
         if name.text != "progress":
-            self._error("TLT0108", f"a test cannot expect a number of `{name.text}`", name.span, TEST_ITEMS["expect"])
+            self._error("TLT0108", f"a test cannot expect a number for `{name.text}`", name.span, _EXPECT_HELP)
         value = number.value / 100 if number.unit == "%" else number.value
         if number.unit not in (None, "%"):
             self._error("TLT0108", "progress has no unit", number.span, "progress runs from 0 to 1")
@@ -178,7 +179,7 @@ class Builder:
 
     def make_expect_state(self, span: Span, _expect: Token, name: Token, label: Token) -> tree.TestExpect:
         if name.text != "state":
-            self._error("TLT0108", f"a test cannot expect a text of `{name.text}`", name.span, TEST_ITEMS["expect"])
+            self._error("TLT0108", f"a test cannot expect a text for `{name.text}`", name.span, _EXPECT_HELP)
         return tree.TestExpect("state", label.text[1:-1], None, span)
 
     # --- expressions ----------------------------------------------------------------------------
@@ -242,7 +243,7 @@ class Builder:
     def make_number(self, span: Span, number: Token, unit: Token | None) -> tree.NumberExpr:
         value = float(number.text)
         if isinf(value):
-            self._error("TLT0109", "this number is too large", number.span, "write `inf` where a range has no end")
+            self._error("TLT0109", "this number is too large", number.span, "write `inf` if a range has no end")
         # `step` and `steps` are the same unit.
         return tree.NumberExpr(value, unit and ("steps" if unit.text == "step" else unit.text), span)
 

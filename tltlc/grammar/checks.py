@@ -72,16 +72,16 @@ def _check_bound(source: SourceFile, formula: tree.Unary, bound: tree.TemporalIn
     operator = source.slice(formula.op_span)
     form = f"with `{word}`" if bound.words else "in brackets"
     title = f"`{operator}` takes no bound {form}"
-    yield _error(source, "TLT0111", title, bound.span, _BOUND_HELP[formula.op])
+    yield _error(source, "TLT0111", title, bound.span, f"write {_BOUND_HELP[formula.op]}")
 
 
 def _check_spec(source: SourceFile, spec: tree.SpecDecl) -> Iterator[Diagnostic]:
     if "." in spec.name:
         plain = spec.name.replace(".", "_")
-        title = "the name of a spec has no dots"
+        title = "the name of a spec cannot contain dots"
         yield _error(source, "TLT0113", title, spec.name_span, f"write `{plain}`", write=plain)
     if not any(clause.kind in _FORMULA_CLAUSES for clause in spec.clauses):
-        title = f"`{spec.name}` asks for nothing"
+        title = f"`{spec.name}` does not ask for anything"
         help_ = "add a clause: `reach`, `keep`, `avoid` or `require`"
         yield _error(source, "TLT0112", title, spec.name_span, help_)
 
@@ -108,8 +108,8 @@ def _check_test(source: SourceFile, test: tree.TestDecl) -> Iterator[Diagnostic]
 
 
 _COMPARED: Final = {
-    "progress": "say how much: `expect progress >= 0.5`",
-    "state": 'name its label: `expect state "F a"`',
+    "progress": "compare it with a number: `expect progress >= 0.5`",
+    "state": 'write the label of the state: `expect state "F a"`',
 }
 
 
@@ -117,7 +117,7 @@ def _check_word(source: SourceFile, word: str, span: Span, words: tuple[str, ...
     if word not in words:
         suggestion = closest_word(word, words)
         listed = ", ".join(f"`{form} {allowed}`" for allowed in words[:-1]) + f" or `{form} {words[-1]}`"
-        help_ = _COMPARED.get(word) or (f"did you mean `{suggestion}`?" if suggestion else listed)
+        help_ = _COMPARED.get(word) or (f"did you mean `{suggestion}`?" if suggestion else f"write {listed}")
         replacement = None if word in _COMPARED else suggestion
         yield _error(source, "TLT0108", f"`{word}` is not known here", span, help_, write=replacement)
 

@@ -37,7 +37,7 @@ TEST_ITEMS: Final = {
     "expect": '`expect satisfied` (or holding, pending, violated), `expect progress >= 0.5` or `expect state "F a"`',
 }
 
-CASES: Final = "cases are written `when x > 3: 1 otherwise: -1`"
+CASES: Final = "write cases as `when x > 3: 1 otherwise: -1`"
 """The help for a case distinction that is written in the syntax of another language."""
 
 OPERATORS: Final = {"reach": "eventually", "keep": "always", "avoid": "always not", "require": ""}

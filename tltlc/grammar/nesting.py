@@ -94,5 +94,5 @@ def drop_deep_clauses(
 
 
 def _error(source: SourceFile, title: str, span: Span) -> Diagnostic:
-    help_ = "name a part of it with `let` and use the name"
+    help_ = "give a part of it a name with `let`, and use the name"
     return Diagnostic("TLT0103", title, (Label(source, span),), help_)

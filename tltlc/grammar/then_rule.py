@@ -60,10 +60,12 @@ def _check_operand(source: SourceFile, sequence: list[Expr], position: int, leni
         elif leading is operand and leading.op != "F" and leading.bound is None and last:
             first, second = _text(source, neighbour), _text(source, leading.operand)
             operator, when = (
-                ("next always", "from the next one on") if leading.op == "G" else ("next", "at the next one")
+                ("next always", "from the next step on") if leading.op == "G" else ("next", "at the next step")
             )
             if len(first) + len(second) <= _SHORT:
-                help_ += f", which begins at some later step; {when}, `{first} and {operator} {second}`"
+                help_ += (
+                    f", which begins at some later step; for `{second}` {when}, write `{first} and {operator} {second}`"
+                )
     yield Diagnostic("TLT0102", title, (Label(source, span),), help_, fixes=_fixes(source, sequence, position, lenient))
 
 

@@ -41,15 +41,16 @@ from tltlc.grammar.mistakes.rephrasing import (
 from tltlc.grammar.tables import load
 
 _IN_BRACKETS: Final = (
-    "put in brackets what `{word}` belongs to, behind a keyword: `avoid (a until b)`, `require (not a) until b`"
+    "begin with a keyword, and put brackets around what `{word}` applies to: `avoid (a until b)`, "
+    "`require (not a) until b`"
 )
-_ONCE: Final = "`require a` is about the first step, `keep a` about every one, `reach a` about some one"
+_ONCE: Final = "write `require a` for the first step, `keep a` for every step, `reach a` for at least one step"
 _BEHIND_THEN: Final = (
-    "`then` joins the goals of `reach`; what holds, or comes, after `a` is a clause of its own: "
+    "`then` joins the goals of `reach`; write what must hold or happen after `a` as a separate clause: "
     "`keep a implies always b`, `keep a implies always not b`, `keep a implies eventually b`"
 )
 _IN_TIME: Final = (
-    "`{limit}` ends every episode then; a time of what is asked for stands behind its operator: "
+    "`{limit}` ends every episode at that time; to give a formula a time, write it after the operator: "
     "`require eventually within {time} a`, `require always for {time} a`, `require next after {time} a`"
 )
 _LIMITS: Final = frozenset(
@@ -76,7 +77,7 @@ def unknown_keyword(failure: ParseFailure) -> Diagnostic | None:
     keywords, token = KEYWORDS.get(failure.start), failure.token
     if failure.stop.index or not keywords or failure.is_at_end or token.type in OPENING.values():
         return None
-    title = f"no {NOUNS[failure.start]} begins with {quote_token(token)}"
+    title = f"a {NOUNS[failure.start]} cannot begin with {quote_token(token)}"
     if failure.start == "declaration" and token.text in {**CLAUSES, **TEST_ITEMS}:
         return _outside_error(failure)
     diagnostic = _line_without_keyword(failure, title) if failure.start == "clause" else None
@@ -89,7 +90,7 @@ def unknown_keyword(failure: ParseFailure) -> Diagnostic | None:
         keyword = closest_word(token.text, tuple(keywords))
     message = f"did you mean `{keyword}`?" if keyword else ""
     listed = ", ".join(f"`{word}`" for word in keywords)
-    return failure.error("TLT0107", title, None if keyword else f"one of {listed}", message, write=keyword)
+    return failure.error("TLT0107", title, None if keyword else f"use one of {listed}", message, write=keyword)
 
 
 def _is_clear_keyword(failure: ParseFailure, keyword: str) -> bool:
@@ -114,7 +115,7 @@ def clause_inside_formula(failure: ParseFailure) -> Diagnostic | None:
     word, before, at = failure.token.text, failure.previous_token, failure.stop.index
     if word not in OPERATORS or before is None or not failure.wants_operand or failure.token.type == "NAME":
         return None
-    title = f"{quote_token(failure.token)} begins a clause, and stands in no formula"
+    title = f"{quote_token(failure.token)} begins a clause; it cannot be used inside a formula"
     start, stop, clause = formula_start(failure), formula_stop(failure), _clause_keyword(failure)
     # An operator in its place would apply to all that follows, but the keyword may be meant for one operand only.
     diagnostic, is_alone = None, not has_token(failure, at + 1, stop, INFIX - {"THEN"} if word == "reach" else INFIX)
@@ -122,9 +123,11 @@ def clause_inside_formula(failure: ParseFailure) -> Diagnostic | None:
         return failure.error("TLT0107", title, _BEHIND_THEN)
     if before.type == "EQUAL" and failure.tokens[0].type == "SPEC":
         text = f"{{ {text_of(failure, at, stop)} }}"
-        diagnostic = suggest_rewrite(failure, at - 1, stop, text, title, ": clauses stand in braces", "TLT0107")
+        diagnostic = suggest_rewrite(failure, at - 1, stop, text, title, ": clauses go in braces", "TLT0107")
     elif before.type == "THEN":
-        diagnostic = suggest_rewrite(failure, at - 1, at + 1, before.text, title, ", which says it already", "TLT0107")
+        diagnostic = suggest_rewrite(
+            failure, at - 1, at + 1, before.text, title, " alone: the next goal needs no `reach`", "TLT0107"
+        )
     elif before.type == "OR" and clause in OPERATORS and not failure.open_brackets:
         # Clauses that are joined by `or` each become a formula of their own.
         left, right = operand_text(failure, start - 1, at - 1), operand_text(failure, at, stop)
@@ -144,7 +147,7 @@ def synonym_inside_formula(failure: ParseFailure) -> Diagnostic | None:
     )
     if before is None or keyword is None or at < 1:
         return None
-    start, stop, title = formula_start(failure), formula_stop(failure), f"{quote_token(before)} is no operator"
+    start, stop, title = formula_start(failure), formula_stop(failure), f"{quote_token(before)} is not an operator"
     if failure.tokens[at - 1].type == "THEN" and not _is_next_goal(failure, keyword):
         return failure.error("TLT0101", title, _BEHIND_THEN, span=before.span)
     diagnostic = None
@@ -182,9 +185,9 @@ def _is_clear_operator(failure: ParseFailure, start: int, at: int, word: str) ->
 
 
 def _operator_help(word: str, keyword: str) -> str:
-    help_ = f"inside a formula, `{word} a` is `{f'{OPERATORS[keyword]} a'.strip()}`"
+    help_ = f"inside a formula, write `{f'{OPERATORS[keyword]} a'.strip()}` for `{word} a`"
     if keyword in ("keep", "avoid"):
-        help_ += f", from there to the end; of one step, write `{'a' if keyword == 'keep' else 'not a'}`"
+        help_ += f": it applies from there to the end; for one step, write `{'a' if keyword == 'keep' else 'not a'}`"
     return help_
 
 
@@ -199,10 +202,10 @@ def joined_clauses(failure: ParseFailure) -> Diagnostic | None:
         or failure.open_brackets
     ):
         return None
-    title, span = f"clauses are not joined by {quote_token(before)}", span_of([before, failure.token])
+    title, span = f"clauses cannot be joined by {quote_token(before)}", span_of([before, failure.token])
     # `always a and reach b` may mean `always (a and eventually b)`, and a quantifier extends over the `and`.
     if has_token(failure, 1, failure.stop.index, UNCLEAR | BEFORE_ONE | QUANTIFIERS | {"OR"}):
-        return failure.error("TLT0101", title, f"let `{word}` begin a line of its own: all clauses count", span=span)
+        return failure.error("TLT0101", title, f"begin a new line with `{word}`: all clauses count", span=span)
     return failure.error("TLT0101", title, f"write `{word}` alone: all clauses count", span=span, write=word)
 
 
@@ -226,13 +229,13 @@ def clauses_without_braces(failure: ParseFailure) -> Diagnostic | None:
     before, token = failure.previous_token, failure.token
     if before is None or failure.tokens[0].type != "SPEC":
         return None
-    title = "the clauses of a spec stand in braces"
+    title = "the clauses of a spec must be in braces"
     if before.type == "EQUAL" and token.type == "LBRACE":
         span = span_of([before, token])
         return failure.error("TLT0101", f"{title}, without `=`", "write `{` alone", span=span, write="{")
     if "LBRACE" not in failure.allowed_terminals or not (token.text in CLAUSES or token.text in (":", "(", "[")):
         return None
-    return failure.error("TLT0101", title, "put `{` before the first one and `}` behind the last")
+    return failure.error("TLT0101", title, "put `{` before the first clause and `}` after the last one")
 
 
 def sign_behind_keyword(failure: ParseFailure) -> Diagnostic | None:
@@ -240,16 +243,18 @@ def sign_behind_keyword(failure: ParseFailure) -> Diagnostic | None:
     if failure.start != "clause" or failure.stop.index != 1 or failure.token.text not in (":", "="):
         return None
     word = failure.tokens[0].text
-    title = f"no {quote_token(failure.token)} stands behind `{word}`"
+    title = f"{quote_token(failure.token)} cannot follow `{word}`"
     return failure.error("TLT0104", title, f"write `{word}` alone", span=span_of(failure.tokens[:2]), write=word)
 
 
 def _outside_error(failure: ParseFailure) -> Diagnostic:
     word = failure.token.text
     if word in CLAUSES:
-        help_ = f"put it into one: `spec NAME {{ {word} … }}`"
-        return failure.error("TLT0107", f"`{word}` stands only inside a spec", help_)
-    return failure.error("TLT0107", f"`{word}` stands only inside a test", f"put it into one: {DECLARATIONS['test']}")
+        help_ = f"put it in a spec: `spec NAME {{ {word} … }}`"
+        return failure.error("TLT0107", f"`{word}` can be used only inside a spec", help_)
+    return failure.error(
+        "TLT0107", f"`{word}` can be used only inside a test", f"put it in a test: {DECLARATIONS['test']}"
+    )
 
 
 def _line_without_keyword(failure: ParseFailure, title: str) -> Diagnostic | None:
@@ -261,7 +266,7 @@ def _line_without_keyword(failure: ParseFailure, title: str) -> Diagnostic | Non
     at = next((index for index in (1, 2) if tokens[index:] and tokens[index].text in CLAUSES), None)
     if at and all(item.type == "NUMBER" or item.text in _MARKS for item in tokens[:at]):
         word, signs, span = tokens[at].text, text_of(failure, 0, at), span_of(tokens[: at + 1])
-        title = f"no clause begins with `{signs}`"
+        title = f"a clause cannot begin with `{signs}`"
         return failure.error("TLT0107", title, f"write `{word}` alone", span=span, write=word)
     if not any(_is_word(item) for item in tokens[:-1]):
         return failure.error("TLT0107", title, "leave it out: a clause begins with its keyword")
@@ -269,7 +274,7 @@ def _line_without_keyword(failure: ParseFailure, title: str) -> Diagnostic | Non
     if diagnostic:
         return diagnostic
     if token.type in _OF_OPERATOR and tokens[1].text in CLAUSES:
-        return failure.error("TLT0107", title, f"leave it out, and say with `{tokens[1].text}` alone what is meant")
+        return failure.error("TLT0107", title, f"leave it out, and say what you mean with `{tokens[1].text}` alone")
     if token.type in _OF_OPERATOR:
         # A keyword applies to its whole line, an operator only to the next operand; and a clause takes no bound.
         bound = len(tokens) > 2 and tokens[1].text in ("within", "for", "[")
@@ -278,19 +283,21 @@ def _line_without_keyword(failure: ParseFailure, title: str) -> Diagnostic | Non
             return failure.error("TLT0107", title, _IN_BRACKETS.format(word=token.text))
         if bound:
             text = f"require {text_of(failure, 0, stop)}"
-            diagnostic = suggest_rewrite(failure, 0, stop, text, title, ": the formula as it is written", "TLT0107")
+            diagnostic = suggest_rewrite(
+                failure, 0, stop, text, title, ": `require` takes the formula as it is written", "TLT0107"
+            )
             return diagnostic or failure.error("TLT0107", title, _IN_BRACKETS.format(word=token.text))
         keyword = _OF_OPERATOR[token.type]
         return failure.error("TLT0107", title, None, f"did you mean `{keyword}`?", write=keyword)
     if token.type in INFIX:
         return failure.error(
-            "TLT0107", title, f"it stands between two formulas, and there is none before `{token.text}`"
+            "TLT0107", title, f"`{token.text}` belongs between two formulas, but there is none before it"
         )
     if token.text.lower() in ("allow", "permit", "may", "can"):
-        return failure.error("TLT0107", title, "leave it out: whatever no clause forbids is allowed")
+        return failure.error("TLT0107", title, "leave it out: everything that no clause forbids is allowed")
     next_words = failure.source.text[tokens[-1].end :].partition("\n")[0].split()
     if len(tokens) == 2 and next_words and next_words[0] in CLAUSES:
-        return failure.error("TLT0107", title, f"leave it out: `{next_words[0]}` says by itself that it counts")
+        return failure.error("TLT0107", title, f"leave it out: `{next_words[0]}` counts without it")
     if token.text.lower() in SYNONYMS["clause"]:
         return None
     text = text_of(failure, 0, len(tokens) - 1)

@@ -117,18 +117,20 @@ _PREFIXES: Final[dict[str, Forms]] = dict.fromkeys(CONDITIONS, _PREFIX)
 """Maps an English WORD to the ways to write `WORD b, a` and `WORD b then a` in the language."""
 
 _FROM_THEN_ON: Final = {
-    "keep": "`keep b implies a` asks for `a` wherever `b` holds, `keep b implies always a` from then on, too",
-    "avoid": "`avoid a and b` forbids `a` wherever `b` holds, `keep b implies always not a` from then on, too",
+    "keep": "write `keep b implies a` to require `a` at every step where `b` holds, or `keep b implies always a` to "
+    "require it from then on, too",
+    "avoid": "write `avoid a and b` to forbid `a` at every step where `b` holds, or `keep b implies always not a` to "
+    "forbid it from then on, too",
 }
 """The two possible meanings of `if b, keep a` and of `if b, avoid a`."""
 _REASONS: Final = {
-    ("if", "reach"): " for both at one step, `{b} then {a}` for one after the other",
-    ("when", "reach"): " for both at one step, `{b} then {a}` for one after the other",
-    ("while", "reach"): " for both at one step; a clause `keep {b}` asks for it at every step",
-    ("for", "reach"): "; past the end of play `always for` asks nothing, so the last step is asked for, too",
+    ("if", "reach"): " for both at the same step, or `{b} then {a}` for one after the other",
+    ("when", "reach"): " for both at the same step, or `{b} then {a}` for one after the other",
+    ("while", "reach"): " for both at the same step; to require `{b}` at every step, write a clause `keep {b}`",
+    ("for", "reach"): "; `always for` requires nothing after the end of play, so `next after` requires the last step",
 }
-_WHERE: Final = ": where `{b}` holds, `{a}` must, too"
-_ONCE: Final = "; a clause `keep {b} implies {a}` asks for it at every step"
+_WHERE: Final = ": where `{b}` holds, `{a}` must hold, too"
+_ONCE: Final = "; to require it at every step, write a clause `keep {b} implies {a}`"
 
 
 def plain_english(failure: ParseFailure) -> Diagnostic | None:
@@ -141,7 +143,7 @@ def plain_english(failure: ParseFailure) -> Diagnostic | None:
         if forms is None or word.type not in ("NAME", "WHEN"):
             continue
         if failure.tokens[0].type == "PREDICATE":
-            return failure.error("TLT0101", f"{quote_token(word)} is no operator", CASES, span=word.span)
+            return failure.error("TLT0101", f"{quote_token(word)} is not an operator", CASES, span=word.span)
         if word.text == "without" and _clause_keyword(failure) in ("reach", "keep"):
             return _without_error(failure)
         report = _time_error if is_timed else _infix_word_error
@@ -166,7 +168,7 @@ def comparison_in_words(failure: ParseFailure) -> Diagnostic | None:
             continue
         value = failure.tokens[at + length].type
         if value == "NUMBER" or (value == "NAME" and phrase[0] != "at"):
-            title, span = f"{quote_token(failure.token)} is no operator", span_of(failure.tokens[at : at + length])
+            title, span = f"{quote_token(failure.token)} is not an operator", span_of(failure.tokens[at : at + length])
             return failure.error("TLT0101", title, f"write `{sign}`", span=span, write=sign)
     return None
 
@@ -177,16 +179,16 @@ def filler_word(failure: ParseFailure) -> Diagnostic | None:
     for index in (at - 1, at):
         word = failure.tokens[index]
         if failure.wants_operator and index > 0 and word.type == "NAME" and word.text in _FILLERS:
-            title, following = f"{quote_token(word)} says nothing here", failure.tokens[index + 1]
+            title, following = f"{quote_token(word)} means nothing here", failure.tokens[index + 1]
             if following.type == "NAME" and _is_clear_filler(failure, index):
                 return suggest_rewrite(failure, index, index + 2, following.text, title, " alone") or failure.error(
                     "TLT0101", title, "leave it out", span=word.span
                 )
             if following.type == "NAME":
-                help_ = "say it with a predicate, as in `near(a)`"
+                help_ = "use a predicate, as in `near(a)`"
                 if word.text in ("either", "both"):
-                    help_ = "say what it joins by brackets: `not (a or b)`, `c and (a or b)`"
-                return failure.error("TLT0101", f"{quote_token(word)} is no operator", help_, span=word.span)
+                    help_ = "put brackets around what it joins, as in `not (a or b)` or `c and (a or b)`"
+                return failure.error("TLT0101", f"{quote_token(word)} is not an operator", help_, span=word.span)
     return None
 
 
@@ -215,14 +217,14 @@ def _without_error(failure: ParseFailure) -> Diagnostic:
 
     The fix writes `avoid` in place of `without`.
     """
-    help_ = "`avoid`, which begins a clause of its own and speaks of every step"
+    help_ = "`avoid`, which begins a separate clause and applies to every step"
     at = failure.stop.index
     goals = _goal_starts(failure, at)
     sides = ((goals[-1], at), (at + 1, formula_stop(failure)))
     is_clear = len(goals) == 1 and is_clear_word(failure, "without", *sides, _clause_keyword(failure))
     write = "avoid" if is_clear else None
     return failure.error(
-        "TLT0101", "`without` is no operator", f"{'write' if is_clear else 'use'} {help_}", write=write
+        "TLT0101", "`without` is not an operator", f"{'write' if is_clear else 'use'} {help_}", write=write
     )
 
 
@@ -299,9 +301,9 @@ def _prefix_word_error(failure: ParseFailure, at: int, forms: Forms, *, timed: b
     keyword = failure.tokens[second].text
     if keyword in _FROM_THEN_ON:
         title = (
-            f"{quote_token(failure.tokens[at])} is no operator"
+            f"{quote_token(failure.tokens[at])} is not an operator"
             if at
-            else f"no clause begins with {quote_token(failure.tokens[at])}"
+            else f"a clause cannot begin with {quote_token(failure.tokens[at])}"
         )
         code = "TLT0101" if at else "TLT0107"
         return failure.error(code, title, _FROM_THEN_ON[keyword], span=failure.tokens[at].span)
@@ -382,7 +384,7 @@ def _rewrite_error(
     ``parts`` is None, the text has several meanings; then the help describes the form with letters.
     """
     word, kind = failure.tokens[at], _clause_keyword(failure)
-    title = f"{quote_token(word)} is no operator" if at else f"no clause begins with {quote_token(word)}"
+    title = f"{quote_token(word)} is not an operator" if at else f"a clause cannot begin with {quote_token(word)}"
     code = "TLT0101" if at else "TLT0107"
     start, stop = part
     is_timed = form in _TIMED
@@ -412,13 +414,13 @@ def _general_help(failure: ParseFailure, at: int, form: str) -> str:
     english = f"{word} {parts.b}, a" if is_prefix else f"a {infix} {parts.b}"
     if form == _CONDITION[""] and not _is_of_every_step(failure, at):
         return (
-            f"`{english}` is `b implies a` where it is about one step, a clause `keep b implies a` where it is about "
-            "every one, and `a and b` where both are asked for"
+            f"for `{english}`, write `b implies a` if it is about one step, a clause `keep b implies a` if it is about "
+            "every step, or `a and b` if both must hold"
         )
     if word == "before" and form == _SEQUENCE[""]:
         return (
-            "`a then b` asks for `a` and later for `b`; where `b` is not asked for, `require (not b) until a` asks for "
-            "`a` first"
+            "write `a then b` to require `a` and later `b`; if `b` is not required, write `require (not b) until a` to "
+            "require `a` first"
         )
     if "{c}" in form:
         english = f"c then {english}"
@@ -428,10 +430,10 @@ def _general_help(failure: ParseFailure, at: int, form: str) -> str:
         # The general form would mean something else where this clause applies.
         form = _FORMS[word][clause]
         text = parts.fill(form if _is_clause(form) else f"{clause} {form}")
-        return f"`{clause} {english}` is written `{text}`"
+        return f"write `{text}` for `{clause} {english}`"
     if at and _is_clause(form):
         english = f"{kind} {english}"
-    return f"`{english}` is written `{text}`"
+    return f"write `{text}` for `{english}`"
 
 
 _UNARY: Final = BEFORE_ONE | {"ALL", "ANY"}

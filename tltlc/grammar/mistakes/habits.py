@@ -37,7 +37,7 @@ def equality(failure: ParseFailure) -> Diagnostic | None:
     is_expectation = failure.tokens[0].text == "expect"
     if sign not in _EQUAL or not (failure.token.type != "EQUAL" or failure.wants_operator or is_expectation):
         return None
-    title = f"`{sign}` does not compare here" if failure.token.type != "EQUAL" else "`=` does not compare"
+    title = f"`{sign}` is not a comparison here" if failure.token.type != "EQUAL" else "`=` is not a comparison"
     if is_expectation:
         return failure.error("TLT0110", title, "compare with `<`, `<=`, `>` or `>=`")
     start, stop = value_end(failure.tokens, at, -1), value_end(failure.tokens, at, 1)
@@ -54,11 +54,11 @@ def equality(failure: ParseFailure) -> Diagnostic | None:
         text = f"({text})" if is_part else text
         if b in ("0", "1"):
             boolean_text = a if (b == "1") != is_unequal else f"not {a}"
-            reason = f", or `{boolean_text}` where it is true or false"
+            reason = f", or `{boolean_text}` if its value is true or false"
         elif _is_atom(failure, start, at) and _is_atom(failure, at + 1, stop):
             boolean_text = f"({a} iff {b})" if is_part or is_unequal else f"{a} iff {b}"
             boolean_text = f"{'not ' * is_unequal}{boolean_text}"
-            reason = f", or `{boolean_text}` where both are true or false"
+            reason = f", or `{boolean_text}` if both values are true or false"
     general = f"write `{_EQUAL[sign].format(a='a', b='b')}`; a `bool` signal is an atom by itself"
     diagnostic = suggest_rewrite(failure, start, stop, text, title, reason, "TLT0110") if a and b else None
     if diagnostic and diagnostic.fixes and boolean_text:
@@ -145,12 +145,12 @@ def foreign_unit(failure: ParseFailure) -> Diagnostic | None:
     number, token = failure.previous_token, failure.token
     if number is None or number.type != "NUMBER" or token.type != "NAME" or "UNIT" not in failure.allowed_terminals:
         return None
-    title = f"there is no unit {quote_token(token)}"
+    title = f"{quote_token(token)} is not a unit"
     known = UNITS_ELSEWHERE.get(token.text.lower())
     if known == "%":
         # A signal with values from 0 to 100 is compared with the number alone.
         help_ = (
-            f"of a ratio, write `{number.text} %`, which is a hundredth of {number.text}; else `{number.text}` alone"
+            f"for a ratio, write `{number.text} %`, which is {number.text}/100; otherwise write `{number.text}` alone"
         )
         return failure.error("TLT0111", title, help_)
     if known:
@@ -164,7 +164,7 @@ def foreign_unit(failure: ParseFailure) -> Diagnostic | None:
     ):
         return None
     listed = ", ".join(f"`{name}`" for name in sorted(load().units))
-    help_ = f"the units are {listed}; a signal is compared, as in `{token.text} >= {number.text}`"
+    help_ = f"the units are {listed}; to compare a signal, write `{token.text} >= {number.text}`"
     return failure.error("TLT0111", title, help_)
 
 
@@ -173,13 +173,13 @@ def doubled_operator(failure: ParseFailure) -> Diagnostic | None:
     before, token = failure.previous_token, failure.token
     if before is None or before.type not in INFIX or token.type not in INFIX or not failure.wants_operand:
         return None
-    title = f"{quote_token(before)} and {quote_token(token)} stand side by side"
+    title = f"expected a formula between {quote_token(before)} and {quote_token(token)}"
     word = token.text if (before.type, token.type) == ("AND", "THEN") else before.text
     # `keep a then b` requires `b` after the last step, and `a or then b` may mean an order or a choice.
     is_order = token.type == "THEN" and before.type in ("AND", "IMPLIES")
     is_order = is_order and effective_clause(failure, failure.stop.index) != "keep"
     write = word if token.type == before.type or is_order else None
-    help_ = f"write `{write}` alone" if write else "leave one of the two out"
+    help_ = f"write `{write}` alone" if write else "leave out one of the two operators"
     return failure.error("TLT0101", title, help_, span=span_of([before, token]), write=write)
 
 
@@ -188,13 +188,13 @@ def prefix_between_formulas(failure: ParseFailure) -> Diagnostic | None:
     token, keyword, following = failure.token, failure.tokens[0].text, failure.stop.index + 1
     is_last = following + 1 >= len(failure.tokens) or is_first_on_line(failure.source, failure.tokens, following)
     if is_last and (keyword, token.type) in (("keep", "ALWAYS"), ("reach", "EVENTUALLY")):
-        help_ = f"leave it out: `{keyword}` says so already"
-        return failure.error("TLT0101", f"{quote_token(token)} stands before a formula", help_)
+        help_ = f"leave it out: `{keyword}` already says so"
+        return failure.error("TLT0101", f"{quote_token(token)} belongs before a formula", help_)
     if is_last or token.type not in {*BEFORE_ONE, "ALL", "ANY"} or not failure.wants_operator:
         return None
     is_goal = keyword == "reach" and token.type in ("NEXT", "EVENTUALLY")
     replacement = "then" if is_goal else f"and {token.text}"
-    title = f"{quote_token(token)} stands before one formula, not between two"
+    title = f"{quote_token(token)} belongs before one formula, not between two"
     # Beside another operator, `and` may bind too tightly; `next` and `always` may follow `and`, `implies` or `then`.
     indices = outer_indices(failure.tokens, formula_start(failure), formula_stop(failure))
     is_clear = token.type == "NOT" and all(failure.tokens[index].type not in INFIX - {"AND"} for index in indices)

@@ -64,7 +64,8 @@ def _unmatched_bracket(failure: ParseFailure) -> Diagnostic | None:
     if token.type in OPENING.values():
         opening = failure.open_brackets[-1] if failure.open_brackets else None
         if opening is None:
-            return failure.error("TLT0105", f"this `{token.text}` closes nothing", "leave it out")
+            partner = {")": "(", "]": "[", "}": "{"}[token.text]
+            return failure.error("TLT0105", f"this `{token.text}` has no matching `{partner}`", "leave it out")
         if OPENING[opening.type] != token.type and OPENING[opening.type] in failure.allowed_terminals:
             return unclosed_bracket(failure.source, opening)
         return None
@@ -82,7 +83,7 @@ def _wrong_bound(failure: ParseFailure) -> Diagnostic | None:
     before = failure.previous_token
     if failure.token.type == "NAME" and before and _is_bound(failure):
         example = "F[0, 20]" if before.text in ("[", ",") else f"{before.text} 20 steps"
-        title = f"a bound is a number, and {quote_token(failure.token)} is a name"
+        title = f"a bound must be a number, but {quote_token(failure.token)} is a name"
         return failure.error("TLT0111", title, f"write the number, e.g. `{example}`")
     if before and before.text in ("[", ",") and "NUMBER" in failure.allowed_terminals and _is_bound(failure):
         return _bound_without_number(failure)
@@ -94,7 +95,7 @@ def _wrong_bound(failure: ParseFailure) -> Diagnostic | None:
     if failure.token.type == "RSQB" and before and "COMMA" in failure.allowed_terminals and _is_bound(failure):
         return _bound_with_one_end(failure, before.text)
     if failure.token.type == "LSQB" and before and before.type in UNTILS:
-        help_ = "bound an `F` beside it: `(a U b) & F[0,20] b`"
+        help_ = "add an `F` with a bound: `(a U b) & F[0,20] b`"
         return failure.error("TLT0111", f"`{before.text}` takes no bound", help_)
     return None
 
@@ -106,7 +107,7 @@ def _bound_without_number(failure: ParseFailure) -> Diagnostic:
         return failure.error(
             "TLT0111",
             f"`{operator.text}` takes no bound in brackets",
-            "leave the brackets out; `X` is false at the last step, `N` true",
+            "leave out the brackets; at the last step, `X` is false and `N` is true",
         )
     return failure.error(
         "TLT0111", failure.expectation(), f"count the steps from now on, e.g. `{operator.text}[0,20] p`"
@@ -118,10 +119,12 @@ def _bound_with_one_end(failure: ParseFailure, number: str) -> Diagnostic:
     operator = failure.tokens[_opening_index(failure) - 1]
     if operator.type in _NEXTS:
         return failure.error(
-            "TLT0111", f"`{operator.text}` takes no bound in brackets", f"`next after {number} steps p`"
+            "TLT0111", f"`{operator.text}` takes no bound in brackets", f"write `next after {number} steps p`"
         )
     return failure.error(
-        "TLT0111", "a bound has two ends", f"write `{operator.text}[0,{number}] p` for the time from now on"
+        "TLT0111",
+        "a bound in brackets needs two ends",
+        f"write `{operator.text}[0,{number}] p` for the time from now on",
     )
 
 
@@ -171,7 +174,7 @@ def _quantifier_head(failure: ParseFailure) -> Diagnostic | None:
     if not heads or heads[-1].type == "COLON":
         return None
     word, joined = heads[-1].text, "and" if heads[-1].type == "ALL" else "or"
-    help_ = f"the form is `{word} x in (a, b): near(x)`; formulas are joined by `{joined}`"
+    help_ = f"the form is `{word} x in (a, b): near(x)`; to join formulas, write `{joined}`"
     return failure.error("TLT0101", failure.expectation(), help_)
 
 
@@ -185,8 +188,8 @@ def _misspelt_operator(failure: ParseFailure) -> Diagnostic | None:
         title = f"`{before.text}` is read as one name"
         return failure.error("TLT0101", title, f"write `{letters}`", span=before.span, write=letters)
     if token.text.lower() == "else":
-        help_ = "`a or b` asks for one of both; of conditions, one follows the other in `when x > 3: 1 otherwise: -1`"
-        return failure.error("TLT0101", "`else` is no operator", help_)
+        help_ = f"write `a or b` to require at least one of the two; {CASES}"
+        return failure.error("TLT0101", "`else` is not an operator", help_)
     words = tuple(word for word, terminal in load().words.items() if terminal in INFIX and len(word) > 1)
     suggestion = closest_word(token.text, words) if token.type == "NAME" else None
     if suggestion and _is_before_operand(failure):
@@ -200,9 +203,11 @@ def _misspelt_operator(failure: ParseFailure) -> Diagnostic | None:
         operator = operator if before.text[:1].lower() == operator[:1] or before.text.lower() == operator[1:] else ""
     if not operator or before.type != "NAME":
         return None
-    title = f"`{before.text}` is no operator"
+    title = f"`{before.text}` is not an operator"
     if operator == "no" and has_token(failure, failure.stop.index, formula_stop(failure), INFIX):
-        return failure.error("TLT0101", title, "`(not a) or b` is about one, `not (a or b)` about both")
+        return failure.error(
+            "TLT0101", title, "write `(not a) or b` to negate `a` alone, `not (a or b)` to negate both"
+        )
     operator = "not" if operator == "no" else operator
     return failure.error("TLT0101", title, None, f"did you mean `{operator}`?", before.span, write=operator)
 
@@ -223,7 +228,7 @@ def _verb_is(failure: ParseFailure) -> Diagnostic | None:
         or not after
     ):
         return None
-    title = f"{quote_token(failure.token)} is no operator"
+    title = f"{quote_token(failure.token)} is not an operator"
     start = value_end(failure.tokens, at, -1)
     value = text_of(failure, start, at)
     words = {"true": "{}", "false": "not {}", "not": "not {}"}
@@ -237,7 +242,9 @@ def _verb_is(failure: ParseFailure) -> Diagnostic | None:
         )
         if is_clear:
             diagnostic = suggest_rewrite(failure, start, stop, text, title, ": a `bool` signal is an atom by itself")
-    help_ = f"`{value}` by itself says that it is true, `not {value}` that it is not; numbers compare by `<` and `>`"
+    help_ = (
+        f"write `{value}` to say that it is true, `not {value}` to say that it is not; compare numbers with `<` or `>`"
+    )
     return diagnostic or failure.error("TLT0101", title, help_)
 
 
@@ -246,7 +253,7 @@ def _foreign_otherwise(failure: ParseFailure) -> Diagnostic | None:
     if failure.token.text not in ("else", "default") or "OTHERWISE" not in failure.allowed_terminals:
         return None
     return failure.error(
-        "TLT0101", f"{quote_token(failure.token)} begins no case", "write `otherwise`", write="otherwise"
+        "TLT0101", f"a case cannot begin with {quote_token(failure.token)}", "write `otherwise`", write="otherwise"
     )
 
 
@@ -265,14 +272,14 @@ def _names_side_by_side(failure: ParseFailure) -> Diagnostic | None:
     if is_first_on_line(failure.source, failure.tokens, failure.stop.index):
         return None
     if before.type == "RPAR" or failure.tokens[failure.stop.index + 1].type == "LPAR":
-        title = f"no operator between {quote_token(before)} and {quote_token(token)}"
-        return failure.error("TLT0101", title, "formulas are joined by `and`, `or` or `then`")
+        title = f"expected an operator between {quote_token(before)} and {quote_token(token)}"
+        return failure.error("TLT0101", title, "join formulas with `and`, `or` or `then`")
     if _is_before_operand(failure):
         return failure.error(
-            "TLT0101", f"{quote_token(token)} is no operator", "formulas are joined by `and`, `or` or `then`"
+            "TLT0101", f"{quote_token(token)} is not an operator", "join formulas with `and`, `or` or `then`"
         )
     text = f"{before.text}({token.text})"
-    help_ = f"write `{text}` where the one is said of the other; else join them by `and` or `then`"
+    help_ = f"write `{text}` if `{before.text}` applies to `{token.text}`; otherwise join them with `and` or `then`"
     title = f"{quote_token(before)} and {quote_token(token)} are not joined"
     return failure.error("TLT0101", title, help_, span=span_of([before, token]), write=text)
 
@@ -286,7 +293,7 @@ def _operator_for_name(failure: ParseFailure) -> Diagnostic | None:
         (failure.previous_token, BEFORE_ONE, "before a formula"),
     ):
         if word and word.type in kinds and word.text.isalpha():
-            help_ = f"{quote_token(word)} is an operator and stands {where}; it cannot be a name"
+            help_ = f"{quote_token(word)} is an operator and belongs {where}; it cannot be a name"
             return failure.error("TLT0101", failure.expectation(), help_)
     return None
 

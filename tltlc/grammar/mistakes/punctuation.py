@@ -24,7 +24,7 @@ from tltlc.grammar.mistakes.rephrasing import (
 
 NAME: Final = re.compile("[A-Za-z_][A-Za-z0-9_]*")
 _COMMA: Final = {
-    "reach": ("then", " for the one after the other; `and` asks for both at one step"),
+    "reach": ("then", " for one after the other; write `and` for both at the same step"),
     "avoid": ("or", ""),
 }
 """Maps a clause keyword to the operator to write for a comma, and the reason.
@@ -48,25 +48,25 @@ def comma(failure: ParseFailure) -> Diagnostic | None:
     if failure.start == "clause" and after.text in CLAUSES and after.type != "NAME":
         return _comma_before_clause(failure)
     word, reason = _COMMA.get(failure.tokens[0].text, ("and", ""))
-    title = "`,` joins no formulas"
+    title = "`,` cannot join formulas"
     start, stop = formula_start(failure), formula_stop(failure)
     if not _is_clear_list(failure, start, stop, word):
-        help_ = "write `and`, `or` or `then` in its place, with brackets around what belongs together"
+        help_ = "write `and`, `or` or `then` instead, and put brackets around what belongs together"
         return failure.error("TLT0104", title, help_)
     diagnostic = suggest_rewrite(
         failure, start, stop, _joined_text(failure, start, stop, word), title, reason, "TLT0104"
     )
-    return diagnostic or failure.error("TLT0104", title, f"in its place, `{word}` is written{reason}")
+    return diagnostic or failure.error("TLT0104", title, f"write `{word}` instead{reason}")
 
 
 def _comma_before_clause(failure: ParseFailure) -> Diagnostic:
     """Report ``avoid a, reach b``, which are two clauses."""
     at, first = failure.stop.index, failure.tokens[0].text
-    word, title, span = failure.tokens[at + 1].text, "`,` joins no clauses", span_of(failure.tokens[at : at + 2])
+    word, title, span = failure.tokens[at + 1].text, "`,` cannot join clauses", span_of(failure.tokens[at : at + 2])
     # After a goal, `keep` or `avoid` may apply from there on; and what follows `or` may be an alternative.
     is_clear = first != "reach" and not has_token(failure, 1, at, UNCLEAR | BEFORE_ONE | QUANTIFIERS | {"OR"})
     if not is_clear:
-        return failure.error("TLT0104", title, f"let `{word}` begin a line of its own: all clauses count", span=span)
+        return failure.error("TLT0104", title, f"begin a new line with `{word}`: all clauses count", span=span)
     return failure.error("TLT0104", title, f"write `{word}` alone: all clauses count", span=span, write=word)
 
 
@@ -108,12 +108,12 @@ def _comma_in_number(failure: ParseFailure) -> Diagnostic:
     ):
         stop += 2
     text = failure.source.slice(span_of(failure.tokens[at - 1 : stop]))
-    span, title = span_of(failure.tokens[at - 1 : stop]), "a number has a point, no comma"
+    span, title = span_of(failure.tokens[at - 1 : stop]), "a number is written with a point, not with a comma"
     thousands, fraction = text.replace(",", ""), text.replace(",", ".")
     is_fraction, in_thousands = _NUMBER.fullmatch(fraction), _IN_THOUSANDS.fullmatch(text)
     if in_thousands:
-        help_ = f"write `{thousands}` where a comma parts the thousands"
-        help_ += f", `{fraction}` where it stands for a point" if is_fraction else ""
+        help_ = f"write `{thousands}` if a comma separates thousands"
+        help_ += f", or `{fraction}` if it is a decimal point" if is_fraction else ""
         return failure.error("TLT0104", title, help_, span=span)
     if is_fraction:
         return failure.error("TLT0104", title, f"write `{fraction}`", span=span, write=fraction)
@@ -184,7 +184,7 @@ def argument_by_name(failure: ParseFailure) -> Diagnostic | None:
     before = failure.previous_token
     if before is None or before.type != "NAME" or "EQUAL" not in failure.allowed_terminals or not failure.open_brackets:
         return None
-    title = "an argument by name has `=` before its value"
+    title = "a named argument needs `=` before its value"
     if failure.token.type == "COLON":
         text = f"{before.text} ="
     elif failure.token.type == "NUMBER":
@@ -201,8 +201,8 @@ def empty_brackets(failure: ParseFailure) -> Diagnostic | None:
     if kinds != ["NAME", "LPAR", "RPAR"]:
         return None
     name = failure.tokens[at - 2].text
-    title = "there is nothing in these brackets"
-    help_ = f"write `{name}` alone, or what it is said of between them"
+    title = "these brackets are empty"
+    help_ = f"write `{name}` alone, or put its arguments in the brackets"
     return failure.error("TLT0101", title, help_, span=span_of(failure.tokens[at - 2 : at + 1]), write=name)
 
 
@@ -218,7 +218,7 @@ def wrong_brackets(failure: ParseFailure) -> Diagnostic | None:
     if token.type not in OPENING or end is None or (kind == "ranges" and "LSQB" not in failure.allowed_terminals):
         return None
     text = f"{failure.tokens[at - 1].text if is_call else ''}{opening}{text_of(failure, at + 1, end)}{closing}"
-    title = f"{kind} stand in `{opening} {closing}`, not in `{token.text} {failure.tokens[end].text}`"
+    title = f"{kind} belong in `{opening} {closing}`, not in `{token.text} {failure.tokens[end].text}`"
     return suggest_rewrite(failure, at - is_call, end + 1, text, title)
 
 
@@ -229,7 +229,7 @@ def quoted_name(failure: ParseFailure) -> Diagnostic | None:
         return None
     name = text if NAME.fullmatch(text) else re.sub("[^A-Za-z0-9_]+", "_", text)
     if not name.strip("_"):
-        help_ = "names are ASCII letters, digits and `_`, without quotes"
+        help_ = "names consist of ASCII letters, digits and `_`, without quotes"
         return failure.error("TLT0101", failure.expectation(), help_)
     for replacement in dict.fromkeys((text_without_quotes(failure, at, at + 1, text), name)):
         diagnostic = suggest_rewrite(
@@ -256,7 +256,7 @@ def invalid_name(failure: ParseFailure) -> Diagnostic | None:
     if before is None or not after:
         return None
     joined = are_adjacent(token, after[0]) and (NAME.fullmatch(after[0].text) or after[0].type == "NUMBER")
-    rule = "names are ASCII letters, digits and `_`"
+    rule = "names consist of ASCII letters, digits and `_`"
     if token.type == "NUMBER" and "NUMBER" not in failure.allowed_terminals and "NAME" in failure.allowed_terminals:
         text = f"_{token.text}{after[0].text}" if joined else f"{before.text}_{token.text}"
         span, rule = span_of([token, after[0]] if joined else [token]), "a name begins with a letter or `_`"
@@ -264,7 +264,7 @@ def invalid_name(failure: ParseFailure) -> Diagnostic | None:
         span, text = span_of([before, after[0]]), f"{before.text}_{after[0].text}"
     else:
         return None
-    title = f"`{failure.source.slice(span)}` is no name"
+    title = f"`{failure.source.slice(span)}` is not a name"
     return failure.error("TLT0104", title, f"{rule}: write `{text}`", span=span, write=text)
 
 
@@ -277,14 +277,16 @@ def value_of_signal(failure: ParseFailure) -> Diagnostic | None:
         or failure.stop.index < 3
     ):
         return None
-    return failure.error("TLT0101", "a signal has no value here", "leave it out: the game supplies it at each step")
+    return failure.error(
+        "TLT0101", "a signal cannot be given a value here", "leave out the value: the game supplies it at each step"
+    )
 
 
 def type_without_name(failure: ParseFailure) -> Diagnostic | None:
     """Report a parameter without a name: ``signal at(entity): bool``."""
     if failure.token.type != "ENTITY" or "NAME" not in failure.allowed_terminals or not failure.open_brackets:
         return None
-    return failure.error("TLT0101", "a parameter has a name", "write `x: entity`", write="x: entity")
+    return failure.error("TLT0101", "a parameter needs a name", "write `x: entity`", write="x: entity")
 
 
 def several_names(failure: ParseFailure) -> Diagnostic | None:
@@ -292,7 +294,7 @@ def several_names(failure: ParseFailure) -> Diagnostic | None:
     word = failure.tokens[0].text
     if failure.token.type != "COMMA" or failure.start != "declaration" or failure.stop.index != 2:
         return None
-    return failure.error("TLT0101", failure.expectation(), f"each one has a `{word}` of its own; {failure.form()}")
+    return failure.error("TLT0101", failure.expectation(), f"write a separate `{word}` for each one; {failure.form()}")
 
 
 def missing_in(failure: ParseFailure) -> Diagnostic | None:

@@ -20,7 +20,7 @@ _SIGNS: Final = {"−": "-", "×": "*", "÷": "/", "≔": "=", "°": "deg"}
 _SUPERSCRIPTS: Final = "⁰¹²³⁴⁵⁶⁷⁸⁹"
 _HELPS: Final = {
     "#": "comments begin with `//`",
-    "%": "a percentage follows a number, as in `50%`",
+    "%": "write a number before `%`, as in `50%`",
     "≠": "write `a < b or a > b`; a `bool` signal is an atom by itself",
 }
 
@@ -74,12 +74,12 @@ def _invalid_word(failure: ParseFailure) -> Diagnostic:
     base = text.rstrip(_SUPERSCRIPTS)
     if base != text and (not base or (base.isascii() and base.isidentifier())):
         power = f"{base}^{normalize('NFKC', text[len(base) :])}"
-        title = f"{quote_token(failure.token)} is no name" if base else f"`{text}` means nothing here"
+        title = f"{quote_token(failure.token)} is not a name" if base else f"`{text}` means nothing here"
         return failure.error("TLT0104", title, f"for a power write `{power}`", write=power)
     plain = "".join(character for character in normalize("NFKD", text) if character.isascii())
     write = plain if plain.isidentifier() and len(plain) == len(text) else None
-    help_ = "names are ASCII letters, digits and `_`" + (f": write `{write}`" if write else "")
-    return failure.error("TLT0104", f"{quote_token(failure.token)} is no name", help_, write=write)
+    help_ = "names consist of ASCII letters, digits and `_`" + (f": write `{write}`" if write else "")
+    return failure.error("TLT0104", f"{quote_token(failure.token)} is not a name", help_, write=write)
 
 
 def _foreign_quotes(failure: ParseFailure) -> Diagnostic:
@@ -96,7 +96,7 @@ def _foreign_quotes(failure: ParseFailure) -> Diagnostic:
             diagnostic = suggest_rewrite(failure, at, last + 1, text, title, reason, "TLT0104") if inner else None
             if diagnostic:
                 return diagnostic
-    return failure.error("TLT0104", title, 'texts stand in straight double quotes: "…"')
+    return failure.error("TLT0104", title, 'put texts in straight double quotes: "…"')
 
 
 def _quote_sign(text: str) -> str:
