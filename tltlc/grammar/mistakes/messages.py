@@ -33,6 +33,13 @@ from tltlc.grammar.tables import load
 
 _NEXTS: Final = {"NEXT", "WEAK_NEXT"}
 _BOUNDED: Final = BEFORE_ONE - {"NOT"}
+_BOUNDED_UNTILS: Final = {
+    "UNTIL": "(a U b) & F[0,20] b",
+    "WEAK_UNTIL": "G[0,20] a | (a U b) & F[0,20] b",
+    "RELEASE": "G[0,20] b | (b U (a & b)) & F[0,20] (a & b)",
+    "STRONG_RELEASE": "(b U (a & b)) & F[0,20] (a & b)",
+}
+"""For each operator of two operands, what ``a U[0,20] b`` and the like would mean."""
 
 
 def unexpected_token(
@@ -95,8 +102,11 @@ def _wrong_bound(failure: ParseFailure) -> Diagnostic | None:
     if failure.token.type == "RSQB" and before and "COMMA" in failure.allowed_terminals and _is_bound(failure):
         return _bound_with_one_end(failure, before.text)
     if failure.token.type == "LSQB" and before and before.type in UNTILS:
-        help_ = "add an `F` with a bound: `(a U b) & F[0,20] b`"
-        return failure.error("TLT0111", f"`{before.text}` takes no bound", help_)
+        return failure.error(
+            "TLT0111",
+            f"`{before.text}` takes no bound",
+            f"use `F` or `G` with a bound: `{_BOUNDED_UNTILS[before.type]}`",
+        )
     return None
 
 
@@ -118,8 +128,9 @@ def _bound_with_one_end(failure: ParseFailure, number: str) -> Diagnostic:
     """Report a bound in brackets with one number: ``F[20] p``, ``next[20] p``."""
     operator = failure.tokens[_opening_index(failure) - 1]
     if operator.type in _NEXTS:
+        word = "next" if operator.type == "NEXT" else "weak_next"
         return failure.error(
-            "TLT0111", f"`{operator.text}` takes no bound in brackets", f"write `next after {number} steps p`"
+            "TLT0111", f"`{operator.text}` takes no bound in brackets", f"write `{word} after {number} steps p`"
         )
     return failure.error(
         "TLT0111",
