@@ -130,7 +130,7 @@ def test_the_help_on_too_many_exclusive_atoms_counts_their_pairs(semantics: Lite
     diagnostic = refusal(replace(spec_from_formula(goal, exclusive=[names(142)]), semantics=semantics))
     assert (diagnostic.code, diagnostic.help) == (
         "TLT0502",
-        "declare fewer atoms `exclusive`, or several smaller groups: now 10011 pairs exclude each other",
+        "declare fewer atoms `exclusive`, or use several smaller groups: now there are 10011 exclusive pairs",
     )
     halves = [names(142)[:71], names(142)[71:]]
     assert built(replace(spec_from_formula(goal, exclusive=halves), semantics=semantics))
@@ -141,7 +141,7 @@ def test_the_help_does_not_blame_exclusive_atoms_for_other_large_guards() -> Non
     for name in names(16)[1:]:
         parity = iff(atom(name), parity)
     diagnostic = refusal(spec_from_formula(eventually(parity), exclusive=[names(2)]))
-    assert (diagnostic.code, diagnostic.help) == ("TLT0502", "split the spec, or name the condition as a predicate")
+    assert (diagnostic.code, diagnostic.help) == ("TLT0502", "split the spec, or declare the condition as a predicate")
 
 
 def test_the_states_of_all_parts_are_counted(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -165,7 +165,7 @@ def test_long_labels_are_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
     diagnostic = refusal(spec)
     assert (diagnostic.code, diagnostic.title) == (
         "TLT0501",
-        "the automaton of `spec` needs labels of more than 20 operators and atoms",
+        "the automaton of `spec` needs labels with more than 20 operators and atoms",
     )
 
 

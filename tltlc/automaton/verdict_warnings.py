@@ -24,7 +24,7 @@ def verdict_warnings(spec: Spec, fspa: Fspa) -> tuple[Diagnostic, ...]:
         return (_unsatisfiable_warning(spec),)
     if verdict == "satisfied":
         title, label = f"every trace satisfies `{spec.name}`", Label(spec.source, spec.name_span)
-        suggestion = "it asks nothing of the game: was an `and` meant where `or` or `implies` stands?"
+        suggestion = "it asks nothing of the game: did you mean `and` instead of an `or` or `implies`?"
         suggestion = suggestion if spec.formula.atoms() else _NO_ATOM
         return (Diagnostic("TLT0411", title, (label,), suggestion, severity="warning"),)
     return ()
@@ -61,13 +61,11 @@ def _unsatisfiable_warning(spec: Spec) -> Diagnostic:
         elif part.formula.op == "G" and not is_infinite:
             once = replace(part, formula=part.formula.args[0])
             if not decision([once], spec):
-                suggestion = (
-                    "it is asked at every step, the last one too, after which nothing comes: was `reach` meant?"
-                )
+                suggestion = "it must hold at every step, but nothing comes after the last step: did you mean `reach`?"
     else:
         message, suggestion = "together with the others", "these contradict each other: weaken one of them"
         if not is_infinite and any(_recurs(part.formula) for part in parts):
-            suggestion += "; where play has no end and one comes again and again, say `semantics infinite`"
+            suggestion += "; if play has no end and one of them comes again and again, write `semantics infinite`"
         elif excluded:
             suggestion += "; atoms that are `exclusive` never hold together"
     labels = tuple(Label(part.source, part.span, message) for part in parts[:_MOST_LABELS])

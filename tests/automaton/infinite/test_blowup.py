@@ -35,7 +35,7 @@ def diagnostic_of(spec: Spec, reason: Exception | None = None) -> Diagnostic:
 def test_parts_that_are_large_only_together_are_labelled_with_their_own_sizes() -> None:
     spec = with_parts(*map(read_formula, ("F c", "F a & F b", FAIR.format(1), "true")))
     diagnostic = diagnostic_of(spec)
-    assert (diagnostic.code, diagnostic.title) == ("TLT0501", "the automaton of `spec` takes too long to make")
+    assert (diagnostic.code, diagnostic.title) == ("TLT0501", "the automaton of `spec` takes too long to build")
     assert [(label.span.start, label.message) for label in diagnostic.labels] == [
         (1, "4 states and 1 pair alone; the parts multiply"),
         (0, "2 states and 1 pair alone; the parts multiply"),
@@ -54,7 +54,7 @@ def test_the_help_suggests_a_larger_budget_only_where_the_work_ran_out() -> None
 
 def test_a_part_that_is_too_large_alone_is_the_only_label() -> None:
     spec = with_parts(read_formula("F c"), read_formula("F((a1 | G b1) & (a2 | G b2) & (a3 | G b3) & (a4 | G b4))"))
-    assert diagnostic_of(spec).labels == (Label(spec.source, Span(1, 2), "it is this part"),)
+    assert diagnostic_of(spec).labels == (Label(spec.source, Span(1, 2), "because of this part"),)
 
 
 def test_a_large_bound_is_labelled(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -62,7 +62,7 @@ def test_a_large_bound_is_labelled(monkeypatch: pytest.MonkeyPatch) -> None:
     spec = with_parts(read_formula("F c"), read_formula(f"G(a -> {'X ' * 12}b)"))
     bound = Bound(12, spec.source, Span(2, 3))
     spec = replace(spec, parts=(spec.parts[0], replace(spec.parts[1], bounds=(bound,))))
-    assert diagnostic_of(spec).labels == (Label(spec.source, Span(2, 3), "it is this bound"),)
+    assert diagnostic_of(spec).labels == (Label(spec.source, Span(2, 3), "because of this bound"),)
 
 
 def test_no_part_is_blamed_because_it_comes_last(monkeypatch: pytest.MonkeyPatch) -> None:

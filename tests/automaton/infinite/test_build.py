@@ -46,7 +46,7 @@ def test_the_state_budget_limits_the_work() -> None:
     assert STEPS_PER_STATE * DEFAULT_STATE_BUDGET == DEFAULT_WORK
     text = "signal a: bool signal b: bool spec s { semantics infinite require G F a & G F b & F G (a | b) }"
     assert compile_text(text, options=CompileOptions(state_budget=DEFAULT_STATE_BUDGET // 100)) == compile_text(text)
-    with pytest.raises(TltlError, match="takes too long to make"):
+    with pytest.raises(TltlError, match="takes too long to build"):
         compile_text(text, options=CompileOptions(state_budget=1))
 
 

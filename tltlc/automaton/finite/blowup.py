@@ -73,7 +73,7 @@ def failure_text(reason: Exception) -> str:
     too much memory.
     """
     if isinstance(reason, LabelsTooLong):
-        return f"needs labels of more than {WORK['label nodes']} operators and atoms"
+        return f"needs labels with more than {WORK['label nodes']} operators and atoms"
     return "needs formulas that nest too deeply" if isinstance(reason, RecursionError) else "needs too much memory"
 
 
@@ -120,9 +120,9 @@ def _guard_advice(spec: Spec, reason: TooManyPrimes) -> str:
     if reason.subject == "a guard" and 2 * pairs > reason.limit:
         # D says that no two `exclusive` atoms hold together. The prime implicants are those of `guard or not D`, and
         # `not D` has one for each pair.
-        return f"declare fewer atoms `exclusive`, or several smaller groups: now {pairs} pairs exclude each other"
+        return f"declare fewer atoms `exclusive`, or use several smaller groups: now there are {pairs} exclusive pairs"
     if reason.subject == "a guard":
-        return "split the spec, or name the condition as a predicate"
+        return "split the spec, or declare the condition as a predicate"
     order = "give the goals an order, or split the spec"
     return order if spec.exclusive else f"declare atoms that never hold together `exclusive`, {order}"
 
@@ -135,8 +135,8 @@ def _cause_label(part: Conjunct) -> Label:
     """
     bound = max(part.bounds, key=lambda bound: bound.samples, default=None)
     if bound is None:
-        return Label(part.source, part.span, "it is this part")
-    return Label(bound.source, bound.span, "it is this bound")
+        return Label(part.source, part.span, "because of this part")
+    return Label(bound.source, bound.span, "because of this bound")
 
 
 def _size(part: Conjunct, spec: Spec) -> Size | None:

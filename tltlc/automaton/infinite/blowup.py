@@ -25,7 +25,7 @@ def budget_error(spec: Spec, reason: Exception) -> TltlError:
     """
     too_large, advice = failure_text(reason), ADVICE
     if isinstance(reason, OutOfWork):
-        too_large, advice = "takes too long to make", f"{ADVICE}; or allow more work by `--state-budget`"
+        too_large, advice = "takes too long to build", f"{ADVICE}; or allow more work with `--state-budget`"
     remaining = _FOR_ALL_PARTS
 
     def size(part: Conjunct, spec: Spec) -> Size | None:
