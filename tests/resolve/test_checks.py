@@ -28,7 +28,7 @@ def test_a_range_that_only_fails_below_zero_is_a_warning() -> None:
     text = "predicate p(e: entity) in [-1, 1] = clamp(1 - sqrt(d(e) / 3 m), -1, 1) entity a spec s = F p(a)"
     _, (diagnostic,) = resolve_text("signal d(e: entity): length " + text)
     assert (diagnostic.code, diagnostic.severity) == ("TLT0401", "warning")
-    assert diagnostic.help == "declare its range, e.g. `in [0 m, inf]`"
+    assert diagnostic.help == "declare the range of that signal, e.g. `in [0 m, inf]`"
     assert codes("signal d(e: entity): length in [0 m, inf] " + text) == []
 
 

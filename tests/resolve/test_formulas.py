@@ -100,7 +100,9 @@ def test_unused_declarations_are_checked_once() -> None:
 
 def test_a_cycle_is_reported_once_and_named() -> None:
     _, diagnostics = resolve_text("signal a: bool let x = a & y let y = X z let z = F x spec s = y & x spec t = z")
-    assert [(d.code, d.title) for d in diagnostics] == [("TLT0207", "`y` is defined by itself: y -> z -> x -> y")]
+    assert [(d.code, d.title) for d in diagnostics] == [
+        ("TLT0207", "`y` is defined in terms of itself: y -> z -> x -> y")
+    ]
 
 
 def test_two_predicates_with_the_same_name_are_an_error(tmp_path: object) -> None:

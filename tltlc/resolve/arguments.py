@@ -53,7 +53,7 @@ def _parameter_for(
         hint = f"did you mean `{suggestion}`?" if suggestion else ""
         listed = ", ".join(f"`{name}`" for name in names)
         advice = None if suggestion else f"it takes {listed}" if names else "it takes no arguments"
-        title = f"`{binding.name}` has no `{argument.name}`"
+        title = f"`{binding.name}` has no argument `{argument.name}`"
         place = Span(argument.span.start, argument.span.start + len(argument.name))
         fixes = (replacement_fix(scope.source, place, suggestion),) if suggestion else ()
         raise problem("TLT0210", title, scope.source, argument.span, hint, advice=advice, fixes=fixes)

@@ -99,8 +99,8 @@ def _unchecked_warning(unchecked: Sequence[Instance]) -> Diagnostic:
     """Return the warning for predicates that were not checked because the step limit ran out."""
     first, remaining = unchecked[0], len(unchecked) - 1
     rest = f" and {remaining} more {'predicate was' if remaining == 1 else 'predicates were'}" if remaining else " was"
-    why = f"too few are left of the {WORK['checks of all predicates']:,} steps for the checks of all predicates"
-    advice = "let the game compute parts of the predicates before this one and offer them as signals"
+    why = f"the checks of all predicates may take {WORK['checks of all predicates']:,} steps, but too few are left"
+    advice = "let the game compute parts of the predicates before this one and supply them as signals"
     label = Label(first.source, first.span, why)
     return Diagnostic("TLT0503", f"the predicate `{first.name}`{rest} not checked", (label,), advice, "warning")
 
@@ -124,44 +124,44 @@ _CASES: dict[str, tuple[str, Severity, str, str]] = {
         "TLT0306",
         "error",
         "the predicate `{name}` leaves its declared range",
-        "declare the range it has, or hold the value inside with `clamp(…, -1, 1)`",
+        "declare the range that it really has, or limit the value with `clamp(…, -1, 1)`",
     ),
     "range_unproved": (
         "TLT0401",
         "warning",
         "the range of the predicate `{name}` could not be proved",
-        "declare ranges for the signals and params it uses, or hold the value inside with `clamp(…, -1, 1)`",
+        "declare ranges for the signals and params that it uses, or limit the value with `clamp(…, -1, 1)`",
     ),
     "range_unchecked": (
         "TLT0503",
         "warning",
-        "the range of the predicate `{name}` could not be checked to the end",
-        "let the game compute a part of it and offer that as a signal",
+        "could not finish checking the range of the predicate `{name}`",
+        "let the game compute a part of it and supply it as a signal",
     ),
     "discontinuous": (
         "TLT0402",
         "warning",
-        "the predicate `{name}` jumps at the border of a `when`",
-        "let both sides of the border have the same value there",
+        "the predicate `{name}` jumps at the border between two cases of a `when`",
+        "let both cases have the same value at the border",
     ),
     "continuity_unproved": (
         "TLT0402",
         "warning",
-        "the predicate `{name}` may jump at the border of a `when`",
-        "let both sides of the border have the same value there",
+        "the predicate `{name}` may jump at the border between two cases of a `when`",
+        "let both cases have the same value at the border",
     ),
     "continuity_unchecked": (
         "TLT0503",
         "warning",
-        "whether the predicate `{name}` jumps could not be checked to the end",
-        "let the game compute a part of it and offer that as a signal",
+        "could not finish checking whether the predicate `{name}` jumps",
+        "let the game compute a part of it and supply it as a signal",
     ),
 }
 _UNDEFINED = (
-    "the predicate `{name}` has no value everywhere",
-    "hold what it divides by, or takes the root of, inside with `max(…, 0.1)`",
+    "the predicate `{name}` is not defined everywhere",
+    "keep what it divides by, or takes the root of, above 0 with `max(…, 0.1)`",
 )
 _NEGATIVE = (
     "the predicate `{name}` leaves its declared range where a signal is negative",
-    "declare its range, e.g. `in [0 m, inf]`",
+    "declare the range of that signal, e.g. `in [0 m, inf]`",
 )

@@ -61,10 +61,10 @@ def _check_size(side: Quantity, expr: BinaryExpr, env: Env) -> None:
         return
     raise problem(
         "TLT0319",
-        f"the arithmetic of `{side.text}` can be too large for a number",
+        f"the result of `{side.text}` can be too large for a number",
         env.scope.source,
         expr.span,
-        f"no number is above {sys.float_info.max:.2e}",
+        f"a number cannot be above {sys.float_info.max:.2e}",
         advice="declare smaller ranges for the signals and params that it is computed from",
     )
 
@@ -98,7 +98,7 @@ def _check_truth(left: Quantity, op: str, right: Quantity, negated: bool, expr: 
         fixes: tuple[Fix, ...] = (fix,)
         if source.text[expr.left.span.end :].lstrip().startswith("<-"):
             # This was most likely meant as an arrow that points to the left.
-            fixes, advice = (), f"{advice}; an implication is written `b implies a`"
+            fixes, advice = (), f"{advice}; write an implication as `b implies a`"
         title = f"this comparison {'always' if holds else 'never'} holds"
         raise problem("TLT0310", title, source, expr.span, message, advice=advice, fixes=fixes)
     missing_ends = [inf in (left.high, -right.low), inf in (-left.low, right.high)]
@@ -131,5 +131,5 @@ def _missing_range_error(x: Quantity, missing_ends: list[bool], expr: BinaryExpr
         f"`{x.text}` has no {ends} bound to scale this comparison by",
         env.scope.source,
         expr.span,
-        advice=f"declare a range, e.g. `in [0{unit}, 100{unit}]`, where it is declared, or use a predicate",
+        advice=f"add a range to the declaration, e.g. `in [0{unit}, 100{unit}]`, or use a predicate",
     )

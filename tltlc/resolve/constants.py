@@ -78,8 +78,8 @@ def samples(value: NumberExpr, env: Env) -> int:
             "a bound in seconds needs a clock",
             source,
             value.span,
-            advice="declare how often the game is sampled, e.g. `clock 20 Hz` (`clock 0.15 s` for levels of tltlc), "
-            "or write the bound in steps",
+            advice="declare how often the game takes a sample, e.g. `clock 20 Hz` (`clock 0.15 s` for levels of tltlc)"
+            ", or write the bound in steps",
         )
     # Subtract a tolerance, so that a rounding error of the division does not add a sample.
     return _sample_count(in_si[0] / period - 1e-9, value, env)

@@ -140,7 +140,7 @@ class Context:
         if known.expression != expression:
             raise problem(
                 "TLT0216",
-                f"two different predicates would both be the atom `{name}`",
+                f"two different predicates would both become the atom `{name}`",
                 source,
                 span,
                 advice="rename one of them: names of atoms must differ in the compiled automaton",
@@ -161,8 +161,8 @@ class Context:
                 f"the arithmetic of all atoms has more than {WORK['arithmetic of all atoms']:,} parts",
                 source,
                 span,
-                "with the predicates that it uses written out",
-                advice="use predicates inside each other less often, or let the game compute the value",
+                "after each predicate is replaced by its arithmetic",
+                advice="nest predicates less often, or let the game compute the value",
             )
         return size
 
@@ -180,10 +180,10 @@ class Context:
         self.broken.update(cycle)
         return problem(
             "TLT0207",
-            f"`{names[0]}` is defined by itself: " + " -> ".join(names),
+            f"`{names[0]}` is defined in terms of itself: " + " -> ".join(names),
             source,
             span,
-            advice="a definition may only use others that do not lead back to it",
+            advice="a definition cannot use itself, directly or through others",
         )
 
     def names_in(self, expr: Expr) -> tuple[str, ...]:
@@ -223,7 +223,7 @@ class Context:
 
 
 _SMALLER_BOUND: Final = "choose a smaller bound or a slower clock, or let a signal count the time"
-_FEWER_USES: Final = "it multiplies with each use inside another: say the same with fewer of them"
+_FEWER_USES: Final = "its size multiplies with each use inside another: nest fewer of them"
 
 
 def expansion_error(subject: str, source: SourceFile, span: Span, *, is_bound: bool = False) -> ResolutionError:

@@ -50,8 +50,8 @@ def _type(declaration: SignalDecl | ParamDecl, scope: Scope) -> ValueType:
 def _range(declaration: SignalDecl | ParamDecl, type_: ValueType, env: Env) -> tuple[float | None, float | None]:
     if declaration.interval is not None:
         if type_ == "bool":
-            title = f"`{declaration.name}` is a bool: it has no range"
-            raise problem("TLT0303", title, env.scope.source, declaration.interval.span, advice="leave the range out")
+            title = f"`{declaration.name}` is a bool, so it cannot have a range"
+            raise problem("TLT0303", title, env.scope.source, declaration.interval.span, advice="leave out the range")
         return interval(declaration.interval, units.TYPES[type_], env)
     return (0.0, 1.0) if type_ in ("ratio", "bool") else (None, None)
 
@@ -61,7 +61,7 @@ def _signal(declaration: SignalDecl, env: Env) -> None:
     place = Label(scope.source, declaration.name_span)
     for parameter in declaration.parameters:
         if parameter.type not in (None, "entity"):
-            title = f"a signal is of entities, not of {parameter.type}s"
+            title = f"the parameters of a signal are entities, not {parameter.type}s"
             text = f"{parameter.name}: entity"
             fixes = (replacement_fix(scope.source, parameter.span, text),)
             raise problem("TLT0210", title, scope.source, parameter.span, advice=f"write `{text}`", fixes=fixes)
@@ -99,7 +99,7 @@ def _param(declaration: ParamDecl, env: Env, places: dict[str, Label], ranged: s
             scope.source,
             declaration.value.span,
             f"the range is {range_text(lowest, highest, units.TYPES[type_])}",
-            advice="choose a value inside it, or widen it",
+            advice="choose a value inside the range, or widen the range",
         )
     new = Param(declaration.name, type_, value, low, high, declaration.doc)
     old = env.context.params.get(new.name)
@@ -140,10 +140,10 @@ def _clock(declaration: ClockDecl, env: Env, old: Label | None) -> Label:
     elif in_si is not None and in_si[1] == units.TYPES["time"] and value.value > 0:
         period = in_si[0]
     else:
-        title = "a clock is a frequency or a period, above zero"
+        title = "a clock must be a frequency or a period above zero"
         raise problem("TLT0314", title, source, value.span, advice="write e.g. `clock 20 Hz` or `clock 0.05 s`")
     if not 1e-9 <= period <= 1e9:
-        title = "a clock has between 1e-9 and 1e9 seconds from step to step"
+        title = "the time from one step to the next must be between 1e-9 and 1e9 seconds"
         raise problem("TLT0314", title, source, value.span, advice="write e.g. `clock 20 Hz` or `clock 0.05 s`")
     here = Label(source, declaration.span)
     if old is not None and period != env.context.clock_s:

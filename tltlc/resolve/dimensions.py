@@ -92,7 +92,7 @@ def mismatch(expected: Dimension, actual: Dimension, at: Expr, env: Env, why: st
         elif not _keeps_value(at.unit, unit, actual) or (unit and _has_other_units(expected, unit, env)):
             replacement = ""
     elif unit:
-        advice = f"give {units.dimension_text(expected)} there, e.g. `3 {unit}`"
+        advice = f"write {units.dimension_text(expected)} here, e.g. `3 {unit}`"
     elif expected == units.PLAIN and "divide" not in why:
         advice = f"divide it by {units.dimension_text(actual)} to get a number"
     title = f"expected {units.dimension_text(expected)}, found {units.dimension_text(actual)}"

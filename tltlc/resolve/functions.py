@@ -11,7 +11,7 @@ from tltlc.resolve.values import Env, Quantity
 
 _FORMS = {
     1: ("one argument", "(x)"),
-    3: ("three arguments: the value, its low and its high end", "(x, 0, 1)"),
+    3: ("three arguments: the value, its lower limit and its upper limit", "(x, 0, 1)"),
     None: ("at least two arguments", "(x, y)"),
 }
 _ARGUMENTS = {"abs": 1, "sqrt": 1, "exp": 1, "tanh": 1, "clamp": 3, "min": None, "max": None}
@@ -38,7 +38,7 @@ def dimension(call: CallExpr, values: tuple[Quantity, ...], env: Env) -> Dimensi
     first, rest = values[0], values[1:]
     if call.name in ("exp", "tanh"):
         if first.dimension not in (None, units.PLAIN):
-            why = f"`{call.name}` is of a number; divide by a quantity of the same kind"
+            why = f"`{call.name}` takes a number; divide by a quantity of the same kind"
             raise mismatch(units.PLAIN, first.dimension, call.arguments[0].value, env, why)
         return units.PLAIN
     if call.name == "sqrt":

@@ -170,7 +170,7 @@ def _find(declaration: Import, source: SourceFile, options: ResolveOptions) -> t
                 declaration.target_span,
                 advice=_similar_help(suggestion)
                 or _quotes_help(unquoted)
-                or "a path begins at the folder of this file",
+                or "a path is relative to the folder of this file",
                 fixes=(replacement_fix(source, declaration.target_span, replacement),) if replacement else (),
             )
         return Path(_normalise(file.absolute())), _display_name(file)
@@ -222,7 +222,7 @@ def _quoted_library(target: str, folders: tuple[Path, ...]) -> str | None:
 
 
 def _quotes_help(library: str | None) -> str | None:
-    return f"a library is imported by its name, without quotes: `import {library}`" if library else None
+    return f"import a library by its name, without quotes: `import {library}`" if library else None
 
 
 def _files(folder: Path) -> list[Path]:

@@ -51,10 +51,10 @@ def lookup(use: NameExpr | CallExpr, env: Env, kinds: tuple[Kind, ...], noun: st
     if use.name in CONDITIONS and isinstance(use, CallExpr):
         raise problem(
             "TLT0201",
-            f"`{use.name}` is no operator",
+            f"`{use.name}` is not an operator",
             env.scope.source,
             span,
-            advice="`if a, then b` is written `a implies b`; where both are to hold at one step, `a and b`",
+            advice="for `if a, then b`, write `a implies b`; if both must hold at the same step, write `a and b`",
         )
     title, source = f"no {noun} `{use.name}` here", env.scope.source
     gets_help = len(env.context.log) < _MOST_HINTS
@@ -126,7 +126,7 @@ def entity(expr: Expr, env: Env) -> Entity:
     )
 
 
-_ONE_ENTITY = "name one entity, and join what is said of each by `and`, `or` or `then`"
+_ONE_ENTITY = "name one entity here: write a condition for each entity, and join them with `and`, `or` or `then`"
 
 
 def _entities_help(env: Env) -> str:
@@ -146,9 +146,10 @@ def entity_help(entity: str, env: Env, *, number: bool) -> str:
             needed = [parameter for parameter in declared.parameters if parameter.default is None]
             of_entity = len(needed) == 1 and (needed[0].type == "entity" or isinstance(declared, SignalDecl))
             if of_entity and is_number == number:
-                return f"{'measure' if number else 'say what holds of'} it, e.g. `{name}({entity})`"
+                return f"{'measure it' if number else 'use it in a condition'}, e.g. `{name}({entity})`"
     example = "distance(x: entity): length in [0 m, 100 m]" if number else "at(x: entity): bool"
-    return f"an entity has no {'value' if number else 'truth'} of its own: declare one, e.g. `signal {example}`"
+    lacks = "has no value" if number else "is not true or false"
+    return f"an entity alone {lacks}: declare a signal, e.g. `signal {example}`"
 
 
 def kind_of(expr: Expr, env: Env) -> Literal["entity", "number", "formula"]:

@@ -43,7 +43,7 @@ def _unknown_param(name: str, params: Mapping[str, Param]) -> Diagnostic:
         if close_matches
         else f"there are: {listed}"
         if params
-        else "there is none: leave it out"
+        else "there are none: leave it out"
     )
     return Diagnostic("TLT0308", f"there is no param `{name}` to set", (), advice)
 
@@ -54,7 +54,7 @@ def _override_param(old: Param, text: str) -> Param | Diagnostic:
     if parsed is None or parsed[1] not in (None, dimension):
         unit = units.si_unit(dimension)
         advice = f"write a number, e.g. `{old.name}={number_text(old.value)}{' ' + unit if unit else ''}`"
-        return Diagnostic("TLT0308", f"`{text}` is no value for the param `{old.name}`", (), advice)
+        return Diagnostic("TLT0308", f"`{text}` is not a value for the param `{old.name}`", (), advice)
     low, high = -inf if old.low is None else old.low, inf if old.high is None else old.high
     if not low <= parsed[0] <= high:
         advice = f"its range is {range_text(low, high, dimension)}"

@@ -112,9 +112,9 @@ def argument_value(parameter: Parameter, argument: Expr, env: Env, binding: Bind
         return entity(argument, env)
     type_ = parameter_type(parameter, binding)
     if type_ and kind_of(argument, env) == "entity":
-        title = f"`{parameter.name}` of `{binding.name}` is {'an' if type_ == 'angle' else 'a'} {type_}, no entity"
+        title = f"`{parameter.name}` of `{binding.name}` is {'an' if type_ == 'angle' else 'a'} {type_}, not an entity"
         name = env.scope.source.slice(argument.span)
-        advice = f"for `{name}`, too, write a second `{binding.name}(…)`, joined by `and`, `or` or `then`"
+        advice = f"for `{name}`, write another `{binding.name}(…)`, and join the two with `and`, `or` or `then`"
         raise problem("TLT0302", title, env.scope.source, argument.span, advice=advice)
     if type_ == "bool" and isinstance(argument, tree.Constant):
         return constant(float(argument.value), units.PLAIN)

@@ -76,7 +76,7 @@ def condition(expr: Expr, env: Env, depth: int = 0) -> tuple[Condition, str]:
         "`when` needs a comparison",
         env.scope.source,
         expr.span,
-        advice="compare two numbers, e.g. `when distance(target) < 2 m: …`, or name a `bool` signal",
+        advice="compare two numbers, e.g. `when distance(target) < 2 m: …`, or use a `bool` signal",
     )
 
 
@@ -111,7 +111,7 @@ def _number(expr: NumberExpr, env: Env) -> Quantity:
             f"`{expr.unit}` cannot be used in arithmetic",
             env.scope.source,
             expr.span,
-            advice="steps count samples: they belong to bounds such as `within 20 steps` and to `limit`",
+            advice="steps count samples: use them only in bounds such as `within 20 steps` and in `limit`",
         )
     value, dimension = in_si
     if isinf(value):
@@ -136,11 +136,11 @@ def _resolve_name(expr: NameExpr | CallExpr, env: Env, depth: int) -> Quantity:
             "expected a constant here",
             env.scope.source,
             expr.span,
-            "only numbers and their arithmetic",
+            "only numbers and arithmetic with numbers are allowed here",
             advice=f"write a number in place of `{expr.name}`",
         )
     if expr.name == "inf" and "inf" not in env.scope.names:
-        title = "`inf` may only stand at the end of a range"
+        title = "`inf` can only be used as an end of a range"
         raise problem("TLT0303", title, env.scope.source, expr.span, advice="write a number")
     binding = lookup(expr, env, ("signal", "param", "predicate"), "signal or param")
     if binding.kind == "param":
@@ -212,7 +212,7 @@ def _check_speed(expr: tree.BinaryExpr, env: Env) -> None:
             env.scope.source,
             span,
             f"write `{text}`",
-            advice="signs of one strength are read from the left: `a / 1 m/s` is `(a / 1 m) / s`",
+            advice="`*` and `/` are read from left to right: `a / 1 m/s` means `(a / 1 m) / s`",
             fixes=(Fix(f"Write `{text}`", bracket_edits(span)),),
         )
 
@@ -228,7 +228,7 @@ def _power(expr: tree.BinaryExpr, base: Quantity, exponent: Quantity, env: Env) 
             f"{units.dimension_text(base.dimension)} needs a constant exponent",
             env.scope.source,
             expr.right.span,
-            advice="write a number there, or divide by a quantity of the same kind before",
+            advice="write a number here, or first divide the base by a quantity of the same kind",
         )
     return _apply_operator("^", (base, exponent), units.power(base.dimension, exponent.expression.value), expr, env)
 
@@ -274,7 +274,7 @@ def _apply_operator(op: str, args: tuple[Quantity, ...], dimension: Dimension | 
 def _not_a_number_error(expr: Expr, env: Env) -> ResolutionError:
     advice = "arithmetic takes numbers: signals, params and predicates"
     if isinstance(expr, tree.BinaryExpr) and expr.op in _COMPARISONS:
-        advice = "a comparison is a formula: `let rich = coins > 30` names one, and `and` joins two"
+        advice = "a comparison is a formula: name one with `let rich = coins > 30`, and join two with `and`"
     elif kind_of(expr, env) == "entity":
         advice = entity_help(env.scope.source.slice(expr.span), env, number=True)
     title = f"expected a number, found {kind_in_words(expr, env)}"
@@ -289,10 +289,10 @@ def _too_deep_error(expr: Expr, env: Env) -> ResolutionError:
         f"this arithmetic is more than {ARITHMETIC.depth} operators deep",
         env.scope.source,
         expr.span,
-        advice="let the game compute the value and offer it as a signal",
+        advice="let the game compute the value and supply it as a signal",
     )
 
 
 def _too_wide_error(title: str, expr: Expr, env: Env) -> ResolutionError:
-    advice = "let the game compute the value and offer it as a signal"
+    advice = "let the game compute the value and supply it as a signal"
     return problem("TLT0317", title, env.scope.source, expr.span, advice=advice)

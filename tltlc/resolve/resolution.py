@@ -104,7 +104,7 @@ def resolve_atoms(
         try:
             name, here = _atom(source, env, expressions)
             if name in places:
-                title, advice = f"`{name}` stands here twice", "give each atom a predicate of its own"
+                title, advice = f"`{name}` is used twice", "give each atom a predicate of its own"
                 raise problem("TLT0655", title, source, here.span, advice=advice, related=(places[name],))
             places[name] = here
         except ResolutionError as failure:
@@ -134,7 +134,7 @@ def _atom(source: SourceFile, env: Env, expressions: list[Expr]) -> tuple[str, L
     expressions.append(expression)
     atom = formulas.formula(expression, replace(env, scope=replace(env.scope, module=Module(source, (), ()))))
     if atom.op != "atom":
-        title, advice = "this is no atom", "name a predicate, a `bool` signal or a comparison with `<` or `>`"
+        title, advice = "this is not an atom", "use a predicate, a `bool` signal or a comparison with `<` or `>`"
         raise problem("TLT0655", title, source, here.span, advice=advice)
     return atom.name, here
 
@@ -171,13 +171,15 @@ def _group(declaration: ExclusiveDecl, env: Env) -> tuple[str, ...]:
     for atom_expr in declaration.atoms:
         atom = formulas.formula(atom_expr, env)
         if atom.op != "atom":
-            title = "`exclusive` lists atoms"
-            advice = "name predicates, `bool` signals or comparisons with `<` or `>`"
+            title = "`exclusive` can list only atoms"
+            advice = "use predicates, `bool` signals or comparisons with `<` or `>`"
             raise problem("TLT0316", title, env.scope.source, atom_expr.span, advice=advice)
         names[atom.name] = None
     if len(names) < 2:
         title = "`exclusive` needs at least two different atoms"
-        raise problem("TLT0316", title, env.scope.source, declaration.span, advice="name another one, or leave it out")
+        raise problem(
+            "TLT0316", title, env.scope.source, declaration.span, advice="add another atom, or leave out `exclusive`"
+        )
     return tuple(names)
 
 
@@ -194,8 +196,8 @@ def _specs(scope: Scope, groups: tuple[tuple[str, ...], ...], env: Env) -> dict[
         if earlier is declaration:
             specs[name] = resolved
             continue
-        title = f"`{earlier.name}` and `{name}` would share their files"
-        remarks = ("differs in capitals only", "the other spec")
+        title = f"the specs `{earlier.name}` and `{name}` would have the same file names"
+        remarks = ("differs only in capital letters", "the other spec")
         if earlier.name == name:
             title = f"the spec `{name}` is declared twice"
             remarks = ("declared again here", "first declared here")

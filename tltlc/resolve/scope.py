@@ -114,10 +114,10 @@ class _NameBudget:
         self._is_over = self._names < 0 or self._letters < 0
         if self._is_over:
             title = f"the imports of all files offer more than {IMPORTED.values:,} names"
-            advice = "import no file under two names, or choose the names that are used, in brackets"
+            advice = "import each file under one name only, or list in brackets only the names that you use"
             if self._names >= 0:
-                title = f"the names that all files import by `as` have more than {IMPORTED.size:,} letters together"
-                advice = "choose a shorter name behind `as`"
+                title = f"the names that all files import with `as` have more than {IMPORTED.size:,} letters in total"
+                advice = "choose a shorter name after `as`"
             brings = f"this one brings {len(chosen):,} names"
             log.add(problem("TLT0012", title, source, declaration.span, brings, advice=advice).diagnostic)
         return not self._is_over
@@ -192,17 +192,17 @@ def _add_imported_name(scope: Scope, name: str, binding: Binding, span: Span) ->
             known.span,
             "declared here",
             advice=f"rename it, or give the other one a prefix: `{_aliased_import(binding.via)}`",
-            related=(Label(binding.scope.source, binding.span, f"and in {binding.via}"),),
+            related=(Label(binding.scope.source, binding.span, f"also declared in {binding.via}"),),
         ).diagnostic
     return problem(
         "TLT0203",
         f"both {known.via} and {binding.via} offer `{name}`",
         scope.source,
         span,
-        advice=f"give one of them another name in front, e.g. `{_aliased_import(binding.via)}`",
+        advice=f"give the names of one import a prefix, e.g. `{_aliased_import(binding.via)}`",
         related=(
-            Label(known.scope.source, known.span, f"the one of {known.via}"),
-            Label(binding.scope.source, binding.span, f"the one of {binding.via}"),
+            Label(known.scope.source, known.span, f"the one from {known.via}"),
+            Label(binding.scope.source, binding.span, f"the one from {binding.via}"),
         ),
     ).diagnostic
 
@@ -213,7 +213,7 @@ def _not_offered_error(
     suggestion = likely_name(imported_name.name, offered)
     hint = f"did you mean `{suggestion}`?" if suggestion else ""
     fixes = (replacement_fix(scope.source, imported_name.span, suggestion),) if suggestion else ()
-    title = f"{library} offers no `{imported_name.name}`"
+    title = f"{library} does not offer `{imported_name.name}`"
     return problem("TLT0205", title, scope.source, imported_name.span, hint, fixes=fixes).diagnostic
 
 

@@ -43,7 +43,7 @@ def resolve_test(declaration: TestDecl, specs: dict[str, Spec | None], env: Env)
             context.log.add(failure.diagnostic)
             complete = False
     if complete and not any(isinstance(item, Expect) for item in items):
-        advice = "add an `expect`, e.g. `expect satisfied`: without one no run can fail"
+        advice = "add an `expect`, e.g. `expect satisfied`: without one, the test cannot fail"
         where = declaration.spec.span
         context.log.add(problem("TLT0217", "this test expects nothing", source, where, advice=advice).diagnostic)
         return None
@@ -58,12 +58,12 @@ def _step(item: TestStep, spec: Spec, env: Env) -> RepeatedSample:
         name, holds = _literal(literal_expr, names, env)
         if _without_spaces(name) not in names:
             known = ", ".join(f"`{atom.name}`" for atom in spec.atoms)
-            title = f"`{name}` is no atom of the spec `{spec.name}`"
+            title = f"`{name}` is not an atom of the spec `{spec.name}`"
             raise problem("TLT0209", title, source, literal_expr.span, advice=f"its atoms are {known}")
         if values.setdefault(name, holds) != holds:
             raise problem(
                 "TLT0217",
-                f"`{name}` cannot hold and not hold in one step",
+                f"`{name}` cannot hold and not hold in the same step",
                 source,
                 literal_expr.span,
                 advice="leave one out",
@@ -86,8 +86,8 @@ def _literal(literal_expr: Expr, names: Mapping[str, str], env: Env) -> tuple[st
     while literal.op == "not":
         literal, holds = literal.args[0], not holds
     if literal.op != "atom":
-        advice = "name predicates, `bool` signals or comparisons, each with `not` or without"
-        raise problem("TLT0316", "a step consists of atoms", env.scope.source, literal_expr.span, advice=advice)
+        advice = "use predicates, `bool` signals or comparisons, each with or without `not`"
+        raise problem("TLT0316", "a `step` can contain only atoms", env.scope.source, literal_expr.span, advice=advice)
     return literal.name, holds
 
 

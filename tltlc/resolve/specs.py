@@ -156,7 +156,7 @@ def _store_metadata(clause: Clause, metadata: dict[str, Clause], env: Env) -> No
     if clause.kind in metadata:
         raise problem(
             "TLT0214",
-            f"this spec has two clauses `{clause.kind}`",
+            f"this spec has two `{clause.kind}` clauses",
             source,
             clause.span,
             advice="keep one of the two",
@@ -178,7 +178,7 @@ def _limit(clause: Clause | None, env: Env) -> int | None:
         raise problem("TLT0312", title, env.scope.source, place, advice=advice, fixes=fixes)
     steps = samples(clause.value, env)
     if steps < 1:
-        title, advice = "a limit is at least one step", "write e.g. `limit 400 steps`"
+        title, advice = "a limit must be at least one step", "write e.g. `limit 400 steps`"
         raise problem("TLT0312", title, env.scope.source, clause.value.span, advice=advice)
     return steps
 
