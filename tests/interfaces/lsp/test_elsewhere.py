@@ -112,4 +112,6 @@ def test_an_import_that_another_file_relies_on_is_used(client: Client, tmp_path:
     assert client.diagnostics(uri) == []
     (tmp_path / "main.tltl").unlink()
     report_change(client, tmp_path / "main.tltl", 3)
-    assert unused(client.diagnostics(uri, bool)) == ["nothing of `library.tltl` is used\nremove the import, or use it"]
+    assert unused(client.diagnostics(uri, bool)) == [
+        "nothing from `library.tltl` is used\nremove the import, or use it"
+    ]

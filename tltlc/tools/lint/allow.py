@@ -104,7 +104,7 @@ def _unused_code(allowance: Allowance, fix: Fix | None) -> LintFinding:
 
 def _missing_code(comment: Comment, source: SourceFile) -> LintFinding:
     """Return the finding for a comment that names no code."""
-    title, help_ = "this comment allows nothing", "name a code, e.g. `// tltlc: allow TLT0419`"
+    title, help_ = "this comment allows nothing", "write a code, e.g. `// tltlc: allow TLT0419`"
     return LintFinding(Diagnostic(CODE, title, (Label(source, comment.span),), help_, SEVERITY))
 
 
@@ -116,6 +116,6 @@ def _misspelt_comment(comment: Comment, source: SourceFile) -> LintFinding:
     """Return the finding for a comment that is probably meant as an ``allow`` comment."""
     title, help_ = (
         "this comment allows nothing",
-        "write `// tltlc: allow`, with two slashes, and the code behind it",
+        "write `// tltlc: allow`, with two slashes, and the code after it",
     )
     return LintFinding(Diagnostic(CODE, title, (Label(source, comment.span),), help_, SEVERITY))

@@ -16,7 +16,7 @@ from tltlc.tools.lint.file_view import SpecView
 def removal_help(part: Conjunct, remaining: Sequence[Conjunct], spec: SpecView) -> str:
     """Return the advice to remove ``part``, after which the conjuncts ``remaining`` are left."""
     if changes_judge(part, remaining, spec):
-        return f"leave it out and say `judge at {spec.fspa.judge}`"
+        return f"leave it out and write `judge at {spec.fspa.judge}`"
     return "leave it out"
 
 

@@ -37,7 +37,9 @@ def test_operands_outside_a_temporal_operator_are_reported(formula: str, expecte
         for finding in findings_in(f"{SIGNALS}spec s = {formula}")
         if finding.diagnostic.code == "TLT0429"
     ]
-    assert [diagnostic.help for diagnostic in diagnostics] == [f"both together are `{correction}`" for _ in expected]
+    assert [diagnostic.help for diagnostic in diagnostics] == [
+        f"for both together, write `{correction}`" for _ in expected
+    ]
     for diagnostic in diagnostics:
         # The suggestion compiles, and is a different formula.
         original, suggested = tltlc.compile_text(f"{SIGNALS}spec s = {formula}\nspec t = {correction}")
@@ -47,13 +49,13 @@ def test_operands_outside_a_temporal_operator_are_reported(formula: str, expecte
 @pytest.mark.parametrize(
     ("formula", "correction"),
     [
-        ("a and b", "at every step is `keep a and b`, at some step `reach a and b`"),
+        ("a and b", "for every step, write `keep a and b`; for some step, write `reach a and b`"),
         # As a goal, it would be met as soon as `a` is false.
-        ("a implies b", "at every step is `keep a implies b`"),
-        ("(a implies b)", "at every step is `keep a implies b`"),
-        ("(a implies b) and (b -> c)", "at every step is `keep (a implies b) and (b -> c)`"),
-        ("all e in (x, y): at(e) -> a", "at every step is `keep all e in (x, y): at(e) -> a`"),
-        ("a and (a -> b)", "at every step is `keep a and (a -> b)`, at some step `reach a and (a -> b)`"),
+        ("a implies b", "for every step, write `keep a implies b`"),
+        ("(a implies b)", "for every step, write `keep a implies b`"),
+        ("(a implies b) and (b -> c)", "for every step, write `keep (a implies b) and (b -> c)`"),
+        ("all e in (x, y): at(e) -> a", "for every step, write `keep all e in (x, y): at(e) -> a`"),
+        ("a and (a -> b)", "for every step, write `keep a and (a -> b)`; for some step, write `reach a and (a -> b)`"),
     ],
 )
 def test_the_suggestion_is_no_goal_that_a_false_condition_meets(formula: str, correction: str) -> None:

@@ -46,7 +46,7 @@ def test_an_until_whose_first_operand_matters_is_not_reported(clause: str) -> No
 )
 def test_the_suggested_clause_is_judged_at_the_same_moment(clause: str, suggested_clause: str) -> None:
     (remark,) = spec_and_remarks(idle_until.check, spec(clause))[1]
-    assert remark.help == f"say `{suggested_clause}`"
+    assert remark.help == f"write `{suggested_clause}`"
     original, suggested = (compile_text(spec(source_clause))[0] for source_clause in (clause, suggested_clause))
     assert original.judge == suggested.judge
 

@@ -103,17 +103,17 @@ def test_a_quantified_formula_is_reported_once() -> None:
 @pytest.mark.parametrize(
     ("clause", "goal"),
     [
-        ("reach always a", "; once is `reach a`"),
-        ("reach always (a and (b -> c))", "; once is `reach a and (b -> c)`"),
+        ("reach always a", "; if once is enough, write `reach a`"),
+        ("reach always (a and (b -> c))", "; if once is enough, write `reach a and (b -> c)`"),
         # As a goal, it would be met as soon as `a` is false.
         ("reach always (a implies b)", ""),
         ("keep F ((a -> b) and (b -> c))", ""),
-        ("avoid G (a -> b)", "; once is `reach not (a -> b)`"),
+        ("avoid G (a -> b)", "; if once is enough, write `reach not (a -> b)`"),
     ],
 )
 def test_the_suggestion_is_no_goal_that_a_false_condition_meets(clause: str, goal: str) -> None:
     (finding,) = (candidate for candidate in findings_in(block(clause)) if candidate.diagnostic.code == "TLT0424")
-    assert (finding.diagnostic.help or "").partition(" say `semantics infinite`")[2] == goal
+    assert (finding.diagnostic.help or "").partition(" write `semantics infinite`")[2] == goal
 
 
 def test_lets_are_checked_if_all_specs_are_finite() -> None:

@@ -37,12 +37,12 @@ def _remark(part: Expression, tree: BinaryExpr, first: Unary) -> Remark:
     word = text_between(first.span.start, first.operand.span.start)
     corrected = text_between(first.operand.span.start, tree.span.end)
     connective = text_between(tree.op_span.start, tree.op_span.end)
-    label = Label(
-        part.source, tree.left.span, f"the condition of `{connective}` is all of this: `{word}` ends before it"
-    )
+    label = Label(part.source, tree.left.span, f"all of this is the condition: `{word}` ends before `{connective}`")
     condition = text_between(first.span.start, tree.left.span.end)
-    help_ = f"at every step is `{word} ({corrected})`; where this is meant, say so: `({condition}) {connective} …`"
-    return Remark(f"`{word}` speaks of the condition alone", (label,), help_)
+    help_ = (
+        f"for every step, write `{word} ({corrected})`; if you mean it as it is, write `({condition}) {connective} …`"
+    )
+    return Remark(f"`{word}` applies only to the condition", (label,), help_)
 
 
 RULE = LintRule("TLT0435", "warning", check)

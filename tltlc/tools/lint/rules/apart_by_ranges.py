@@ -33,7 +33,7 @@ def _remark(spec: SpecView) -> Remark:
     together = "this cannot be met" if len(clauses) == 1 else "together with the others"
     labels = tuple(Label(part.source, part.span, together) for part in clauses[:_MOST_LABELS])
     excluded = next(part for part in needed if part in proved).formula.args[0].args[0]
-    title = f"no trace satisfies `{spec.spec.name}`, by the values that its signals can have"
+    title = f"no trace satisfies `{spec.spec.name}`, because of the values that its signals can have"
     help_ = f"`{phrase(excluded)}` is never true: check the numbers, and the direction of each comparison"
     return Remark(title, labels, help_)
 

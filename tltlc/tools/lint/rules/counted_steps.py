@@ -54,16 +54,16 @@ def _steps(tree: Unary) -> float:
 
 def _remark(view: View, chain: Unary, steps: float, awaited: Expr) -> Remark:
     text = operand_text(Expression(awaited, view.env))
-    help_ = f"exactly {steps:g} steps later is seldom meant: declare a `clock`, and say it in seconds"
+    help_ = f"you seldom mean exactly {steps:g} steps later: declare a `clock`, and give the time in seconds"
     if view.env.context.clock_s:
         time = _seconds(steps, view.env.context.clock_s, view.env)
         if chain.op == "N":
-            help_ = f"say it in seconds: `weak_next after {time} s {text}`"
+            help_ = f"give the time in seconds: `weak_next after {time} s {text}`"
         else:
-            help_ = f"say it in seconds: `next after {time} s {text}`"
-            help_ += f", or `eventually within {time} s {text}` where it may come earlier"
+            help_ = f"give the time in seconds: `next after {time} s {text}`"
+            help_ += f", or `eventually within {time} s {text}` if it may come earlier"
     label = Label(view.source, Span(chain.span.start, awaited.span.start), f"exactly {steps:g} steps from now")
-    return Remark("this counts steps, whatever time they take", (label,), help_)
+    return Remark("this counts steps, however long they take", (label,), help_)
 
 
 def _seconds(steps: float, period: float, env: Env) -> str:

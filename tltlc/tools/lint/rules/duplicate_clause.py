@@ -29,12 +29,12 @@ def check(view: View) -> Iterator[Remark]:
         for part in spec.spec.parts:
             earlier = first.setdefault(part.formula, part)
             if earlier is not part:
-                labels = (view.label(part.span, "this again"), view.label(earlier.span, "said here"))
+                labels = (view.label(part.span, "occurs again here"), view.label(earlier.span, "first occurs here"))
                 if part.unbounded != earlier.unbounded:
                     others = [candidate for candidate in remaining if candidate is not part]
                     if changes_judge(part, others, spec):
                         # The bound of the later part makes it a goal, for example `F[0,0] a` after `a`.
-                        help_ = f"remove one of them and say `judge at {spec.fspa.judge}`"
+                        help_ = f"remove one of them and write `judge at {spec.fspa.judge}`"
                         yield Remark(_TITLE, labels, help_)
                         continue
                     remaining = others
@@ -59,6 +59,6 @@ def _clauses_of_one_part(clauses: Sequence[Clause], parts: Iterable[Conjunct]) -
     return {spans[0]: clauses[index] for index, spans in covered.items() if len(spans) == 1}
 
 
-_TITLE: Final = "this clause stands here twice"
+_TITLE: Final = "this clause occurs twice"
 
 RULE = LintRule("TLT0425", "warning", check)

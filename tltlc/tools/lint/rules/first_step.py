@@ -25,11 +25,11 @@ def check(view: View) -> Iterator[Remark]:
         for clause, value in spec.clauses("require"):
             parts = [value.with_tree(tree) for tree in conjuncts(value.tree)]
             if spec.declaration.block and all(map(Expression.depends_on_one_step, parts)):
-                label = Label(value.source, clause.span, "asked at the first step, and never again")
-                help_ = f"at every step is `keep {value.text}`"
+                label = Label(value.source, clause.span, "required at the first step, and never again")
+                help_ = f"for every step, write `keep {value.text}`"
                 if not goals.consists_of_implications(value):
-                    help_ += f", at some step `reach {value.text}`"
-                yield Remark("this speaks of the first step alone", (label,), help_)
+                    help_ += f"; for some step, write `reach {value.text}`"
+                yield Remark("this is only about the first step", (label,), help_)
                 continue
             for place, part in enumerate(parts):
                 following = list(takewhile(Expression.depends_on_one_step, parts[place + 1 :]))
@@ -47,8 +47,8 @@ def _remark(temporal: Expression, tree: Unary, following: list[Expression]) -> R
     word = " ".join(source.text[tree.span.start : tree.operand.span.start].split())
     inside = " and ".join(map(operand_text, (temporal.with_tree(tree.operand), *following)))
     span = following[0].tree.span.to(following[-1].tree.span)
-    label = Label(source, span, f"asked at the first step: `{word}` ends before it")
-    return Remark("this speaks of the first step alone", (label,), f"both together are `{word} ({inside})`")
+    label = Label(source, span, f"required at the first step: `{word}` ends before it")
+    return Remark("this is only about the first step", (label,), f"for both together, write `{word} ({inside})`")
 
 
 RULE = LintRule("TLT0429", "note", check)

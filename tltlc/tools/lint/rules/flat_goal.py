@@ -20,8 +20,8 @@ def check(view: View) -> Iterator[Remark]:
         flat = {index for index, atom in enumerate(spec.fspa.atoms) if _is_flat(atom, spec.fspa)}
         for index in _awaited(spec.fspa, flat) if flat else ():
             name = spec.fspa.atoms[index].name
-            label = spec.atom_label(name, "0 until it holds: progress cannot tell near from far")
-            help_ = "give the predicate negative values where it does not hold, the lower the farther"
+            label = spec.atom_label(name, "0 until it holds, so progress cannot tell near from far")
+            help_ = "give the predicate negative values where it does not hold: the farther away, the lower"
             yield Remark(f"the value of `{name}` is never negative", (label,), help_)
 
 

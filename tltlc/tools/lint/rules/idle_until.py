@@ -25,16 +25,15 @@ def check(view: View) -> Iterator[Remark]:
             if not isinstance(part.tree, BinaryExpr) or part.tree.op != "U":
                 continue
             before, goal = value.with_tree(part.tree.left), value.with_tree(part.tree.right)
-            label = Label(value.source, part.tree.span, f"this is `{clause.kind} {goal.text}` and no more")
-            help_ = f"say `require {operand_text(before)} until {operand_text(goal)}`"
+            label = Label(value.source, part.tree.span, f"this means only `{clause.kind} {goal.text}`")
+            help_ = f"write `require {operand_text(before)} until {operand_text(goal)}`"
             if clause.kind == "avoid":
                 # `avoid` does not require its second formula to occur, hence `weak_until`.
-                help_ = f"say `require (not {operand_text(before)}) weak_until {operand_text(goal)}`"
+                help_ = f"write `require (not {operand_text(before)}) weak_until {operand_text(goal)}`"
             if earlier:
-                help_ = (
-                    f"say `{operand_text(value.with_tree(earlier[-1]))} and ({part.text})`, which counts from there on"
-                )
-            yield Remark("the first half of this `until` has no say", (label,), help_)
+                previous = operand_text(value.with_tree(earlier[-1]))
+                help_ = f"write `{previous} and ({part.text})`, which counts from that step on"
+            yield Remark("the first half of this `until` has no effect", (label,), help_)
 
 
 RULE = LintRule("TLT0433", "warning", check)

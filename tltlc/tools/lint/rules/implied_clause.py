@@ -50,12 +50,12 @@ def _remarks(spec: SpecView, parts: Sequence[Conjunct], reasons: Sequence[Conjun
         if needed:
             possible_reasons = candidates
             labels = (
-                Label(part.source, part.span, "nothing is lost without this"),
+                Label(part.source, part.span, "this adds nothing"),
                 *(Label(reason.source, reason.span, "because of this") for reason in needed),
             )
-            title = f"{'another clause asks' if len(needed) == 1 else 'other clauses ask'} for this already"
+            title = f"{'another clause already implies' if len(needed) == 1 else 'other clauses already imply'} this"
             remaining = [other for other in remaining if other.formula is not part.formula]
-            yield Remark(title, labels, f"{removal_help(part, remaining, spec)}, or say what more it should ask for")
+            yield Remark(title, labels, f"{removal_help(part, remaining, spec)}, or write what else it should ask for")
 
 
 def _relations(part: Conjunct, spec: SpecView) -> list[Conjunct]:

@@ -17,7 +17,7 @@ from tltlc.tools.lint.file_view import Expression, SpecView, View, operand_text,
 from tltlc.tools.lint.goals import conjuncts
 from tltlc.tools.lint.rule import LintRule, Remark
 
-_SUGGESTION = "let a signal count the time, and ask for enough of it, as in `reach time_there >= 3 s`"
+_SUGGESTION = "let a signal count the time, and ask for enough time, as in `reach time_there >= 3 s`"
 
 
 def check(view: View) -> Iterator[Remark]:
@@ -82,7 +82,7 @@ def _remarks(goal: Expression) -> Iterator[Remark]:
         elif isinstance(tree, Unary) and tree.bound is not None and tree.op == ("G" if holds else "F"):
             lasting = part.with_tree(tree.operand)
             condition = lasting.text if holds else f"not {operand_text(lasting)}"
-            message = f"past the end it asks nothing, so one step with `{condition}` is enough"
+            message = f"it asks nothing after the end, so one step with `{condition}` is enough"
             yield Remark("this goal is met by one step", (Label(part.source, tree.span, message),), _SUGGESTION)
 
 

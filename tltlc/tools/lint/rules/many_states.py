@@ -34,11 +34,13 @@ def _remark(spec: SpecView, states: int) -> Remark:
     title = f"the automaton of `{spec.spec.name}` has {states} states"
     if bounds:
         worst = max(bounds, key=lambda bound: bound.samples)
-        label = Label(worst.source, worst.span, f"this bound counts {worst.samples} samples, one state each at least")
+        label = Label(
+            worst.source, worst.span, f"this bound counts {worst.samples} samples, and each needs at least one state"
+        )
         return Remark(title, (label,), "shorten it, choose a slower `clock`, or let a signal count the time")
     first, *rest = (Label(part.source, part.span) for part in spec.spec.parts[:_MOST_LABELS])
-    message = "the states of its parts multiply" if rest else "this has to remember much"
-    help_ = "split the spec, say an order with `then`, or declare atoms that never hold together `exclusive`"
+    message = "the states of its parts multiply" if rest else "this has to remember a lot"
+    help_ = "split the spec, give an order with `then`, or declare atoms that never hold together `exclusive`"
     return Remark(title, (Label(first.source, first.span, message), *rest), help_)
 
 

@@ -56,7 +56,7 @@ def _remarks(goal: Expression, spec: SpecView) -> Iterator[Remark]:
         else:
             listed = " and ".join(f"`{name}`" for name in awaited)
             label = Label(goal.source, without_brackets(goal.tree).span, f"can be met without {listed}")
-            yield Remark(_TITLE, (label,), f"ask with `and` for what is to be done, or for {listed} alone")
+            yield Remark(_TITLE, (label,), f"use `and` to ask for what must be done, or ask for {listed} alone")
 
 
 def _without_temporal_operators(formula: Formula) -> Formula:

@@ -40,6 +40,6 @@ def _is_always_met(part: Conjunct, spec: SpecView) -> bool:
     return spec.decision((negated, *relations(spec, part.formula.atoms())), spec.spec)
 
 
-_ALTERNATIVE: Final = ", or say what it is to ask for: was `and` meant where `or` stands, or the other way?"
+_ALTERNATIVE: Final = ", or write what it should ask for: did you mean `and` instead of `or`, or the other way round?"
 
 RULE = LintRule("TLT0430", "warning", check, supersedes=("TLT0429",))

@@ -70,8 +70,8 @@ def _remark(implication: Expression) -> Remark:
     assert isinstance(implication.tree, BinaryExpr)
     condition, result = implication.with_tree(implication.tree.left), implication.with_tree(implication.tree.right)
     label = Label(implication.source, implication.tree.span, f"so this only forbids `{condition.text}`")
-    help_ = f"where it comes later, write `{operand_text(condition)} implies eventually {operand_text(result)}`"
-    return Remark(f"`{result.text}` never holds at the step of `{condition.text}`", (label,), help_)
+    help_ = f"if it comes later, write `{operand_text(condition)} implies eventually {operand_text(result)}`"
+    return Remark(f"`{result.text}` never holds at the same step as `{condition.text}`", (label,), help_)
 
 
 RULE = LintRule("TLT0432", "warning", check)

@@ -15,8 +15,10 @@ def check(view: View) -> Iterator[Remark]:
         # A block without a limit gets TLT0419, and a settled spec gets a warning of the compiler.
         has_other_remark = spec.is_settled or spec.spec.limit_steps is None
         if _is_judged_at_limit(spec) and spec.spec.judge is None and not has_other_remark:
-            label = spec.name_label("it rewards lasting: progress is the share of its limit that has passed")
-            help_ = "add a goal with `reach`, or say that this is meant: `judge at limit`"
+            label = spec.name_label(
+                "it rewards an episode for lasting: progress is the share of its limit that has passed"
+            )
+            help_ = "add a goal with `reach`, or write `judge at limit` if you mean this"
             yield Remark(f"`{spec.spec.name}` has no goal, so it is judged at its limit", (label,), help_)
 
 

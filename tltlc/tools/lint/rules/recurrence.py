@@ -76,20 +76,24 @@ def _remarks(start: int, tree: Expr, outer: str, holds: bool, view: View) -> Ite
         elif isinstance(part, BinaryExpr) and part.op == "U" and sign and outer == "G":
             goal = Expression(part.right, view.env).text
             label = Label(
-                view.source, Span(begin, part.op_span.end), f"asked again at every step, so `{goal}` at the last"
+                view.source,
+                Span(begin, part.op_span.end),
+                f"required at every step, so `{goal}` must hold at the last one",
             )
             once = " ".join(view.source.slice(part.span).split())
-            yield Remark("this `until` starts anew at every step", (label,), f"once is `require {once}`")
+            yield Remark(
+                "this `until` starts again at every step", (label,), f"if once is enough, write `require {once}`"
+            )
 
 
 def _remark(place: Span, op: str, awaited: Expression, sign: bool) -> Remark:
     """Return the remark. ``sign`` is false if the negation of ``awaited`` is required."""
     goal = awaited.text if sign else f"not {operand_text(awaited)}"
-    label = Label(awaited.source, place, f"where the trace ends, this is `{goal}` at its last step and no more")
-    help_ = f"where play has no end and {_WORDS[op]}, say `semantics infinite`"
+    label = Label(awaited.source, place, f"on a trace that ends, this only means `{goal}` at the last step")
+    help_ = f"if play has no end and {_WORDS[op]}, write `semantics infinite`"
     if not (sign and consists_of_implications(awaited)):
-        help_ += f"; once is `reach {goal}`"
-    return Remark("this speaks of the last step alone", (label,), help_)
+        help_ += f"; if once is enough, write `reach {goal}`"
+    return Remark("this is only about the last step", (label,), help_)
 
 
 RULE = LintRule("TLT0424", "warning", check)

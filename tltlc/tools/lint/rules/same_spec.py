@@ -31,9 +31,9 @@ def check(view: View) -> Iterator[Remark]:
         if earlier is None:
             alike.append(spec)
             continue
-        title = f"`{spec.spec.name}` asks for the same as `{earlier.spec.name}`"
-        labels = (spec.name_label("this one again"), earlier.name_label("the other one"))
-        yield Remark(title, labels, "remove one of them, or say what tells them apart")
+        title = f"`{spec.spec.name}` means the same as `{earlier.spec.name}`"
+        labels = (spec.name_label("this spec"), earlier.name_label("the other spec"))
+        yield Remark(title, labels, "remove one of them, or write what makes them different")
 
 
 def _form(fspa: Fspa) -> object:

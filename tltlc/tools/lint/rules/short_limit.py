@@ -14,9 +14,9 @@ def check(view: View) -> Iterator[Remark]:
         limit, least = spec.spec.limit_steps, spec.fspa.states[0].distance
         if limit is not None and least is not None and least > limit:
             clause = next(clause for clause in spec.declaration.clauses if clause.kind == "limit")
-            label = view.label(clause.span, f"the goal takes {least} steps at least, and this is {limit}")
+            label = view.label(clause.span, f"the goal takes at least {least} steps, and this is {limit}")
             title = f"`{spec.spec.name}` cannot be met within its limit"
-            yield Remark(title, (label,), f"allow more, at least `limit {least} steps`")
+            yield Remark(title, (label,), f"allow more: at least `limit {least} steps`")
 
 
 RULE = LintRule("TLT0428", "warning", check)

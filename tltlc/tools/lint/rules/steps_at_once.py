@@ -55,9 +55,9 @@ def _joint_goals(groups: list[set[int]], spec: SpecView) -> Iterator[Remark]:
             members = [part for part in parts if _atom(part) in names]
             if len({_atom(part) for part in members}) > 1:
                 member_names = list(dict.fromkeys(_atom(part) for part in members))
-                title = f"`{member_names[0]}` and `{member_names[1]}` are asked for at one step"
-                label = Label(goal.source, without_brackets(goal.tree).span, "all of this at the same moment")
-                help_ = f"where one comes after the other, say so: `{' then '.join(member_names)}`"
+                title = f"this goal asks for `{member_names[0]}` and `{member_names[1]}` at the same step"
+                label = Label(goal.source, without_brackets(goal.tree).span, "all of this at once")
+                help_ = f"if one comes after the other, write `{' then '.join(member_names)}`"
                 yield Remark(title, (label,), help_)
 
 
@@ -100,8 +100,8 @@ def _remark(spec: SpecView, names: list[str]) -> Remark:
     parts = [part for part in spec.spec.parts if set(names).intersection(part.formula.atoms())]
     labels = (Label(part.source, part.span) for part in parts[:_MOST_LABELS])
     others = f" and {len(names) - 2} more" if len(names) > 2 else ""
-    title = f"`{names[0]}` and `{names[1]}`{others} may be met at one step, so progress counts them as one"
-    help_ = f"where at most one of them holds at a time, say so: `exclusive {', '.join(names)}`"
+    title = f"`{names[0]}` and `{names[1]}`{others} may be met at the same step, so progress counts them as one"
+    help_ = f"if at most one of them holds at a time, write `exclusive {', '.join(names)}`"
     return Remark(title, (spec.name_label(), *labels), help_)
 
 

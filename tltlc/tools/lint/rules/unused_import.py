@@ -24,7 +24,7 @@ def check(view: View) -> Iterator[Remark]:
             continue
         if not _provides_any(declaration, used_by_target.get(declaration.target, [])):
             removed = removal_span(view.source, declaration.span, view.module.comments)
-            title = f"nothing of `{declaration.target}` is used"
+            title = f"nothing from `{declaration.target}` is used"
             label = view.label(declaration.target_span)
             yield Remark(title, (label,), "remove the import, or use it", removal_fix("Remove the import", (removed,)))
         else:
@@ -36,7 +36,7 @@ def _unused_names(declaration: Import, used_names: Container[str], view: View) -
     for index, name in enumerate(names):
         if f"{_prefix(declaration)}{name.name}" not in used_names:
             removed = item_removal_spans([entry.span for entry in names], index, view.module.comments)
-            title = f"`{name.name}` of `{declaration.target}` is not used"
+            title = f"`{name.name}` from `{declaration.target}` is not used"
             fix = removal_fix("Remove it from the import", removed)
             yield Remark(title, (view.label(name.span),), "remove it from the import, or use it", fix)
 
