@@ -151,5 +151,5 @@ def test_removable_code_is_shown_faded() -> None:
 
 def test_a_layout_over_the_size_limit_is_rejected() -> None:
     document, _, _ = open_text("spec a {\n" + "//c\n" * 200_000 + "require true }\n")
-    with pytest.raises(TltlError, match="would be larger than 1 MiB"):
+    with pytest.raises(TltlError, match="would have more than 1 MiB"):
         formatting(document, "utf-16")

@@ -167,10 +167,10 @@ def test_a_file_that_would_exceed_the_limits_is_kept(  # type: ignore[no-untyped
         outcome = tltlc("fmt", *words, "big.tltl")
         assert (outcome.status, outcome.out) == (1, "")
         assert (
-            "error[TLT0004]: `big.tltl` would be larger than 1 MiB or 131,072 words and signs in its layout"
+            "error[TLT0004]: the layout of `big.tltl` would have more than 1 MiB, or more than 131,072 words and signs"
             in outcome.err
         )
-        assert "it stays as it is; to lay it out, split it" in outcome.err
+        assert "the file is not changed; to format it, split it" in outcome.err
     assert Path("big.tltl").read_text() == text
 
 

@@ -69,8 +69,8 @@ def _format_module(module: tree.Module, style: Style) -> str:
 def _check_size(name: str, text: str) -> None:
     """Raise TLT0004 if a layout is too large to be read again."""
     if is_too_large(SourceFile(name, text)):
-        title = f"`{name}` would be larger than 1 MiB or {MAX_TOKENS:,} words and signs in its layout"
-        help_ = "it stays as it is; to lay it out, split it: a file may `import` others"
+        title = f"the layout of `{name}` would have more than 1 MiB, or more than {MAX_TOKENS:,} words and signs"
+        help_ = "the file is not changed; to format it, split it: a file may `import` others"
         raise TltlError([Diagnostic("TLT0004", title, help=help_)])
 
 
