@@ -33,7 +33,7 @@ def goals(*texts: str) -> tuple[Goal, ...]:
         ("G(a -> G b)", Outline(throughout=("whenever a, keep b throughout",))),
         ("F G a & a U b", Outline(others=("from some step on keep a throughout", "reach b, keeping a until then"))),
         ("true", Outline()),
-        ("false", Outline(others=("what nothing can satisfy",))),
+        ("false", Outline(others=("satisfy a condition that no trace can satisfy",))),
     ],
 )
 def test_an_outline_sorts_the_conjuncts_of_a_formula(formula: str, expected: Outline) -> None:

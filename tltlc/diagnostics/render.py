@@ -29,6 +29,6 @@ def render(diagnostics: Sequence[Diagnostic], format: str = "text", color: bool 
     ``color`` affects only ``text``. All formats shorten very long names in messages.
     """
     if format not in FORMATS:
-        raise ValueError(f"no format {format!r}: one of {', '.join(FORMATS)}")
+        raise ValueError(f"there is no format {format!r}: use one of {', '.join(FORMATS)}")
     renderer = cast(RenderFunction, import_module(f"tltlc.diagnostics.formats.{format}").render)
     return renderer([shorten(diagnostic) for diagnostic in diagnostics], color=color)

@@ -108,4 +108,4 @@ def _robustness(node: Formula, operands: list[float]) -> float:
         case "iff":
             return min(max(-operands[0], operands[1]), max(operands[0], -operands[1]))
         case _:
-            raise ValueError(f"{node} speaks of more than one state")
+            raise ValueError(f"{node} is about more than one state")

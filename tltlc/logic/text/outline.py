@@ -50,7 +50,7 @@ def outline(formula: Formula, *, endless: bool = False) -> Outline:
     others: list[str] = []
     for part in _conjuncts(formula):
         if part in (TRUE, FALSE):
-            others += ["what nothing can satisfy"] if part is FALSE else []
+            others += ["satisfy a condition that no trace can satisfy"] if part is FALSE else []
         elif part.op == "F" and _core(part.args[0]).op != "G":
             linked = goal_texts(part, endless=endless)
             goals.append(tuple(Goal(text, link not in ("", "then")) for link, text in linked))
