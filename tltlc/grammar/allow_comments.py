@@ -7,7 +7,7 @@ A reason may follow the codes. The place of a comment says what it applies to:
 - before the first declaration, to the whole file.
 
 A comment that applies to a line silences diagnostics of every clause and declaration that has a
-part on the line. Of a block, only the head and the closing brace count as parts.
+part on the line. The parts of a block are its head and its closing brace.
 """
 
 from __future__ import annotations
@@ -64,7 +64,8 @@ def commented_spans(module: Module) -> list[tuple[Comment, tuple[Span, ...] | No
     """Return the comments that allow codes, each with the spans of the statements it applies to.
 
     Statements are clauses and declarations. None in place of the spans means the whole file.
-    Comments on the same line get the same tuple object, which ``allow_index`` uses to group them.
+    Comments that apply to the same line share one tuple object. So callers can group them by its
+    identity.
     """
     comments = [comment for comment in module.comments if is_allowing(comment)]
     if not comments:
@@ -110,11 +111,11 @@ def _statements_by_line(module: Module) -> dict[int, dict[Span, None]]:
 def _statement_parts(module: Module) -> Iterator[tuple[Span, Span]]:
     """Yield pairs of spans: a statement, and a part of it.
 
-    A comment applies to the statement if it applies to a line of the part.
+    A statement is a clause or a declaration. A comment that applies to a line of a part applies to
+    the statement.
 
-    A statement is a clause or a declaration. A block has two parts, its head and its closing brace.
-    A declaration of several entities has its first name as its part; each further name is a
-    statement of its own.
+    A block has two parts, its head and its closing brace. A declaration of several entities has one
+    part, which ends after the first name. Each further name is a statement of its own.
     """
     for declaration in module.declarations:
         span = declaration.span

@@ -1,4 +1,4 @@
-"""Find out which diagnostics are silenced by comments, and which comments silence a diagnostic.
+"""Find out which diagnostics comments silence, and which comments have silenced a diagnostic.
 
 :mod:`tltlc.grammar.allow_comments` describes the comments.
 """
@@ -65,7 +65,7 @@ class _FileAllowances:
         self.used: set[int] = set()
         self._answers: dict[tuple[str, Span | None], bool] = {}
         self._by_statement: dict[Span | None, list[dict[str, list[Allowance]]]] = {}
-        # Comments that apply to the same line share one tuple of statements: look its identity up.
+        # Comments that apply to the same line share one tuple of statements, so its id stands for the line.
         codes_by_line: dict[int, dict[str, list[Allowance]]] = {}
         for allowance in allowances:
             codes = codes_by_line.get(id(allowance.statements))

@@ -41,7 +41,7 @@ CASES: Final = "write cases as `when x > 3: 1 otherwise: -1`"
 """The help for a case distinction that is written in the syntax of another language."""
 
 OPERATORS: Final = {"reach": "eventually", "keep": "always", "avoid": "always not", "require": ""}
-"""For each clause keyword, the operator that means the same inside a formula."""
+"""Maps clause keywords to the operators that mean the same in a formula; `require` needs none."""
 
 CONDITIONS: Final = ("if", "when", "whenever", "while")
 """English words that begin a condition."""
@@ -97,7 +97,7 @@ UNITS_ELSEWHERE: Final = {
     **dict.fromkeys(("kmh", "kph"), "km/h"),
     "mps": "m/s",
 }
-"""Names of units that the language does not have, each with the unit of the language."""
+"""Maps names of units that the language does not know to the names that it has for these units."""
 
 JUDGE: Final = ("goal", "limit")
 SEMANTICS: Final = ("finite", "infinite")
@@ -116,9 +116,10 @@ _OTHER_WORDS: Final = frozenset(
 
 @lru_cache(maxsize=1000)
 def closest_word(word: str, known: tuple[str, ...]) -> str | None:
-    """Return the known word that ``word`` is or misspells.
+    """Return the known word that ``word`` equals or misspells, whatever its capital letters.
 
-    Return None if there is none, or if ``word`` means something else.
+    None if ``word`` resembles no known word, or if it is one of the English words that only look
+    like a misspelling (``_OTHER_WORDS``).
     """
     word = word.lower()
     return None if word in _OTHER_WORDS else likely_name(word, known)

@@ -26,8 +26,11 @@ def run(tables: ParserTables, start: str, tokens: Sequence[Token], builder: obje
     """Parse the tokens as the nonterminal ``start``, and return the builder's value for it.
 
     The last token must be ``$END``. A reduction by a rule with the action ``name`` calls
-    ``builder.make_name(span, *values)`` with the values that the rule keeps. Without such a method,
-    the list of these values is the result. Raises UnexpectedTokenError.
+    ``builder.make_name(span, *values)`` with the values that the rule keeps. If the builder has no
+    such method, the value of the reduction is the list of these values.
+
+    Raises:
+        UnexpectedTokenError: a token does not fit the grammar.
     """
     actions, gotos = tables.actions, tables.gotos
     rules = [
@@ -81,7 +84,7 @@ def stack_after(tables: ParserTables, start: str, tokens: Sequence[Token]) -> li
 
 
 def allowed_terminals(tables: ParserTables, states: Sequence[int]) -> set[str]:
-    """Return the terminals that the parser accepts next if this is its stack of states."""
+    """Return the terminals that the parser accepts next; ``states`` is its stack of states."""
     return {terminal for terminal in tables.actions[states[-1]] if _accepts(tables, list(states), terminal)}
 
 

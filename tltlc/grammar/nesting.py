@@ -62,7 +62,7 @@ def drop_deep_declarations(
     kept: list[Declaration] = []
     diagnostics: list[Diagnostic] = []
     for declaration in declarations:
-        # Each level takes at least one character, so short declarations, nearly all, need no check.
+        # Each level takes at least one character, so a short declaration needs no check. Nearly all are short.
         if declaration.span.end - declaration.span.start <= MAX_DEPTH:
             kept.append(declaration)
         elif isinstance(declaration, tree.SpecDecl):

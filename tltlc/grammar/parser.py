@@ -23,7 +23,11 @@ MAX_CHARACTERS: Final = 1 << 20
 
 
 def parse(source: SourceFile) -> tuple[Module, tuple[Diagnostic, ...]]:
-    """Return a module with all readable declarations, and all syntax errors; never raises."""
+    """Return a module with all declarations that can be read, and its syntax errors; never raises.
+
+    After :data:`~tltlc.grammar.mistakes.recovery.MAX_ERRORS` errors, the rest of the text is not
+    read.
+    """
     lexed = _tokens(source)
     if lexed is None:
         return Module(source, (), ()), (_too_large_error(source),)
@@ -33,9 +37,9 @@ def parse(source: SourceFile) -> tuple[Module, tuple[Diagnostic, ...]]:
 
 
 def parse_formula(source: SourceFile) -> tuple[Expr | None, tuple[Diagnostic, ...]]:
-    """Parse a text that is one formula.
+    """Parse a text that is one formula; never raises.
 
-    Return its tree, or None, and all syntax errors; never raises.
+    Return its tree, or None if the text cannot be parsed, and the syntax errors that were found.
     """
     lexed = _tokens(source)
     if lexed is None:
@@ -65,7 +69,7 @@ def is_too_large(source: SourceFile) -> bool:
 
 
 def _tokens(source: SourceFile) -> Tokens | None:
-    """Return the tokens of a text, or None if it is too large."""
+    """Return the tokens of a text, or None if it has too many characters or tokens."""
     if len(source.text) > MAX_CHARACTERS:
         return None
     lexed = tokenize(source.text)

@@ -46,9 +46,10 @@ class ParserTables:
 
     ``actions[state]`` maps a terminal to the next state (shift) or to ``~rule`` (reduce).
     ``gotos[state]`` maps a nonterminal to the next state. ``words`` and ``signs`` map each spelling
-    to its terminal. ``soft`` does so for the unreserved words, which can be names, too. ``starts``
-    and ``ends`` map each nonterminal of ``STARTS`` to its first and its accepting state.
-    ``patterns`` has regular expressions for the terminals that are not lists of texts.
+    to its terminal. ``soft`` does so for the unreserved words, which can be names, too. ``units``
+    are the spellings of units, longest first. ``starts`` and ``ends`` map each nonterminal of
+    ``STARTS`` to its first and its accepting state. ``patterns`` maps the other terminals, such as
+    ``NAME``, to regular expressions.
     """
 
     rules: tuple[GrammarRule, ...]
@@ -116,9 +117,10 @@ def build(grammar: bytes) -> dict[str, Any]:
 
 
 def _breadth_first(table: Any) -> dict[int, int]:
-    """Return a new number for each of lark's states, so that a grammar always gives the same file.
+    """Number lark's states breadth-first, and return the number of each.
 
-    The numbers count the states breadth-first, in the order of the symbols.
+    The successors of a state are visited in the order of their symbols, so that the same grammar
+    always gives the same file.
     """
     order = {table.start_states[start]: number for number, start in enumerate(STARTS)}
     queue = list(order)

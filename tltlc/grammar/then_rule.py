@@ -91,7 +91,10 @@ def _is_plain(operand: Expr) -> bool:
 
 
 def _readings_help(source: SourceFile, operand: Expr, neighbour: Expr, last: bool) -> str:
-    """Return a help text that shows both places where the brackets can be put."""
+    """Return a help text that shows where brackets can be put.
+
+    They go around the operand, or around ``then`` and what stands beside it.
+    """
     text, neighbour_text = _text(source, operand), _text(source, neighbour)
     inner: Expr
     if isinstance(operand, tree.Unary):
@@ -116,9 +119,11 @@ def _readings_help(source: SourceFile, operand: Expr, neighbour: Expr, last: boo
 def _fixes(source: SourceFile, sequence: list[Expr], position: int, lenient: bool) -> tuple[Fix, ...]:
     """Return fixes: brackets around the operand, or around ``then`` and the two formulas beside it.
 
-    For ``F a then b``, these are ``(F a) then b`` and ``F (a then b)``. Return no fix in two cases:
-    an operand after ``then`` says by itself at which step it holds, or brackets around the operand
-    are the only fix and would lose the order of the operands.
+    For ``F a then b``, these are ``(F a) then b`` and ``F (a then b)``. If other operands of the
+    sequence lack brackets, the first fix puts brackets around them, too.
+
+    Return no fix in two cases: an operand after ``then`` says by itself at which step it holds, or
+    brackets around the operand are the only fix and would lose the order of the operands.
     """
     operand = sequence[position]
     bare = [element for element in sequence if _lacks_brackets(element, lenient)]
@@ -140,7 +145,11 @@ def _fixes(source: SourceFile, sequence: list[Expr], position: int, lenient: boo
 
 
 def _names_its_step(operand: Expr) -> bool:
-    """Whether an operand says by itself at which step it holds, as `next a` and `always a` do."""
+    """Whether an operand says by itself at which step it holds.
+
+    Such an operand begins with a temporal operator, perhaps after `not`, and is more than `F a`.
+    Examples are `next a`, `always a` and `F a & b`.
+    """
     leading = _leading_operator(operand)
     return leading is not None and (leading.op != "F" or leading is not operand)
 
@@ -162,5 +171,5 @@ def _operand_beside_then(operand: Expr, last: bool) -> Expr | None:
 
 
 def _text(source: SourceFile, part: Expr) -> str:
-    """Return a part as it stands in the text, on one line."""
+    """Return the source text of a part, on one line."""
     return " ".join(source.slice(Span(part.span.start, part.span.end)).split())

@@ -4,6 +4,9 @@ Formulas and arithmetic are both expressions, since an LALR(1) parser that reads
 cannot know which of them follows; :mod:`tltlc.resolve` finds the types. Each operator is stored
 under one canonical spelling: ``not and or implies iff F G X N U W R M then`` and
 ``+ - * / ^ < <= > >=``.
+
+The field ``doc`` has the text of the ``///`` comment before a declaration or clause; it is empty
+without one. The fields whose names end in ``_span`` are the spans of a part, such as the name.
 """
 
 from __future__ import annotations
@@ -293,7 +296,10 @@ class SpecDecl:
 
 @record
 class TestStep:
-    """A line of a test with a sample: ``step 3x alive, not near(s1)``."""
+    """A line of a test with a sample, to be repeated ``times`` times.
+
+    An example is ``step 3x alive, not near(s1)``.
+    """
 
     times: int
     atoms: tuple[Expr, ...]

@@ -1,8 +1,9 @@
 """Find the known word that a misspelt word is meant to be.
 
 A word that resembles a known word may have its own meaning: `doorB` is not `doorA`, and `unlocked` is
-not `locked`. So only these count as typos: one letter too many, one too few, two exchanged neighbours,
-or one wrong letter inside a word that is long enough. A word of seven letters or more may have two.
+not `locked`. So only these count as typos: one letter too many, one too few, two exchanged
+neighbours, or one wrong letter that is neither the first nor the last. A known word of at most
+three letters allows fewer kinds of typos. One of seven letters or more may have two typos.
 """
 
 from __future__ import annotations
@@ -68,10 +69,10 @@ def _plain(name: str) -> str:
 
 
 def _count_typos_in_parts(name: str, known: str) -> int | None:
-    """Return the number of typos in all words of a name; ``nearDoor`` has two words.
+    """Return how many typos turn ``known`` into ``name``; ``nearDoor`` is compared as two words.
 
-    Return None if a word is a different one, or if the two names differ in their digits or in their
-    number of words.
+    None if a word of the one name is a different word in the other, or if the two names differ in
+    their digits, their number of words or their number of dots.
     """
     if name.count(".") != known.count("."):
         return None

@@ -94,7 +94,7 @@ def unknown_keyword(failure: ParseFailure) -> Diagnostic | None:
 
 
 def _is_clear_keyword(failure: ParseFailure, keyword: str) -> bool:
-    """Whether ``keyword`` in place of the first word can have only one meaning."""
+    """Whether a clause with ``keyword`` in place of its first word can have only one meaning."""
     stop = len(failure.tokens) - 1
     if keyword == "require":
         return not is_of_one_step(failure, 1, stop)
@@ -117,7 +117,7 @@ def clause_inside_formula(failure: ParseFailure) -> Diagnostic | None:
         return None
     title = f"{quote_token(failure.token)} begins a clause; it cannot be used inside a formula"
     start, stop, clause = formula_start(failure), formula_stop(failure), _clause_keyword(failure)
-    # An operator in its place would apply to all that follows, but the keyword may be meant for one operand only.
+    # An operator in place of the keyword would apply to all that follows; the author may mean one operand only.
     diagnostic, is_alone = None, not has_token(failure, at + 1, stop, INFIX - {"THEN"} if word == "reach" else INFIX)
     if before.type == "THEN" and not _is_next_goal(failure, word):
         return failure.error("TLT0107", title, _BEHIND_THEN)
@@ -177,7 +177,7 @@ def _is_clear_operator(failure: ParseFailure, start: int, at: int, word: str) ->
     """
     before, clause = failure.tokens[at - 1].type, _clause_keyword(failure)
     if before in ("IMPLIES", "IFF", "NOT") and word != "reach":
-        # `keep` after a condition may mean only as long as the condition holds.
+        # `keep a` after a condition may ask for `a` only while the condition holds.
         return False
     if clause in ("reach", "avoid") or before in UNTILS or has_token(failure, start, at, TEMPORAL):
         return False

@@ -33,10 +33,10 @@ from tltlc.grammar.mistakes.rephrasing import (
 
 _FILLERS: Final = frozenset(("the", "an", "to", "be", "being", "either", "both", "first"))
 _JOINED: Final[dict[str, Collection[str]]] = {"either": {"OR"}, "both": {"AND"}, "first": {"THEN"}, "to": (), "be": ()}
-"""Fillers that mean something after another word, as in `next to` and `not either`.
+"""Fillers that can have a meaning of their own, as in `next to` and `not either`.
 
-The values are the terminals of operators beside which the word means nothing: `either` means
-nothing beside `or`.
+Each is mapped to the terminals of the operators beside which it adds nothing: `either` adds nothing
+to `or`.
 """
 _COMPARISONS: Final = {
     ("at", "least"): ">=",
@@ -46,7 +46,7 @@ _COMPARISONS: Final = {
 }
 
 Forms = Mapping[str, str]
-"""How an English phrase is written in the language, by the keyword of its clause.
+"""Maps the keyword of a clause to the text by which an English phrase is written in this clause.
 
 The key "" is for all other clauses. ``{a}``, ``{b}`` and ``{c}`` are parts of the phrase. A text
 that begins with a keyword replaces the whole clause.
@@ -122,7 +122,7 @@ _FROM_THEN_ON: Final = {
     "avoid": "write `avoid a and b` to forbid `a` at every step where `b` holds, or `keep b implies always not a` to "
     "forbid it from then on, too",
 }
-"""The two possible meanings of `if b, keep a` and of `if b, avoid a`."""
+"""Help texts with the two possible meanings of `if b, keep a` and of `if b, avoid a`."""
 _REASONS: Final = {
     ("if", "reach"): " for both at the same step, or `{b} then {a}` for one after the other",
     ("when", "reach"): " for both at the same step, or `{b} then {a}` for one after the other",
@@ -207,7 +207,7 @@ def _is_clear_filler(failure: ParseFailure, at: int) -> bool:
 
 
 def condition_line(failure: ParseFailure) -> Diagnostic | None:
-    """Report a line of a spec that begins with ``if`` or ``when``."""
+    """Report a line of a spec that begins with ``if``, ``when``, ``whenever`` or ``while``."""
     forms = {"": "keep {b} implies {a}"}
     return _prefix_word_error(failure, 0, forms, timed=False) if failure.tokens[0].text in _PREFIXES else None
 
@@ -215,7 +215,7 @@ def condition_line(failure: ParseFailure) -> Diagnostic | None:
 def _without_error(failure: ParseFailure) -> Diagnostic:
     """Report ``reach a without b``.
 
-    The fix writes `avoid` in place of `without`.
+    If the clause can have only one meaning, a fix writes `avoid` in place of `without`.
     """
     help_ = "`avoid`, which begins a separate clause and applies to every step"
     at = failure.stop.index
@@ -472,9 +472,9 @@ def _is_clear_operand(failure: ParseFailure, start: int, stop: int) -> bool:
 
 
 def _goal_starts(failure: ParseFailure, at: int) -> list[int]:
-    """Return the indices where the goals of a `reach` before index ``at`` begin.
+    """Return the index at which each goal of a `reach` clause begins, for the goals before ``at``.
 
-    In other clauses, return the index where the formula begins.
+    In other clauses, return only the index at which the formula begins.
     """
     start = formula_start(failure)
     if _clause_keyword(failure) != "reach":

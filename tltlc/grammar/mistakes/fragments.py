@@ -1,8 +1,8 @@
 """Split the tokens of a text with errors into pieces: declarations, and the lines of a block.
 
-A piece begins at a keyword. A keyword at the start of a line always begins a piece. Within a line, it
-does so only after a token that can end a piece, so that ``reach level`` is one clause with a reserved
-word.
+A piece begins at a keyword, with few exceptions. Within a line, a keyword begins a piece only after
+a token that can end one. So ``reach level`` is one clause, with the reserved word ``level`` in it.
+At the start of a line, a word that seems to be a misspelt keyword can begin a piece, too.
 """
 
 from __future__ import annotations

@@ -11,7 +11,10 @@ from tltlc.grammar.tree import Comment, Import, Module
 
 
 def declaration_edit(module: Module, line: str) -> Edit:
-    """Return the edit that adds a line after the imports, or before the first declaration and its documentation."""
+    """Return the edit that adds a line after the imports.
+
+    Without imports, it adds the line before the first declaration and its documentation.
+    """
     source = module.source
     newline = "\r\n" if "\r\n" in source.text else "\n"
     imports = [declaration for declaration in module.declarations if isinstance(declaration, Import)]
@@ -31,7 +34,7 @@ def declaration_edit(module: Module, line: str) -> Edit:
 def documentation_start(source: SourceFile, start: int, comments: Sequence[Comment]) -> int:
     """Return the offset where the documentation comment before ``start`` begins, or ``start`` if there is none.
 
-    Other comments may stand between the two.
+    Other comments may stand between the documentation comment and ``start``.
     """
     first = start
     for index in reversed(range(bisect_right(comments, start, key=lambda comment: comment.span.end))):

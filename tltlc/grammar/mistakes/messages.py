@@ -146,7 +146,7 @@ def _opening_index(failure: ParseFailure) -> int:
 
 
 def _is_bound(failure: ParseFailure) -> bool:
-    """Whether the failure is where a bound has a number, as after ``F[0,``."""
+    """Whether parsing failed in the bound of an operator, as after ``F[0,`` and ``F within``."""
     index = failure.stop.index - 1
     if failure.open_brackets and failure.open_brackets[-1].text == "[":
         index = _opening_index(failure)

@@ -20,7 +20,7 @@ QUANTIFIERS: Final = frozenset(("ALL", "ANY"))
 _STATES: Final = ("but", "xor", "xnor", "nor", "nand", "without")
 """Words that join two conditions on the same step.
 
-What replaces them in the language means the same in all clauses, and in brackets.
+Their replacement in the language means the same in every clause, and inside brackets.
 """
 _NEGATED: Final = {
     "keep": ("before", "after", "unless", *CONDITIONS, "during"),
@@ -28,12 +28,12 @@ _NEGATED: Final = {
 }
 """Maps a clause keyword to words for which `not a WORD b` has one meaning in the clause.
 
-The meaning is the same whether `not` applies to `a` or to all of it.
+The meaning is the same whether `not` applies to `a` alone or to `a WORD b`.
 """
 _AS_WRITTEN: Final = ("but", "xor", "xnor")
 """Words for which `not a WORD b` has one meaning in all clauses.
 
-The meaning is the same whether `not` applies to `a` or to all of it.
+The meaning is the same whether `not` applies to `a` alone or to `a WORD b`.
 """
 _IN_RULES: Final = frozenset(("AND", "OR", "IMPLIES", *QUANTIFIERS))
 
@@ -113,7 +113,7 @@ def is_clear_here(failure: ParseFailure, word: str) -> bool:
 def is_clear_time_here(failure: ParseFailure, *, may_be_negated: bool, may_be_kept: bool) -> bool:
     """Whether a time can apply to the formula in the innermost open brackets.
 
-    The tokens around the brackets decide. ``may_be_negated`` allows `not` before them,
+    The tokens around all open brackets decide. ``may_be_negated`` allows `not` before a bracket,
     ``may_be_kept`` allows `always`.
     """
     if failure.tokens[0].type == "LET" or _is_in_call(failure):
@@ -171,7 +171,7 @@ def _is_in_call(failure: ParseFailure) -> bool:
 
 
 def _tokens_before_brackets(failure: ParseFailure) -> list[Token | None]:
-    """Return the token before each open bracket, or None if there is none."""
+    """Return the token before each open bracket; None for a bracket that is the first token."""
     opening = {id(token) for token in failure.open_brackets}
     return [
         failure.tokens[index - 1] if index else None

@@ -90,7 +90,10 @@ class ParseFailure:
         return stack
 
     def form(self) -> str | None:
-        """Return a help text with the syntax of the statement, or None if it is unknown."""
+        """Return a help text with the syntax of the piece.
+
+        None if the first token of the piece is no keyword of its kind.
+        """
         form = KEYWORDS.get(self.start, {}).get(self.tokens[0].text)
         return f"the form is {form}" if form else None
 
@@ -104,10 +107,11 @@ class ParseFailure:
         *,
         write: str | None = None,
     ) -> Diagnostic:
-        """Return an error at :attr:`token`, or at the last token if the piece ends too early.
+        """Return an error at ``span``, with ``message`` as the text of its label.
 
-        ``write`` is the text that a fix writes in place of the span. There is no fix if ``write``
-        is None or if the span contains a comment.
+        Without ``span``, the error is at :attr:`token`, or at the last token if the piece ends too
+        early. ``write`` is the text that a fix writes in place of the span. There is no fix if
+        ``write`` is None or if the span contains a comment.
         """
         if span is None:
             span = self.previous_token.span if self.is_at_end and self.previous_token else self.token.span
@@ -166,7 +170,7 @@ def outer_indices(tokens: Sequence[Token], start: int, stop: int) -> Iterator[in
 
 
 def are_adjacent(left: Token, right: Token) -> bool:
-    """Whether two tokens are adjacent, without a space."""
+    """Whether nothing stands between two tokens, not even a space."""
     return left.end == right.start
 
 

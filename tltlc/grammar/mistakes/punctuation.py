@@ -27,7 +27,7 @@ _COMMA: Final = {
     "reach": ("then", " for one after the other; write `and` for both at the same step"),
     "avoid": ("or", ""),
 }
-"""Maps a clause keyword to the operator to write for a comma, and the reason.
+"""Maps a clause keyword to the operator that replaces a comma, and to the end of the help text.
 
 In other clauses, the operator is `and`.
 """
@@ -148,9 +148,9 @@ def _joined_text(failure: ParseFailure, start: int, stop: int, word: str) -> str
 
 
 def _goal_text(failure: ParseFailure, start: int, stop: int) -> str:
-    """Return the text of tokens before a `then`, with brackets around a quantifier.
+    """Return the text of tokens as a goal in a `then` sequence, with brackets around a quantifier.
 
-    Without brackets, the quantifier would extend over the `then`.
+    Without brackets, the quantifier would extend over the next `then`.
     """
     quantifiers = (
         index for index in outer_indices(failure.tokens, start, stop) if failure.tokens[index].type in QUANTIFIERS

@@ -97,7 +97,7 @@ def last_index_of(failure: ParseFailure, kinds: Collection[str], start: int) -> 
 
 
 def _can_be_read(failure: ParseFailure, start: int, stop: int, text: str) -> bool:
-    """Whether the piece has no error with ``text`` in place of these tokens."""
+    """Whether the piece has no error with ``text`` for the tokens from ``start`` up to ``stop``."""
     tokens = failure.tokens
     source_text = failure.source.text
     before, after = (

@@ -110,7 +110,7 @@ def _quote_sign(text: str) -> str:
 
 
 def _equivalent_of(text: str) -> str | None:
-    """Return the equivalent of a character in the language, or None."""
+    """Return the sign or unit of the language that a character stands for, or None."""
     from unicodedata import normalize
 
     normalized = _SIGNS.get(text) or normalize("NFKC", text)
