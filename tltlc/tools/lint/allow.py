@@ -30,8 +30,9 @@ def apply_allow_comments(view: View, findings: Iterable[LintFinding]) -> list[Li
 
     A comment silences findings in its own file. In the linted file, there is a finding for
 
-    - each code that a comment allows, but that silences nothing. There is none if the comment also
-      allows TLT0427, or applies to one of :class:`_SettledSpecs`;
+    - each code that a comment allows, but that silences nothing. There is no finding if the comment
+      also allows TLT0427, or if it applies to a spec that every trace or no trace satisfies, or to
+      a clause of such a spec;
     - each comment that names no code;
     - each comment that is probably a misspelt ``allow`` comment.
     """
@@ -77,10 +78,10 @@ class _SettledSpecs:
         self._results: dict[int, bool] = {}
 
     def overlap(self, allowance: Allowance) -> bool:
-        """Whether the comment of an allowance applies to any of these specs."""
+        """Whether the comment of an allowance applies to any of these specs or their clauses."""
         if allowance.statements is None:
             return bool(self._specs)
-        # Comments on the same line share one tuple of spans, so its identity can be the key.
+        # Comments that apply to the same line share one tuple of spans, so its identity can be the key.
         if id(allowance.statements) not in self._results:
             self._results[id(allowance.statements)] = any(map(self._covers, allowance.statements))
         return self._results[id(allowance.statements)]

@@ -41,10 +41,12 @@ def fix(
 ) -> FixedFile:
     """Return a file with all fixes applied, repeated until nothing changes.
 
-    ``levels`` is as in :func:`tltlc.tools.lint.run.apply_levels`, ``used_elsewhere`` as in
-    :func:`tltlc.tools.lint.run.lint`.
+    ``levels`` maps codes to the severities that replace their own; a finding whose code is mapped
+    to ``allow`` is left out. ``used_elsewhere`` contains the names of this file that other files
+    may use.
 
-    Errors: the same as :func:`tltlc.tools.lint.run.lint`.
+    Raises:
+        TltlError: all diagnostics, if the file does not compile.
     """
 
     def lint_text(text: SourceFile) -> tuple[Module, tuple[LintFinding, ...]]:

@@ -1,6 +1,7 @@
 """Find the fixes of diagnostics that can be applied without further edits.
 
-Each fix is tried before it is offered.
+Fixes are tried before they are offered, except those of findings in a module without ``allow``
+comments.
 """
 
 from __future__ import annotations
@@ -38,7 +39,8 @@ def fixes_of_findings(findings: Iterable[LintFinding], module: Module) -> Iterat
     """Yield the fixes of lint findings in a module, as ``tltlc lint --fix`` applies them.
 
     A fix must not change what the ``allow`` comments of the module apply to. If the module has such
-    comments, this tries each fix once, and stops after ``WORK["fixes tried"]`` fixes.
+    comments, each fix is tried once. At most ``WORK["fixes tried"]`` fixes are tried, and the
+    others are left out.
     """
     has_comments = bool(commented_spans(module))
     tried: dict[tuple[Edit, ...], tuple[Edit, ...] | None] = {}

@@ -20,7 +20,7 @@ def neighbours(paths: Iterable[str]) -> dict[Path, str]:
     The neighbours of a file are the source files in the same folder tree and in all folders above
     it. The root of the tree is
 
-    - the folder of the project file or of the repository, if there is one;
+    - the nearest folder with a project file or a repository, the file's own or one above it;
     - else the current folder, if the file is in it or below it;
     - else the folder of the file.
 

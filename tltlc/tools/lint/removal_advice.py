@@ -1,7 +1,7 @@
 """The help of diagnostics about a clause that the spec does not need.
 
 Removing the clause may change whether the spec is judged at its goal or at its limit. Then the help
-names the ``judge`` clause that keeps this as it is.
+names the ``judge`` clause with which the spec is still judged as before.
 """
 
 from __future__ import annotations

@@ -33,7 +33,7 @@ class LintRule:
 
     ``check`` is a pure function from a file to remarks. ``supersedes`` lists codes of less specific
     diagnostics: such a diagnostic is dropped if one of its labels covers the first label of a
-    remark of this rule.
+    remark of this rule, unless the diagnostic is more severe than the remark.
     """
 
     code: str
@@ -50,7 +50,7 @@ class LintFinding:
 
     @property
     def fix(self) -> tuple[Edit, ...]:
-        """The edits of the first safe fix, or () if there is none.
+        """The edits of the first safe fix; () if the diagnostic has no safe fix.
 
         A safe fix changes the meaning of no spec.
         """

@@ -28,7 +28,8 @@ def lint(
 
     They include the compiler's own warnings. All specs of the file are checked, even if the options
     name only some. ``used_elsewhere`` contains the names of this file that other files may use.
-    :func:`apply_levels` explains ``levels``.
+    ``levels`` maps codes to the severities that replace their own; a finding whose code is mapped
+    to ``allow`` is left out.
 
     Raises:
         TltlError: all diagnostics, if the file does not compile, as in
@@ -77,7 +78,8 @@ def apply_levels(all_findings: Iterable[LintFinding], levels: Mapping[str, str])
 def view_of(source: SourceFile, options: CompileOptions) -> View:
     """Compile all specs of a file, and return what rules see of it.
 
-    Errors are as in :func:`lint`.
+    Raises:
+        TltlError: all diagnostics, if the file does not compile.
     """
     session = Session(source, replace(options, specs=()))
     automata, module, resolved = session.automata, session.module, session.resolution
@@ -104,8 +106,8 @@ def _rule_findings(rule: LintRule, view: View) -> Iterator[LintFinding]:
 def _is_superseded(diagnostic: Diagnostic, superseding: Iterable[Diagnostic]) -> bool:
     """Whether one of the diagnostics in ``superseding`` makes ``diagnostic`` superfluous.
 
-    That one has at least the severity of ``diagnostic``, and its first label is inside a label of
-    ``diagnostic``.
+    A diagnostic does so if its severity is at least that of ``diagnostic``, and if its first label
+    is inside a label of ``diagnostic``.
     """
     places = [
         candidate.labels[0] for candidate in superseding if _RANKS[candidate.severity] >= _RANKS[diagnostic.severity]

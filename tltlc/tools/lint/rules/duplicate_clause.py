@@ -49,7 +49,7 @@ def _fix(clause: Clause | None, view: View) -> Fix | None:
 
 
 def _clauses_of_one_part(clauses: Sequence[Clause], parts: Iterable[Conjunct]) -> dict[Span, Clause]:
-    """Return the clauses that consist of one conjunct, by the span of the conjunct."""
+    """Return the clauses that consist of one conjunct; the key is the span of the conjunct."""
     starts = [clause.span.start for clause in clauses]
     covered: dict[int, list[Span]] = {}
     for part in parts:

@@ -16,7 +16,7 @@ from tltlc.tools.lint.rule import LintRule, Remark
 def check(view: View) -> Iterator[Remark]:
     """Yield a remark for each `require` clause that constrains only the first step.
 
-    There is none for a spec of the form `spec NAME = FORMULA`.
+    There is no such remark for a spec of the form `spec NAME = FORMULA`.
 
     Also yield a remark for conjuncts like b in `eventually a and b`. They do not belong to the
     operand of the temporal operator, but were probably meant to.

@@ -36,8 +36,8 @@ def _awaited(fspa: Fspa, flat: Set[int]) -> list[int]:
 
     ``flat`` has the indices of the atoms whose value is never negative and can be 0. Atoms that the
     self-loop of the edge's source needs, too, are left out. So are the atoms of an edge that always
-    needs an atom whose value can be negative as well: progress uses the least value, and that one
-    tells near from far.
+    needs an atom whose value can be negative as well: progress uses the least value, and the value
+    of that atom tells near from far.
     """
     stays: dict[int, list[Implicant]] = {}
     for edge in fspa.edges:

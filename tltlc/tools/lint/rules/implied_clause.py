@@ -71,7 +71,7 @@ def _relations(part: Conjunct, spec: SpecView) -> list[Conjunct]:
 def _reasons(
     part: Conjunct, others: Sequence[Conjunct], proved: Sequence[Conjunct], spec: SpecView
 ) -> tuple[Conjunct, ...]:
-    """Return a minimal subset of ``others`` that implies ``part``, or () if there is none.
+    """Return a minimal subset of ``others`` that implies ``part``; () if they do not imply it.
 
     ``proved`` are proved relations between atoms.
     """

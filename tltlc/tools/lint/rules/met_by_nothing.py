@@ -33,7 +33,8 @@ def _remarks(goal: Expression, spec: SpecView) -> Iterator[Remark]:
         return
     still = _without_temporal_operators(formula)
     holding, failing = _helpful_atoms(still)
-    # If all atoms must hold, or all must fail, the player has to do something for the goal.
+    # If no atom helps by being false, the goal cannot be met by doing nothing.
+    # If no atom helps only by being true, the goal asks for none.
     if not failing or not set(holding) - set(failing):
         return
 

@@ -11,7 +11,7 @@ from tltlc.tools.lint.rule import LintRule, Remark
 def check(view: View) -> Iterator[Remark]:
     """Yield a remark for each spec without a limit.
 
-    There is none for a spec of the form `spec NAME = FORMULA`, which cannot have a limit.
+    There is no remark for a spec of the form `spec NAME = FORMULA`, which cannot have a limit.
     """
     for spec in view.specs:
         if spec.spec.limit_steps is None and spec.declaration.block:

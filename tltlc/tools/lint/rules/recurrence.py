@@ -16,9 +16,9 @@ _WORDS = {"F": "it comes again and again", "G": "it lasts from some time on"}
 """What the author usually means by ``G F`` (the key ``F``) and by ``F G`` (the key ``G``)."""
 _DUAL = {"G": "F", "F": "G"}
 _OF_CLAUSES = {"keep": ("G", True), "avoid": ("G", False), "reach": ("F", True)}
-"""For each kind of clause, its operator, and whether the formula is the operand.
+"""Maps each kind of clause to its operator, and to whether the operand is the clause's formula.
 
-If the value is False, the negated formula is the operand.
+The second value is False if the operand is the negated formula.
 """
 
 

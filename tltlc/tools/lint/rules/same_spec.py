@@ -37,9 +37,10 @@ def check(view: View) -> Iterator[Remark]:
 
 
 def _form(fspa: Fspa) -> object:
-    """Return a key: automata with different keys are judged differently or accept different traces.
+    """Return a key. Only automata with equal keys can count as the same.
 
-    Over finite traces, automata with equal keys do accept the same traces.
+    The key has the settings and ``spec_size`` of the automaton. Over finite traces, it also has the
+    edges, so that automata with equal keys accept the same traces.
     """
     settings = (fspa.semantics, fspa.judge, fspa.limit_steps, fspa.level, fspa.spec_size)
     return settings if fspa.semantics == "infinite" else (*settings, _edges(fspa))

@@ -1,4 +1,4 @@
-"""TLT0415: several goals that the automaton lets one step meet."""
+"""TLT0415: several goals that one step can meet, as far as the automaton knows."""
 
 from __future__ import annotations
 
@@ -137,7 +137,7 @@ def _is_shortened(spec: SpecView, indices: list[int]) -> bool:
 
 
 def _length(fspa: Fspa) -> tuple[int, int]:
-    """Return the distance from the start and the greatest distance of any state.
+    """Return the distance of the initial state, and the greatest distance of any state.
 
     Both are 0 if no trace satisfies the spec.
     """

@@ -42,7 +42,7 @@ def _unused_names(declaration: Import, used_names: Container[str], view: View) -
 
 
 def _used_by_target(used_names: Container[str], view: View) -> dict[str, list[str]]:
-    """Return the used names of each import, sorted, by the target of the import.
+    """Map the target of each import to the used names that come from it, sorted.
 
     If several imports provide a name, it counts for the first of them.
     """
@@ -54,7 +54,7 @@ def _used_by_target(used_names: Container[str], view: View) -> dict[str, list[st
 
 
 def _provides_any(declaration: Import, names: Sequence[str]) -> bool:
-    """Whether an import provides any of these sorted names."""
+    """Whether an import provides any of ``names``, which are sorted."""
     if declaration.names is not None:
         return any(_first(names, entry.name) == entry.name for entry in declaration.names)
     prefix = _prefix(declaration)
@@ -62,7 +62,7 @@ def _provides_any(declaration: Import, names: Sequence[str]) -> bool:
 
 
 def _first(names: Sequence[str], start: str) -> str:
-    """Return the first of these sorted names from ``start`` on, or an empty string."""
+    """Return the first name in sorted order that is not before ``start``, or an empty string."""
     place = bisect_left(names, start)
     return names[place] if place < len(names) else ""
 
