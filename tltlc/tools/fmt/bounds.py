@@ -28,10 +28,12 @@ class Number:
 def bound_forms(node: tree.Unary, number: Callable[[tree.NumberExpr], Number]) -> dict[str, str]:
     """Return the forms of the bound of an operator, by the names ``words`` and ``brackets``.
 
-    Words look like ``within 3 steps``, and brackets like ``[0,3]``. The result is empty without a
-    bound, and has one form if the other cannot express the bound. ``for 3 steps`` counts samples, and
-    ``[0,2]`` names the last one. A time is rounded up to samples, so no brackets equal ``for`` with
-    a time. ``after`` has no brackets. ``number`` returns a number as it is written.
+    Words look like ``within 3 steps``, and brackets like ``[0,3]``. The result is empty if the
+    operator has no bound, and has one form if the other cannot express the bound.
+
+    ``for 3 steps`` gives the number of samples, and ``[0,2]`` the offset of the last one, so both
+    mean the same. A time is rounded up to samples, so ``for`` with a time cannot be written in
+    brackets. Neither can ``after``. ``number`` returns a number as it is written in the source.
     """
     bound = node.bound
     if bound is None:
@@ -53,7 +55,10 @@ def bound_forms(node: tree.Unary, number: Callable[[tree.NumberExpr], Number]) -
 
 
 def _in_brackets(op: str, high: tree.NumberExpr, number: Number) -> str | None:
-    """Return the end in brackets that equals ``within`` or ``for`` with this bound, or None."""
+    """Return the upper end of the brackets that mean the same as a bound in words.
+
+    ``high`` is the number after ``within`` or ``for``. None if no brackets mean the same.
+    """
     if high.unit not in _STEPS:
         return str(number) if op == "F" else None
     count = number.digits
@@ -63,7 +68,10 @@ def _in_brackets(op: str, high: tree.NumberExpr, number: Number) -> str | None:
 
 
 def _in_words(op: str, high: tree.NumberExpr, number: Number) -> str | None:
-    """Return the bound of ``within`` or ``for`` that equals the brackets ``[0,high]``, or None."""
+    """Return the number and unit after ``within`` or ``for`` that mean the same as ``[0,high]``.
+
+    None if no words mean the same.
+    """
     if high.unit not in _STEPS:
         return str(number) if op == "F" else None
     count = number.digits

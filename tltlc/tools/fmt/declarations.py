@@ -20,7 +20,7 @@ _AMOUNT: Final = re.compile(r"(<=|>=|[<>≤≥])\s*([0-9.eE+-]+)\s*(\S*)\Z")
 class DeclarationPrinter:
     """Writes the declarations of a source on a page.
 
-    ``joints`` are offsets in the source. The text at a joint does not begin a line.
+    ``joints`` are offsets in the source. The text at a joint does not begin a line of the page.
     """
 
     def __init__(self, source: SourceFile, page: Page, one_line: OneLinePrinter, joints: Set[int]) -> None:
@@ -33,8 +33,8 @@ class DeclarationPrinter:
     def put(self, node: tree.Declaration) -> None:
         """Write a declaration on lines of its own.
 
-        Comments inside a declaration are written before its last word. After it, a ``///`` comment
-        would document the next declaration.
+        Comments inside a declaration are written before its last word. After the last word, a
+        ``///`` comment would document the next declaration.
         """
         match node:
             case tree.Import():

@@ -99,7 +99,8 @@ class Expressions:
         """Write items in ``(…)``.
 
         If they fit, they stay on this line. Otherwise they share a line of their own, or get a line
-        each. ``end`` is the offset after the closing bracket in the source, None if it is unknown.
+        each. ``end`` is the offset after the closing bracket in the source; for None, the method
+        searches for it.
         """
         page, outer = self._page, self._page.indent
         if end is None:
@@ -183,9 +184,9 @@ class Expressions:
         self.put_value(node.otherwise, indent + STEP)
 
     def _value_column(self, node: tree.WhenExpr, indent: int) -> int:
-        """Return the column before the values if all values fit after it, and 0 otherwise.
+        """Return the column after the colon of the widest condition; the values go behind it.
 
-        It is the column after the colon of the widest condition.
+        Return 0 if a condition or a value does not fit on its line then.
         """
         heads = [self._one_line.text(case.condition, WIDTH) for case in node.cases]
         values = [self._one_line.text(value, WIDTH) for value in (*(case.value for case in node.cases), node.otherwise)]
@@ -239,9 +240,10 @@ class Expressions:
         return ", ".join(texts)
 
     def _is_hugged(self, items: Sequence[Item], end: int, room: int) -> bool:
-        """Whether just one item is large and its brackets fit on the line: ``clamp(min(``.
+        """Whether just one item is large, and the line has room for its opening bracket.
 
-        An item is large if it is more than a name, a number or a constant.
+        An example is ``clamp(min(``. An item is large if it is more than a name, a number or a
+        constant. The small items must fit on the line, too.
         """
         large = [item.value for item in items if not _is_simple(item.value)]
         if len(large) != 1 or not isinstance(large[0], (tree.CallExpr, tree.GroupExpr)):

@@ -24,7 +24,7 @@ def format_text(text: str, style: str = DEFAULT) -> str:
 
     Raises:
         TltlError: the text has syntax errors; or TLT0004, the result would be too large to read.
-        KeyError: there is no such style.
+        KeyError: there is no style with the name ``style``.
 
     >>> from tltlc.tools.fmt import format_text
     >>> format_text("signal seen:bool  spec hide=G !seen")

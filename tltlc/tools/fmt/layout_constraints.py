@@ -32,11 +32,12 @@ NO_CONSTRAINTS: Final = LayoutConstraints(frozenset(), frozenset())
 
 
 def required_constraints(module: Module, text: str, constraints: LayoutConstraints) -> LayoutConstraints:
-    """Return constraints under which ``allow`` comments apply to the same statements as before.
+    """Return ``constraints``, extended if they let a comment apply to other statements than before.
 
-    ``text`` is the layout of the module under ``constraints``, which the result extends. First,
-    statements that share a line with a comment have to stay on it. If that is not enough, their
-    declarations are copied from the source. The result equals ``constraints`` if these suffice.
+    ``text`` is the layout of the module under ``constraints``. Call the function again with each
+    new layout, until the result equals ``constraints``. For the statements of an ``allow`` comment
+    whose scope has changed, it first adds joints, so that they stay on their lines. If that was not
+    enough, it adds their declarations, which are then copied from the source.
     """
     before = commented_spans(module)
     lists = [
@@ -51,7 +52,7 @@ def required_constraints(module: Module, text: str, constraints: LayoutConstrain
     old_spans = dict(zip(statements(new_module), statements(module), strict=True))
     affected: set[Span] = set()
     after = commented_spans(new_module)
-    # Comments on the same line share one tuple of spans, before and after.
+    # Comments that apply to the same line share one tuple of spans, before and after.
     pairs = {
         (id(places), id(new_places)): (places, new_places)
         for (_, places), (_, new_places) in zip(before, after, strict=True)
