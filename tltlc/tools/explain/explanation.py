@@ -38,8 +38,8 @@ class NextStep:
 class StateRow:
     """A state of the automaton. ``remains`` says what remains to be satisfied.
 
-    ``distance`` is None in a trap. ``leads`` has the edges that lead on, as
-    :func:`~tltlc.tools.explain.next_steps.edges_leading_on` defines them.
+    ``distance`` is None in a trap. ``leads`` has the edges that make progress towards the goal;
+    :func:`~tltlc.tools.explain.next_steps.edges_leading_on` says which edges do.
     """
 
     id: int
@@ -230,7 +230,7 @@ def _witness(moves: Moves, accept: bool) -> Witness | None:
 
 
 def _example_trace(fspa: Fspa, witness: Witness | None) -> ExampleTrace | None:
-    """Return a witness in words, or None if there is none.
+    """Return a witness in words; None if ``witness`` is None.
 
     Consecutive steps with the same condition are merged.
     """
