@@ -72,9 +72,9 @@ class BlockWriter:
     def expectations(self, letters: Iterable[Letter], steps: Iterable[int] | None = None) -> Expectations:
         """Return what the monitor reports after ``steps``, by step number from 1.
 
-        ``steps`` are numbers of steps of the trace, by default that of the last one. The report has
-        the verdict, the progress rounded down to four decimals if it is above 0, and the label of
-        the state unless it is very long.
+        ``steps`` are the numbers of the steps to report on; for None, only on the last step. The
+        report has the verdict, the progress rounded down to four decimals if it is above 0, and the
+        label of the state unless it is very long.
         """
         results = self.results(letters)
         numbers = {len(results)} if steps is None else set(steps)

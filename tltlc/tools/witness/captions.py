@@ -19,8 +19,8 @@ _MOST_NAMED = 10
 def title(fspa: Fspa, witness: Witness, number: int = 1, count: int = 1) -> str:
     """Return the title of the test that shows a trace.
 
-    For a trace of a cover, ``number`` is its number, counted from 1, and ``count`` the number of
-    the traces in the cover.
+    For a trace of a cover, ``number`` is its number, counted from 1, and ``count`` is the number of
+    traces in the cover.
     """
     if witness.kind == "cover":
         return f"{fspa.name}: way {number} of {count} through its automaton"
@@ -33,7 +33,7 @@ def title(fspa: Fspa, witness: Witness, number: int = 1, count: int = 1) -> str:
 
 
 def no_trace_warning(moves: Moves, outcome: str) -> Diagnostic:
-    """Return the warning that no trace has the ``outcome`` ``accepted`` or ``rejected``.
+    """Return the warning that no trace is accepted, or rejected, as ``outcome`` says.
 
     If the reason is that no samples were found, the warning says so.
     """
@@ -90,7 +90,7 @@ def no_signals_error(fspa: Fspa) -> Diagnostic:
 
 
 def _none_found(literals: str) -> str:
-    """Return the text that no sample was found for some literals.
+    """Return a text that says that no sample was found for some literals.
 
     The search is incomplete, so the text does not say that no sample exists.
     """

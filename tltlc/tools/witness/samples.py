@@ -57,11 +57,11 @@ class SampleFinder:
         self._cache: dict[Implicant, Sample | UnsatisfiedLiterals] = {}
 
     def sample_for_letter(self, letter: Letter) -> Sample | UnsatisfiedLiterals:
-        """Return a sample at which exactly the atoms of a letter hold, or why there is none."""
+        """Return a sample at which exactly the atoms of a letter hold, or why none was found."""
         return self.sample_for_literals(tuple((i, atom.name in letter) for i, atom in enumerate(self._fspa.atoms)))
 
     def sample_for_literals(self, literals: Implicant) -> Sample | UnsatisfiedLiterals:
-        """Return a sample at which the literals are true, or why there is none.
+        """Return a sample at which the literals are true, or why none was found.
 
         If possible, no other atom holds at the sample.
         """
@@ -72,7 +72,9 @@ class SampleFinder:
     def obstacles(self, letter: Letter) -> tuple[UnsatisfiedLiterals, ...]:
         """Return why no sample was found for a letter; empty if one was found.
 
-        There is a reason for each group of atoms that share signals, if no sample was found for it.
+        There is one reason for each group of atoms with common signals for which no sample was
+        found. If samples were found for all groups, the only reason is that exclusive atoms hold
+        together.
         """
         sample = self.sample_for_letter(letter)
         if not isinstance(sample, UnsatisfiedLiterals):

@@ -70,9 +70,10 @@ class AtomGroup:
         return self._cache[literals]
 
     def _find(self, literals: Implicant) -> Point | None:
-        """Return the best of ``_candidates``, else the end of a climb, else the best far candidate.
+        """Return the best of ``_candidates`` at which the literals are true.
 
-        Return None if the literals are true at none of them.
+        Without one, return the point at which a climb ends, else the best far candidate. Return
+        None if the literals are true at none of these.
         """
         inside = self._best(self._candidates, literals)
         if inside is not None:
@@ -83,9 +84,10 @@ class AtomGroup:
         return summit or self._best(self._far_candidates, literals)
 
     def _best(self, candidates: Sequence[Candidate], literals: Implicant) -> Point | None:
-        """Return the first candidate with a margin of ``_CLEAR``, else one with the largest margin.
+        """Return the first candidate with a margin of at least ``_CLEAR``.
 
-        Return None if the literals are true at no candidate.
+        Without one, return the candidate with the largest margin, or None if the literals are true
+        at no candidate. The margin is that of :meth:`_margin`.
         """
         inside: list[tuple[float, Point]] = []
         for point, values in candidates:
@@ -245,7 +247,7 @@ def _middle(low: float, high: float) -> float:
 def _sign_parts(expression: Expression, holds: bool) -> Iterator[tuple[Expression, bool]]:
     """Yield the subexpressions that decide the sign of an expression.
 
-    Each comes with whether it must be positive. ``holds`` says the same of the whole expression.
+    Each comes with whether it must be positive. ``holds`` is whether the whole expression must be.
     """
     stack = [(expression, holds)]
     while stack:

@@ -43,7 +43,9 @@ class Witness:
 
 
 def accepting_trace(moves: Moves, work: int = DEFAULT_WORK) -> Witness | None:
-    """Return a shortest accepted trace for which samples are found, or None if there is none.
+    """Return a shortest accepted trace for which samples are found; None if no trace is accepted.
+
+    It is also None if no samples are found for any accepted trace.
 
     If the spec is over infinite traces, the trace need not be shortest.
 
@@ -57,11 +59,15 @@ def accepting_trace(moves: Moves, work: int = DEFAULT_WORK) -> Witness | None:
 
 
 def rejecting_trace(moves: Moves, work: int = DEFAULT_WORK) -> Witness | None:
-    """Return a rejected trace for which samples are found, or None if there is none.
+    """Return a rejected trace for which samples are found; None if no trace is rejected.
+
+    It is also None if no samples are found for the trace.
 
     If possible, it is a shortest trace that violates the spec. Otherwise it is a shortest rejected
-    trace, or any rejected trace if the spec is over infinite traces. Errors are as in
-    :func:`accepting_trace`.
+    trace, or any rejected trace if the spec is over infinite traces.
+
+    Raises:
+        OutOfWork: over infinite traces, the search takes more than ``work`` steps.
     """
     fspa = moves.fspa
     violating = _shortest_to(moves, "rejecting", [state.verdict == "violated" for state in fspa.states])
@@ -71,7 +77,10 @@ def rejecting_trace(moves: Moves, work: int = DEFAULT_WORK) -> Witness | None:
 
 
 def _shortest_to(moves: Moves, kind: Kind, is_target: list[bool]) -> Witness | None:
-    """Return a shortest trace to a state for which ``is_target`` is true, or None."""
+    """Return a shortest trace to a state for which ``is_target`` is true.
+
+    None if no path with samples leads to such a state.
+    """
     edges = moves.fspa.edges
     path = moves.shortest_path(0, lambda edge: is_target[edges[edge].target])
     return None if path is None else Witness(kind, path)
@@ -88,9 +97,10 @@ def _with_loop(moves: Moves, trace: Witness) -> Witness | None:
 
 
 def _lasso(moves: Moves, kind: Literal["accepting", "rejecting"], work: int) -> Witness | None:
-    """Return an infinite trace, a prefix and a cycle, with a sample for each step, or None.
+    """Return an infinite trace of a kind, as a prefix and a cycle, with a sample for each step.
 
-    If no sample is found for an edge of the trace, search again for a trace without this edge.
+    If no sample is found for an edge of the trace, search again for a trace without this edge. None
+    if no such trace is left.
     """
     from tltlc.automaton.compare import separating
 

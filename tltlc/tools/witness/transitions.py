@@ -37,7 +37,7 @@ class Moves:
     def __init__(self, fspa: Fspa) -> None:
         self.fspa = fspa
         self.obstacles: dict[int, tuple[UnsatisfiedLiterals, ...]] = {}
-        """Why the search found no sample, for each edge without one, by the index of the edge."""
+        """Maps the index of each edge without a sample to the reasons why the search found none."""
         self._finder = SampleFinder(fspa)
         self._cache: dict[int, SampledEdge | None] = {}
 
@@ -69,9 +69,10 @@ class Moves:
         return None
 
     def shortest_path(self, start: int, is_last: Callable[[int], bool]) -> tuple[SampledEdge, ...] | None:
-        """Return the moves of a shortest path from a state, or None if there is none.
+        """Return the moves of a shortest path from a state to an edge that ``is_last`` accepts.
 
-        The path ends with an edge for whose index ``is_last`` is true. It has at least one move.
+        ``is_last`` gets the index of an edge. The path ends with this edge, so it has at least one
+        move. None if no path with samples leads to such an edge.
         """
         predecessors: dict[int, tuple[int, SampledEdge] | None] = {start: None}
         queue = deque([start])
