@@ -27,9 +27,9 @@ _MOST_PROBLEMS: Final = 5
 """The most errors that are reported about states that are not deterministic or not complete."""
 
 Moves = dict[int, int]
-"""A dict from the number of each reachable state to its moves.
+"""Maps the number of each reachable state to a node in the decision diagrams.
 
-The moves are a function from letters to moves, given by its node in the decision diagrams.
+The node stands for a function that maps each letter to a ``Move`` or ``NOT_ALLOWED``.
 """
 
 
@@ -84,7 +84,13 @@ def automaton_of(
 
 
 def _moves(hoa: Hoa, transitions: HoaTransitions, state_budget: int) -> Moves:
-    """Return the moves of all reachable states. The errors are those of :func:`automaton_of`."""
+    """Return the moves of all reachable states.
+
+    Raises:
+        TltlError: at most ``_MOST_PROBLEMS`` errors, with the codes TLT0651, TLT0653 and TLT0654 as
+            in :func:`automaton_of`.
+        OutOfStates: more than ``state_budget`` states are reached.
+    """
     states = {state.number: state for state in hoa.states}
     queue = list(hoa.starts[0].states)
     moves: Moves = {}

@@ -46,9 +46,9 @@ class ImportOptions:
     ``atoms`` maps the names of atomic propositions to predicates. A proposition that is not in
     ``atoms`` must itself have the name of a predicate. ``name`` is the name of the spec. Without
     it, the header ``name:`` gives the name if a spec can have it, else the name of the file does.
-    ``level``, ``limit_steps`` and ``judge`` are as in :class:`~tltlc.resolve.spec.Spec`, and have
-    precedence over the headers of the file. ``resolve`` has the options for the library. The
-    automaton may have ``state_budget`` states, and its computation may take ``work`` steps.
+    ``level``, ``limit_steps`` and ``judge`` are those of the spec. For None, the file may give
+    them in its headers. ``resolve`` has the options for the library. The automaton may have at most
+    ``state_budget`` states, and its computation may take at most ``work`` steps.
     """
 
     atoms: Mapping[str, str] = EMPTY

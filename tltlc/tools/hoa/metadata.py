@@ -16,7 +16,7 @@ _LARGEST: Final = 10**9
 class Metadata:
     """The values of tltlc's headers; None if a header is missing.
 
-    The fields mean the same as in :class:`~tltlc.resolve.spec.Spec`.
+    The fields mean the same as in :class:`~tltlc.resolve.spec.Spec`, but ``formula`` is a text.
     """
 
     judge: Judge | None = None

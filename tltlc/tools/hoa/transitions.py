@@ -28,7 +28,8 @@ class HoaTransitions:
     """The moves of the states of a file, as functions from letters over ``atoms``.
 
     A function is the number of its node in the decision diagrams ``letters``. ``allowed`` is a
-    function from letters to :data:`YES` or :data:`NO`; letters that are not allowed are ignored.
+    function from letters to :data:`YES` or :data:`NO`. For a letter that is not allowed, the move
+    is :data:`NOT_ALLOWED`, whatever edges take the letter.
 
     Raises TltlError, TLT0651, if an alias is wrong.
     """
