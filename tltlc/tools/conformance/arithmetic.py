@@ -55,7 +55,7 @@ _ROOT = _op("sqrt", _X)
 _HUGE = _op("*", 1e308, _X)
 _NESTED = When(
     (
-        # If an earlier part decides the condition, the later parts have no value.
+        # Where an earlier part decides a condition, its later parts may have no value: `1 / x` has none at 0.
         (_condition("and", _condition(">", _X, 0.0), _condition("<", _SHARE, 0.5)), _op("-", _SHARE, 0.25)),
         (_condition("or", _condition("<=", _X, 0.0), _condition(">=", _op("/", _Y, _X), 2.0)), _divided(_Y, 4.0)),
         (

@@ -50,7 +50,10 @@ class Border:
                     yield (x, threshold) if self.threshold is None else (x,)
 
     def holds(self, x: float, threshold: float | None = None) -> bool:
-        """Whether the comparison is true. ``threshold`` is its value if it is a signal."""
+        """Whether the comparison is true for ``x``.
+
+        ``threshold`` is the value of the threshold; it is needed only if the threshold is a signal.
+        """
         right = self.threshold if threshold is None else threshold
         assert right is not None, "a threshold that varies is given"
         return {"<": x < right, "<=": x <= right, ">": x > right, ">=": x >= right}[self.op]

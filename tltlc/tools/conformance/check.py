@@ -57,7 +57,10 @@ def _misuse(command: Sequence[str], only: Sequence[str], names: Sequence[str]) -
 
 
 def _checked(command: Sequence[str], only: Sequence[str] | None, folder: Path, index: Mapping[str, Any]) -> int:
-    """Check each case; print the differences, and at the end their number."""
+    """Check each case; print the differences, and at the end how many traces have any.
+
+    Return the exit status.
+    """
     traces = differing = 0
     for case in index["cases"]:
         if only and case["name"] not in only:

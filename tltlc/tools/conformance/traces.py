@@ -37,9 +37,10 @@ def table(columns: Sequence[str], rows: Iterable[Sequence[object]], end: str = "
 
 
 def random_trace(fspa: Fspa, draw: Draw, length: int, pools: Pools = EMPTY, *, refused: bool = False) -> bytes:
-    """Return a random trace whose samples a monitor reads without an error.
+    """Return a random trace of ``length`` samples that a monitor reads without an error.
 
-    If ``refused``, add a last sample that the monitor refuses, if one is found.
+    With ``refused``, a sample that the monitor refuses follows. The search for each sample is
+    limited; if it finds none, the last sample that was tried is taken anyway.
     """
     # The predicates are compiled once here, not for each sample.
     atoms = Samples(fspa, None, [])
@@ -51,9 +52,10 @@ def random_trace(fspa: Fspa, draw: Draw, length: int, pools: Pools = EMPTY, *, r
 
 
 def lively_trace(fspa: Fspa, draw: Draw, length: int, pools: Pools = EMPTY) -> bytes:
-    """Return, of several random traces, the one that visits the most states.
+    """Draw several random traces, and return the one that visits the most states.
 
-    Of two that visit equally many, return the one with more steps before the verdict is final.
+    If several traces visit that many, return the one with the most steps before its verdict is
+    final.
     """
     return max(
         [random_trace(fspa, draw, length, pools) for _ in range(_TRIES)], key=lambda trace: _liveliness(fspa, trace)
