@@ -25,13 +25,14 @@ The entry of an artefact is None, because an artefact stores only the groups tha
 def assumed_groups(a: Fspa, b: Fspa, declared: DeclaredGroups, *, by_name: bool = False) -> tuple[ExclusiveGroup, ...]:
     """Return the groups that the comparison of two specs assumes besides the specs' own groups.
 
-    - If both files are sources, these are the groups that both declare.
+    - If both files are sources, these are the groups that both declare: the common atoms, at least
+      two, of a group of A and a group of B.
     - If one file is an artefact, these are the groups of the source that the artefact does not
       contradict. An artefact stores a group only if its spec uses at least two of the atoms.
     - If both files are artefacts, there are none.
 
-    Atoms that are different in A and B are in no group. ``by_name`` is as in
-    :func:`~tltlc.tools.diff.relation.compare`.
+    Atoms with one name but different meanings in A and B are in no group. With ``by_name``, atoms
+    with the same name always count as the same atom.
     """
     in_a, in_b = declared
     if in_a is not None and in_b is not None:

@@ -67,7 +67,7 @@ class FileChange:
 
 
 def version_changes(change: FileChange, work: int = DEFAULT_WORK) -> tuple[Diagnostic, ...]:
-    """Return the changes of the specs, in order, and then those of their signals, params and atoms.
+    """Return the changes of the specs, and then those of their clock, signals, params and atoms.
 
     If neither version has specs, return the changes of the library: its declarations, clock and
     exclusive atoms.
@@ -121,7 +121,9 @@ def compare_versions(old: Fspa, new: Fspa, work: int) -> SpecPair:
 
     Atoms with the same name count as the same atom; if their values differ, this is reported as a
     difference of its own. A renamed atom or signal is reported as a difference under its old name.
-    Errors are as in :func:`version_changes`.
+
+    Error (:class:`~tltlc.diagnostics.diagnostic.TltlError`): TLT0750 if the comparison takes more
+    than ``work`` steps.
     """
     renamed_atoms = with_old_atom_names(old, new)
     names = new_signal_names(old, renamed_atoms)

@@ -52,7 +52,7 @@ class _File:
 
 
 def repository(folder: Path) -> Path | None:
-    """Return the top folder of the repository that contains a folder, or None if there is none.
+    """Return the top folder of the repository that contains a folder; None if none contains it.
 
     Raises:
         TltlError: TLT0751, git cannot use the repository, or it has no working files;
@@ -196,7 +196,10 @@ def _lines(stream: IO[bytes], revision: str) -> Iterator[bytes]:
 
 
 def _link_targets(repository: Path, commit: str, links: Iterable[str]) -> Iterator[_File]:
-    """Yield the files that links lead to within the commit, each at the path of its link."""
+    """Yield the file within the commit that each link leads to, with the path of the link.
+
+    Links that lead to no file in the commit are left out.
+    """
     # git reads one path from each line, so a path with a line feed cannot be looked up.
     paths = [path for path in links if "\n" not in path]
     if not paths:
@@ -251,7 +254,10 @@ def _missing_content(file: _File, revision: str) -> TltlError:
 
 
 def _run(folder: Path, *arguments: str, stdin: bytes = b"") -> bytes | None:
-    """Return the output of a git command, or None if it fails. Errors are as in :func:`_git`."""
+    """Return the output of a git command, or None if git exits with an error.
+
+    Error TLT0730 if git is not installed.
+    """
     completed = _git(folder, *arguments, stdin=stdin)
     return completed.stdout if completed.returncode == 0 else None
 

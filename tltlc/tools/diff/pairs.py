@@ -38,7 +38,11 @@ class SpecPair:
 
 @record
 class FileDiff:
-    """The differences between files A and B: pairs of specs, and the names of specs in only one."""
+    """The differences between the files A and B.
+
+    ``a`` and ``b`` are the names of the files. ``pairs`` are the specs that were compared.
+    ``only_a`` and ``only_b`` are the names of the specs that only one of the files has.
+    """
 
     a: str
     b: str
@@ -64,9 +68,9 @@ def diff_files(
     """Return the differences between the specs of A and of B.
 
     ``a`` and ``b`` are the name of each file and its automata. Specs are paired by name, in the order
-    of A. ``one_each`` pairs the first spec of A with the first of B, whatever their names.
-    ``by_name`` is as in :func:`tltlc.tools.diff.relation.compare`, ``declared`` as in
-    :func:`tltlc.tools.diff.assumed_exclusive.assumed_groups`.
+    of A. ``one_each`` pairs the first spec of A with the first of B, whatever their names. With
+    ``by_name``, atoms with the same name always count as the same atom. ``declared`` has what each
+    file declares, whether or not a spec uses it; None for an artefact.
 
     Errors: TLT0750 if a comparison takes more than ``work`` steps.
     """
@@ -99,9 +103,11 @@ def diff(
     *,
     feasible_only: bool = False,
 ) -> SpecPair:
-    """Return the differences between two specs. The arguments are those of :func:`compare`.
+    """Return the differences between two specs.
 
-    Errors are as in :func:`diff_files`.
+    The arguments are those of :func:`~tltlc.tools.diff.relation.compare`.
+
+    Errors: TLT0750 if the comparison takes more than ``work`` steps.
     """
     try:
         comparison = compare(a, b, by_name=by_name, feasible_only=feasible_only, work=work, exclusive=exclusive)

@@ -76,8 +76,8 @@ def sample_text(sample: Iterable[tuple[str, float]], types: Mapping[str, ValueTy
 def values_text(difference: ValueDifference) -> tuple[str, str]:
     """Return the values of an atom in A and in B at a sample, in words.
 
-    If the atom holds in only one version, both texts say whether it holds. If it has no value, the
-    text says why.
+    If the atom holds in only one version, each text also says whether it holds there. If it has no
+    value in a version, the text for this version says why.
     """
     first, second = (_value(difference, side) for side in (0, 1))
     return first, second

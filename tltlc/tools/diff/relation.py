@@ -38,12 +38,15 @@ class ExclusiveGroup:
 class Comparison:
     """How B relates to A.
 
-    ``stricter`` means that A accepts every trace that B accepts, but not vice versa. ``only_a`` is
-    a trace that only A accepts, and ``only_b`` a trace that only B accepts; over finite traces, they
-    are shortest. Each name in ``split_names`` is the name of two different atoms, which traces call
-    ``NAME of A`` and ``NAME of B``. ``impossible`` has conjunctions of literals for which no sample
-    was found. The comparison leaves out traces that contain one of them, and traces in which two
-    atoms of an ``exclusive`` group hold together.
+    ``stricter`` means that A accepts every trace that B accepts, but not vice versa; ``looser`` is
+    the opposite. ``incomparable`` means that each accepts a trace that the other does not.
+    ``only_a`` is a trace that only A accepts, and ``only_b`` a trace that only B accepts; over
+    finite traces, they are shortest.
+
+    Each name in ``split_names`` is the name of two different atoms, which traces call ``NAME of A``
+    and ``NAME of B``. ``impossible`` has conjunctions of literals for which no sample was found.
+    The comparison leaves out traces that contain one of them, and traces in which two atoms of an
+    ``exclusive`` group hold together.
 
     ``relation`` is None if one spec is over finite traces and the other over infinite traces. Then
     ``beginnings`` compares two other sets: the finite beginnings of traces after which A can still
@@ -124,9 +127,9 @@ def _own_groups(a: Fspa, b: Fspa) -> list[ExclusiveGroup]:
 
 
 def _merge(groups: Iterable[ExclusiveGroup], atoms: set[str]) -> tuple[ExclusiveGroup, ...]:
-    """Return the groups with only these atoms, without duplicates and groups of one atom.
+    """Return the groups, reduced to these atoms. Duplicates and groups of one atom are left out.
 
-    A group counts as declared in A, or B, if a group that contains it is declared there.
+    A reduced group counts as declared in A, or B, if a group that contains it is declared there.
     """
     restricted = [replace(group, names=tuple(name for name in group.names if name in atoms)) for group in groups]
     merged: dict[frozenset[str], ExclusiveGroup] = {}

@@ -36,9 +36,9 @@ class EarlierTree:
     is_revision: bool
 
     def old_path(self, path: str) -> str | None:
-        """Return the earlier version of a current file or folder, or None if there is none.
+        """Return the path of the earlier version of a current file or folder; None if it has none.
 
-        In a revision, it has the same path. In a folder, the path may lack its first parts:
+        In a revision, the earlier version has the same path. In a folder, the path may lack its first parts:
         ``OLD/specs/x.tltl`` or ``OLD/x.tltl`` for ``specs/x.tltl``. Error TLT0001 if permissions hide
         whether the path exists.
         """
@@ -134,9 +134,9 @@ def earlier_files(against: str, paths: Collection[str]) -> Iterator[EarlierTree]
 
 
 def _revision(name: str, folder: Path) -> tuple[Path, str]:
-    """Return the repository of a folder, and the commit of a revision in it.
+    """Return the repository of a folder, and the commit of the revision ``name`` in it.
 
-    Error TLT0751 if there is none.
+    Error TLT0751 if the folder is in no repository, or if the repository has no such revision.
     """
     repository = git.repository(folder)
     if repository is not None:

@@ -34,7 +34,8 @@ _BREAKING: Final[Mapping[Relation | None, str]] = {
 }
 """What to print about the beginnings of traces that violate A or B.
 
-The keys are the relations of the beginnings that do not violate them.
+The key is the relation between A and B that ``Comparison.beginnings`` has. It is about the
+beginnings that do not violate them.
 """
 
 _WIDTH: Final = 100

@@ -31,7 +31,7 @@ class TraceDescription:
 
 
 def trace_description(pair: SpecPair, trace: Trace) -> TraceDescription:
-    """Return a trace over the atoms of both specs, with the states that they reach."""
+    """Return a trace over the atoms of both specs, with the states that A and B reach on it."""
     letters = (*trace.prefix, *trace.cycle)
     split_names = pair.comparison.split_names
     a = _state(pair.a, [own_letter(letter, split_names, pair.a, OF_A) for letter in letters])

@@ -32,9 +32,10 @@ class Meaning:
     params: tuple[Param, ...]
 
     def value_at(self, sample: Mapping[str, float]) -> tuple[float | None, str]:
-        """Return the value at a sample in [-1, 1], as a monitor computes it, and an empty text.
+        """Return the value of the atom at a sample, as a monitor computes it, and an empty text.
 
-        If the expression has no value there, return None and the reason.
+        The value is in [-1, 1]. If the expression has no value at the sample, return None and the
+        reason.
         """
         from tltlc.resolve.range_proof.witness import value_at
 
@@ -126,7 +127,10 @@ def _common_box(one: Meaning, other: Meaning) -> tuple[dict[Variable, tuple[floa
 
 
 def _shorten(difference: ValueDifference, one: Meaning, other: Meaning, box: Box) -> ValueDifference:
-    """Return a difference of the same kind with fewer digits, or ``difference`` if none is found."""
+    """Return a difference at a sample whose values have fewer digits.
+
+    Its ``differs_in_truth`` is that of ``difference``. Return ``difference`` if none is found.
+    """
     for digits in (2, 3, 4, 6):
         sample = {name: float(f"{value:.{digits}g}") for name, value in difference.sample}
         is_inside = all(low <= sample[node.name] <= high for node, (low, high) in box.items())
