@@ -68,16 +68,16 @@ class Bits:
         return self.all & ~samples
 
     def after_first(self, samples: Samples) -> Samples:
-        """Return, of each trace, the samples after the first one that is in ``samples``.
+        """Return the samples of each trace that come after its first sample in ``samples``.
 
-        For a trace without any of ``samples``, return none.
+        For a trace without any of ``samples``, these are none.
         """
         return self.all & ~self._up_to_first(samples)
 
     def before_first(self, samples: Samples) -> Samples:
-        """Return, of each trace, the samples before the first one that is in ``samples``.
+        """Return the samples of each trace that come before its first sample in ``samples``.
 
-        For a trace without any of ``samples``, return all.
+        For a trace without any of ``samples``, these are all its samples.
         """
         return self.all & self._up_to_first(samples) & ~samples
 

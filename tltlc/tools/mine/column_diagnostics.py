@@ -54,10 +54,11 @@ class OddColumns:
 
 
 def odd_columns(traces: Sequence[Columns], *, truths: bool) -> tuple[OddColumns, ...]:
-    """Return the columns that at most half of the traces lack, grouped by these traces.
+    """Return the columns that some traces lack, but at most half of them.
 
-    With ``truths``, also return the columns with values other than `true` and `false` in fewer than
-    half of the traces.
+    With ``truths``, also return the columns that all traces have, but that have values other than
+    `true` and `false` in some traces, fewer than half. Columns that are odd in the same traces, for
+    the same reason, are in one group.
     """
     groups: dict[tuple[tuple[str, ...], bool], list[str]] = {}
     for name in dict.fromkeys(name for trace in traces for name in trace.columns):
@@ -71,7 +72,10 @@ def odd_columns(traces: Sequence[Columns], *, truths: bool) -> tuple[OddColumns,
 
 
 def first_names(names: Sequence[str]) -> str:
-    """Return the names in words. If there are many, list the first and say how many are left."""
+    """Return the names in words.
+
+    If there are more than ``_MOST_NAMED``, list the first ones and say how many more there are.
+    """
     if len(names) <= _MOST_NAMED:
         return name_list(names)
     first = names[: _MOST_NAMED - 1]

@@ -28,7 +28,7 @@ class TraceVerdict:
     """The verdict of an automaton on a trace.
 
     ``violated_at`` is the number of the first sample, counted from 1, after which the verdict is
-    ``violated``; None if there is none.
+    ``violated``; None if the trace does not violate the spec.
     """
 
     trace: LabelledTrace

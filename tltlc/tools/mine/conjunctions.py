@@ -21,10 +21,10 @@ POOL: Final = 60
 def conjunctions(
     clauses: Sequence[MinedClause], bits: Bits, least: int, most_atoms: int
 ) -> Iterator[list[Conjunction]]:
-    """Yield conjunctions of two or more clauses, in portions, many of which are empty.
+    """Yield conjunctions of two or more clauses, in portions.
 
-    Each portion takes a short time, so that the caller can stop after it. At least ``least`` traces
-    satisfy each conjunction, and it has at most ``most_atoms`` atoms.
+    Many portions are empty: each takes a short time, so that the caller can soon stop the search.
+    At least ``least`` traces satisfy each conjunction, and it has at most ``most_atoms`` atoms.
     """
     pool = _pool(clauses)
     beam: list[tuple[Conjunction, Verdicts]] = [((addition,), addition.accepts) for addition in pool]

@@ -17,10 +17,10 @@ MOST_EVENTS: Final = isqrt(WORK["mined pairs"])
 def best_events(evidence: Evidence, events: Sequence[str], most: int = MOST_EVENTS) -> list[str]:
     """Return the ``most`` atoms of ``events`` that best separate traces from counterexamples.
 
-    An atom separates them well in two cases, in which traces and counterexamples may change places:
+    An atom separates them well in two cases:
 
-    - it first holds early in the traces, and late in the counterexamples;
-    - it holds at every sample of the traces, but not of the counterexamples.
+    - it first holds early in the traces and late in the counterexamples, or vice versa;
+    - it holds at every sample of the traces but not of the counterexamples, or vice versa.
 
     The order of ``events`` is kept.
     """

@@ -8,7 +8,7 @@ from tltlc.core.record import record
 
 @record
 class LabelledTrace:
-    """A trace: its name, and the atoms that hold at each of its samples, at least one."""
+    """A trace: its name, and for each sample the atoms that hold. It has at least one sample."""
 
     name: str
     letters: tuple[Letter, ...]

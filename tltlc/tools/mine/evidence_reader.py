@@ -66,7 +66,10 @@ def read_evidence(
 def _contradictions(
     traces: Sequence[LabelledTrace], counterexamples: Sequence[LabelledTrace]
 ) -> tuple[Diagnostic, ...]:
-    """Return a warning if traces have the same letters as counterexamples; it names the first."""
+    """Return a warning if counterexamples have the same letters as traces.
+
+    The warning names the first of these counterexamples.
+    """
     names_by_letters = {trace.letters: trace.name for trace in traces}
     trace_names = {trace.name for trace in traces}
     contradicting = [trace for trace in counterexamples if trace.letters in names_by_letters]

@@ -80,6 +80,6 @@ def _samples(runs: Sequence[Run]) -> tuple[Letter, ...]:
 
 
 def _last_rise(letters: Sequence[Letter]) -> int:
-    """Return the index of the last sample at which an atom becomes true; 0 if there is none."""
+    """Return the index of the last sample at which an atom becomes true; 0 if no atom does."""
     rises = [place for place in range(1, len(letters)) if letters[place] - letters[place - 1]]
     return rises[-1] if rises else 0

@@ -59,7 +59,7 @@ def _separation(proposal: Proposal, *, made_up: bool) -> str:
 def _additions(clauses: Conjunction, bits: Bits) -> list[str]:
     """Return a sentence for each clause: how many counterexamples no other clause rejects.
 
-    There is none if the spec has only one clause.
+    The list is empty if the spec has only one clause.
     """
     if len(clauses) == 1:
         return []

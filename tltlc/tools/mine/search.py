@@ -113,7 +113,10 @@ class SpecSearch:
         return chosen
 
     def _events(self) -> list[str]:
-        """Return the atoms for which too few traces satisfy `keep ATOM`."""
+        """Return the atoms for which too few traces satisfy `keep ATOM`.
+
+        For the other atoms, this clause says all that is needed.
+        """
         bits = self.bits
         return [
             name

@@ -7,8 +7,8 @@ longer sequence than meet the shorter one, so a sequence that too few traces mee
 
 A step is an atom, two atoms at once, or a choice between two such steps. Two steps are combined
 into a choice only if too few traces meet the sequence with either one alone. A trace meets a
-sequence with a choice if it meets the sequence with either option. No step follows an equal one,
-because the next sample alone could meet it.
+sequence with a choice if it meets the sequence with either option. No step directly follows an
+equal one: if an atom just goes on holding, the next sample would meet the second step.
 """
 
 from __future__ import annotations

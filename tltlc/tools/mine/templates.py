@@ -14,7 +14,7 @@ from tltlc.tools.witness.blocks import atom_operand
 
 BOUNDED: Final = "bounded response"
 KINDS: Final = ("reach", "keep", "avoid", "invariant", "precedence", "until", "response", BOUNDED)
-"""The templates. A spec lists its clauses in this order, and it breaks ties in the search."""
+"""The templates. A spec lists its clauses in this order, which also breaks ties in the search."""
 
 LONGEST_BOUND: Final = 30
 """The most steps of a bounded response, because its automaton counts them."""
@@ -23,9 +23,9 @@ _LEAST_TRIGGERED: Final = 3
 
 
 def clauses(forwards: Bits, backwards: Bits, events: Collection[str], least: int) -> Iterator[list[MinedClause]]:
-    """Yield, in small portions, the instances of the templates that some trace really satisfies.
+    """Yield, in small portions, the instances of the templates that some trace satisfies.
 
-    To satisfy an instance only vacuously is not enough.
+    An instance is left out if no trace satisfies it other than vacuously.
 
     ``backwards`` has the same traces as ``forwards``, each in reverse order. Clauses about two
     atoms use only the atoms in ``events``: for an atom that always holds, `keep` is enough. The
@@ -83,7 +83,7 @@ def _pair(first: str, second: str, forwards: Bits, backwards: Bits, occurs: dict
 
 
 def _bounded(first: str, second: str, bits: Bits, least: int) -> Iterator[MinedClause]:
-    """Yield the bounded response. Its bound is the least that ``least`` traces or more satisfy.
+    """Yield the bounded response with the smallest bound that at least ``least`` traces meet.
 
     Nothing is yielded if the bound is 0 or above ``LONGEST_BOUND``, or if too few traces trigger the
     response.

@@ -239,7 +239,7 @@ def _predicates(bindings: Iterable[Binding]) -> Iterator[tuple[str, int]]:
 def _readable_atoms(
     module: Module, texts: Sequence[str], columns: Collection[str], options: ResolveOptions | None = None
 ) -> Vocabulary | None:
-    """Return the atoms of these texts whose signals are all columns, or None if there are none."""
+    """Return the atoms of these texts whose signals are all columns; None if no atom is left."""
     resolved = _resolve(module, texts, options)
     if resolved is None:
         return None
@@ -254,9 +254,9 @@ def _readable_atoms(
 
 
 def _resolve(module: Module, texts: Sequence[str], options: ResolveOptions | None) -> Vocabulary | None:
-    """Return the atoms of these texts, or None if there are none.
+    """Return the atoms of these texts.
 
-    Texts that are not atoms or that repeat an atom are left out.
+    Texts that are not atoms or that repeat an atom are left out. None if no text is left.
     """
     sources = [SourceFile("<atom>", text) for text in texts]
     while sources:
