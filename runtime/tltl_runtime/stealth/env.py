@@ -77,7 +77,7 @@ class GameEnv(gymnasium.Env[dict[str, Any], Any]):
     ) -> None:
         for name, value in (("level", level), ("variant", variant)):
             if not isinstance(value, (str, os.PathLike)):
-                raise TypeError(f"a {name} is named by a text, not by {value!r:.60}")
+                raise TypeError(f"the {name} must be a text or a path, not {value!r:.60}")
         self.level = load_level(os.fspath(level), variant)
         self._screen = Screen(self.level, render_mode, render_view, render_size)
         self.render_mode = render_mode
@@ -132,7 +132,7 @@ class GameEnv(gymnasium.Env[dict[str, Any], Any]):
         """
         self._check_open()
         if self.render_mode is None:
-            gymnasium.logger.warn("there are no pictures without a render mode: make(..., render_mode='rgb_array')")
+            gymnasium.logger.warn("there are no pictures without a render mode: use make(..., render_mode='rgb_array')")
         return self._screen.render(self.game.snapshot())
 
     def close(self) -> None:
@@ -168,8 +168,8 @@ def _action_list(action: Any) -> list[int]:
     array = np.asarray(action)
     numbers: list[int] = array.tolist()
     if array.dtype.kind not in "iub" or array.shape != (len(BRANCHES),) or tuple(numbers) not in ACTIONS:
-        expected = "five whole numbers of MultiDiscrete([3 3 2 2 2]): x, y, jump, crouch, sprint"
-        raise ValueError(f"an action is {expected}; {action!r:.80} is none")
+        expected = "expected five whole numbers of MultiDiscrete([3 3 2 2 2]): x, y, jump, crouch, sprint"
+        raise ValueError(f"{action!r:.80} is not an action: {expected}")
     return numbers
 
 

@@ -160,7 +160,7 @@ def _judge(env: gymnasium.Env[Any, Any]) -> TltlEnv:
     layer: gymnasium.Env[Any, Any] = env
     while not isinstance(layer, TltlEnv):
         if not isinstance(layer, gymnasium.Wrapper):
-            raise TypeError("an episode is recorded with the judgement of a spec: wrap the game in TltlEnv first")
+            raise TypeError("a recording needs a spec that judges the episode: wrap the game in TltlEnv first")
         layer = layer.env
     return layer
 

@@ -60,7 +60,7 @@ def test_a_failed_episode_gives_status_1(tltlc, tmp_path: Path) -> None:  # type
     result: Outcome = tltlc("demonstrate", "cover_and_hide", "--careless", "--spec", spec, "-o", str(tmp_path))
     assert result.status == 1
     assert result.out.startswith("seed 0: limit after 5 steps, 0.75 s, progress ")
-    reason = "  nowhere to go for the expert; limit after 5 steps, remaining: Reach seen"
+    reason = "  the expert has nowhere to go; limit after 5 steps, remaining: Reach seen"
     assert result.out.splitlines()[1] == reason
 
 
@@ -129,6 +129,6 @@ def test_an_unreachable_goal_is_reported_first(tltlc, tmp_path: Path) -> None:  
     )
     assert result.status == 1
     assert result.err == (
-        "warning[TLT0814]: nobody reaches `exit` in `navigation:v2`, so nobody can do what `far` asks\n"
+        "warning[TLT0814]: nobody can reach `exit` in `navigation:v2`, so nobody can do what `far` asks\n"
         "  help: the way ends at `corridor_block_2`, which is 2.2 m high\n"
     )

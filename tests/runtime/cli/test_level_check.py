@@ -30,7 +30,7 @@ def test_the_shipped_levels_supply_the_signals_of_their_specs(tltlc) -> None:  #
         assert (f"{name}:{variant} supplies " in result.err) == ((name, variant) != ("navigation", "v2"))
     assert result.err.count("error[") == 2
     assert (
-        "error[TLT0814]: nobody reaches `exit` in `navigation:v2`, so nobody can do what `navigation` asks"
+        "error[TLT0814]: nobody can reach `exit` in `navigation:v2`, so nobody can do what `navigation` asks"
         in result.err
     )
     assert "help: the way ends at `corridor_block_2`, which is 2.2 m high" in result.err
@@ -96,8 +96,8 @@ def test_a_jump_out_of_the_level_is_reported(tltlc, tmp_path: Path) -> None:  # 
     spec.write_text("import spatial entity exit spec leave { limit 200 steps reach near(exit) }")
     checked: Outcome = tltlc("check", spec, "--level", level)
     assert checked.status == 0
-    title = "a jump may lead out of `tower`: one gets 1.75 m high, and its bounds end at 2.5 m"
-    assert f"warning[TLT0806]: {title}\n  help: let them end above 2.73 m\n" in checked.err
+    title = "a jump may lead out of `tower`: the player gets 1.75 m high, and the bounds end at 2.5 m"
+    assert f"warning[TLT0806]: {title}\n  help: make the bounds end above 2.73 m\n" in checked.err
     result: Outcome = tltlc("demonstrate", level, "--spec", spec, "-o", tmp_path)
     assert result.status == 1
     assert result.err.startswith("error[TLT0806]: level tower v0, step ")

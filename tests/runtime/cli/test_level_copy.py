@@ -47,7 +47,7 @@ def test_the_vault_requires_hiding_and_opening_the_door(tltlc, inside: Path) -> 
         assert lever.min() <= 1.0
     level.write_text(level.read_text().replace("at = [10.5, 1.5, 0.0]", "at = [10.5, 9.2, 0.0]"))
     assert not compute_reach(load_level(str(level))).reaches("exit")
-    message = "`door` stays shut: it is opened by `lever`, which lies behind it"
+    message = "`door` stays shut: it is opened by `lever`, which is behind it"
     assert message in tltlc("check", "--level", level).err
 
 

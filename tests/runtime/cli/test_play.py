@@ -162,7 +162,7 @@ def test_without_a_screen_an_error_is_reported(tmp_path: Path, driver: str | Non
     command = [sys.executable, "-m", "tltlc", "play", "navigation"]
     done = subprocess.run(command, env=environment, cwd=tmp_path, capture_output=True, text=True, timeout=HANG_S)
     assert done.returncode == 1
-    assert done.stderr.startswith("error[TLT0830]: no window can be opened here")
+    assert done.stderr.startswith("error[TLT0830]: cannot open a window here")
     assert not list(tmp_path.iterdir())
 
 

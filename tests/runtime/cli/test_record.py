@@ -77,7 +77,7 @@ def test_failed_episodes_are_reported_and_not_kept(tltlc: TltlcFunction, here: P
     assert result.status == 1
     assert result.out.splitlines()[:2] == [
         "seed 0: limit after 2 steps, 0.30 s, progress 0.56, return -0.439: not kept (0 of 1)",
-        "  finds no way to `exit`; limit after 2 steps, remaining: Reach near(exit)",
+        "  the expert finds no way to `exit`; limit after 2 steps, remaining: Reach near(exit)",
     ]
     assert result.err.startswith("error[TLT0920]: the expert met `vain` in none of 20 episodes in a row")
     assert not (here / "none").exists()

@@ -386,7 +386,7 @@ def test_an_unreachable_goal_is_reported_first(interrupted: TltlcFunction) -> No
     result = interrupted("far.tltl", "--level", "navigation:v2", "--config", "small.toml")
     first, warned = result.err.splitlines()[:2]
     assert first == "training far on navigation v2, seed 0, in training/navigation-v2-far-0"
-    assert warned.startswith("warning[TLT0814]: nobody reaches `exit` in `navigation:v2`")
+    assert warned.startswith("warning[TLT0814]: nobody can reach `exit` in `navigation:v2`")
 
 
 @pytest.mark.usefixtures("here")

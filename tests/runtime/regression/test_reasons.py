@@ -91,7 +91,7 @@ def test_an_unreachable_entity_is_reported() -> None:
     # The exit cannot be reached either, since the path to it ends at the same obstacle.
     (sentence,) = obstacles(level, task.fspa)
     assert sentence == (
-        "nobody reaches `s2` in `navigation:v2`, so nobody can do what `navigation` asks: "
+        "nobody can reach `s2` in `navigation:v2`, so nobody can do what `navigation` asks: "
         "the way ends at `corridor_block_2`, which is 2.2 m high"
     )
     open_level = load_level("navigation", "v1")

@@ -65,7 +65,9 @@ def test_the_unchanged_levels_pass(judged: Mapping[str, CaseReport]) -> None:
 def test_a_closed_corridor_is_named(judged: Mapping[str, CaseReport]) -> None:
     report = judged["navigation:v2"]
     assert report.verdict == "fail"
-    assert any("nobody reaches `s2`" in reason and "ends at `corridor_block_2`" in reason for reason in report.reasons)
+    assert any(
+        "nobody can reach `s2`" in reason and "ends at `corridor_block_2`" in reason for reason in report.reasons
+    )
     stuck = "runs out of time in the corridor, mostly at `corridor_block_2`"
     ends = [finding for finding in report.explanation if finding.text.startswith(stuck)]
     assert [len(finding.episodes) for finding in ends] == [len(report.accounts)]

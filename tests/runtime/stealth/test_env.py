@@ -210,10 +210,10 @@ def test_a_level_without_a_spec_needs_one() -> None:
 @pytest.mark.parametrize(
     ("options", "text"),
     [
-        ({"level": 3}, "a level is named by a text, not by 3"),
-        ({"variant": 1}, "a variant is named by a text, not by 1"),
-        ({"variant": None}, "a variant is named by a text, not by None"),
-        ({"sensors": ["exit"]}, r"sensors are a mapping, e\.g\. {'entities': \['exit'\]}, not \['exit'\]"),
+        ({"level": 3}, "the level must be a text or a path, not 3"),
+        ({"variant": 1}, "the variant must be a text or a path, not 1"),
+        ({"variant": None}, "the variant must be a text or a path, not None"),
+        ({"sensors": ["exit"]}, r"sensors must be a mapping, e\.g\. {'entities': \['exit'\]}, not \['exit'\]"),
         ({"reward": "sparse"}, r"RewardOptions\(mode=\"sparse\"\), not 'sparse'"),
         ({"params": [1.0]}, "params map names to numbers"),
         ({"spec": ()}, "a spec is a path, a text or an automaton, not"),
@@ -225,5 +225,5 @@ def test_options_of_the_wrong_type_are_rejected(options: dict[str, Any], text: s
 
 
 def test_an_entity_cannot_be_sensed_twice() -> None:
-    with pytest.raises(TltlError, match="TLT0815: `exit` is to be sensed twice"):
+    with pytest.raises(TltlError, match="TLT0815: the sensors name `exit` twice"):
         make_env("navigation", sensors={"entities": ["exit", "exit"]})

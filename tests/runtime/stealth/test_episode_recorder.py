@@ -128,7 +128,7 @@ def test_other_environments_cannot_be_recorded() -> None:
 
 def test_an_invalid_action_is_not_recorded(recorder: RecordEpisode) -> None:
     recorder.reset()
-    with pytest.raises(ValueError, match="an action is five whole numbers"):
+    with pytest.raises(ValueError, match="is not an action: expected five whole numbers"):
         recorder.step([3, 0, 0, 0, 0])
     assert len(recorder.episode.actions) == 0
 

@@ -33,7 +33,7 @@ def test_a_missing_wall_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
         begin(env, complete, rng, anywhere=anywhere)  # type: ignore[arg-type]
 
     monkeypatch.setattr(safety, "_begin_episode", begin_with_complete_level)
-    with pytest.raises(WorldError, match="nothing is hit on its side"):
+    with pytest.raises(WorldError, match="a ray does not hit its side"):
         safety.play_random_steps("navigation", "v0", 10)
 
 

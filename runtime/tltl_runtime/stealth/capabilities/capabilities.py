@@ -38,16 +38,16 @@ def check_supply(level: StealthLevel, fspa: Fspa, places: SpecPlaces) -> list[Di
     diagnostics = [*_check_signals(level, fspa, places)]
     if fspa.level is not None and fspa.level != level.name:
         title = f"`{fspa.name}` is made for the level `{fspa.level}`, not for `{level.name}`"
-        help_ = f"write `level {level.name}` in the spec, where it is made for that one"
+        help_ = f"if the spec is meant for `{level.name}`, write `level {level.name}` in it"
         labels = places.level()
         if labels and is_packaged(labels[0].source.name):
             help_ = (
                 f"this spec comes with tltlc: `tltlc new FOLDER --level {fspa.level}` copies it with its level; "
-                f"write `level {level.name}` in the copy, and put that beside `{level.name}.toml`"
+                f"write `level {level.name}` in the copy, and put the copy beside `{level.name}.toml`"
             )
         diagnostics.append(Diagnostic("TLT0813", title, labels, help_, "warning"))
     if fspa.clock_s is not None and not isclose(fspa.clock_s, DECISION, rel_tol=1e-9):
-        title = f"`{fspa.name}` is sampled every {fspa.clock_s:g} s, and a step of the game takes {DECISION:g} s"
+        title = f"`{fspa.name}` is sampled every {fspa.clock_s:g} s, but a step of the game takes {DECISION:g} s"
         help_ = f"write `clock {DECISION:g} s` in the specification"
         diagnostics.append(Diagnostic("TLT0617", title, places.clock(), help_))
     try:
@@ -100,9 +100,9 @@ def _check_declaration(
     if needs_bool or specs.TYPES[signal.type] != specs.TYPES[offer.type]:
         title = (
             f"`{signal.name}` is {_with_article(signal.type)} in the spec, "
-            f"and the level `{level.name}` gives {_with_article(offer.type)}"
+            f"but the level `{level.name}` supplies {_with_article(offer.type)}"
         )
-        help_ = f"declare it as {_with_article(offer.type)}, or give the signal that you mean another name"
+        help_ = f"declare it as {_with_article(offer.type)}, or rename it if you mean another signal"
         yield Diagnostic("TLT0812", title, places.declaration(signal.name), help_)
         return
     low, high = _ends(signal.low, signal.high)
@@ -110,9 +110,9 @@ def _check_declaration(
     if least < low or most > high:
         title = (
             f"`{signal.name}` is in {monitors.range_text(signal.low, signal.high)} in the spec, "
-            f"and in {monitors.range_text(*_rounded_range(offer))} in the level `{level.name}`"
+            f"but in {monitors.range_text(*_rounded_range(offer))} in the level `{level.name}`"
         )
-        help_ = "widen its range: a value outside counts as the nearest one inside"
+        help_ = "widen its range: a value outside it counts as the nearest value inside"
         yield Diagnostic("TLT0812", title, places.declaration(signal.name), help_, "warning")
 
 
@@ -120,9 +120,9 @@ def _hint(signal: Signal, level: StealthLevel, offered: dict[str, OfferedSignal]
     if signal.arguments and signal.base in _KIND_OF:
         kind = _KIND_OF[signal.base]
         known = [entity.name for entity in (level.switches if kind == "switch" else level.barriers)]
-        return f"it is for a {kind}: {suggestion(', '.join(signal.arguments), known)}"
+        return f"its argument must be a {kind}: {suggestion(', '.join(signal.arguments), known)}"
     known_names = suggestion(signal.name, offered, signal_list(level))
-    return f"{known_names}\nunder `[signals]` a level gives its signals further names"
+    return f"{known_names}\na level can give its signals other names under `[signals]`"
 
 
 def _ends(low: float | None, high: float | None) -> tuple[float, float]:

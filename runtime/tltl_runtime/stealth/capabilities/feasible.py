@@ -32,7 +32,7 @@ def check_reach(level: StealthLevel, reach: Reach, fspa: Fspa, places: SpecPlace
     obstacle_search = _ObstacleSearch(level, reach)
     diagnostics = []
     for name in unreachable:
-        title = f"nobody reaches `{name}` in `{level.name}:{level.variant}`"
+        title = f"nobody can reach `{name}` in `{level.name}:{level.variant}`"
         title += "" if feasible else f", so nobody can do what `{fspa.name}` asks"
         severity: Severity = "warning" if feasible else "error"
         diagnostics.append(Diagnostic("TLT0814", title, places.entity(name), obstacle_search.describe(name), severity))
@@ -49,9 +49,10 @@ def check_height(level: StealthLevel, reach: Reach) -> list[Diagnostic]:
     if jump <= top:
         return []
     title = (
-        f"a jump may lead out of `{level.name}`: one gets {reach.highest:.3g} m high, and its bounds end at {top:g} m"
+        f"a jump may lead out of `{level.name}`: "
+        f"the player gets {reach.highest:.3g} m high, and the bounds end at {top:g} m"
     )
-    return [Diagnostic("TLT0806", title, help=f"let them end above {jump + 0.01:.2f} m", severity="warning")]
+    return [Diagnostic("TLT0806", title, help=f"make the bounds end above {jump + 0.01:.2f} m", severity="warning")]
 
 
 def reach_warnings(level: StealthLevel, fspa: Fspa) -> list[Diagnostic]:
@@ -159,7 +160,7 @@ class _ObstacleSearch:
 
         If no single obstacle does, or if the search is too long, say how near the player gets.
         """
-        nearest = f"one gets no nearer to it than {self._reach.distances[entity]:.1f} m"
+        nearest = f"the player gets no nearer to it than {self._reach.distances[entity]:.1f} m"
         try:
             return self._describe_barrier(entity) or self._describe_high_solid(entity) or nearest
         except SpaceBudgetError:
@@ -176,7 +177,7 @@ class _ObstacleSearch:
             switches = barrier.opened_by or unlocked_by[barrier.name]
             missing = next((name for name in switches if name not in self._reach.switches), None)
             if barrier.kind == "solid" and missing and self._is_behind(entity, barrier.name):
-                location = "which lies behind it" if self._is_behind(missing, barrier.name) else "which nobody reaches"
+                location = "which is behind it" if self._is_behind(missing, barrier.name) else "which nobody can reach"
                 return f"`{barrier.name}` stays shut: it is opened by `{missing}`, {location}"
         return ""
 

@@ -103,7 +103,7 @@ def compute_reach(
         return _compute_reach(level, lift, without, Budget(fileio.limits.WORK["cells of reachable space"]))
     except SpaceBudgetError:
         title = f"it takes too long to find out what can be reached in `{level.name}:{level.variant}`"
-        help_ = "make the level smaller, or leave out barriers whose switches lie behind other barriers"
+        help_ = "make the level smaller, or leave out barriers whose switches are behind other barriers"
         raise TltlError([Diagnostic("TLT0006", title, help=help_)]) from None
 
 

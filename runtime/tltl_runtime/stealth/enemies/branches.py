@@ -48,7 +48,7 @@ def branch(name: str, *, rank: int, added: bool = False) -> Callable[[Callable[[
 
     def register(make: Callable[[], Node]) -> Callable[[], Node]:
         if name in _BRANCHES:
-            raise ValueError(f"there is a branch {name!r} already")
+            raise ValueError(f"the branch {name!r} already exists")
         _BRANCHES[name] = Branch(name, rank, added, make())
         return make
 
@@ -67,7 +67,7 @@ def tree(branches: tuple[str, ...]) -> Node:
     """
     for name in branches:
         if name not in added_branches():
-            raise ValueError(f"no branch {name!r} can be added to an enemy: there are {', '.join(added_branches())}")
+            raise ValueError(f"{name!r} is not an optional branch: there are {', '.join(added_branches())}")
     chosen = [branch for branch in _BRANCHES.values() if not branch.added or branch.name in branches]
     return selector(*(branch.node for branch in sorted(chosen, key=lambda branch: (branch.rank, branch.name))))
 

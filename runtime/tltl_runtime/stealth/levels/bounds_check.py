@@ -51,7 +51,7 @@ def _check_bounds(
         yield Diagnostic("TLT0806", f"`{name}` is outside the level's bounds", places.position_labels(name), help_)
     player = _player_box(level)
     if not _is_inside(player, level.bounds):
-        help_ = f"the player takes from {point_text(player.low)} to {point_text(player.high)}, {bounds}"
+        help_ = f"the player reaches from {point_text(player.low)} to {point_text(player.high)}, {bounds}"
         yield Diagnostic("TLT0806", "the start is outside the level's bounds", (start,), help_)
 
 
@@ -65,7 +65,7 @@ def _check_start(level: StealthLevel, boxes: _Boxes, places: NamedParts, start: 
     ]
     for name, box in (*boxes, *begins):
         if _overlaps(_player_box(level), box):
-            help_ = "move one of them, or lessen the start's `spread`: the player is 0.6 m wide and 1.8 m high"
+            help_ = "move one of them, or reduce the start's `spread`: the player is 0.6 m wide and 1.8 m high"
             yield Diagnostic("TLT0807", f"the start is inside `{name}`", (start, *places.position_labels(name)), help_)
 
 
@@ -73,7 +73,7 @@ def _check_goals(goals: list[tuple[str, Point]], solids: _Boxes, places: NamedPa
     """Yield TLT0807 for each switch or exit that is inside a solid, with the first such solid."""
     for goal, point in goals:
         if name := _first_overlap(_body_box(point, 0.01, 0.1), solids):
-            title = f"`{goal}` is inside `{name}`, where nobody reaches it"
+            title = f"`{goal}` is inside `{name}`, where nobody can reach it"
             yield Diagnostic("TLT0807", title, places.position_labels(goal, name), "move one of them")
 
 
@@ -83,7 +83,7 @@ def _check_routes(level: StealthLevel, solids: _Boxes, places: NamedParts) -> It
         for point in enemy.route:
             if name := _first_overlap(_body_box(point, RADIUS), solids):
                 title = f"`{enemy.name}` cannot walk to {point_text(point)}: `{name}` is there"
-                help_ = f"points of a route keep {RADIUS} m away from what stands in the level"
+                help_ = f"keep the points of a route at least {RADIUS} m away from everything that stands in the level"
                 yield Diagnostic("TLT0807", title, places.position_labels(enemy.name, name), help_)
 
 

@@ -23,9 +23,9 @@ def check_names(names: Iterable[str], places: NamedParts) -> list[Diagnostic]:
             re.fullmatch(r"[A-Za-z_]\w*", name, re.ASCII) and not syntax.parse(SourceFile("", f"entity {name}\n"))[1]
         )
         if not valid:
-            help_ = "a name is one word of letters, digits and _, and no word of the language, e.g. `north_door`"
+            help_ = "use one word of letters, digits and _ that is not a word of the language, e.g. `north_door`"
             diagnostics.append(
-                Diagnostic("TLT0804", f"no spec could speak of `{name}`", places.name_labels(name), help_)
+                Diagnostic("TLT0804", f"no spec can use the name `{name}`", places.name_labels(name), help_)
             )
     return diagnostics
 
@@ -55,6 +55,6 @@ def check_references(level: StealthLevel, places: NamedParts) -> list[Diagnostic
         openers = bool(barrier.opened_by) + unlocked[barrier.name]
         if openers != 1:
             title = f"{'two things open' if openers else 'nothing opens'} the barrier `{barrier.name}`"
-            help_ = "name its switches in `opened_by`, or the barrier in one `[[unlock]]`"
+            help_ = "name its switches in `opened_by`, or name the barrier in one `[[unlock]]`"
             diagnostics.append(Diagnostic("TLT0805", title, places.name_labels(barrier.name), help_))
     return diagnostics

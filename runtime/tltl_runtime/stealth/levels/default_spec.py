@@ -43,7 +43,7 @@ def read_default_spec(table: CheckedTable, level: Path) -> str:
         return ""
     specs = _spec_names(path)
     if name not in specs:
-        title = f"`{file}` holds no spec `{name}`"
+        title = f"`{file}` contains no spec `{name}`"
         table.log.append(Diagnostic("TLT0805", title, (label,), suggestion(name, specs)))
     return f"{path}:{name}"
 

@@ -108,9 +108,9 @@ def level_path(name_or_path: str) -> Path:
     title, help_ = f"there is no level `{name_or_path}`", suggestion(name_or_path, level_names())
     if name_or_path.endswith((".tltl", ".json")):
         title = f"`{name_or_path}` is a spec, not a level"
-        help_ = "a level is a `.toml` file, or one of those that `tltlc list levels` shows"
+        help_ = "name a `.toml` file, or a level that `tltlc list levels` shows"
     elif "+" in name_or_path and (level := name_or_path.partition("+")[0]) in level_names():
-        help_ = f"overlays are added to a variant: `{name_or_path.replace(level, f'{level}:v0', 1)}`"
+        help_ = f"add overlays to a variant: `{name_or_path.replace(level, f'{level}:v0', 1)}`"
     elif fileio.is_file(f"{name_or_path}.toml"):
         help_ = f"did you mean the file `{name_or_path}.toml`?"
     raise TltlError([Diagnostic("TLT0800", title, help=help_)])
@@ -165,7 +165,7 @@ class _Loading:
         self._check_count(solids, movers, switches, barriers, exits, enemies)
         if enemies and is_too_large(bounds):
             title = f"the bounds of the level `{self.path.stem}` are too large for enemies"
-            help_ = "let them hold 250 m by 250 m at most, or leave the enemies out"
+            help_ = "make them cover at most 250 m by 250 m, or leave out the enemies"
             raise TltlError([Diagnostic("TLT0006", title, (table.label_of("bounds"),), help_)])
         level = StealthLevel(
             name=self.path.stem,
@@ -208,10 +208,8 @@ class _Loading:
         """
         points = sum(len(getattr(thing, "path", ())) + len(getattr(thing, "route", ())) for thing in chain(*groups))
         if sum(map(len, groups)) + points > (fileio.limits.LEVEL.values or 0):
-            title = f"the level `{self.path.stem}` holds more than {fileio.limits.LEVEL.values:,} things"
-            help_ = (
-                "leave some out: steps of stairs and points of ways count, too, as often as a part with them is used"
-            )
+            title = f"the level `{self.path.stem}` contains more than {fileio.limits.LEVEL.values:,} things"
+            help_ = "leave some out: steps of stairs and points of paths count, too, in each use of a part"
             raise TltlError([Diagnostic("TLT0006", title, (self.root.label,), help_)])
 
     def _read(self, path: Path, name: str) -> Entry:
@@ -228,12 +226,12 @@ class _Loading:
             return {"v0": ()}
         overlays = {key: table.names(key) for key in table.entries}
         if not overlays:
-            help_ = "give one, e.g. `v0 = []`, or leave `[variants]` out"
+            help_ = "write one, e.g. `v0 = []`, or leave out `[variants]`"
             self.log.append(Diagnostic("TLT0803", "the level has no variants", (table.label,), help_))
         for key in overlays:
             if not fileio.is_plain_name(key):
-                title = f"no command could speak of the variant `{key}`"
-                help_ = "a name is one word of letters, digits and _, e.g. `very_hard`"
+                title = f"no command can name the variant `{key}`"
+                help_ = "use one word of letters, digits and _, e.g. `very_hard`"
                 self.log.append(Diagnostic("TLT0804", title, (table.label_of(key),), help_))
         self.check()
         return overlays
@@ -246,8 +244,10 @@ class _Loading:
         box = parts.box(table)
         table.report_unknown_keys()
         if len(self.log) == before and not box.low[2] < 0.0 < box.high[2]:
-            help_ = "expected the floor, at height 0, inside: `at` below 0, `at` and `size` above it"
-            self.log.append(Diagnostic("TLT0803", "the bounds hold no floor", (table.label_of("at"),), help_))
+            help_ = "the floor is at height 0: `at` must be below it, and `at` and `size` together above it"
+            self.log.append(
+                Diagnostic("TLT0803", "the bounds do not contain the floor", (table.label_of("at"),), help_)
+            )
         return box
 
     def _assets(self, variant: str, added: Sequence[str]) -> tuple[list[CheckedTable], dict[str, CheckedTable]]:
@@ -270,7 +270,7 @@ class _Loading:
         overlays += [(name, self._overlay_path(name)) for name in added[: fileio.limits.OVERLAYS + 1]]
         if len(overlays) > fileio.limits.OVERLAYS:
             title = f"a variant of the level `{self.path.stem}` has more than {fileio.limits.OVERLAYS} overlays"
-            raise TltlError([Diagnostic("TLT0006", title, (named,), "put their changes together in one overlay")])
+            raise TltlError([Diagnostic("TLT0006", title, (named,), "combine their changes in one overlay")])
         for name, path in overlays:
             if path is not None:
                 change = self._read(path, f"overlays/{path.name}")

@@ -29,22 +29,22 @@ def _faults(level: StealthLevel) -> Iterator[str]:
     boxes = [("the bounds", level.bounds)]
     boxes += [(f"the solid `{solid.name}`", solid.box) for solid in level.solids]
     boxes += [(f"the barrier `{barrier.name}`", barrier.box) for barrier in level.barriers]
-    yield from (f"{name}: no box within {FARTHEST:g} m" for name, box in boxes if not _is_box(box))
+    yield from (f"{name}: not a box within {FARTHEST:g} m" for name, box in boxes if not _is_box(box))
     for mover in level.movers:
         valid = mover.path and all(map(_is_place, mover.path)) and min(mover.size) >= _THINNEST and mover.speed > 0.0
         if not valid or min(mover.pause, mover.offset) < 0.0:
-            yield f"the mover `{mover.name}` has no way"
+            yield f"the mover `{mover.name}` has an invalid path, size, speed, pause or offset"
     if level.enemies and is_too_large(level.bounds):
         yield "the bounds are too large for enemies"
     for enemy in level.enemies:
         if not enemy.route or not all(map(_is_place, enemy.route)):
-            yield f"the enemy `{enemy.name}` has no route"
+            yield f"the enemy `{enemy.name}` has no valid route"
         unknown = set(enemy.kind.branches) - set(added_branches())
-        yield from (f"the enemy `{enemy.name}` has a branch `{name}`, which there is not" for name in sorted(unknown))
+        yield from (f"the enemy `{enemy.name}` has a branch `{name}`, which does not exist" for name in sorted(unknown))
     places = [level.start.position]
     places += [switch.position for switch in level.switches]
     places += [exit_.position for exit_ in level.exits]
-    yield from (f"{place} is no place within {FARTHEST:g} m" for place in places if not _is_place(place))
+    yield from (f"{place} is not a place within {FARTHEST:g} m" for place in places if not _is_place(place))
     yield from _wrong_references(level)
 
 

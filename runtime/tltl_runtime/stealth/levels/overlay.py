@@ -27,7 +27,7 @@ def apply(overlay: Tree, assets: dict[str, Tree], log: list[Diagnostic]) -> dict
         if key == "doc" and isinstance(entry.value, str):
             continue
         if key not in ("change", "add") or not isinstance(entry.value, dict):
-            help_ = "an overlay has `doc`, `[change.ASSET]` and `[add.ASSET]`"
+            help_ = "use `doc`, `[change.ASSET]` or `[add.ASSET]`"
             log.append(Diagnostic("TLT0802", f"an overlay has no key `{key}` of this kind", (entry.label,), help_))
             continue
         for name, part in entry.value.items():

@@ -72,7 +72,7 @@ class NamedParts:
         label = table.label_of("name")
         if name in self.names:
             title = f"two things are called `{name}`"
-            table.log.append(Diagnostic("TLT0804", title, (label, self.names[name]), "give one another `name`"))
+            table.log.append(Diagnostic("TLT0804", title, (label, self.names[name]), "give one of them another `name`"))
         self.names.setdefault(name, label)
         self.positions.setdefault(name, table.label_of(position_key))
 
@@ -135,10 +135,10 @@ def _stairs(table: CheckedTable, name: str, shift: Point) -> list[Solid]:
     if min(run) > 1e-9 or run[axis] / steps < 0.2:
         problem = "along x or y, with steps at least 0.2 m deep"
     elif not 0.0 < rise <= _MAX_RISE + 1e-9:
-        problem = f"upwards, with steps of at most {_MAX_RISE} m (here {rise:.3g} m)"
+        problem = f"that go upwards, with steps at most {_MAX_RISE} m high (here {rise:.3g} m)"
     if problem:
         label = table.label_of("to")
-        table.log.append(Diagnostic("TLT0803", f"nobody walks up `{name}`", (label,), f"expected stairs {problem}"))
+        table.log.append(Diagnostic("TLT0803", f"nobody can walk up `{name}`", (label,), f"expected stairs {problem}"))
         return []
     boxes = []
     for number in range(steps):
@@ -202,8 +202,8 @@ def unlocks(table: CheckedTable, places: NamedParts) -> list[Unlock]:
     for item in table.tables("unlock"):
         unlock = Unlock(item.text("switch"), item.names("barriers"))
         if len(set(unlock.barriers)) < max(2, len(unlock.barriers)):
-            help_ = "expected two or more barriers, each once"
-            title = "nothing is left to chance here"
+            help_ = "name two or more barriers, each of them only once"
+            title = "an `[[unlock]]` needs several different barriers"
             item.log.append(Diagnostic("TLT0803", title, (item.label_of("barriers"),), help_))
         places.refer("switch", item, "switch", (unlock.switch,))
         places.refer("barrier", item, "barriers", unlock.barriers)

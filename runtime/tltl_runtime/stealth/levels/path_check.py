@@ -40,7 +40,7 @@ def _mover_warnings(mover: Mover, level: StealthLevel, places: NamedParts) -> It
     stops = [*mover.path, mover.path[0]] if mover.closed else mover.path
     if any(dist(start, end) < _EPSILON for start, end in pairwise(stops)):
         title = f"two neighbouring points in the path of `{mover.name}` are the same"
-        yield _warning(title, places, mover.name, help_="for a rest, give a `pause`; else move one of the points")
+        yield _warning(title, places, mover.name, help_="use `pause` for a rest, or move one of the points")
     for solid in level.solids:
         # The box meets the solid if its centre is inside the solid grown by half the box's size.
         grown = (
@@ -49,7 +49,7 @@ def _mover_warnings(mover: Mover, level: StealthLevel, places: NamedParts) -> It
         )
         # Only the player stops a mover, so a door may slide into a wall; more often this is a mistake.
         if any(is_blocked(start, end, [cast(Corners, grown)]) for start, end in pairwise(stops)):
-            help_ = "where that is not meant, shorten its `path`, or move one of them"
+            help_ = "if you do not want this, shorten its `path`, or move one of them"
             yield _warning(f"`{mover.name}` runs into `{solid.name}`", places, mover.name, solid.name, help_=help_)
 
 
@@ -57,16 +57,16 @@ def _enemy_warnings(enemy: Enemy, level: StealthLevel, places: NamedParts) -> It
     distance = max(0.0, dist(enemy.route[0], level.start.position) - level.start.spread)
     if distance <= enemy.kind.attack_range:
         title = f"`{enemy.name}` begins where it can hit the player at once, {distance:.2g} m from the start"
-        help_ = "let its `route` begin elsewhere, out of its sight"
+        help_ = "start its `route` elsewhere, where it does not see the player"
         yield _warning(title, places, enemy.name, help_=help_)
     for point in enemy.route[1:]:
         if not _can_walk(level, enemy.route[0], point, shut=False):
-            title = f"`{enemy.name}` has no way to {point_text(point)}"
-            help_ = "it would walk as near as it can; leave the point out, or give it a way 0.7 m wide"
+            title = f"`{enemy.name}` cannot walk to {point_text(point)}"
+            help_ = "it would walk as near as it can; leave out the point, or make a way that is 0.7 m wide"
             yield _warning(title, places, enemy.name, help_=help_)
         elif not _can_walk(level, enemy.route[0], point, shut=True):
-            title = f"`{enemy.name}` has no way to {point_text(point)} until a barrier opens"
-            help_ = "it walks as near as it can; where that is not meant, leave the point out"
+            title = f"`{enemy.name}` cannot walk to {point_text(point)} until a barrier opens"
+            help_ = "it walks as near as it can; if you do not want this, leave out the point"
             yield _warning(title, places, enemy.name, help_=help_)
 
 

@@ -34,7 +34,7 @@ class SemanticMap:
     def __init__(self, level: StealthLevel, sensor: MapSensor | None = None) -> None:
         sensor = level.sensors.map if sensor is None else sensor
         if sensor is None:
-            raise ValueError(f"level {level.name} declares no map among its sensors")
+            raise ValueError(f"the sensors of the level {level.name} include no map")
         self.sensor = sensor
         self.voxels = Voxels(level, sensor)
         self._barriers = len(level.barriers)

@@ -34,7 +34,7 @@ def choose_sensors(level: StealthLevel, choice: SensorChoice | None = None) -> S
     if choice is None:
         return level.sensors
     if not isinstance(choice, (Sensors, Mapping)):
-        raise TypeError(f"sensors are a mapping, e.g. {{'entities': ['exit']}}, not {choice!r:.60}")
+        raise TypeError(f"sensors must be a mapping, e.g. {{'entities': ['exit']}}, not {choice!r:.60}")
     log: list[Diagnostic] = []
     sensors = choice if isinstance(choice, Sensors) else _read(level, choice, log)
     _check(level, sensors, log)
@@ -102,7 +102,7 @@ def _check(level: StealthLevel, sensors: Sensors, log: list[Diagnostic]) -> None
     _check_names(sensors.variables, readers(level), f"the level `{level.name}` has no signal", log, signal_list(level))
     if (map_ := sensors.map) is None:
         return
-    _check_names(map_.types, CELL_TYPES, "a map knows no type", log)
+    _check_names(map_.types, CELL_TYPES, "a map has no type", log)
     if not (isfinite(map_.cell) and CELL_WIDTH[0] <= map_.cell <= CELL_WIDTH[1]):
         log.append(_wrong_value("`cell`", map_.cell, _CELL))
     if not MAP_EXTENT[0] <= map_.extent <= MAP_EXTENT[1] or map_.extent % 2 == 0:
@@ -114,7 +114,7 @@ def _check_names(
 ) -> None:
     names, known_names = tuple(names), tuple(known)
     twice = sorted({name for name in names if names.count(name) > 1})
-    log += [Diagnostic("TLT0815", f"`{name}` is to be sensed twice", help="name it once") for name in twice]
+    log += [Diagnostic("TLT0815", f"the sensors name `{name}` twice", help="name it once") for name in twice]
     log += [
         Diagnostic("TLT0815", f"{title} `{name}`", help=suggestion(name, known_names, listed))
         for name in dict.fromkeys(names)
@@ -123,4 +123,4 @@ def _check_names(
 
 
 def _wrong_value(subject: str, value: object, expected: str) -> Diagnostic:
-    return Diagnostic("TLT0815", f"wrong value for {subject} of what is sensed: {value!r:.40}", help=expected)
+    return Diagnostic("TLT0815", f"wrong value for {subject} of the sensors: {value!r:.40}", help=expected)

@@ -68,7 +68,7 @@ class Voxels:
     def __init__(self, level: StealthLevel, sensor: MapSensor) -> None:
         unknown = [name for name in sensor.types if name not in CELL_TYPES]
         if unknown:
-            raise ValueError(f"a map knows no type {unknown[0]!r}: it can tell {', '.join(CELL_TYPES)}")
+            raise ValueError(f"a map has no type {unknown[0]!r}: there are {', '.join(CELL_TYPES)}")
         self.level = level
         self.ids = {name: 1 + index for index, name in enumerate(sensor.types)}
         self.margin = sensor.extent // 2

@@ -93,11 +93,15 @@ def _limit_cause(episode: Episode) -> Cause:
     if "expert" in episode.player:
         unreachable = _unreachable_goals(episode)
         if unreachable is None:
-            return Cause("no way", (), last.time, last.player.position, f"nowhere to go for the expert; {remaining}")
+            return Cause("no way", (), last.time, last.player.position, f"the expert has nowhere to go; {remaining}")
         if unreachable:
             names = " or ".join(f"`{name}`" for name in unreachable)
             return Cause(
-                "no way", unreachable, last.time, last.player.position, f"finds no way to {names}; {remaining}"
+                "no way",
+                unreachable,
+                last.time,
+                last.player.position,
+                f"the expert finds no way to {names}; {remaining}",
             )
     return Cause("limit", (), last.time, last.player.position, remaining)
 

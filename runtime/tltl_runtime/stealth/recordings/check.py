@@ -28,7 +28,7 @@ def check(episode: Episode) -> tuple[Diagnostic, ...]:
     step, (name, recorded, recomputed) = first
     title = f"step {step} of the recording does not follow from its signals: {name} was recorded as "
     help_ = "the recording was changed, or comes from another version of tltlc"
-    return (Diagnostic("TLT0823", f"{title}{recorded}, and is {recomputed}", help=help_),)
+    return (Diagnostic("TLT0823", f"{title}{recorded}, but is {recomputed}", help=help_),)
 
 
 def resimulate(episode: Episode) -> int | None:
@@ -74,8 +74,8 @@ def check_replay(episode: Episode) -> tuple[Diagnostic, ...]:
     row = resimulate(episode)
     if row is None:
         return ()
-    when = f"at step {row}" if row else "from the start"
-    title = f"played again from seed {episode.seed}, the episode is another one {when}"
+    when = f"at step {row}" if row else "at the start"
+    title = f"played again from seed {episode.seed}, the episode is different {when}"
     current = versions()
     changed = [
         f"{name} {recorded} (now {current.get(name)})"
@@ -85,7 +85,7 @@ def check_replay(episode: Episode) -> tuple[Diagnostic, ...]:
     help_ = (
         f"it was recorded with {', '.join(changed)}"
         if changed
-        else "the game's code has changed since, or the recording"
+        else "the game's code or the recording has changed since"
     )
     return (Diagnostic("TLT0824", title, help=help_),)
 
@@ -100,7 +100,7 @@ def _differences(episode: Episode) -> Iterator[tuple[int, _Difference]]:
     count = len(episode.actions)
     verdict = episode.fspa.states[0].verdict
     if episode.states[0] or episode.progress[0]:
-        yield 0, ("the start", "another", "state 0 without progress")
+        yield 0, ("the start", "another one", "state 0 without progress")
     for row in range(1, count + 1):
         if monitor.done:
             yield row, ("its end", "not yet reached", f"step {row - 1}")

@@ -191,7 +191,7 @@ def _read_archive(data: bytes, name: str) -> dict[str, bytes]:
     except ArchiveError as error:
         raise _ERRORS.unreadable_error(name, str(error)) from None
     if "meta" not in members:
-        raise _ERRORS.unreadable_error(name, "it is an archive of something else")
+        raise _ERRORS.unreadable_error(name, "it is another kind of archive")
     return members
 
 
@@ -202,14 +202,14 @@ def _read_meta(members: Mapping[str, bytes], name: str) -> Meta:
     except (ValueError, RecursionError):
         raise _ERRORS.broken_error(name, "`meta` is not JSON") from None
     if not isinstance(document, dict) or document.get("format") != FORMAT:
-        raise _ERRORS.unreadable_error(name, "it is an archive of something else")
+        raise _ERRORS.unreadable_error(name, "it is another kind of archive")
     _ERRORS.check_version(name, document.get("version"), VERSION)
     try:
         meta = from_json(Meta, document, "meta")
     except (RecordJsonError, RecursionError) as error:
         raise _ERRORS.broken_error(name, str(error)) from None
     if wrong := fault(meta.level):
-        raise _ERRORS.broken_error(name, f"its level is unfit: {wrong}")
+        raise _ERRORS.broken_error(name, f"its level cannot be used: {wrong}")
     return meta
 
 
@@ -223,15 +223,15 @@ def _read_automaton(text: str, name: str) -> Fspa:
 def _read_text(members: Mapping[str, bytes], array: str, name: str) -> str:
     data = _read_array(members, array, name)
     if data.dtype != np.uint8 or data.ndim != 1:
-        raise _ERRORS.broken_error(name, f"the array `{array}` holds no bytes")
+        raise _ERRORS.broken_error(name, f"the array `{array}` does not contain bytes")
     limit = fileio.limits.RECORDED_TEXTS[array]
     if data.size > limit.size or np.count_nonzero(data == ord(",")) >= (limit.values or 0):
         most = f"{limit.size >> 20} MiB or {limit.values:,} values"
-        raise _ERRORS.broken_error(name, f"the array `{array}` holds more than {most}")
+        raise _ERRORS.broken_error(name, f"the array `{array}` contains more than {most}")
     try:
         return data.tobytes().decode()
     except UnicodeDecodeError:
-        raise _ERRORS.broken_error(name, f"the array `{array}` is no UTF-8 text") from None
+        raise _ERRORS.broken_error(name, f"the array `{array}` is not UTF-8 text") from None
 
 
 def _read_arrays(members: Mapping[str, bytes], level: StealthLevel, fspa: Fspa, name: str) -> dict[str, NDArray[Any]]:
@@ -266,7 +266,7 @@ def _check_array(values: NDArray[Any], array: Array, shape: tuple[int, ...], nam
         # The comparisons reject not-a-number; isfinite also rejects infinities.
         valid = bool(((values >= array.low) & (values <= array.high) & np.isfinite(values)).all())
     if not valid:
-        raise _ERRORS.broken_error(name, f"the array `{array.name}` has values that it cannot have")
+        raise _ERRORS.broken_error(name, f"the array `{array.name}` has invalid values")
 
 
 def _check_indices(arrays: Arrays, meta: Meta, fspa: Fspa, name: str) -> None:
@@ -278,8 +278,8 @@ def _check_indices(arrays: Arrays, meta: Meta, fspa: Fspa, name: str) -> None:
     ]
     for array, limit in limits:
         if bool((arrays[array] >= limit).any()):
-            raise _ERRORS.broken_error(name, f"the array `{array}` has values that it cannot have")
+            raise _ERRORS.broken_error(name, f"the array `{array}` has invalid values")
     if meta.names != _names(meta.level, fspa):
-        raise _ERRORS.broken_error(name, "`meta.names` are not those of the level and of the spec")
+        raise _ERRORS.broken_error(name, "`meta.names` does not match the names in the level and in the spec")
     if meta.seed < 0:
         raise _ERRORS.broken_error(name, "`meta.seed` is below 0")

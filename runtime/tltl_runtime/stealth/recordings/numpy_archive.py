@@ -38,8 +38,8 @@ def read_members(data: bytes, names: Collection[str], most: int) -> dict[str, by
             if sum(entry.file_size for entry in entries.values()) <= most:
                 return {name: _unpack(archive, entry) for name, entry in entries.items()}
     except _DAMAGE:
-        raise ArchiveError("it is no whole archive") from None
-    raise ArchiveError(f"it holds more than {most >> 20} MiB")
+        raise ArchiveError("it is not a whole archive") from None
+    raise ArchiveError(f"it contains more than {most >> 20} MiB")
 
 
 def read_array(data: bytes) -> NDArray[Any]:
@@ -56,8 +56,8 @@ def read_array(data: bytes) -> NDArray[Any]:
             array = np.ndarray(shape, dtype, data, start, order="F" if fortran else "C")
             return cast(NDArray[Any], array.copy())  # a copy, because an array over bytes is read-only
     except Exception:  # numpy parses the header as Python, which may raise anything
-        raise ArchiveError("it is none of numpy's") from None
-    raise ArchiveError("it is none of plain numbers")
+        raise ArchiveError("it is not an array of numpy") from None
+    raise ArchiveError("it is not an array of plain numbers")
 
 
 def _unpack(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> bytes:

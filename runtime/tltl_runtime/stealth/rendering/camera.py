@@ -79,7 +79,9 @@ def check_size(size: object) -> tuple[int, int]:
     match size:
         case (int(width), int(height)) if all(SMALLEST <= side <= LARGEST for side in (width, height)):
             return width, height
-    raise ValueError(f"a picture's size is (width, height) in pixels, each from {SMALLEST} to {LARGEST}, not {size!r}")
+    raise ValueError(
+        f"a picture's size must be (width, height) in pixels, each from {SMALLEST} to {LARGEST}, not {size!r}"
+    )
 
 
 def sight_lines(camera: Camera, width: int, height: int) -> NDArray[np.float32]:

@@ -221,6 +221,6 @@ def _import_pygame() -> Any:
 
 
 def _no_window_error(why: str) -> TltlError:
-    title = f"no window can be opened here: {why}"
-    help_ = "play on a machine with a screen, or start `Xvfb` and set DISPLAY; pictures of episodes need none of that"
+    title = f"cannot open a window here: {why}"
+    help_ = "play on a machine with a screen, or start `Xvfb` and set DISPLAY; pictures of episodes need no window"
     return TltlError([Diagnostic(NO_WINDOW, title, help=help_)])

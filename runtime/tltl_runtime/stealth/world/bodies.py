@@ -26,7 +26,7 @@ UPRIGHT = (0.0, 0.0, 0.0, 1.0)
 def static_boxes(client: int, boxes: Sequence[Bounds]) -> int:
     """Create one static body of at most 16 boxes, in the group of the world."""
     if len(boxes) > COMPOUND:
-        raise ValueError(f"a compound holds {COMPOUND} boxes, {len(boxes)} were given")
+        raise ValueError(f"a compound contains at most {COMPOUND} boxes, not {len(boxes)}")
     shape = pybullet.createCollisionShapeArray(
         shapeTypes=[pybullet.GEOM_BOX] * len(boxes),
         halfExtents=[[(b - a) / 2 for a, b in zip(low, high, strict=True)] for low, high in boxes],

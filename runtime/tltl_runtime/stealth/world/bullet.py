@@ -16,7 +16,7 @@ from tltlc.api import Diagnostic, TltlError
 def _missing_package_error() -> TltlError:
     help_ = "in the clone of tltlc: pip install -c constraints.txt '.[game]'"
     if sys.version_info >= (3, 12):
-        help_ = "it comes ready to use for Python 3.10 and 3.11 alone: install '.[game]' in the clone with one"
+        help_ = "it comes ready to use only for Python 3.10 and 3.11: install '.[game]' in the clone with one of these"
     return TltlError([Diagnostic("TLT0730", "the game needs `pybullet`, which is not installed", help=help_)])
 
 

@@ -218,7 +218,7 @@ class World:
                 middle = tuple((a + b) / 2 for a, b in zip(low, high, strict=True))
                 hit = pybullet.rayTest(outside, middle, collisionFilterMask=WORLD, physicsClientId=self._client)[0]
                 if hit[0] < 0 or max(abs(a - b) for a, b in zip(hit[3], face, strict=True)) > 0.005:
-                    raise WorldError(self.level, self.steps, name, f"nothing is hit on its side {side}")
+                    raise WorldError(self.level, self.steps, name, f"a ray does not hit its side {side}")
         self._check_filters()
 
     # Building

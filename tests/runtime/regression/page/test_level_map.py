@@ -76,7 +76,7 @@ def within(box: Box, other: Box) -> bool:
 
 def test_things_named_in_the_reasons_are_highlighted() -> None:
     level = load_level("navigation", "v2")
-    reasons = ("nobody reaches `s2`: the way ends at `corridor_block_2`", "runs out of time in the corridor")
+    reasons = ("nobody can reach `s2`: the way ends at `corridor_block_2`", "runs out of time in the corridor")
     mentioned = mentions(level, reasons)
     root = ElementTree.fromstring(level_map(level, mentioned))
     outlined = [

@@ -247,7 +247,7 @@ def test_a_level_that_takes_too_long_is_rejected(monkeypatch: pytest.MonkeyPatch
     monkeypatch.setattr("tltl_runtime.stealth.capabilities.feasible.fileio", limited)
     (warning,) = reach_warnings(level, fspa)
     # Only the search for the obstacle exceeds its limit.
-    assert (warning.code, warning.help) == ("TLT0814", "one gets no nearer to it than 4.5 m")
+    assert (warning.code, warning.help) == ("TLT0814", "the player gets no nearer to it than 4.5 m")
     monkeypatch.setattr("tltl_runtime.stealth.capabilities.reach.fileio", limited)
     with pytest.raises(TltlError, match="TLT0006: it takes too long to find out what can be reached in `room:v0`"):
         compute_reach(level)

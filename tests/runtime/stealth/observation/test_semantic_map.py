@@ -97,9 +97,9 @@ def test_one_hot_has_a_layer_for_each_type() -> None:
 
 
 def test_a_map_needs_a_sensor_with_known_types() -> None:
-    with pytest.raises(ValueError, match="a map knows no type 'water': it can tell floor, platform"):
+    with pytest.raises(ValueError, match="a map has no type 'water': there are floor, platform"):
         Voxels(level(), MapSensor(("water",), 0.5, 3))
-    with pytest.raises(ValueError, match="declares no map"):
+    with pytest.raises(ValueError, match="include no map"):
         SemanticMap(level())
 
 

@@ -49,7 +49,7 @@ def test_a_level_without_a_map_gets_the_default_one() -> None:
         ({"variables": ["heath"]}, "has no signal `heath`", "did you mean `health`?"),
         ({"sight": []}, "sensors have no key `sight`", "`entities`"),
         ({"map": {"cells": 1}}, "a map has no key `cells`", "did you mean `cell`?"),
-        ({"map": {"types": ["wal"]}}, "a map knows no type `wal`", "did you mean `wall`?"),
+        ({"map": {"types": ["wal"]}}, "a map has no type `wal`", "did you mean `wall`?"),
         ({"map": {"cell": float("nan")}}, "wrong value for `cell`", "from 0.1 to 5 m"),
         ({"map": {"cell": "wide"}}, "wrong value for `cell`", "from 0.1 to 5 m"),
         ({"map": {"extent": 65}}, "wrong value for `extent`", "from 3 to 63"),

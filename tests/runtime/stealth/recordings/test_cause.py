@@ -129,7 +129,7 @@ def test_a_goal_without_a_route_for_the_expert_is_reported(tmp_path: Path) -> No
     )
     result = cause(play_carelessly("branching", 1, spec))
     assert (result.kind, result.by) == ("no way", ("e_right",))
-    assert result.text == "finds no way to `e_right`; limit after 3 steps, remaining: Reach near(e_right)"
+    assert result.text == "the expert finds no way to `e_right`; limit after 3 steps, remaining: Reach near(e_right)"
 
 
 def test_success_is_reported_as_the_cause() -> None:

@@ -306,7 +306,7 @@ def test_files_that_are_not_episodes_are_rejected(episode: Episode, make: Callab
 
 def test_a_bomb_is_not_unpacked(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("tltl_runtime.stealth.recordings.file.MAX_BYTES", 1 << 20)
-    assert "it holds more than 1 MiB" in error_text(bomb(4 << 20))
+    assert "it contains more than 1 MiB" in error_text(bomb(4 << 20))
     assert "it is larger than 1 MiB" in error_text(bytes(2 << 20))
 
 
@@ -323,7 +323,7 @@ def test_a_large_text_in_a_small_file_is_not_parsed(
     parsed = []
     monkeypatch.setattr(json, "loads", lambda text, **_: parsed.append(len(text)) or {})
     monkeypatch.setattr("tltl_runtime.stealth.recordings.file._read_meta", meta_reader(episode, array))
-    assert f"the array `{array}` holds more than" in error_text(data)
+    assert f"the array `{array}` contains more than" in error_text(data)
     assert not parsed
 
 

@@ -133,7 +133,7 @@ def test_the_checks_of_gymnasium_pass_without_a_screen(name: str, monkeypatch: p
     monkeypatch.delenv("DISPLAY", raising=False)
     monkeypatch.setenv("SDL_VIDEODRIVER", "x11")
     env = gymnasium.make(name, render_mode="rgb_array", render_size=SMALL)
-    with pytest.warns(UserWarning, match="TLT0830: no window can be opened here"):
+    with pytest.warns(UserWarning, match="TLT0830: cannot open a window here"):
         check_env(env.unwrapped, skip_render_check=False)
     env.close()
 
