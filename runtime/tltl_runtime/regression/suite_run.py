@@ -35,7 +35,7 @@ _EDITED: Final = "TLT0905"
 WORKER_ERRORS: Final = frozenset({"TLT0730", "TLT0850", "TLT0852"})
 """The codes of errors of worker processes. They stop the run, because the case is not at fault."""
 
-WRITABLE: Final = "see that there is room, and that you may write there, or name another folder with --out"
+WRITABLE: Final = "make sure that there is room and that you may write there, or name another folder with --out"
 """The help if a file cannot be written to the folder of a run."""
 
 
@@ -71,7 +71,7 @@ class FinishedCase:
         if prepared.outdated:
             return "it was trained for another spec"
         if registered_game().is_infeasible(prepared.level, prepared.setup.fspa):
-            return f"nobody can do what `{prepared.setup.fspa.name}` asks, as was said above"
+            return f"nobody can do what `{prepared.setup.fspa.name}` asks, as reported above"
         return None
 
     @property
@@ -95,8 +95,8 @@ def lock_run(folder: Path) -> AbstractContextManager[None]:
     Raises:
         TltlError: TLT0904, another run uses the folder; TLT0005, it cannot be written.
     """
-    title = f"another run of `tltlc regress` plays in `{folder}`"
-    busy = Diagnostic("TLT0904", title, help="wait for its end, or name another folder with --out")
+    title = f"another run of `tltlc regress` is using `{folder}`"
+    busy = Diagnostic("TLT0904", title, help="wait until it ends, or name another folder with --out")
     return lock_folder(folder, busy, WRITABLE)
 
 
@@ -163,7 +163,7 @@ def _prepare(suite: Suite, case: Case, references: tuple[Reference, ...]) -> tup
     check_states(reference, prepared.setup.fspa, suite)
     if len(reference.accounts) < case.episodes:
         title = (
-            f"the baseline of `{case.name}` has {len(reference.accounts)} episodes, and {case.episodes} are asked for"
+            f"the baseline of `{case.name}` has {len(reference.accounts)} episodes, but {case.episodes} are required"
         )
         raise TltlError([Diagnostic("TLT0903", title, help=f"record it: {baseline_command(suite)}")])
     return prepared, reference

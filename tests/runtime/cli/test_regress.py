@@ -413,7 +413,7 @@ def test_invalid_options_are_rejected(tltlc: Run, game: Path) -> None:  # noqa: 
     assert (result.status, result.out) == (3, "")
     assert result.err == (
         "error[TLT0005]: cannot write into `taken/run`: a part of its path is a file, and no folder\n"
-        "  help: see that there is room, and that you may write there, or name another folder with --out\n"
+        "  help: make sure that there is room and that you may write there, or name another folder with --out\n"
     )
     for name in ("nowhere.toml", ".", "", "/"):
         result = tltlc("regress", name)

@@ -61,12 +61,12 @@ def test_the_level_of_the_baseline_is_drawn_if_it_looks_different(suite: Suite) 
     assert words not in page(SuiteRun(suite, Path("run"), judged(suite, 1), True))
     edit("room.toml", "at = [8.0, 8.0, 0.0]", "at = [8.0, 7.0, 0.0]")
     text = page(SuiteRun(suite, Path("run"), judged(suite, 1), True))
-    assert words in text and "not known any more" not in text
+    assert words in text and "no longer known" not in text
     edit("room.toml", "at = [8.0, 7.0, 0.0]", "at = [8.0, 6.0, 0.0]")
     references = tuple(replace(reference, texts=()) for reference in baseline_of(suite))
     cases = tuple(regress(suite, suite.cases[:1], references, Path("run"), 1, Played()))
     text = page(SuiteRun(suite, Path("run"), cases, True))
-    assert words not in text and "what it was then is not known any more" in text
+    assert words not in text and "how it was then is no longer known" in text
 
 
 def test_the_page_of_the_shipped_suite_explains_its_findings(tmp_path: Path, suite: Suite) -> None:

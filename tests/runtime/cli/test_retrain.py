@@ -207,7 +207,7 @@ def test_a_policy_in_the_folder_of_its_training_is_reported_before_any_play(tltl
     edit("game.toml", '"soon.safetensors"', f'"{FOLDER}"')
     result = tltlc(*RETRAIN)
     assert (result.status, result.out) == (1, "")
-    assert result.err.startswith(f"error[TLT0942]: the policy of the case `hopeless` lies in `{FOLDER}`")
+    assert result.err.startswith(f"error[TLT0942]: the policy of the case `hopeless` is stored in `{FOLDER}`")
 
 
 @pytest.mark.parametrize(

@@ -112,7 +112,7 @@ def test_states_that_the_automaton_lacks_are_rejected(tmp_path: Path, key: str, 
     check_states(baseline_reference, fspa, tested_suite)
     with_state(count)
     (baseline_reference,) = baseline_of(tested_suite)
-    with pytest.raises(TltlError, match=f"TLT0902: .* episode 1 of `room:v0` has the state {count}, and "):
+    with pytest.raises(TltlError, match=f"TLT0902: .* episode 1 of `room:v0` has the state {count}, but "):
         check_states(baseline_reference, fspa, tested_suite)
     with_state(-1)
     with pytest.raises(TltlError, match=r"TLT0902: .*references\[0\]\.accounts\[1\]: it has the state -1"):
@@ -153,20 +153,20 @@ def test_levels_with_the_same_name_are_told_apart() -> None:
             references[0],
             shipped,
         ]
-        with pytest.raises(TltlError, match="no figures of `other/room"):
+        with pytest.raises(TltlError, match="no figures for `other/room"):
             reference_of(ordered, replace(PLAYED, place="other/room.toml"), SUITE)
-    with pytest.raises(TltlError, match="no figures of `other/room"):
+    with pytest.raises(TltlError, match="no figures for `other/room"):
         reference_of(references, replace(PLAYED, place="other/room.toml"), SUITE)
 
 
 @pytest.mark.parametrize(
     ("changed", "title"),
     [
-        ({"level": "vault"}, "the baseline has no figures of `vault:v0`"),
-        ({"variant": "v2"}, "the baseline has no figures of `room:v2`"),
-        ({"policy": "f" * 64}, "the baseline has no figures of `room:v0` with this policy"),
-        ({"spec_hash": "f" * 64}, "the baseline has no figures of `room:v0` with this spec"),
-        ({"seed": 8}, "the baseline has no figures of `room:v0` with this seed"),
+        ({"level": "vault"}, "the baseline has no figures for `vault:v0`"),
+        ({"variant": "v2"}, "the baseline has no figures for `room:v2`"),
+        ({"policy": "f" * 64}, "the baseline has no figures for `room:v0` with this policy"),
+        ({"spec_hash": "f" * 64}, "the baseline has no figures for `room:v0` with this spec"),
+        ({"seed": 8}, "the baseline has no figures for `room:v0` with this seed"),
     ],
 )
 def test_a_missing_reference_is_reported(changed: dict[str, object], title: str) -> None:
@@ -212,4 +212,4 @@ def test_missing_or_unordered_episodes_are_rejected(tmp_path: Path, indices: lis
         read_baseline(path)
     (diagnostic,) = error.value.diagnostics
     assert diagnostic.code == "TLT0902"
-    assert "baseline.references[1].accounts: the episodes must be there from number 0 on" in diagnostic.title
+    assert "baseline.references[1].accounts: the episodes must be numbered from 0 on" in diagnostic.title

@@ -34,7 +34,7 @@ at = [0.0, 0.0, 0.0]
         ("walk_speed = 1.6", "walk_speed = 2.6", "`walk_speed` 1.6 → 2.6"),
         ('type = "enemy"', 'type = "part"', '`type` "enemy" → "part"'),
         ("branches = []", "branches = []\nhears = true", "`hears` new: true"),
-        ("sight_range = 8.0\n", "", "`sight_range` gone"),
+        ("sight_range = 8.0\n", "", "`sight_range` removed"),
         ("[look]\ntilt = 5", "[look]\ntilt = 7", "`look.tilt` 5 → 7"),
         ("[look]\ntilt = 5", "look = 5", '`look` {"tilt": 5} → 5'),
     ],
@@ -48,7 +48,7 @@ def test_changed_keys_are_listed_with_their_values(old: str, new: str, said: str
     ("old", "new", "said"),
     [
         ("at = [4.0, 0.0", "at = [4.0, 1.5", "`solid.block_2.at` [4.0, 0.0, 0.0] → [4.0, 1.5, 0.0]"),
-        ("block_2", "block_3", "`solid.block_3` new, `solid.block_2` gone"),
+        ("block_2", "block_3", "`solid.block_3` new, `solid.block_2` removed"),
         ('"crates"\nat', '"boxes"\nat', '`use.2.asset` "crates" → "boxes"'),
         ('"block_2"', '"block_1"', '`solid.2.name` "block_2" → "block_1"'),
     ],

@@ -85,7 +85,7 @@ def test_the_first_changed_stage_and_the_ends_in_it_are_described(level: Stealth
     assert stage.episodes == end.episodes == tuple(range(14))
     assert end.text == (
         "dies in the north hall by `guard` in 14 of 25 episodes; before: in 0 of 25 episodes; "
-        "closest approach to `exit`: 3.2 m (`near(exit)` is the limit, below 1.0 m would do); "
+        "closest approach to `exit`: 3.2 m (`near(exit)` is the limit, below 1.0 m is enough); "
         "in state 3, where this remained: Reach near(exit), and keep alive throughout."
     )
 
@@ -301,7 +301,7 @@ def test_the_limit_of_most_episodes_is_named(level: StealthLevel, fspa: Fspa) ->
         for index in range(25)
     ]
     assert (
-        "; closest approach to `s1`: 2.5 m (`near(s1)` is the limit, below 1.0 m would do); "
+        "; closest approach to `s1`: 2.5 m (`near(s1)` is the limit, below 1.0 m is enough); "
         in sentences(level, fspa, now)[1]
     )
 
@@ -309,9 +309,9 @@ def test_the_limit_of_most_episodes_is_named(level: StealthLevel, fspa: Fspa) ->
 @pytest.mark.parametrize(
     ("came", "said"),
     [
-        (1.06, "1.1 m (`near(s1)` is the limit, below 1.0 m would do); "),
-        (1.04, "1.04 m (`near(s1)` is the limit, below 1.00 m would do); "),
-        (1.0, "1.00 m (`near(s1)` is the limit, less would do); "),
+        (1.06, "1.1 m (`near(s1)` is the limit, below 1.0 m is enough); "),
+        (1.04, "1.04 m (`near(s1)` is the limit, below 1.00 m is enough); "),
+        (1.0, "1.00 m (`near(s1)` is the limit, less is enough); "),
     ],
 )
 def test_near_misses_have_enough_decimals(level: StealthLevel, fspa: Fspa, came: float, said: str) -> None:
@@ -342,7 +342,7 @@ def test_episodes_at_the_target_when_the_spec_broke_are_counted(level: StealthLe
     end = sentences(level, fspa, now)[1]
     assert "; 14 of them were at `s1` when it broke; in state 0, where this remained: " in end
     few = [replace(explained, arrived=explained.summary.index < 3) for explained in now]
-    approach = "closest approach of the others to `s1`: 2.5 m (`near(s1)` is the limit, below 1.0 m would do); "
+    approach = "closest approach of the others to `s1`: 2.5 m (`near(s1)` is the limit, below 1.0 m is enough); "
     assert f"; 3 of them were at `s1` when it broke; {approach}" in sentences(level, fspa, few)[1]
 
 

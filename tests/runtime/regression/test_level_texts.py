@@ -98,7 +98,7 @@ def test_edited_texts_are_rejected(tmp_path: Path) -> None:
     document = json.loads(path.read_text(encoding="utf-8"))
     document["texts"][text_sha256(text)][0] = "three"
     path.write_text(json.dumps(document), encoding="utf-8")
-    with pytest.raises(TltlError, match=r"TLT0902: .*baseline\.texts: what is called `\w{12}` has another SHA-256"):
+    with pytest.raises(TltlError, match=r"TLT0902: .*baseline\.texts: the text called `\w{12}` has another SHA-256"):
         read_baseline(path)
     document["texts"] = {}
     path.write_text(json.dumps(document), encoding="utf-8")

@@ -50,7 +50,7 @@ def test_thresholds_are_shown_as_they_were_chosen() -> None:
 def test_an_uncertain_pass_rate_is_stated() -> None:
     (first, *_) = reasons_of(86, 14)
     assert first.startswith("met in 86 of 100 episodes (86%), before in 100 of 100: ")
-    assert first.endswith(" can be said for certain, and 85% are asked for")
+    assert first.endswith("%, but 85% or more is required")
 
 
 def test_certain_changes_are_stated() -> None:
@@ -61,7 +61,7 @@ def test_certain_changes_are_stated() -> None:
 def test_uncertain_changes_are_stated() -> None:
     (rate, figure) = reasons_of(40, 0, -0.06)
     assert rate == "met in 40 of 40 episodes, before in 40 of 40: certainly in 85% or more"
-    assert figure == "reward is lower, 0.64 on average; before: 0.70; that is 0.05 or more, but not certain"
+    assert figure == "reward is lower, 0.64 on average; before: 0.70; the difference is 0.05 or more, but not certain"
     assert len(reasons_of(40, 0, -0.04)) == 1
 
 
@@ -73,14 +73,14 @@ def test_uncertain_changes_refer_to_the_compared_episodes() -> None:
     (_, figure) = reasons(judgement, DEFAULT, now, before)
     assert figure == (
         "reward is lower, 0.64 on average; before, in the same 40 episodes: 0.70 (in all 100: 0.75); "
-        "that is 0.05 or more, but not certain"
+        "the difference is 0.05 or more, but not certain"
     )
 
 
 def test_a_certain_change_is_not_called_uncertain_too() -> None:
     """The rate stays near `fail_rate` to the end, and progress and reward have fallen with it."""
     sentences = reasons_of(150, 150)
-    assert sentences[0].endswith(" can be said for certain, and 85% are asked for")
+    assert sentences[0].endswith("%, but 85% or more is required")
     assert [sentence.partition(" ")[0] for sentence in sentences[1:]] == ["progress", "reward"]
     assert not any("not certain" in sentence for sentence in sentences)
 
@@ -136,6 +136,6 @@ def test_other_versions_are_reported() -> None:
     before = replace(PLAYED, versions={"tltlc": "0.1", "numpy": "1.26.4", "pybullet": "3.2"})
     now = replace(PLAYED, versions={"tltlc": "0.1", "numpy": "2.0.1"})
     assert list(edits(now, before, [])) == [
-        "the baseline was recorded with numpy 1.26.4, and this is 2.0.1",
-        "the baseline was recorded with pybullet 3.2, and this is without it",
+        "the baseline was recorded with numpy 1.26.4, this run with 2.0.1",
+        "the baseline was recorded with pybullet 3.2, this run without it",
     ]

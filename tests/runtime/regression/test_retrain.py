@@ -96,7 +96,7 @@ def test_a_case_with_an_unreachable_goal_is_not_retrained(game: Suite) -> None:
     level = load_level("navigation", "v2")
     setup = replace(hopeless.prepared.setup, fspa=load_task(level.spec).fspa)
     shut = replace(hopeless, prepared=replace(hopeless.prepared, level=level, setup=setup))
-    assert shut.training_obstacle == "nobody can do what `navigation` asks, as was said above"
+    assert shut.training_obstacle == "nobody can do what `navigation` asks, as reported above"
     assert shut.case_to_train is None
     assert replace(shut, report=replace(shut.report, verdict="pass")).training_obstacle is None
 
@@ -208,7 +208,9 @@ def test_a_policy_in_the_folder_of_a_training_is_rejected(game: Suite) -> None:
     check_policy_folders(game, game.cases, Path("run"))
     misplaced = replace(game.cases[1], policy=Path("run/retrained/hopeless") / POLICY)
     suite = replace(game, cases=(game.cases[0], misplaced, game.cases[2]))
-    with pytest.raises(TltlError, match="TLT0942: the policy of the case `room:v1` lies in `run/retrained/hopeless`"):
+    with pytest.raises(
+        TltlError, match="TLT0942: the policy of the case `room:v1` is stored in `run/retrained/hopeless`"
+    ):
         check_policy_folders(suite, suite.cases, Path("run"))
     check_policy_folders(suite, suite.cases[:2], Path("run"))
     assert not (Path("run/retrained") / "room-v1").exists()
@@ -268,5 +270,5 @@ def test_a_policy_in_the_folder_of_its_own_training_is_rejected(game: Suite) -> 
     (diagnostic,) = caught.value.diagnostics
     assert (diagnostic.code, diagnostic.title) == (
         "TLT0942",
-        "the policy of the case `hopeless` lies in `run/retrained/hopeless`, where its training goes",
+        "the policy of the case `hopeless` is stored in `run/retrained/hopeless`, where its training will write",
     )

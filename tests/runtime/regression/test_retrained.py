@@ -56,15 +56,15 @@ def test_the_sentence_for_a_learned_level() -> None:
         "of 43 fresh episodes (89% to 100% for certain)"
     )
     assert "after 5 min 3 s of training (212,992 steps) the policy" in sentence_of("learned", 43, 0, searched=0)
-    assert "came to progress" not in sentence_of("learned", 43, 1)
+    assert "reached progress" not in sentence_of("learned", 43, 1)
 
 
 def test_the_sentence_for_a_feasible_level_that_was_not_learned() -> None:
     assert sentence_of("feasible", 5, 20, shortest=1_213) == (
-        "feasible, but not learned; there are ways, the shortest that is known takes 1,213 steps; after 5 min 3 s of "
+        "feasible, but not learned; there are ways, and the shortest known one takes 1,213 steps; after 5 min 3 s of "
         "search and training (200,000 and 212,992 steps) the policy meets the spec in 5 of 25 fresh episodes "
-        "(3% to 51% for certain), and 85% are asked for; the best of the failed ones "
-        "came to progress 0.50, where this remained: reach near(exit)"
+        "(3% to 51% for certain), but 85% or more is required; the best of the failed ones "
+        "reached progress 0.50, where this remained: reach near(exit)"
     )
     assert "there are ways" not in sentence_of("feasible", 0, 25)
 
@@ -72,10 +72,10 @@ def test_the_sentence_for_a_feasible_level_that_was_not_learned() -> None:
 def test_the_sentence_for_a_likely_infeasible_level() -> None:
     assert sentence_of("no_way", 0, 25) == (
         "no way found: neither a search of 200,000 steps nor a training of 212,992 steps, 5 min 3 s in all, met the "
-        "spec once; the level is likely infeasible; the best of its episodes came to progress 0.50, where this "
+        "spec once; the level is likely infeasible; the best of its episodes reached progress 0.50, where this "
         "remained: reach near(exit)"
     )
-    assert "a search of 9 steps, which the limit broke off, nor" in sentence_of(
+    assert "a search of 9 steps, which the limit stopped, nor" in sentence_of(
         "no_way", 0, 25, searched=9, complete=False
     )
 

@@ -230,7 +230,7 @@ def test_an_empty_text_is_rejected(tmp_path: Path, key: str) -> None:
 def test_a_low_pass_rate_needs_a_lower_fail_rate(tmp_path: Path) -> None:
     errors = refused(tmp_path, 'level = "navigation"\nthresholds = { pass_rate = 0.4 }')
     title = "`pass_rate` is 0.4, below the `fail_rate`, which is 0.5 by default"
-    assert errors == [("TLT0803", title, "give a `fail_rate`, too, of 0.4 at the most")]
+    assert errors == [("TLT0803", title, "write a `fail_rate`, too, of at most 0.4")]
 
 
 @pytest.mark.parametrize(
@@ -238,7 +238,7 @@ def test_a_low_pass_rate_needs_a_lower_fail_rate(tmp_path: Path) -> None:
     [("assets/guard", "an asset"), ("assets/corridor", "an asset"), ("overlays/guard_alert", "an overlay")],
 )
 def test_assets_and_overlays_are_no_suites(name: str, what: str) -> None:
-    with pytest.raises(TltlError, match=f"TLT0803: this is {what}, and no suite"):
+    with pytest.raises(TltlError, match=f"TLT0803: this is {what}, not a suite"):
         read_suite(LEVELS / f"{name}.toml")
 
 
@@ -262,4 +262,4 @@ def test_reading_stops_after_many_errors(tmp_path: Path) -> None:
         read(tmp_path, "".join(f'[[case]]\nlevel = "x{number}"\n' for number in range(2000)))
     diagnostics = caught.value.diagnostics
     assert len(diagnostics) == 101
-    assert diagnostics[-1].title == "so much is wrong that the last 1,900 cases were not read"
+    assert diagnostics[-1].title == "there are so many errors that the last 1,900 cases were not read"

@@ -213,7 +213,7 @@ def test_a_level_edited_while_it_is_played_is_reviewed_and_not_cached(
     results, played = run("new")
     report = results[1].report
     assert (report.verdict, report.certain, report.figures) == ("review", False, None)
-    assert report.reasons == ("TLT0905, `room.toml` changed while `room:v1` was played (give the same command again)",)
+    assert report.reasons == ("TLT0905, `room.toml` changed while `room:v1` was played (run the same command again)",)
     assert list(played) == ["room:v0", "hopeless"] and not (Path("new") / CASES / "room-v1").exists()
     monkeypatch.undo()
     monkeypatch.chdir(game)
@@ -234,7 +234,7 @@ def test_a_level_edited_after_the_workers_loaded_it_is_reviewed(game: Path, name
     first, second, _ = running(read_suite(Path("game.toml")), "new", Edits())
     assert (first.report.verdict, first.report.certain, first.is_cached) == ("review", False, False)
     assert first.report.reasons == (
-        f"TLT0905, `{name}` changed while `room:v0` was played (give the same command again)",
+        f"TLT0905, `{name}` changed while `room:v0` was played (run the same command again)",
     )
     assert second.report.verdict == "pass"
     assert list(run("new")[1]) == ["room:v0"], "nothing of it is kept"
@@ -346,7 +346,7 @@ def test_the_headline_of_a_failure_describes_the_ends(game: Path) -> None:
 
 def test_a_baseline_with_fewer_episodes_is_rejected(game: Path) -> None:
     edit("game.toml", "episodes = 50", "episodes = 60")
-    with pytest.raises(TltlError, match="TLT0903: the baseline of `room:v0` has 50 episodes, and 60 are asked for"):
+    with pytest.raises(TltlError, match="TLT0903: the baseline of `room:v0` has 50 episodes, but 60 are required"):
         run()
 
 
@@ -355,7 +355,7 @@ def test_a_baseline_with_unknown_states_is_rejected_before_anything_is_played(ga
     easy, hopeless = baseline_of(suite)
     *explained_episodes, last = hopeless.accounts
     damaged = replace(hopeless, accounts=(*explained_episodes, changed(last, unmet=99)))
-    with pytest.raises(TltlError, match=r"TLT0902: .* episode 49 of `room:v0` has the state 99, and"):
+    with pytest.raises(TltlError, match=r"TLT0902: .* episode 49 of `room:v0` has the state 99, but"):
         check_references(suite, suite.cases, (easy, damaged))
 
 
@@ -493,7 +493,7 @@ def test_a_folder_is_used_by_one_run_at_a_time(game: Path) -> None:
         with pytest.raises(TltlError) as error, lock_run(Path("run")):
             pytest.fail("it is taken")
         (diagnostic,) = error.value.diagnostics
-        assert (diagnostic.code, diagnostic.title) == ("TLT0904", "another run of `tltlc regress` plays in `run`")
+        assert (diagnostic.code, diagnostic.title) == ("TLT0904", "another run of `tltlc regress` is using `run`")
         with lock_run(Path("new")):
             assert len(list(running(suite, "new"))) == 3, "elsewhere there is room"
     with lock_run(Path("run")):

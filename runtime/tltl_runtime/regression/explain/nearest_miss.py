@@ -73,5 +73,5 @@ def _distance_texts(least: float, limit: float | None) -> tuple[str, str]:
         return f"{least:.1f} m", ""
     for decimals in (1, 2):
         if (nearest := f"{least:.{decimals}f} m") != (sufficient := f"{limit:.{decimals}f} m"):
-            return nearest, f", below {sufficient} would do"
-    return nearest, ", less would do"
+            return nearest, f", below {sufficient} is enough"
+    return nearest, ", less is enough"

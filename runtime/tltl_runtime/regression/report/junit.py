@@ -45,7 +45,7 @@ def junit(suite: Suite, reports: Sequence[CaseReport], missing: Sequence[str] = 
         tests.append(_testcase(suite, report))
     for name in missing:
         test = ET.SubElement(tests, "testcase", {"name": _xml_text(name), "classname": _xml_text(suite.path.stem)})
-        ET.SubElement(test, "error", {"type": "missing", "message": "not judged: the run was stopped before"})
+        ET.SubElement(test, "error", {"type": "missing", "message": "not judged: the run was stopped before this case"})
     ET.indent(root)
     return '<?xml version="1.0" encoding="UTF-8"?>\n' + ET.tostring(root, encoding="unicode") + "\n"
 

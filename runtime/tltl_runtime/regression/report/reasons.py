@@ -38,14 +38,14 @@ def reasons(
     elif judgement.certain and judgement.rate_interval[1] < thresholds.pass_rate:
         yield f"{met}: certainly in {fail_rate} to {pass_rate}"
     else:
-        yield f"{met}: {interval_text(judgement.rate_interval)} can be said for certain, and {pass_rate} are asked for"
+        yield f"{met}: certainly in {interval_text(judgement.rate_interval)}, but {pass_rate} or more is required"
     for change in judgement.changes:
         yield _change_text(change.figure, change.now, change.before)
     if judgement.verdict == "review" and not judgement.certain:
         certain = {change.figure for change in judgement.changes}
         for figure in (name for name in differing_figures(now, before, thresholds) if name not in certain):
             text = _uncertain_change_text(figure, now, before)
-            yield f"{text}; that is {getattr(thresholds, figure):g} or more, but not certain"
+            yield f"{text}; the difference is {getattr(thresholds, figure):g} or more, but not certain"
 
 
 def _change_text(figure: str, now: float, before: float) -> str:
@@ -105,7 +105,8 @@ def edits(
     yield from changes
     for name, version in before.versions.items():
         if (version_now := now.versions.get(name)) != version:
-            yield f"the baseline was recorded with {name} {version}, and this is {version_now or 'without it'}"
+            this_run = f"with {version_now}" if version_now else "without it"
+            yield f"the baseline was recorded with {name} {version}, this run {this_run}"
 
 
 def _changed_keys_text(before: str | None, now: str | None) -> str:

@@ -108,10 +108,12 @@ def sentence(
     if outcome == "feasible":
         clauses = ["feasible, but not learned"]
         if trained.shortest is not None:
-            clauses.append(f"there are ways, the shortest that is known takes {trained.shortest:,} steps")
-        clauses.append(f"after {effort} {fresh_result}, and {percent_exactly(thresholds.pass_rate)} are asked for")
+            clauses.append(f"there are ways, and the shortest known one takes {trained.shortest:,} steps")
+        clauses.append(
+            f"after {effort} {fresh_result}, but {percent_exactly(thresholds.pass_rate)} or more is required"
+        )
     else:
-        broken = "" if trained.complete else ", which the limit broke off,"
+        broken = "" if trained.complete else ", which the limit stopped,"
         search, training = f"a search of {trained.searched:,} steps{broken}", f"a training of {trained.steps:,} steps"
         in_all = f"{duration(trained.seconds)} in all"
         clauses = [f"no way found: neither {search} nor {training}, {in_all}, met the spec once"]
@@ -120,5 +122,5 @@ def sentence(
         )
     if best is not None:
         best_of = "the best of the failed ones" if passed else "the best of its episodes"
-        clauses.append(f"{best_of} came to progress {number(best.progress, 2)}, where this remained: {best.remained}")
+        clauses.append(f"{best_of} reached progress {number(best.progress, 2)}, where this remained: {best.remained}")
     return "; ".join(clauses)

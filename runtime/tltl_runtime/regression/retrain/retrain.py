@@ -126,8 +126,8 @@ def _training_folder(suite: Suite, case: Case, folder: Path) -> Path:
     for suite_case in suite.cases:
         if policy_file(suite_case.policy).resolve().parent == place.resolve():
             whose = "its training" if suite_case.name == case.name else f"the training for `{case.name}`"
-            title = f"the policy of the case `{suite_case.name}` lies in `{place}`, where {whose} goes"
-            help_ = "move it beside the suite, and name that place there as `policy`"
+            title = f"the policy of the case `{suite_case.name}` is stored in `{place}`, where {whose} will write"
+            help_ = "move it beside the suite, and name its new place there as `policy`"
             raise TltlError([Diagnostic("TLT0942", title, help=help_)])
     return place
 
@@ -226,7 +226,7 @@ def training_summary(run: TrainingRun) -> FinishedRetraining:
     end = recorded_end(run.folder) or state.reason(run.settings.stop)
     if end is None:
         title = f"`{run.folder / RECORD}` does not say how the training ended"
-        raise TltlError([Diagnostic("TLT0863", title, help="remove it: the training then goes on to its end")])
+        raise TltlError([Diagnostic("TLT0863", title, help="remove it: the training then continues to its end")])
     # Successes of the agent count, too: they may be shorter than those of the search, or the only ones.
     lengths = [int(length) for process in state.processes for length in process.get("way_lengths", ())]
     return FinishedRetraining(

@@ -41,7 +41,7 @@ def _changes(path: tuple[str, ...], old: Mapping[str, Any], new: Mapping[str, An
         if key not in old:
             yield f"{name} new{_value_text(': ', now)}"
         elif key not in new:
-            yield f"{name} gone"
+            yield f"{name} removed"
         elif isinstance(before, dict) and isinstance(now, dict):
             yield from _changes(key_path, before, now)
         elif _are_tables(before) and _are_tables(now):

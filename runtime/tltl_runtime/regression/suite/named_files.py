@@ -105,7 +105,7 @@ def _no_policy(folder: Path) -> Diagnostic:
     from tltl_runtime.training.files.run_file import RUN, named_trainings, resume_command
 
     if fileio.exists(folder / RUN):
-        help_ = f"`{resume_command(folder)}` goes on until it has one; one that is going on has it soon"
+        help_ = f"`{resume_command(folder)}` continues it until it has one; if it is running, it will have one soon"
         return Diagnostic("TLT0872", f"the training in `{folder}` has no policy yet", help=help_)
     help_ = named_trainings(folder) or "name a .safetensors file, or the folder that `tltlc train` named when it ended"
     return Diagnostic("TLT0872", f"there is neither a training nor a policy in `{folder}`", help=help_)

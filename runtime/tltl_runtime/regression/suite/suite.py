@@ -127,9 +127,12 @@ def read_suite(path: Path, baseline: Path | None = None) -> Suite:
     if "case" not in table.entries:
         help_ = "a suite lists cases that name levels, each under `[[case]]`"
         if kind := _other_kind_of_file(table):
-            raise TltlError([Diagnostic("TLT0803", f"this is {kind}, and no suite", (table.label,), help_)])
+            raise TltlError([Diagnostic("TLT0803", f"this is {kind}, not a suite", (table.label,), help_)])
         if "level" in table.entries:
-            title, help_ = "the suite has no cases, and `level` is a key of one", "write `[[case]]` in a line above it"
+            title, help_ = (
+                "the suite has no cases, but `level` is a key of a case",
+                "write `[[case]]` in a line above it",
+            )
             raise TltlError([Diagnostic("TLT0802", title, (table.label_of("level"),), help_)])
     seed = table.whole("seed", 0, low=0, high=2**31 - 1)
     error = table.number("error", 0.05, low=0.0001, high=0.5, unit="")
@@ -137,7 +140,7 @@ def read_suite(path: Path, baseline: Path | None = None) -> Suite:
     thresholds = _thresholds(table, Thresholds())
     case_tables = table.tables("case")
     if len(case_tables) > (fileio.limits.SUITE.values or 0):
-        title, help_ = f"the suite has more than {fileio.limits.SUITE.values:,} cases", "make several suites of it"
+        title, help_ = f"the suite has more than {fileio.limits.SUITE.values:,} cases", "divide it into several suites"
         raise TltlError([Diagnostic("TLT0006", title, (table.label,), help_)])
     known_variants: dict[str, tuple[str, ...]] = {}
     cases = []
@@ -148,7 +151,7 @@ def read_suite(path: Path, baseline: Path | None = None) -> Suite:
         cases.append(_case(case_table, path.parent, episodes, thresholds, known_variants))
     table.report_unknown_keys()
     if not cases and not log:
-        log.append(Diagnostic("TLT0803", "the suite has no cases", (table.label,), "give one, under `[[case]]`"))
+        log.append(Diagnostic("TLT0803", "the suite has no cases", (table.label,), "write one, under `[[case]]`"))
     labels: dict[str, Label] = {}
     for case, label in [labelled_case for labelled_case in cases if labelled_case is not None]:
         if case.name in labels:
@@ -167,8 +170,8 @@ def _other_kind_of_file(table: CheckedTable) -> str | None:
 
 
 def _unread_cases_error(count: int, label: Label) -> Diagnostic:
-    title = f"so much is wrong that the last {count:,} cases were not read"
-    return Diagnostic("TLT0803", title, (label,), "mend what is above, and try again")
+    title = f"there are so many errors that the last {count:,} cases were not read"
+    return Diagnostic("TLT0803", title, (label,), "correct the errors above, and try again")
 
 
 def _case(
@@ -314,7 +317,7 @@ def _policy(table: CheckedTable, folder: Path, level: str) -> Path | None:
         shipped = shipped_policy(name or level)
         if shipped is None and level and not table.log:
             title, label = f"no policy comes with the level `{level}`", table.label_of("level")
-            help_ = f'name one that was trained, e.g. `policy = "training/{Path(level).stem}"`'
+            help_ = f'name a policy that you trained, e.g. `policy = "training/{Path(level).stem}"`'
             if related_level := level_with_fitting_policy(level):
                 help_ += f', or the one for the same spec that comes with tltlc: `policy = "{related_level}"`'
             table.log.append(Diagnostic("TLT0853", title, (label,), help_))
@@ -345,12 +348,12 @@ def _thresholds(table: CheckedTable, defaults: Thresholds) -> Thresholds:
     thresholds = Thresholds(*values)
     if thresholds.fail_rate > thresholds.pass_rate and len(table.log) == before:
         if "fail_rate" in subtable.entries:
-            expected = f"a `fail_rate` of {thresholds.pass_rate:g}, the `pass_rate`, at the most"
+            expected = f"a `fail_rate` of at most {thresholds.pass_rate:g}, the `pass_rate`"
             table.log.append(wrong_value(subtable.entries["fail_rate"], "fail_rate", expected))
         else:
             default = f"`fail_rate`, which is {thresholds.fail_rate:g} by default"
             title = f"`pass_rate` is {thresholds.pass_rate:g}, below the {default}"
-            help_ = f"give a `fail_rate`, too, of {thresholds.pass_rate:g} at the most"
+            help_ = f"write a `fail_rate`, too, of at most {thresholds.pass_rate:g}"
             table.log.append(Diagnostic("TLT0803", title, (subtable.label_of("pass_rate"),), help_))
     return thresholds
 

@@ -96,7 +96,7 @@ def read_baseline(path: Path) -> tuple[Reference, ...]:
     except (ValueError, RecursionError) as error:
         raise _REFUSALS.unreadable_error(name, f"it is not JSON: {error!s:.60}") from None
     if not isinstance(document, dict) or document.get("format") != FORMAT:
-        raise _REFUSALS.unreadable_error(name, "it is something else")
+        raise _REFUSALS.unreadable_error(name, "it is another kind of file")
     _REFUSALS.check_version(name, document.get("version"), VERSION)
     try:
         parsed = from_json(_BaselineDocument, document, "baseline")
@@ -105,14 +105,14 @@ def read_baseline(path: Path) -> tuple[Reference, ...]:
     texts = {sha256: "\n".join(lines) for sha256, lines in parsed.texts.items()}
     for sha256, text in texts.items():
         if text_sha256(text) != sha256:
-            raise _REFUSALS.broken_error(name, f"baseline.texts: what is called `{sha256:.12}` has another SHA-256")
+            raise _REFUSALS.broken_error(name, f"baseline.texts: the text called `{sha256:.12}` has another SHA-256")
     for row, reference in enumerate(parsed.references):
         where = f"baseline.references[{row}].accounts"
         # Episodes are compared by index, and the mean of no episodes is undefined.
         if not reference.accounts or any(
             episode.summary.index != place for place, episode in enumerate(reference.accounts)
         ):
-            raise _REFUSALS.broken_error(name, f"{where}: the episodes must be there from number 0 on, without a gap")
+            raise _REFUSALS.broken_error(name, f"{where}: the episodes must be numbered from 0 on, without a gap")
         for episode in reference.accounts:
             for flaw in _flaws(episode):
                 raise _REFUSALS.broken_error(name, f"{where}[{episode.summary.index}]: {flaw}")
@@ -145,17 +145,17 @@ def _flaws(episode: ExplainedEpisode) -> Iterator[str]:
     """Yield a message for each impossible value in an episode."""
     for key in ("arrivals", "way"):
         if not getattr(episode, key):
-            yield f"`{key}` is empty, and begins where the player does"
+            yield f"`{key}` is empty, but must begin where the player begins"
     if episode.summary.seed is None:
-        yield "`seed` is None, and a whole number was expected"
+        yield "`seed` is None, but a whole number was expected"
     if episode.summary.steps < 1:
-        yield f"`steps` is {episode.summary.steps}, and an episode has one at least"
+        yield f"`steps` is {episode.summary.steps}, but an episode has at least one"
     if min(_states(episode)) < 0:
-        yield f"it has the state {min(_states(episode))}, and states are counted from 0"
+        yield f"it has the state {min(_states(episode))}, but states are counted from 0"
     for key, (least, most) in FIGURES.items():
         value = getattr(episode.summary, key)
         if not least - _ROUNDING <= value <= most + _ROUNDING:
-            yield f"`{key}` is {value:g}, and a number from {least:g} to {most:g} was expected"
+            yield f"`{key}` is {value:g}, but a number from {least:g} to {most:g} was expected"
 
 
 def _states(episode: ExplainedEpisode) -> Iterator[int]:
@@ -206,7 +206,7 @@ def reference_of(references: tuple[Reference, ...], identity: Identity, suite: S
         return matches[0]
     # If only another level has this name, name the level by its place.
     level = identity.place if with_name and not with_place and identity.place else identity.level
-    title = f"the baseline has no figures of `{level}:{identity.variant}`"
+    title = f"the baseline has no figures for `{level}:{identity.variant}`"
     if with_place:
         names = {"policy": "policy", "spec_hash": "spec", "seed": "seed"}
         differing = [word for name, word in names.items() if not _agree(with_place[0].played, identity, (name,))]
@@ -220,7 +220,7 @@ def check_states(reference: Reference, fspa: Fspa, suite: Suite) -> None:
     for episode in reference.accounts:
         if (state := max(_states(episode))) >= count:
             where = f"episode {episode.summary.index} of `{played.level}:{played.variant}`"
-            why = f"{where} has the state {state}, and those of `{played.spec}` are 0 to {count - 1}"
+            why = f"{where} has the state {state}, but the states of `{played.spec}` are 0 to {count - 1}"
             raise _REFUSALS.broken_error(str(suite.baseline), why)
 
 

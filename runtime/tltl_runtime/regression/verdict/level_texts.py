@@ -16,7 +16,7 @@ Texts = tuple[tuple[str, str], ...]
 
 _NAME: Final = re.compile(r"(?:(?:assets|overlays)/)?[^/\\:\0]+\.toml")
 _BASELINE: Final = fileio.Archive(
-    "the baseline", damaged_help="record it anew", elsewhere_help="record it anew on this system"
+    "the baseline", damaged_help="record it again", elsewhere_help="record it again on this system"
 )
 _SPEC: Final = re.compile(r"^spec\s*=.*$", re.MULTILINE)
 

@@ -167,7 +167,7 @@ def _check_unedited(prepared: PreparedCase, level: Level) -> None:
         # Names can repeat: overlays of the same name may come from several folders.
         names = dict.fromkeys(f"`{file[0]}`" for file in (*before, *now) if (file in before) != (file in now))
         title = f"{', '.join(names)} changed while `{prepared.case.name}` was played"
-        raise TltlError([Diagnostic("TLT0905", title, help="give the same command again")])
+        raise TltlError([Diagnostic("TLT0905", title, help="run the same command again")])
 
 
 def _outdated_message(case: Case, setup: Setup, level: Level) -> str | None:
@@ -184,6 +184,6 @@ def _outdated_message(case: Case, setup: Setup, level: Level) -> str | None:
     now = read_spec(level.spec)[0]
     if spec_hash(now) == spec_hash(setup.fspa):
         return None
-    changes = f"({differences(setup.fspa, now)})"
-    help_ = "train it again, or name the new one as the case's `spec`"
-    return f"the spec `{name}` has changed since the policy was trained {changes}, and its old one judges: {help_}"
+    changes = f"the spec `{name}` has changed since the policy was trained ({differences(setup.fspa, now)})"
+    help_ = "train the policy again, or name the new spec as the case's `spec`"
+    return f"{changes}, and the policy's old spec still judges: {help_}"

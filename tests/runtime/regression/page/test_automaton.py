@@ -193,7 +193,7 @@ def test_a_layout_that_takes_too_long_gives_a_note(fspa: Fspa, monkeypatch: pyte
     monkeypatch.setattr("tltl_runtime.regression.report.page.automaton._LAYOUT_LIMIT_S", 0.0)
     drawing = draw_automaton(fspa)
     assert drawing.svg is None
-    assert drawing.notes == (f"The automaton of {len(fspa.states)} states is too tangled to be drawn in time.",)
+    assert drawing.notes == (f"The automaton with {len(fspa.states)} states is too tangled to be drawn in time.",)
 
 
 def test_the_table_has_the_same_numbers(fspa: Fspa, now: Traffic, before: Traffic) -> None:

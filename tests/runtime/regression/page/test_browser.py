@@ -244,7 +244,7 @@ def test_the_map_shows_now_or_the_baseline(tab: Tab) -> None:
     section.get_by_label("now", exact=True).check()
     assert section.locator(".map .cell.failed").count() > 0
     legend = section.locator(".legend.shown")
-    expect(legend).to_have_text(re.compile(r"^strongest: \d+ failed episodes?, of now and baseline$"))
+    expect(legend).to_have_text(re.compile(r"^strongest, now or in the baseline: \d+ failed episodes?$"))
 
 
 def test_the_legend_lists_the_states_whose_colours_are_drawn(tab: Tab) -> None:

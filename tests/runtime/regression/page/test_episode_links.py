@@ -25,9 +25,9 @@ def met() -> dict[int, Episode]:
     [
         ("dies by `guard` in 3 of 25 episodes; before: in 0 of 25", (0, 1, 2), "play the end of episodes: 0 1 2"),
         ("dies by `guard` in 1 of 25 episodes; before: in 24 of 25", (1,), "play the end of episode: 1"),
-        ("reaches `exit` in 22 of 25 episodes (88%)", (0, 1, 2), "those that do not, play the end of episodes: 0 1 2"),
-        ("reaches `exit` in 24 of 25 episodes", (2,), "one that does not, play the end of episode: 2"),
-        ("reaches `exit` in 3 of 6 episodes", (0, 1, 2), "those that do not, play the end of episodes: 0 1 2"),
+        ("reaches `exit` in 22 of 25 episodes (88%)", (0, 1, 2), "play the end of episodes that do not: 0 1 2"),
+        ("reaches `exit` in 24 of 25 episodes", (2,), "play the end of an episode that does not: 2"),
+        ("reaches `exit` in 3 of 6 episodes", (0, 1, 2), "play the end of episodes that do not: 0 1 2"),
         ("dies by `guard` in 3 of 6 episodes", (0, 1, 2), "play the end of episodes: 0 1 2"),
         ("fails otherwise", (0, 9), "play the end of episode: 0"),
     ],

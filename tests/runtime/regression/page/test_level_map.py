@@ -84,7 +84,7 @@ def test_things_named_in_the_reasons_are_highlighted() -> None:
     ]
     assert outlined == ["corridor_block_2"]
     assert {name for name, kind, *_ in names_on(root) if "spoken" in kind} == {"s2", "corridor_block_2", "corridor"}
-    assert "a reason speaks of it" in map_key(level, mentioned) and "a reason speaks of it" not in map_key(level)
+    assert "mentioned in a reason" in map_key(level, mentioned) and "mentioned in a reason" not in map_key(level)
     quiet = names_on(ElementTree.fromstring(level_map(level)))
     assert "corridor_block_2" not in {name for name, *_ in quiet} and not any("spoken" in kind for _, kind, *_ in quiet)
 

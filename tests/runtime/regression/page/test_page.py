@@ -90,7 +90,7 @@ def test_cases_that_were_not_run_have_a_row_and_a_section_with_the_reason() -> N
     texts = [text.strip() for text in parsed.texts]
     assert [texts.count(text) for text in ("<a>", "the run was stopped", "b", "no file concerns it")] == [2] * 4
     assert texts.count("not run") == 1 + 2 + 2, "their number, rows and sections"
-    assert texts.count("earlier: review") == 1 and texts.count("An earlier run said") == 1
+    assert texts.count("earlier: review") == 1 and texts.count("An earlier run gave it the verdict") == 1
     links = [element["href"] for element in parsed.all("a")]
     assert {f"#{element['id']}" for element in parsed.all("section") if "case" in (element["class"] or "")} <= set(
         links
@@ -219,7 +219,7 @@ def test_the_outcome_of_a_retraining_is_in_the_table() -> None:
 
 
 def test_the_confidence_intervals_are_explained_where_they_are_drawn() -> None:
-    note = "The thin line on a bar is the 95 % interval of its share, for reading; verdicts are by a wider one."
+    note = "The thin line on a bar is the 95 % interval of its share, as a guide; the verdicts use a wider one."
     assert page().texts.count(note) == 1
     without_figures = SuiteReport(
         "none", 0, 0.05, {}, tuple(case for case in samples.suite().cases if not case.report.figures)
@@ -260,8 +260,8 @@ def test_a_level_that_looks_different_from_the_baseline_has_a_second_map() -> No
     ]
     assert first[1] - first[0] == pytest.approx(500, abs=100), "its ways are on its map"
     unknown = maps(replace(case, baseline_level=None))
-    assert unknown[0] == 1 and "what it was then is not known any more" in unknown[1]
-    assert "not known any more" not in maps(replace(case, baseline_level=None, before=()))[1]
+    assert unknown[0] == 1 and "how it was then is no longer known" in unknown[1]
+    assert "no longer known" not in maps(replace(case, baseline_level=None, before=()))[1]
 
 
 def test_a_case_that_cannot_be_played_has_only_its_reasons() -> None:

@@ -58,7 +58,7 @@ def draw_automaton(fspa: Fspa) -> AutomatonPicture:
     ((name, content),) = files.items()
     if not name.endswith(".svg"):
         return AutomatonPicture(
-            None, (f"The automaton of {len(fspa.states)} states is too tangled to be drawn in time.",)
+            None, (f"The automaton with {len(fspa.states)} states is too tangled to be drawn in time.",)
         )
     data = content.encode() if isinstance(content, str) else content
     return AutomatonPicture(data, tuple(_sentence(diagnostic) for diagnostic in diagnostics))

@@ -40,9 +40,12 @@ def episode_links(finding: Finding, episodes: Mapping[int, RecordedEpisode], slu
     if not indices:
         return None
     shows_end = not all(episodes[index].success for index in indices)
-    label = f"play {'the end of ' * shows_end}episode{'s' * (len(indices) > 1)}"
+    is_plural = len(indices) > 1
     if finding.others:
-        label = f"those that do not, {label}" if len(indices) > 1 else f"one that does not, {label}"
+        named = "episodes that do not" if is_plural else "an episode that does not"
+    else:
+        named = "episodes" if is_plural else "episode"
+    label = f"play {'the end of ' * shows_end}{named}"
     links = [_link(index, episodes[index], slug) for index in indices]
     return render("episode_links.html", label=label, links=links)
 

@@ -133,7 +133,7 @@ class LevelMap {
     const crouches = player.crouching[row] === 1;
     const body = { x: between(player.x), y: between(player.y), yaw: between(player.yaw) };
     const colour = this.colours[episode.state[row]];
-    this.#body(body, "player-body", crouches ? 22 : 35, colour, crouches ? "the player, who crouches" : "the player");
+    this.#body(body, "player-body", crouches ? 22 : 35, colour, crouches ? "the player, crouching" : "the player");
   }
 
   #trail(episode, row) {

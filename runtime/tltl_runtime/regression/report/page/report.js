@@ -45,8 +45,8 @@ class CaseView {
       const most = Math.max(this.facts.now[shown].most, this.facts.before[shown].most) || 1;
       this.maps[when].showHeat(all[shown], most, shown);
       const unit = shown === "time" ? `${most.toFixed(1)} s an episode` : `${most} failed episode${most === 1 ? "" : "s"}`;
-      const scale = this.facts.before.ways.length ? `${unit}, of now and baseline` : unit;
-      const text = all[shown].cells.length ? `strongest: ${scale}` : "no episode failed";
+      const scope = this.facts.before.ways.length ? ", now or in the baseline" : "";
+      const text = all[shown].cells.length ? `strongest${scope}: ${unit}` : "no episode failed";
       this.#fillLegend([[`cell ${shown}`, "", text]]);
     }
   }
@@ -77,7 +77,7 @@ class CaseView {
     const modes = [...new Set(enemies.flatMap((enemy) => enemy.mode))];
     this.#fillLegend([
       ...this.#states([...new Set(state)]),
-      ["body player-body", this.maps.now.colours[state[0]], "the player, in the colour of the state; small: it crouches"],
+      ["body player-body", this.maps.now.colours[state[0]], "the player, in the colour of the state; small: crouching"],
       ...modes.map((mode) => [`body enemy ${mode}`, "", `an enemy: ${mode}`]),
       ...(enemies.length ? [["cone", "", "what an enemy sees"]] : []),
       ...(enemies.some((enemy) => enemy.sees.includes(1)) ? [["cone sees", "", "… while it sees the player"]] : []),

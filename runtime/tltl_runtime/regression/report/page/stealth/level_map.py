@@ -40,7 +40,7 @@ _SIGNS: Final = {
     "solid platform": "platform",
     "solid low": "low obstacle",
     "solid wall": "wall",
-    "solid spoken": "a reason speaks of it",
+    "solid spoken": "mentioned in a reason",
 }
 """The signs on a map: the CSS class of each, and its meaning in the legend."""
 
