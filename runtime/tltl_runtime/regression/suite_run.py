@@ -57,8 +57,8 @@ class FinishedCase:
     def case_to_train(self) -> PreparedCase | None:
         """The case if retraining its policy makes sense, else None.
 
-        It does if the case was played, did not pass, was not retrained yet, and has no
-        ``training_obstacle``.
+        Retraining makes sense if the case was played and did not pass, its policy was not retrained
+        yet, and there is no ``training_obstacle``.
         """
         return None if self.report.retrained or self.training_obstacle else self._unpassed_case
 
@@ -114,8 +114,8 @@ def regress(
 
     ``references`` are the references of the baseline, and ``pool`` says which processes play.
     ``on_episode`` is called after each episode. Results are cached below ``folder``; call this
-    within :func:`lock_run`. A case is not played again if nothing has changed since, unless
-    ``fresh``.
+    within :func:`lock_run`. A case with a cached result is not played again if nothing that it
+    depends on has changed, unless ``fresh``.
 
     A case that cannot be played gets the verdict ``fail``. A case whose level is edited while it is
     played gets ``review``. After both, the run goes on with the next case.
@@ -140,7 +140,7 @@ def regress(
 def _remove_cached(suite: Suite, cases: Sequence[Case], folder: Path) -> None:
     """Remove the cached results of the cases, before a ``fresh`` run.
 
-    If that run is stopped, its continuation then finds only fresh results.
+    If that run is stopped and continued, the continuation then finds only results of that run.
     """
     for case in cases:
         fileio.remove_file(case_folder(suite, case.name, folder / CASES) / _REPORT, WRITABLE)
@@ -227,7 +227,7 @@ def _cached_report(folder: Path, inputs: str) -> CaseReport | None:
 def _write(folder: Path, inputs: str, result: JudgedCase) -> CaseReport:
     """Write the report on a case and the recordings of example episodes; return the report.
 
-    The examples are the first episodes of each finding, and the first success.
+    The examples are the first ``_RECORDINGS`` episodes of each finding, and the first success.
     """
     report = report_on(result)
     by_index = {episode.explained.summary.index: episode.recording for episode in result.episodes}

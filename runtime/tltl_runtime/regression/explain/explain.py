@@ -32,14 +32,15 @@ _LENGTH_RATIO: Final = 1.15
 """Two mean lengths count as equal if the greater one is less than this times the smaller."""
 
 _MIN_SUCCESSES: Final = 3
-"""Lengths and regions are described only if there are this many successes, both now and before."""
+"""Lengths and regions are described only with this many successes, or more, both now and before."""
 
 
 @record
 class Finding:
-    """A sentence about episodes, and the indices of the episodes that show what it says.
+    """A sentence about the episodes played now, and the indices of examples among them.
 
-    If ``others`` is true, they are instead the episodes that do not do what it says.
+    ``episodes`` are the indices of the episodes that do what the sentence says. If ``others`` is
+    true, they are instead those of the episodes that do not.
     """
 
     text: str
@@ -66,9 +67,9 @@ def findings(
 def _stages(fspa: Fspa, now: Sequence[ExplainedEpisode], before: Sequence[ExplainedEpisode]) -> Iterator[Finding]:
     """Yield one finding about the completed stages, or none.
 
-    The finding goes through the stages in order. It names each that most episodes complete as
-    before. It ends with the first stage that clearly more or clearly fewer episodes complete than
-    before.
+    The finding goes through the stages in order, up to the first one that clearly more or clearly
+    fewer episodes complete than before. It names that stage, and those of the earlier stages that
+    most episodes complete.
     """
     unchanged_stages: list[Subgoal] = []
     for distance, states in _visited_states(fspa, (*now, *before)):
@@ -92,9 +93,10 @@ def _stages(fspa: Fspa, now: Sequence[ExplainedEpisode], before: Sequence[Explai
 
 
 def _visited_states(fspa: Fspa, episodes: Sequence[ExplainedEpisode]) -> list[tuple[int, set[int]]]:
-    """Return pairs of a distance and the visited states at that distance, greatest distance first.
+    """Return the states that the episodes visited, grouped by distance, greatest distance first.
 
-    Accepting states and traps are left out.
+    Each pair is a distance and the states at that distance. Accepting states and traps are left
+    out.
     """
     states_by_distance: dict[int, set[int]] = {}
     for state in {arrival.state for episode in episodes for arrival in episode.arrivals}:
@@ -116,16 +118,17 @@ def _distances(fspa: Fspa, episode: ExplainedEpisode) -> list[int]:
 def most_frequent_end(
     level: Level, fspa: Fspa, now: Sequence[ExplainedEpisode], before: Sequence[ExplainedEpisode]
 ) -> str | None:
-    """Describe the most frequent end of failed episodes in short; None if no episode failed."""
+    """Describe briefly how failed episodes ``now`` end most often; None if no episode failed."""
     return next((headline for headline, _ in _ends(level, fspa, now, before)), None)
 
 
 def _ends(
     level: Level, fspa: Fspa, now: Sequence[ExplainedEpisode], before: Sequence[ExplainedEpisode]
 ) -> Iterator[tuple[str, Finding]]:
-    """Yield the ways in which the episodes ``now`` fail, each in short and as a finding.
+    """Yield a short text and a finding for each way in which the episodes ``now`` fail.
 
-    The most frequent ways come first. All sentences are distinct.
+    The finding also says how many episodes ``before`` failed in this way. The order is that of
+    :func:`~tltl_runtime.regression.explain.failures.failures`. All texts are distinct.
     """
     ends_before = [end_of(level, fspa, episode) for episode in before if not episode.summary.success]
     for group in failures(level, fspa, now):

@@ -34,16 +34,16 @@ class Arrival:
 class NearestMiss:
     """How near a failed episode came to an edge that leads from its last state towards acceptance.
 
-    If a violation ended the episode, its last state is the one before the violation. Only the last
-    stay in that state counts.
+    If a violation ended the episode, its last state is the one before the violation. Earlier visits
+    to that state do not count.
 
     ``robustness``, in [-1, 1], is the greatest robustness of the guards of such edges, and
     ``place`` is where the player was then. ``atom`` is the atom that limited the robustness. It had
     to be true if ``wanted`` is true, else false.
 
-    ``target`` and ``distance`` are None unless the atom had to be true and depends only on the
-    distance to one entity. Then ``target`` is that entity, and ``distance``, in metres, is the
-    least distance at which the atom was false.
+    If the atom had to be true, and approaching an entity makes it true, ``target`` is that entity.
+    ``distance``, in metres, is then the least distance from it at which the atom was false.
+    Otherwise, both are None.
     """
 
     atom: str
@@ -65,7 +65,8 @@ class ExplainedEpisode:
     - ``nearest`` is the nearest miss, or None: a success has none.
     - ``way`` is the simplified trajectory.
     - ``broke`` are the atoms that broke the spec.
-    - ``arrived`` says whether only these atoms kept the last step from leading towards acceptance.
+    - ``arrived`` says whether only the atoms in ``broke`` kept the last step from leading towards
+      acceptance.
     - ``shut`` are the barriers that were closed at the end and stop players.
     """
 
@@ -131,9 +132,10 @@ def _has_arrived(episode: RecordedEpisode, state: int, broke: Sequence[str]) -> 
 
 
 def _nearest_miss(episode: RecordedEpisode, state: int, positions: Sequence[Point]) -> NearestMiss | None:
-    """Return the nearest miss in a state.
+    """Return how near an episode came, in its last stay in ``state``, to leaving it for acceptance.
 
     None if no edge leads from the state towards acceptance, or if the episode made no step in it.
+    ``positions`` are those of the player's feet.
     """
     fspa = episode.fspa
     guards = [edge.guard for edge in monitors.tables(fspa).improving[state]]
@@ -149,7 +151,7 @@ def _nearest_miss(episode: RecordedEpisode, state: int, positions: Sequence[Poin
 
 
 def _last_stay(episode: RecordedEpisode, state: int) -> list[int]:
-    """Return the steps of the last stay of an episode in a state."""
+    """Return the steps, numbered from 0, that an episode made in its last stay in ``state``."""
     in_state = (episode.states[:-1] == state).tolist()
     end = max((step + 1 for step, is_in_state in enumerate(in_state) if is_in_state), default=0)
     began = max((step + 1 for step in range(end) if not in_state[step]), default=0)
@@ -159,8 +161,9 @@ def _last_stay(episode: RecordedEpisode, state: int) -> list[int]:
 def _target_and_distance(episode: RecordedEpisode, atom: int, rows: Sequence[int]) -> tuple[str | None, float | None]:
     """Return the entity that an atom asks the player to approach, and the least distance to it.
 
-    The distance, in metres, is the least of the steps ``rows`` at which the atom does not hold.
-    Both are None if the atom does not depend on a single distance.
+    The distance, in metres, is the least over those of the steps ``rows`` at which the atom does
+    not hold. Both are None if the atom asks for no such thing: see
+    :func:`~tltl_runtime.regression.explain.stages.target_of`.
     """
     target = target_of(episode.fspa, atom)
     if target is None:

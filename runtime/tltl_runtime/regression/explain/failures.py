@@ -18,9 +18,10 @@ _T = TypeVar("_T")
 _FailureKind = tuple[Kind, tuple[str, ...]]
 
 _FEW: Final = 3
-"""At most this many groups of failures, the largest ones, get a text of their own.
+"""The most groups of failures that get a text of their own. These are the largest groups.
 
-Such a group must also have this many episodes, or a tenth of all episodes.
+Each of them must also contain at least this many failed episodes, or at least a tenth of all
+episodes.
 """
 
 
@@ -47,8 +48,8 @@ class FailureEnd:
 class Failures:
     """A group of episodes that fail alike.
 
-    ``text`` says how they fail, and ``more`` adds details. ``matches`` says whether an end belongs
-    to the group. Ask it only about ends that belong to no earlier group.
+    ``text`` says how they fail, and ``more`` adds details. ``matches`` is a predicate that says
+    whether an end belongs to the group. Call it only for ends that belong to no earlier group.
     """
 
     text: str
@@ -66,8 +67,8 @@ def end_of(level: Level, fspa: Fspa, episode: ExplainedEpisode) -> FailureEnd:
 def failures(level: Level, fspa: Fspa, episodes: Sequence[ExplainedEpisode]) -> Iterator[Failures]:
     """Group the failed episodes by how they end. All texts are distinct.
 
-    The largest groups with equal ends come first. Next are groups with equal causes. The last group
-    contains the rest.
+    First come the largest groups, whose episodes have equal ends. Next are groups of the other
+    episodes by cause. The last group contains the rest.
     """
     groups: dict[FailureEnd, list[ExplainedEpisode]] = {}
     for episode in episodes:
@@ -76,7 +77,7 @@ def failures(level: Level, fspa: Fspa, episodes: Sequence[ExplainedEpisode]) -> 
     frequent = _frequent_groups(groups, len(episodes))
     stages = Counter(replace(end, undone=Subgoal()) for end in groups)
     for end in frequent:
-        # If the same end occurs with several subgoals, name the subgoal, so that the texts differ.
+        # If ends differ only in their subgoals, name the subgoal, so that the texts differ.
         stage = f" before it {end.undone.text}" if stages[replace(end, undone=Subgoal())] > 1 else ""
         group = groups[end]
         details = f"{approach_text(level, fspa, end.undone, group)}; {remaining_text(fspa, group)}"
@@ -86,7 +87,7 @@ def failures(level: Level, fspa: Fspa, episodes: Sequence[ExplainedEpisode]) -> 
 
 
 def _frequent_groups(groups: Mapping[_T, Sequence[ExplainedEpisode]], episode_count: int) -> list[_T]:
-    """Return the keys of the largest groups, if they are large enough: see ``_FEW``."""
+    """Return the keys of the groups that get a text of their own (see ``_FEW``), largest first."""
     largest = sorted(groups, key=lambda key: -len(groups[key]))[:_FEW]
     return [key for key in largest if len(groups[key]) >= _FEW or 10 * len(groups[key]) >= episode_count]
 
@@ -97,10 +98,10 @@ def _remaining_failures(
     frequent: Collection[FailureEnd],
     episode_count: int,
 ) -> Iterator[Failures]:
-    """Group the ends in ``groups``, which have no text of their own.
+    """Yield a group for each frequent cause of the ends in ``groups``, and one for all rare causes.
 
-    There is a group for each frequent cause, and one for all rare causes together. The ends in
-    ``frequent`` have texts of their own.
+    ``groups`` has the episodes with each end. It does not contain the ends in ``frequent``, which
+    already have texts of their own.
     """
     causes: dict[_FailureKind, list[ExplainedEpisode]] = {}
     for end, episodes in groups.items():
@@ -127,7 +128,7 @@ def _text_for_cause(
     """Return a text for ``ends``, which have the same cause, and a predicate.
 
     The predicate says whether the text describes an end. ``episodes`` are the episodes with these
-    ends. The ends in ``frequent`` have texts of their own, from which this one must differ.
+    ends. The returned text must differ from those of the ends in ``frequent``.
     """
     cause, places, stages = ends[0].kind, {end.where for end in ends}, {end.undone for end in ends}
     frequent_places = {end.where for end in frequent if end.kind == cause}
@@ -154,8 +155,8 @@ def _text_for_cause(
 def _end_text(level: Level, end: FailureEnd, episodes: Sequence[ExplainedEpisode]) -> str:
     """Describe an end that ``episodes`` share, without the number of episodes.
 
-    The caller appends the number. So if the text ends with an aside, the aside is closed by a
-    comma.
+    The caller appends the number. So if the text ends with a clause that is set off by a comma, a
+    comma also follows the clause.
     """
     by = f" by {_names(end.by)}" if end.by else ""
     broke = _majority_clause("breaking", [episode.broke for episode in episodes])
@@ -175,9 +176,10 @@ def _end_text(level: Level, end: FailureEnd, episodes: Sequence[ExplainedEpisode
 
 
 def _majority_clause(verb: str, names_by_episode: Sequence[Sequence[str]]) -> str:
-    """Return a clause with the names that more than half of the episodes have.
+    """Return a clause with the names that occur in more than half of the episodes.
 
-    The clause is a comma, ``verb`` and the names. It is empty if there are no such names.
+    ``names_by_episode`` has the names of each episode. The clause is a comma, ``verb`` and the
+    names, with *mostly* if an episode lacks one of them. It is empty if there are no such names.
     """
     counts = Counter(name for names in names_by_episode for name in names)
     frequent = [name for name, count in counts.items() if 2 * count > len(names_by_episode)]

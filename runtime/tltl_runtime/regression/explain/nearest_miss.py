@@ -14,12 +14,12 @@ from tltlc.api import Fspa, label_text
 
 
 def approach_text(level: Level, fspa: Fspa, undone: Subgoal, episodes: Sequence[ExplainedEpisode]) -> str:
-    """Describe how near the episodes came to the next stage. Each clause begins with a semicolon.
+    """Describe how near the failed episodes came to the subgoal ``undone``.
 
-    The first clause counts the episodes that had reached the stage when another atom broke the
-    spec. The second describes the nearest miss, if more than half of the episodes have one and had
-    not reached the stage. The text is empty if neither clause applies. ``undone`` is the subgoal of
-    the stage.
+    The first clause counts the episodes that had reached the subgoal when another atom broke the
+    spec. The second clause describes the nearest miss. It is there only if more than half of the
+    episodes have a nearest miss and had not reached the subgoal. Each clause begins with a
+    semicolon. The text is empty if neither clause applies.
     """
     text = ""
     if arrived := sum(episode.arrived for episode in episodes):
@@ -40,7 +40,7 @@ def remaining_text(fspa: Fspa, episodes: Sequence[ExplainedEpisode]) -> str:
 
 
 def _limit_text(level: Level, fspa: Fspa, misses: Sequence[NearestMiss], of: str) -> str:
-    """Describe the atom that limits the misses most often, and the nearest of its misses.
+    """Describe the atom that limits the misses most often, and the nearest miss that it limits.
 
     ``of`` says which episodes are meant, for example `` of the others``. It may be empty.
     """
@@ -58,7 +58,11 @@ def _limit_text(level: Level, fspa: Fspa, misses: Sequence[NearestMiss], of: str
 
 
 def _sufficient_distance(level: Level, fspa: Fspa, name: str) -> float | None:
-    """Return the distance in metres below which the atom ``name`` holds; None if there is none."""
+    """Return the distance in metres below which the atom ``name`` holds.
+
+    None if there is no such atom, or if
+    :func:`~tltl_runtime.regression.explain.stages.near_enough` gives no distance.
+    """
     atoms = {atom.name: row for row, atom in enumerate(fspa.atoms)}
     return near_enough(fspa, atoms[name], registered_game().params(level)) if name in atoms else None
 
@@ -66,8 +70,8 @@ def _sufficient_distance(level: Level, fspa: Fspa, name: str) -> float | None:
 def _distance_texts(least: float, limit: float | None) -> tuple[str, str]:
     """Return the least distance as a text, and a clause about the distance that would suffice.
 
-    The distances are in metres, with enough decimals to tell them apart. ``limit`` is the distance
-    that would suffice. If it is None, the clause is empty.
+    The distances are in metres. If they differ only in the second decimal, they are shown with two.
+    ``limit`` is the distance that would suffice. If it is None, the clause is empty.
     """
     if limit is None:
         return f"{least:.1f} m", ""

@@ -15,9 +15,9 @@ _NEAR_M: Final = 2.5
 """A place is near an entity if the distance between them is at most this, in metres."""
 
 _BESIDE: Final = 0.99
-"""A box hides a target if the line from the player to the target meets the box early enough.
+"""A box hides a target if the line from the player to the target enters the box early enough.
 
-The line must enter the box within this share of its length.
+It must enter the box before this share of the way to the target.
 """
 
 _TOUCHING_M: Final = 0.7
@@ -47,9 +47,10 @@ def nearest_entity(level: Level, point: Point) -> str | None:
 def blocking_solids(level: Level, players: Sequence[tuple[Point, Sequence[str]]]) -> list[str]:
     """Return the names of the solids and closed barriers that more than half of the players touch.
 
-    Those that most players touch come first; of equal ones, the nearest. The floor does not count,
-    nor does a box that is hidden behind another one. ``players`` has for each player the position
-    of the feet, and the names of the barriers that were closed then.
+    Those that most players touch come first. If equally many players touch two of them, the one
+    that is nearer on average comes first. The floor does not count. For each player, boxes that are
+    hidden behind a nearer one do not count either. ``players`` has for each player the position of
+    the feet, and the names of the barriers that were closed then.
     """
     game = registered_game()
     solids, barriers = game.solids(level), game.barriers(level)
@@ -88,7 +89,7 @@ def _hides(box: Box, feet: Point, target: Box) -> bool:
         else:
             enters, leaves = sorted(((low - at) / offset, (high - at) / offset))
             first, last = max(first, enters), min(last, leaves)
-    # A box that the line meets only at its very end stands beside the target.
+    # If the line meets the box only at the end of the line, the box stands beside the target.
     return first <= last and first < _BESIDE and box.low[2] < target.high[2] and target.low[2] < box.high[2]
 
 

@@ -19,7 +19,7 @@ _PRECISION: Final = 1e-4
 
 @record
 class Subgoal:
-    """What the player must do so that the automaton leaves a state towards acceptance.
+    """What the player must do so that the automaton leaves a state for one nearer to acceptance.
 
     Either ``place`` names the entities to reach, for example ```a` or `b```, or ``other`` says what
     else to do, for example ``makes `open` true``. The field that does not apply is empty.
@@ -40,10 +40,10 @@ _MEETS: Final = Subgoal(other="meets the spec")
 
 
 def target_of(fspa: Fspa, atom: int) -> str | None:
-    """Return the entity that the player must approach for an atom to hold, or None.
+    """Return the target of an atom: the entity that the player must approach for it to hold.
 
-    ``atom`` is the index of the atom. The atom has such an entity if it depends on one signal only,
-    the distance to that entity, and if it holds at distance 0 but not far away.
+    ``atom`` is the index of the atom. An atom has a target if it depends on one signal only, the
+    distance to an entity, and if it holds at distance 0 but not far away. None if it has no target.
     """
     expression = fspa.atoms[atom].expression
     names = {node.name for node in expressions.nodes(expression) if isinstance(node, expressions.SignalValue)}
@@ -98,8 +98,8 @@ def subgoal(fspa: Fspa, state: int) -> Subgoal:
 def _subgoal(fspa: Fspa, prime: Implicant) -> Subgoal | None:
     """Return what the player must do to make a prime implicant true; None if that is nothing.
 
-    Leave out the literals that every accepting run needs all the time. Name the first of these that
-    exist:
+    Leave out the literals that every accepting run needs all the time. Of the other literals, name
+    only the first of these kinds that occurs:
 
     1. the targets to approach (see :func:`target_of`);
     2. the atoms that must hold;
@@ -117,7 +117,7 @@ def _subgoal(fspa: Fspa, prime: Implicant) -> Subgoal | None:
 def subgoal_of_all(fspa: Fspa, states: Collection[int], distance: int) -> Subgoal:
     """Return the subgoal that ``states`` share. All are at ``distance`` from acceptance.
 
-    If their subgoals differ, return one that only says how near to acceptance it leads.
+    If they do not share one, return a subgoal that only says how near to acceptance it leads.
     """
     subgoals = {subgoal(fspa, state) for state in states}
     if len(subgoals) == 1:

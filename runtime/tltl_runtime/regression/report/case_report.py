@@ -107,7 +107,7 @@ def report_on(result: JudgedCase) -> CaseReport:
 
 
 def _edits(result: JudgedCase) -> Iterator[str]:
-    """Describe the differences from the baseline.
+    """Describe how the case differs from its baseline: see ``edits`` of :class:`CaseReport`.
 
     If a file was edited after the case was set up, its changed keys are not named.
     """
@@ -135,7 +135,7 @@ def _headline(
 def report_on_broken(case: Case, error: TltlError) -> CaseReport:
     """Return the report on a case that cannot be played.
 
-    Its verdict is ``fail``: the error is in what the case tests, not in the suite.
+    The verdict is ``fail``, because the error is in a file that the case tests, not in the suite.
     """
     causes = ("it cannot be played", *map(_one_line, error.diagnostics))
     # Name the variant as for a level that loads, without the paths of overlay files.
@@ -169,6 +169,6 @@ def _one_line(diagnostic: Diagnostic) -> str:
 
 
 def _error_location(error: TltlError) -> tuple[str, int] | None:
-    """Return the file and the line, from 1, of the first diagnostic with a label, or None."""
+    """Return the file and the line, from 1, of the first label; None if no diagnostic has one."""
     label = next((diagnostic.labels[0] for diagnostic in error.diagnostics if diagnostic.labels), None)
     return (label.source.name, label.source.position(label.span.start)[0]) if label else None

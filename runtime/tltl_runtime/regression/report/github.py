@@ -22,7 +22,7 @@ def workflow_commands(suite: Suite, reports: Sequence[CaseReport], root: Path) -
 
     1. the file and the line of the error that keeps the case from being played;
     2. the file of the level, if no episodes were judged;
-    3. a file that has changed since the baseline, an overlay rather than the level;
+    3. a file that has changed since the baseline: if possible, an overlay instead of the level;
     4. the suite.
 
     ``root`` is the top of the checkout. Paths inside it are relative to it.

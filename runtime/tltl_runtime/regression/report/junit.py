@@ -17,8 +17,8 @@ _NOT_IN_XML: Final = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U00
 _ELEMENTS: Final = {"fail": "failure", "review": "error"}
 """The XML element of each verdict, except for ``pass``, which has none.
 
-In JUnit, an ``error`` is a test without a result. A ``review`` becomes one, so that no viewer hides
-it.
+In JUnit, an ``error`` is a test without a result. A ``review`` becomes an ``error``, so that no
+viewer hides it.
 """
 
 

@@ -59,10 +59,11 @@ class RetrainingResult:
     - ``feasible``: the search, the agent or a policy met the spec at least once.
     - ``no_way``: nobody met the spec.
 
-    ``text`` says so in a sentence. ``figures`` are those of the retrained policy in fresh episodes,
-    and ``rate_interval`` is the confidence interval of its pass rate. ``best`` is the best failed
-    episode, or None if all episodes met the spec. ``policy`` and ``episode`` are paths relative to
-    the folder of the run; ``episode`` is a recording of an episode that met the spec, or None.
+    ``text`` describes the outcome in a sentence. ``figures`` are those of the retrained policy in
+    fresh episodes, and ``rate_interval`` is the confidence interval of its pass rate. ``best`` is
+    the best failed one of these episodes, or None if all of them met the spec. ``policy`` and
+    ``episode`` are paths relative to the folder of the run: of the retrained policy, and of the
+    recording of a fresh episode that met the spec, or None if none did.
     """
 
     outcome: Outcome
@@ -78,8 +79,9 @@ class RetrainingResult:
 def outcome_of(trained: FinishedRetraining, low: float, thresholds: Thresholds, met: int) -> Outcome:
     """Return the outcome of a retraining, as in :class:`RetrainingResult`.
 
-    ``low`` is the lower end of the pass rate's confidence interval. ``met`` counts the episodes
-    that met the spec, also among those by which the case was judged.
+    ``low`` is the lower end of the pass rate's confidence interval. ``met`` is the number of
+    episodes that met the spec: those of the retrained policy, and those by which the case was
+    judged.
     """
     if low >= thresholds.pass_rate:
         return "learned"

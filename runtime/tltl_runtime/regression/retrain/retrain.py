@@ -227,7 +227,7 @@ def training_summary(run: TrainingRun) -> FinishedRetraining:
     if end is None:
         title = f"`{run.folder / RECORD}` does not say how the training ended"
         raise TltlError([Diagnostic("TLT0863", title, help="remove it: the training then continues to its end")])
-    # Successes of the agent count, too: they may be shorter than those of the search, or the only ones.
+    # These are the lengths of successes of the search and of the agent. Either may have the shortest.
     lengths = [int(length) for process in state.processes for length in process.get("way_lengths", ())]
     return FinishedRetraining(
         end=end,

@@ -1,7 +1,8 @@
 """The files that a case depends on, and the selection of the cases that a change affects.
 
-The files need not load: from a file with errors, everything readable counts. A superfluous case
-costs minutes, but a missing one hides a finding. When in doubt, a file counts as a dependency.
+The files may have errors: what can be read of such a file is searched for further dependencies.
+When in doubt, a file counts as a dependency. A case that is selected without need costs minutes,
+but a case that is left out by mistake hides a finding.
 """
 
 from __future__ import annotations
@@ -28,9 +29,9 @@ _LETTERS: Final = {bytes([key]): bytes([code]) for key, code in zip(b"abtnvfr", 
 class Selection:
     """The result of selecting cases by changed files.
 
-    ``cases`` depend on a changed file, and ``left_out`` on none. ``unknown`` are names on which no
-    case depends. ``suggestions`` are pairs of an unknown name and a similar name that is a
-    dependency.
+    ``cases`` are those that depend on a changed file, and ``left_out`` those that depend on none.
+    ``unknown`` are the names that mean no dependency of any case. ``suggestions`` are pairs of an
+    unknown name and a similar name that means a dependency.
     """
 
     cases: tuple[Case, ...]
@@ -40,7 +41,7 @@ class Selection:
 
 
 def select(suite: Suite, changed: Sequence[str]) -> Selection:
-    r"""Select the cases that depend on a file in ``changed``.
+    r"""Select the cases that depend on a file, or a file in a folder, that ``changed`` names.
 
     A name is the path of a file, the last parts of the path (``assets/guard.toml``,
     ``guard.toml``), either of them without the extension (``guard``), or the path of a folder.
@@ -68,8 +69,8 @@ def select(suite: Suite, changed: Sequence[str]) -> Selection:
 def dependencies(suite: Suite, case: Case) -> tuple[Path, ...]:
     """Return the absolute paths of the files that a case depends on.
 
-    If a path has links, return it both as named and with links resolved. A path without a file
-    counts, too, if a file there would be read in place of another one.
+    If a path contains symbolic links, return it both as named and with the links resolved. A path
+    without a file counts, too, if a file there would be read instead of one of the others.
     """
     files = [suite.path, suite.baseline, policy_file(case.policy)]
     files += registered_game().level_files.dependencies(case.level, case.variant)
@@ -101,8 +102,8 @@ def _matches_any(name: str, paths: Iterable[Path]) -> bool:
 def _similar_name(name: str, paths: Iterable[Path]) -> str | None:
     """Return a name that is similar to ``name`` and means one of ``paths``; None without one.
 
-    None also for an existing file, and for a name with a folder: it may be a deleted file that git
-    lists.
+    Also return None if ``name`` exists, and if it contains a folder: then it may be a deleted file
+    that git lists.
     """
     named_path = Path(_unquote(name))
     if len(named_path.parts) > 1 or fileio.exists(named_path):
@@ -120,7 +121,7 @@ def _unquote(name: str) -> str:
     if len(name) < 2 or not (name.startswith('"') and name.endswith('"')):
         return name
     parts = _ESCAPE.split(os.fsencode(name[1:-1]))
-    # Every second part is what comes after a backslash.
+    # Every second part, from the second on, is what comes after a backslash.
     parts[1::2] = [
         bytes([int(escape, 8) % 256]) if escape.isdigit() else _LETTERS.get(escape, escape) for escape in parts[1::2]
     ]

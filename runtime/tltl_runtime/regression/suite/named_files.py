@@ -18,9 +18,9 @@ _NO_SUCH_SPEC: Final = {"TLT0720", "TLT0721"}
 
 
 def policy_file(path: Path) -> Path:
-    """Return the file of a case's policy: ``path`` itself, or if it is a folder, the policy in it.
+    """Return the file of a case's policy.
 
-    The folder is that of a training.
+    This is ``path`` itself or, if ``path`` is the folder of a training, the policy in it.
     """
     if not fileio.is_dir(path):
         return path
@@ -60,10 +60,10 @@ def spec_diagnostics(spec: str, label: Label) -> list[Diagnostic]:
 
 
 def similar_level(name: str, folder: Path) -> str | None:
-    """Return a hint that names a level similar to ``name``, which does not exist; None without one.
+    """Return a hint that names a level similar to ``name``; None if no level is similar.
 
-    ``name`` is from a suite in ``folder``. Candidates are the level files beside the path ``name``,
-    and the levels of the package.
+    ``name`` does not exist. It is from a suite in ``folder``. Candidates are the level files beside
+    the path ``name``, and the levels of the package.
     """
     names: list[str] = []
     # The name may not be a valid path on this system.
@@ -85,9 +85,9 @@ def _is_level(path: Path) -> bool:
 
 
 def level_with_fitting_policy(level: str) -> str | None:
-    """Return the level of the package whose policy may fit ``level``; None if there is none.
+    """Return the level of the package whose policy may fit ``level``; None without such a level.
 
-    The two levels have specs of the same name: ``level`` may be a copy of the other.
+    Their spec files have the same name, so ``level`` may be a copy of the level of the package.
     """
     game = registered_game()
     with suppress(TltlError):

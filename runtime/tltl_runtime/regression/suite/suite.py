@@ -36,11 +36,11 @@ MOST_EPISODES: Final = 300
 """The most episodes of a case, unless the suite says otherwise."""
 
 _MOST_ERRORS: Final = 100
-"""After this many errors, no more cases are read, because checking a case can take long."""
+"""Once a suite has this many errors, no more cases are read: checking a case can take long."""
 
 _MAX_EPISODES: Final = 10_000
 _GREATEST: Final = {"pass_rate": 0.999}
-"""The greatest values of thresholds, where these are less than 1.
+"""The greatest allowed value of each threshold whose greatest value is less than 1.
 
 No number of episodes can make a pass rate of 1 certain.
 """

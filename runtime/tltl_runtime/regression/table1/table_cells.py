@@ -103,16 +103,16 @@ def _expert_episodes(level: str, variant: str, pool: Pool) -> Generator[EpisodeR
 
 
 class _ExpertPlayer:
-    """Plays episodes with the scripted expert.
+    """Plays episodes with the scripted expert, as a worker of an evaluation.
 
-    :class:`~tltl_runtime.evaluation.player.Player` does the same with a policy.
+    For policies, there is :class:`~tltl_runtime.evaluation.player.Player`.
     """
 
     def __init__(self, level: str, variant: str) -> None:
         self._game = registered_game()
         self._env = self._game.recorder(self._game.make_env(level, variant))
         self._seeds: deque[int] = deque()
-        """The seeds of the next episodes.
+        """The seeds of the next episodes. :meth:`play` appends one, and the expert takes it.
 
         One expert plays all episodes, so that it can reuse what it has computed about the level.
         """

@@ -58,15 +58,17 @@ class TrainedModel:
 
 
 def limits(minutes: float | None) -> Limits:
-    """Return the limits of our trainings: the default steps, and ``minutes``, or else one hour."""
+    """Return the limits of our trainings: the default number of steps, and ``minutes``.
+
+    If ``minutes`` is None, the limit is one hour.
+    """
     return Limits(read_settings().stop.steps, _MINUTES if minutes is None else minutes)
 
 
 def limits_of_policy(card: Card, minutes: float | None) -> Limits:
-    """Return the limits of the training that made a policy.
+    """Return the limits of the training that made a policy, so that another training can have them.
 
-    Trainings with the same limits can be compared. ``card`` is the card of the policy. If
-    ``minutes`` is given, it replaces that limit.
+    ``card`` is the card of the policy. ``minutes`` replaces the limit of minutes unless it is None.
     """
     stop = card.training["settings"]["stop"]
     return Limits(int(stop["steps"]), float(stop["minutes"]) if minutes is None else minutes)
@@ -102,8 +104,8 @@ def table_training(folder: Path, level: str, model: Model, limits: Limits) -> Ta
 def train_arguments(training: TableTraining) -> list[str]:
     """Return the arguments with which ``tltlc train`` starts or continues the training.
 
-    A stopped training keeps the limits that it started with if they are greater, because it may
-    already have passed the new limits.
+    A training that continues keeps those of its initial limits that are greater than the new ones,
+    because it may already have passed the new ones.
     """
     steps, minutes = training.limits.steps, training.limits.minutes
     if (training.folder / RUN).exists():
@@ -120,9 +122,7 @@ def train_arguments(training: TableTraining) -> list[str]:
 
 
 def finished_training(training: TableTraining) -> TrainedModel | None:
-    """Return the result of a training that reached its goal or its limits.
-
-    None for a training that did neither.
+    """Return the result of a training that reached its goal or one of its limits, else None.
 
     Raises:
         TltlError: TLT0863, the folder cannot be read.

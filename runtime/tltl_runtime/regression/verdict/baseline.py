@@ -123,7 +123,10 @@ def read_baseline(path: Path) -> tuple[Reference, ...]:
 
 
 def _texts(played: Identity, texts: Mapping[str, str]) -> tuple[tuple[str, str], ...]:
-    """Return the names and texts of the files of ``played``, as far as ``texts`` contains them."""
+    """Return the name and the text of each file of ``played`` whose text is known.
+
+    ``texts`` has the known texts, by their SHA-256.
+    """
     return tuple((name, texts[sha256]) for name, sha256 in played.files if sha256 in texts)
 
 
@@ -137,7 +140,7 @@ def _json(value: object) -> str:
 
 
 def text_sha256(text: str) -> str:
-    """Return the SHA-256 of a text, in hexadecimal, as in ``Level.files``."""
+    """Return the SHA-256 of a text, in hexadecimal: the hash that ``Level.files`` has of a file."""
     return hashlib.sha256(text.encode("utf-8", "surrogatepass")).hexdigest()
 
 
@@ -204,7 +207,7 @@ def reference_of(references: tuple[Reference, ...], identity: Identity, suite: S
     ]
     if matches:
         return matches[0]
-    # If only another level has this name, name the level by its place.
+    # If the baseline knows this name only from another level, name the level by its place.
     level = identity.place if with_name and not with_place and identity.place else identity.level
     title = f"the baseline has no figures for `{level}:{identity.variant}`"
     if with_place:

@@ -41,9 +41,10 @@ def record_baseline(
 ) -> Generator[RecordedReference]:
     """Play the episodes of all references that the cases of a suite need, and yield the references.
 
-    Cases with the same level, reference variant, spec and policy share a reference. The case with
-    the most episodes sets their number. A reference in ``finished``, from an earlier recording, is
-    not played again if nothing has changed since. ``on_episode`` is called after each episode.
+    Cases with the same level, reference variant, spec and policy share a reference. It has as many
+    episodes as the case with the most. A reference is not played again if ``finished``, from
+    earlier recordings, contains one with the same identity and the same number of episodes.
+    ``on_episode`` is called after each episode.
 
     Raises:
         TltlError: a case cannot be set up (raised before anything is played); TLT0905, a level was
@@ -63,10 +64,10 @@ def record_and_write_baseline(
 ) -> Generator[RecordedReference]:
     """Record the baseline of a suite with :func:`record_baseline`, then write it to ``path``.
 
-    Until it is complete, the file that :func:`partial_path` names stores the finished references,
-    so that a stopped recording can continue. A reference of the ``older`` baseline is not played
-    again if neither what it depends on nor the code that plays has changed. With ``fresh``, only
-    references from an earlier ``fresh`` recording are reused.
+    Until the baseline is complete, the file that :func:`partial_path` names stores the finished
+    references, so that a stopped recording can continue. A reference of the ``older`` baseline is
+    not played again if neither what it depends on nor the code that plays has changed. With
+    ``fresh``, only references from a stopped ``fresh`` recording are reused.
 
     Raises:
         TltlError: TLT0005, a file cannot be written; errors of :func:`record_baseline`.
@@ -79,7 +80,7 @@ def record_and_write_baseline(
     reusable = () if fresh else tuple(reference for reference in older if reference.sources == sources_hash())
     for recorded in _record_references(groups, pool, on_episode, (*finished, *reusable)):
         references.append(recorded.reference)
-        # References of the older baseline stay in that file.
+        # References of the older baseline need no copy: they are in the file of that baseline.
         new = tuple(reference for reference in references if reference not in reusable)
         _write_partial(partial, inputs, (*new, *(earlier for earlier in finished if earlier not in new)))
         yield recorded
@@ -110,7 +111,7 @@ def verdict_if_unchanged(suite: Suite, case: Case, reference: Reference) -> Verd
 def episodes_for_certainty(pass_rate: float, error: float) -> int:
     """Return how many successes, without a failure, make it certain that ``pass_rate`` is reached.
 
-    The number is at least 25. ``error`` is the probability that a certain statement is wrong.
+    The number is at least 25. ``error`` bounds the probability that a certain statement is wrong.
     """
     return next(successes for successes in count(LEAST_EPISODES) if rate_interval(successes, 0, error)[0] >= pass_rate)
 

@@ -27,7 +27,7 @@ They are equally spaced on the scale arcsin(sqrt(rate)).
 """
 
 _SHARES: Final = (0.05, 0.2, 0.5, 0.9)
-"""The shares of the largest safe stake that the bets on a mean risk.
+"""For each bet on a mean, the greatest share of its stake that it can lose at one value.
 
 Large shares detect large changes sooner, small shares detect small changes. The values were chosen
 by simulation, for figures with a threshold of 0.05.
@@ -59,12 +59,12 @@ def rate_interval(successes: int, failures: int, error: float) -> tuple[float, f
 def mean_p_value(values: Sequence[float], low: float, high: float, least: float = -1.0, most: float = 1.0) -> float:
     """Return the p-value of the hypothesis that the mean of the values is in [``low``, ``high``].
 
-    The values are in [``least``, ``most``]. For each value, a stake is multiplied by 1 + share *
-    (low - value) / (most - low). It does not grow on average if the conditional mean of each value,
-    given the earlier ones, is at least ``low``. A second stake does the same for ``high``. The mean
-    of the stakes for all shares and both sides does not grow on average either (I. Waudby-Smith, A.
-    Ramdas, J. R. Stat. Soc. B 86 (2024), 1-27). The p-value is 1 over the greatest such mean so
-    far, so it may be evaluated after each value.
+    The values are in [``least``, ``most``]. For each of several shares, a stake is multiplied, at
+    each value, by 1 + share * (low - value) / (most - low). This stake does not grow on average if
+    the conditional mean of each value, given the earlier ones, is at least ``low``. A second stake
+    does the same for ``high``. The mean of all these stakes does not grow on average either (I.
+    Waudby-Smith, A. Ramdas, J. R. Stat. Soc. B 86 (2024), 1-27). The p-value is 1 over the greatest
+    such mean so far, so it may be evaluated after each value.
 
     Raises:
         ValueError: ``low`` is above ``high``, or ``least`` is not below ``most``.
@@ -79,9 +79,9 @@ def mean_p_value(values: Sequence[float], low: float, high: float, least: float 
 
 @lru_cache(maxsize=1 << 16)
 def _lower_end(successes: int, failures: int, error: float) -> float:
-    """Return the greatest rate that is refuted as too low. All lower rates are refuted, too.
+    """Return the greatest rate that the counts refute as too low. They refute all lower rates, too.
 
-    It is found by bisection. It is 0 if there are no successes.
+    The rate is found by bisection. It is 0 if there are no successes.
     """
     if successes == 0:
         return 0.0

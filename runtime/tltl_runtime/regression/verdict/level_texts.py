@@ -12,7 +12,7 @@ from tltl_runtime.regression.verdict.baseline import Reference, text_sha256
 from tltlc.api import TltlError, fileio
 
 Texts = tuple[tuple[str, str], ...]
-"""The names of a level's files, as in ``Level.files``, each with its text or its hash."""
+"""Pairs for a level's files: the name, as in ``Level.files``, and the text or its SHA-256."""
 
 _NAME: Final = re.compile(r"(?:(?:assets|overlays)/)?[^/\\:\0]+\.toml")
 _BASELINE: Final = fileio.Archive(
@@ -50,7 +50,7 @@ def baseline_level(reference: Reference) -> Level | None:
     None if a text is missing or the level does not load.
     """
     played, texts = reference.played, dict(reference.texts)
-    # Two overlays of the same name do not fit into one folder, and a name must not lead out of it.
+    # Two overlays of the same name do not fit into one folder. No name may lead out of the folder.
     if len(texts) != len(played.files) or not texts or not all(map(_NAME.fullmatch, texts)):
         return None
     name = played.files[0][0]

@@ -105,8 +105,8 @@ def play_episodes(prepared: PreparedCase, pool: Pool) -> Generator[CaseEpisode]:
     tasks = [EpisodeRequest(index) for index in range(prepared.case.episodes)]
     with closing(results(prepared.setup, tasks, pool, replay_command=partial(_replay_command, prepared))) as playing:
         for count, result in enumerate(playing):
-            # Before it raises an error, `results` yields all finished episodes. Skip those after a gap:
-            # counting them would favour fast episodes.
+            # Before `results` raises an error, it yields all finished episodes. Skip those that come after
+            # a missing one: counting them would favour fast episodes.
             if result.played.index != count:
                 continue
             episode = registered_game().episode_from_bytes(result.recording, _PLAYER)

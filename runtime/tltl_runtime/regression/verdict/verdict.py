@@ -20,7 +20,7 @@ whose error over all evaluations is e
 (:func:`~tltl_runtime.regression.verdict.confidence.rate_interval`). A figure (progress or reward)
 has certainly changed if both of these hold:
 
-- The means over equal seeds differ by its threshold at least.
+- Its means over the seeds that both sides have played differ by its threshold at least.
 - A test refutes that the policy's mean is within the threshold of the mean of all episodes of the
   baseline. Its p-value is e/4 at most, over all evaluations
   (:func:`~tltl_runtime.regression.verdict.confidence.mean_p_value`).
@@ -111,7 +111,7 @@ def judge(
 def differing_figures(
     now: Sequence[EpisodeSummary], before: Sequence[EpisodeSummary], thresholds: Thresholds
 ) -> tuple[str, ...]:
-    """Return the figures whose means over equal seeds differ by at least their thresholds.
+    """Return the figures whose means over the common seeds differ by at least their thresholds.
 
     The differences may be due to chance.
     """
@@ -125,7 +125,7 @@ def _differing_figures(differences: Mapping[str, float], thresholds: Thresholds)
 def _differences(now: Sequence[EpisodeSummary], before: Sequence[EpisodeSummary]) -> dict[str, float]:
     """Return the absolute differences between the means of each figure now and before.
 
-    The means are over the seeds that both sides have.
+    The means are over the seeds with which both sides have played.
     """
     count = min(len(now), len(before))
     pairs = {figure: (_values(now[:count], figure), _values(before[:count], figure)) for figure in FIGURES}

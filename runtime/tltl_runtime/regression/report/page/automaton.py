@@ -109,8 +109,8 @@ def picture(fspa: Fspa, svg: bytes, now: Traffic, before: Traffic) -> Markup:
 def _edge_counts(traffic: Traffic, runs: Collection[tuple[int, ...]], drawn_edges: Set[Ends]) -> Counter[Ends]:
     """Count the episodes that took each drawn edge.
 
-    ``runs`` has the states of each node. A node with several states draws a chain of states as one.
-    An edge from or to a state of a chain counts as the edge that is drawn for it.
+    ``runs`` has the states of each node. A node with several states stands for a chain of states.
+    An edge from or to a state of the chain counts as the drawn edge from or to that node.
     """
     first = {state: run[0] for run in runs for state in run}
     folded = [run[0] for run in runs if len(run) > 1]
@@ -153,7 +153,7 @@ def _mark_state(
 def _visits(traffic: Traffic, states: tuple[int, ...]) -> int:
     """Return how many episodes visited the ``states`` of a node.
 
-    If there are several, count the episodes that took an edge into any of them.
+    For a node with several states, return how many episodes took an edge into any of them.
     """
     if len(states) == 1:
         return traffic.visited.get(states[0], 0)
@@ -163,7 +163,7 @@ def _visits(traffic: Traffic, states: tuple[int, ...]) -> int:
 def _mark_edge(
     group: ElementTree.Element, title: ElementTree.Element, ends: Ends, edge_counts: Sequence[tuple[int, int]]
 ) -> None:
-    """Set the thickness and the title of an edge; a self-loop gets neither.
+    """Set the thickness and the title of an edge; remove the title of a self-loop.
 
     ``edge_counts`` has two pairs, one for now and one for the baseline: how many episodes took the
     edge, and how many episodes there are.
@@ -184,9 +184,9 @@ def _mark_edge(
 
 
 def _name(group: ElementTree.Element, text: str, left: float, top: float, right: float) -> None:
-    """Add a badge with the name of a state at the state's upper left corner.
+    """Add a badge with the name of a state at the upper left corner of the state's node.
 
-    If the badge would cover the distance mark, it is placed above the mark.
+    If the badge would cover the mark that shows the state's distance, it is placed above the mark.
     """
     x, y = min(left + 6, right - _width(text)), top
     # The mark of the distance is a filled path without an outline.

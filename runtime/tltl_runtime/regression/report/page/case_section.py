@@ -21,9 +21,9 @@ from tltlc.api import formula_text, record
 
 @record
 class _Reason:
-    """A reason of the verdict.
+    """A reason of the verdict: a sentence, with links to recorded episodes that show what it says.
 
-    ``links`` lead to the recorded episodes that show it. None if there are no such episodes.
+    ``links`` is None if no recorded episode shows it.
     """
 
     text: str

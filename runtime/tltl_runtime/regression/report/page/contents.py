@@ -19,7 +19,7 @@ class ReportedCase:
     ``level`` and ``fspa`` are None for a case that cannot be played. ``episodes`` are the recorded
     episodes by index. ``before`` are the episodes of the baseline. ``baseline_level`` is the level
     that the baseline was recorded on, or None if it is unknown. ``curve`` is the plot of the
-    retraining, as a PNG, or empty.
+    retraining as a PNG, or empty without a retraining or its plot.
     """
 
     report: CaseReport
@@ -35,8 +35,8 @@ class ReportedCase:
 class NotRun:
     """A case that was not judged in this run.
 
-    ``reason`` says why, in a sentence. ``earlier_verdict`` is the verdict of an earlier run, or
-    None.
+    ``reason`` says why, in a sentence. ``earlier_verdict`` is the case's verdict in an earlier run,
+    or None if there is no earlier verdict.
     """
 
     name: str

@@ -73,7 +73,7 @@ def progress_distribution(now: Sequence[ExplainedEpisode], before: Sequence[Expl
 def _left_end(bin_: int) -> float:
     """Return the left end of a bin, in widths of a bin.
 
-    A gap sets the last bin, that of the successes, apart.
+    There is a gap before the last bin, which shows the successes.
     """
     return bin_ + _GAP * (bin_ == _BINS)
 
@@ -88,7 +88,7 @@ def _shares(episodes: Sequence[ExplainedEpisode]) -> list[float]:
     """Return the share of episodes in each bin.
 
     An episode that reached progress 1 and then broke the spec is in the last bin of the failed
-    ones.
+    episodes.
     """
     counts = [0] * (_BINS + 1)
     for episode in episodes:

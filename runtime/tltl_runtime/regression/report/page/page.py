@@ -66,7 +66,7 @@ def _file_text(name: str) -> str:
 def _digest(script: str) -> str:
     """Return the hash of the page's script, so that a browser runs this script and no other.
 
-    It is the SHA-256, in base64, that the page's content security policy names. The line feeds
-    around the script are part of what is hashed.
+    The page's content security policy names it: the SHA-256 in base64. The hashed text includes the
+    line feeds before and after the script.
     """
     return base64.b64encode(hashlib.sha256(f"\n{script}\n".encode()).digest()).decode()

@@ -29,7 +29,7 @@ class Traffic:
 def traffic(episodes: Sequence[ExplainedEpisode]) -> Traffic:
     """Count how episodes moved through their automaton.
 
-    An episode counts once for a state or an edge, even if it came there several times.
+    An episode counts once for a state that it visited, or an edge that it took, several times.
     """
     visited: Counter[int] = Counter()
     edges = []

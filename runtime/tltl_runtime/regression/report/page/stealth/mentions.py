@@ -49,7 +49,8 @@ def _mentions_thing(name: str, text: str) -> bool:
 def _regions(level: StealthLevel, text: str) -> frozenset[str]:
     """Return the names of the mentioned regions.
 
-    Where several names fit, only the longest counts: *the left part* does not mention ``left``.
+    If the names of several regions fit at one place in the text, only the longest counts: *the left
+    part* does not mention ``left``.
     """
     names_by_text = {region.name.replace("_", " "): region.name for region in level.regions}
     alternatives = "|".join(map(re.escape, sorted(names_by_text, key=len, reverse=True)))
