@@ -77,7 +77,7 @@ def command(suite: Path | None, path: Path | None, fresh: bool, workers: Any) ->
 
 
 def _older_references(path: Path) -> tuple[Reference, ...]:
-    """Return the references in the output file: what it has recorded, level by level.
+    """Return the references of the baseline in the output file.
 
     The result is empty if the file is missing or is not a baseline.
     """
@@ -91,8 +91,8 @@ def _older_references(path: Path) -> tuple[Reference, ...]:
 def _stopped_text(path: Path, partial: Path | None, *, existed: bool) -> str:
     """Describe the files of a stopped recording and how to continue.
 
-    ``partial`` is the file of the finished references, if there is one. ``existed`` says whether the
-    output file existed before.
+    ``path`` is the output file, and ``existed`` says whether it existed before. ``partial`` is the
+    file of the finished references; None without such a file.
     """
     from tltl_runtime.support.shown_path import path_text
 
@@ -104,7 +104,7 @@ def _stopped_text(path: Path, partial: Path | None, *, existed: bool) -> str:
 
 
 def _print_reference(suite: Suite, recorded: RecordedReference, older: tuple[Reference, ...], *, fresh: bool) -> None:
-    """Print what was recorded, and which cases would not pass even if nothing changed."""
+    """Print the result of a reference, and the cases that will not pass even if nothing changes."""
     from tltl_runtime.regression.verdict.baseline_run import verdict_if_unchanged
 
     reference = recorded.reference

@@ -55,10 +55,9 @@ def command(files: tuple[str, ...], path: Path | None, format: str) -> int:  # n
 
 
 def _read(name: str) -> tuple[Policy, dict[str, Any], str]:
-    """Read a policy.
+    """Return a policy, and the progress of its training as JSON data and as a line of text.
 
-    If its training has not ended yet, also return the progress of the training, as JSON data and as a
-    line of text; otherwise both are empty.
+    The data and the text are empty unless ``name`` is the folder of a training that has not ended.
     """
     from tltl_runtime.cli.support.policy_path import policy_file, progress
     from tltl_runtime.policies.file import read_policy

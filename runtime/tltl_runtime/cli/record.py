@@ -113,7 +113,11 @@ def command(
 
 
 def _level_and_variant(level: str | None, spec: str | None) -> tuple[str, str]:
-    """Return the level and the variant that are named, else the level of the spec in ``v0``."""
+    """Return the level and the variant to play.
+
+    They are those of the argument ``level``, by default in ``v0``. Without the argument, the level
+    is the one that the spec names, in ``v0``.
+    """
     if level is not None:
         file, variant = split_level(level)
         return file, variant or "v0"
@@ -165,8 +169,8 @@ def _record_person(
 class _DemonstrationRecorder:
     """Writes those episodes of a person that meet the spec.
 
-    If the folder cannot be written, an episode goes to the folder for temporary files and does not
-    count.
+    If the folder of demonstrations cannot be written, an episode goes to the folder for temporary
+    files instead, and does not count as a demonstration.
 
     Raises:
         TltlError: TLT0005, from ``save``: the folder for temporary files cannot be written, either.

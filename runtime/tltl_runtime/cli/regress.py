@@ -135,12 +135,13 @@ def _is_suite(word: str) -> bool:
 def _default_folder(suite: Path | None) -> Path:
     """Return the default folder of a run: `regression/levels/game` for `levels/game.toml`.
 
-    It follows the path of the suite relative to the working directory.
+    It is ``regression``, followed by the path of the suite relative to the working directory,
+    without ``..`` and without the extension.
     """
     if suite is None:
         return Path("regression", "shipped")
     try:
         path = Path(os.path.relpath(suite))
-    except ValueError:  # Windows: on another drive
+    except ValueError:  # on Windows, the suite is on another drive
         path = Path(suite.name)
     return Path("regression", *(part for part in path.parent.parts if part != os.pardir), path.stem)

@@ -169,7 +169,7 @@ def _check_text(fields: dict[str, Any]) -> str:
 
 
 def _span(episode: Episode, start: float | None, stop: float | None) -> tuple[float, float]:
-    """Return the start and the end of a film or a trace, in seconds."""
+    """Return the start and the end of a film or a trace, in seconds: by default, of the episode."""
     end = episode.snapshots[-1].time
     begin, last = start or 0.0, end if stop is None else stop
     if begin > min(last, end):
@@ -180,7 +180,8 @@ def _span(episode: Episode, start: float | None, stop: float | None) -> tuple[fl
 def _write(path: Path, episode: Episode, span: tuple[float, float], film: Film, size: tuple[int, int] | None) -> None:
     """Write the output that the extension of the path selects.
 
-    ``size``, in pixels, applies to plans; None: the natural size.
+    ``span`` applies to films and signals, and ``film`` to films. ``size``, in pixels, applies to
+    plans. If it is None, the plan has a size that fits its contents.
     """
     from tltlc.api import fileio
 

@@ -188,7 +188,8 @@ def command(
                 click.echo(stopped, err=True)
             raise
         if not is_first:
-            # Exit cleanly: if one process fails, torchrun ends all, and the first one still writes the record.
+            # The exit status is 0 even if a limit ended the training. If it were not, torchrun would end all
+            # processes, while the first one is still writing the record.
             return cli.exits.CLEAN
         write_record(run, last)
         for line in _end_lines(run, last, again):
@@ -240,7 +241,7 @@ def _end_lines(run: TrainingRun, last: TrainingReport, again: str) -> Iterator[s
 def _finished_text(run: TrainingRun, record: Mapping[str, Any], again: str) -> str:
     """Describe a training that is not resumed because it has ended.
 
-    ``again`` is the command that resumes it, to which the user can add a higher limit.
+    ``again`` is the command that resumes the training. The user can add a higher limit to it.
     """
     from tltl_runtime.cli.support.training_text import minutes
 

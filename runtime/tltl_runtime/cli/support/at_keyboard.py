@@ -55,8 +55,8 @@ def play_at_keyboard(
 
     The game also ends if ``enough`` returns true after an episode. ``recordings`` takes the name
     LEVEL-VARIANT, and returns the object that stores the episodes. ``seed`` is the seed of the
-    first episode. Warnings about unreachable goals are printed to standard error before the window
-    opens.
+    first episode. ``crouch`` is ``hold`` or ``toggle``. Warnings about unreachable goals are
+    printed to standard error before the window opens.
 
     Raises:
         TltlError: TLT0830, no window can be opened; TLT0730, pygame is not installed.

@@ -13,8 +13,9 @@ _OPTION: Final = "--changed"
 class ChangedCommand(click.Command):
     """A command whose option ``--changed``, declared with ``multiple``, takes any number of words.
 
-    So it accepts the output of ``$(git diff --name-only)``, which may be empty. The first value of the
-    option is always an empty string, which distinguishes an empty option from a missing one.
+    So it accepts the output of ``$(git diff --name-only)``, which may be empty. If the option is
+    given, its first value is an empty string. This distinguishes an option without words from a
+    missing option.
     """
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
@@ -23,7 +24,7 @@ class ChangedCommand(click.Command):
 
 
 def _with_repeated_option(words: Sequence[str]) -> Iterator[str]:
-    """Yield the words, with ``--changed=`` before each value of the option."""
+    """Yield the words, with ``--changed=`` in place of the option and before each of its values."""
     is_value = False
     for index, word in enumerate(words):
         if word == "--":

@@ -8,7 +8,7 @@ from tltl_runtime.support.number_text import number, share
 
 
 def episode_line(episode: Episode, result: str) -> str:
-    """Describe an episode in a line; ``result`` says what became of its recording.
+    """Describe an episode in a line; ``result`` says where its recording is, or that there is none.
 
     If the episode failed, a second line gives the cause.
     """

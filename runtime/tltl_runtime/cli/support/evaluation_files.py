@@ -28,7 +28,7 @@ from tltlc.api import Diagnostic, TltlError, cli, fileio
 _REPORT: Final = "evaluation.json"
 _PICTURES: Final = {sampled: f"ways-{choice}.png" for sampled, choice in CHOICES.items()}
 _KEYS: Final = frozenset({"level", "variant", "level_hash", "spec", "policy", "versions"})
-"""The keys that the reports of all versions contain."""
+"""The keys by which a JSON report is recognized. All versions of the report contain them."""
 _EPISODE_KEYS: Final = (
     "index",
     "seed",
@@ -49,12 +49,12 @@ _EPISODE_KEYS: Final = (
 class EvaluationFiles:
     """Collects the results of an evaluation and writes its files.
 
-    ``path`` is the policy's file, ``sha256`` the hash of its bytes, in hexadecimal, and ``first`` the
-    index of the first episode. ``command`` evaluates the same episodes again. ``folder``, which is
-    created if it is missing, gets recordings and pictures. ``json_file`` gets the JSON report.
-    Either may be None. When the first result is added, the report and the pictures of an earlier
-    evaluation are removed from the folder, and so are recordings of another policy on this level:
-    ``removed_files`` names them.
+    ``path`` is the policy's file, ``sha256`` the hash of its bytes, in hexadecimal, and ``first``
+    the index of the first episode. ``command`` evaluates the same episodes again. ``folder``, which
+    is created if it is missing, gets recordings, pictures and the JSON report. ``json_file`` gets
+    the JSON report, too. Each of the two is None if it was not requested. When the first result is
+    added, the report and the pictures of an earlier evaluation are removed from the folder, and so
+    are recordings of another policy on this level. ``removed_files`` names them.
 
     Raises:
         TltlError: TLT0005, a file cannot be written, also from ``add`` and ``write``; TLT0722, a file has
@@ -85,7 +85,7 @@ class EvaluationFiles:
 
     @property
     def episode_counts(self) -> dict[str, int]:
-        """The number of played episodes for each way to choose actions."""
+        """The number of episodes played with each way to choose actions (``sampled``, ``arg-max``)."""
         return {CHOICES[sampled]: len(summaries) for sampled, summaries in self._summaries.items()}
 
     @property
@@ -126,9 +126,9 @@ class EvaluationFiles:
     def document(self, complete: bool) -> dict[str, Any]:
         """Return the JSON report.
 
-        It has the figures with sampled actions, and under ``argmax`` those with the likeliest
-        actions. The report does not depend on which workers played. ``complete`` says whether all
-        episodes were played.
+        It has the figures with sampled actions, and under ``argmax`` those with the most probable
+        actions. The report does not depend on the workers that played. ``complete`` says whether
+        all episodes were played.
         """
         setup, evaluations = self._setup, self._evaluations()
         card = setup.policy.card
@@ -236,7 +236,8 @@ def _is_report(path: Path) -> bool:
 def _as_json(evaluation: Evaluation) -> dict[str, Any]:
     """Return the figures, how failed episodes ended, and the list of episodes.
 
-    The key ``episodes`` has the list, and not the number of episodes as in the figures.
+    The value of ``episodes`` is the list. It replaces the number of episodes, which the figures
+    have under the same key.
     """
     figures = {name: value for name, value in to_json(evaluation.figures).items() if name != "episodes"}
     return {

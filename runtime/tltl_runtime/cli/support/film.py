@@ -21,7 +21,7 @@ FILMS: Final = (".gif", ".mp4")
 """The file extensions of films."""
 
 _MAX_FRAMES_PER_SECOND: Final = 30.0
-"""The greatest frame rate that is chosen by default. A film that needs more leaves frames out."""
+"""The greatest default frame rate. In a film with more decisions per second, some have no frame."""
 
 
 @record

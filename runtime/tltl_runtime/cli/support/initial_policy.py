@@ -108,7 +108,7 @@ def policy_difference(run: TrainingRun, named: Path) -> str | None:
 
 
 def with_policy_path(run: TrainingRun, named: Path) -> TrainingRun:
-    """Return the training with the initial policy at ``named``, where it may have moved."""
+    """Return the training with its initial policy at ``named``, in case the policy has moved."""
     assert run.initial is not None
     return replace(run, initial=replace(run.initial, path=str(policy_file(named))))
 

@@ -46,7 +46,7 @@ def check_named(policy: Path | None, level: str | None) -> None:
 def check_no_toml(spec: str | None, settings: str = "") -> None:
     """Raise UsageError if a ``.toml`` file is given as a spec.
 
-    The file is probably a level, or a file for the option ``settings``.
+    The message suggests ``--level`` and, if ``settings`` is an option, this option instead.
     """
     path = fileio.split_spec_name(spec)[0] if spec else ""
     if path.endswith(".toml"):

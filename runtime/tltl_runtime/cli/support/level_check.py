@@ -123,7 +123,7 @@ def _specs(opened: cli.Input) -> Iterator[tuple[Fspa, SpecPlaces]]:
 def _supply_text(level: StealthLevel, fspa: Fspa) -> str:
     """Return, as text, what a level supplies to a spec.
 
-    These are its entities, the signals that are about no entity, and its params.
+    These are the entities and params that the spec uses, and its signals that are about no entity.
     """
     names = list(used_entities(level, fspa))
     names += [signal.name for signal in fspa.signals if "(" not in signal.name]

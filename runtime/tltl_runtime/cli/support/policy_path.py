@@ -17,10 +17,10 @@ from tltlc.api import Diagnostic, TltlError, fileio
 def policy_place(policy: Path | None, level: str | None, command: str) -> tuple[Path, str | None, str | None]:
     """Return the file of a policy, and the level and the variant to play.
 
-    Level and variant are None if those in the policy's card are to be played. ``policy`` is a path, or
-    ``LEVEL`` or ``LEVEL:VARIANT`` for the policy that comes with a level. Without ``policy``, the policy
-    that comes with ``level`` is used. At least one of the two must be given. ``command`` is a command
-    that takes a policy as its argument, for suggestions in messages.
+    If the returned level is None, the level and the variant in the policy's card are to be played.
+    ``policy`` is a path, or ``LEVEL`` or ``LEVEL:VARIANT`` for the policy that comes with a level.
+    Without ``policy``, the policy that comes with ``level`` is used. At least one of the two must
+    be given. ``command`` is a command that takes a policy as its argument; messages suggest it.
 
     Raises:
         TltlError: TLT0853, no policy comes with the level; TLT0800, the level does not exist; TLT0001,

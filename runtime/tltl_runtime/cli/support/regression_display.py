@@ -16,10 +16,10 @@ _EPISODES_BETWEEN_LINES: Final = 25
 
 
 class RegressionDisplay:
-    """Shows the progress of a case; call it after each played episode.
+    """Shows the progress of a case. The display is a function to be called after each episode.
 
-    As a context manager, it removes the bar at the end. ``most``, for example ``at most``, is printed
-    before the number of episodes of the case.
+    As a context manager, it removes the bar at the end. ``most`` is printed before the number of
+    episodes of a case, for example ``at most``.
     """
 
     def __init__(self, most: str = "") -> None:

@@ -104,7 +104,7 @@ def _cases_not_run(outcome: SuiteRun) -> Iterator[NotRun]:
 
 
 def _earlier_verdict(outcome: SuiteRun, name: str) -> Verdict | None:
-    """Return the verdict on a case that an earlier run left in the folder, or None."""
+    """Return the verdict on a case that an earlier run stored in the folder; None without one."""
     path = case_folder(outcome.suite, name, outcome.folder / CASES) / _REPORT
     with suppress(OSError, ValueError, KeyError, TypeError, RecursionError):
         verdict = fileio.load_json(path, fileio.limits.REPORT)["content"]["verdict"]
@@ -122,14 +122,15 @@ REPORTS: Final[Mapping[str, Callable[[SuiteRun], str]]] = {
     "--junit": _junit_text,
     "--html": _page_text,
 }
-"""The functions that make the reports, by option. The page takes longest and comes last."""
+"""The functions that make the reports, by option. The page is last, because it takes longest."""
 
 
 def write_reports(outcome: SuiteRun, files: Mapping[str, Path]) -> Path | None:
-    """Write the requested reports, and the page into the folder of the run; return the path of a page, or None.
+    """Write the requested reports, and the page into the folder of the run.
 
-    The keys of ``files`` are options. The folder gets no page if the run was stopped before its first
-    case and no page was requested.
+    ``files`` are the files of reports, by their options. Return the path of the requested page, or
+    else of the page in the folder. If the run was stopped before its first case and no page was
+    requested, write no page and return None.
 
     Raises:
         TltlError: TLT0005, a file cannot be written; errors from drawing the page.

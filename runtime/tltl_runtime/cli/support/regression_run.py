@@ -53,12 +53,12 @@ class RegressOptions:
 
     @property
     def printed_option(self) -> str | None:
-        """The option of the report that is printed to standard output instead of the text, or None."""
+        """The option of the report that goes to standard output; None if the text goes there."""
         return next((option for option, path in self.files.items() if is_standard_output(path)), None)
 
     @property
     def report_files(self) -> dict[str, Path]:
-        """The files of reports, by their options, without standard output."""
+        """The files of reports, by their options, without a report that goes to standard output."""
         return {option: path for option, path in self.files.items() if not is_standard_output(path)}
 
 
@@ -115,7 +115,11 @@ def _select_cases(suite: Suite, options: RegressOptions) -> Selection:
 
 
 def _references(suite: Suite, cases: Sequence[Case]) -> tuple[Reference, ...]:
-    """Read the baseline. If it has an error, raise it only if there are cases to play."""
+    """Return the references of the baseline; none if it has errors but there are no cases to play.
+
+    Raises:
+        TltlError: the errors of reading the baseline, if there are cases to play.
+    """
     try:
         return baseline_of(suite)
     except TltlError:
@@ -208,7 +212,8 @@ def _outcome(
 def _report_after_error(outcome: SuiteRun, options: RegressOptions) -> None:
     """Report on a run that an error has ended.
 
-    If the report fails, too, print its error, so that it does not hide the first.
+    If the report fails, too, only print its error. So the caller can raise the error that ended the
+    run.
     """
     try:
         _report(outcome, options)
@@ -217,7 +222,7 @@ def _report_after_error(outcome: SuiteRun, options: RegressOptions) -> None:
 
 
 def _are_expected(outcome: SuiteRun) -> bool:
-    """Whether some cases do not pass, and each of them plays another variant than its baseline."""
+    """Whether cases do not pass, and all of them play another variant than their baselines."""
     findings = {case.report.name for case in outcome.cases if case.report.verdict != "pass"}
     return bool(findings) and all(
         case.variant != case.reference for case in outcome.suite.cases if case.name in findings

@@ -28,7 +28,7 @@ from tltl_runtime.training.files.run_file import RUN, TrainingRun
 from tltlc.api import TltlError, cli, record, replace
 
 _FATAL_ERRORS: Final = WORKER_ERRORS | {"TLT0005"}
-"""The codes of errors that end all retraining: those of worker processes and of the folder."""
+"""The codes of errors that end all retraining: errors of worker processes, and unwritable files."""
 
 
 @record
@@ -66,7 +66,8 @@ def retrain_cases(options: Retraining, results: list[FinishedCase], *, to_stderr
         if (prepared := case.case_to_train)
     }
     if options.fresh:
-        # Clear all folders first, so that a stopped run does not continue with old trainings.
+        # Make room in all folders before the first training. If this run is stopped, its continuation then
+        # finds no older trainings.
         for row, run in runs.items():
             with _case_errors(results[row].report.name):
                 _make_room(options, results[row].report.name, run)

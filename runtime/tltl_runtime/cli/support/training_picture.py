@@ -34,7 +34,7 @@ from tltlc.api import Fspa, State, label_text
 _WIDTH: Final = 100
 """The greatest width of the picture, in characters."""
 _MARGIN: Final = 4
-"""The free columns at the right. The terminal prints `^C` there, and the next picture covers that."""
+"""The free columns at the right. There, the terminal prints `^C`, which the next picture erases."""
 _MOST_STATES: Final = 8
 _LINES_FOR_SPACE: Final = 17
 """With at least this many lines inside the border, empty lines separate the parts."""
@@ -44,7 +44,7 @@ _BAR: Final = 24, 10
 
 
 class TrainingDisplay:
-    """Draws the last report of a training. Between reports, the times that it shows go on."""
+    """Draws the last report of a training. The times in the picture go on between reports."""
 
     def __init__(self, run: TrainingRun, console: Console) -> None:
         self._run, self._console = run, console
@@ -79,7 +79,7 @@ class TrainingDisplay:
         title = f"{run.fspa.name} on {Path(run.level).stem} {run.variant}, seed {run.seed}"
         bar = _BAR[width < _WIDTH]
         return Panel(
-            # Two lines are the border, and one line below it stays free.
+            # Two lines are for the border, and one line below the border stays free.
             self._before_first_iteration(bar)
             if self._report is None
             else self._after_iteration(self._report, bar, lines - 3),
@@ -113,7 +113,7 @@ class TrainingDisplay:
         messages = [self._confirmation] if self._confirmation else []
         messages += [search_line(self._search)] if self._search else []
         lines = [*_figures(report, stop, since), *messages, self._checkpoint_text(now, report)]
-        # Leave out violated states: an episode that violated the spec counts at the state before.
+        # Leave out violated states: an episode that violated the spec counts for the state before that.
         states = tuple(state for state in run.fspa.states if state.verdict != "violated")
         count = max(1, min(_MOST_STATES, room - len(lines) - 2 * len(space) - 4))
         return Group(

@@ -128,7 +128,7 @@ def new_run(options: TrainOptions, folder: Path | None) -> TrainingRun:
 
 
 def initial_policy_options(options: TrainOptions) -> InitialPolicyOptions | None:
-    """Return the initial policy of a new training, or None.
+    """Return the policy with which a new training begins; None without the option ``--from``.
 
     Raises the errors of :func:`read_policy_option`.
     """
@@ -253,7 +253,7 @@ def _usage(message: str) -> click.UsageError:
 
 
 def _with_file(settings: TrainingSettings, path: Path) -> TrainingSettings:
-    """Return the settings, with the values that a file sets in place of theirs.
+    """Return the settings with the values in a file in place of their own.
 
     Raises TltlError: the file cannot be read, or has a wrong key or value (TLT0860 to TLT0862).
     """
@@ -264,7 +264,7 @@ def _with_file(settings: TrainingSettings, path: Path) -> TrainingSettings:
 
 
 def _with_limits(settings: TrainingSettings, options: TrainOptions) -> TrainingSettings:
-    """Return settings with the options for limits, workers and device."""
+    """Return the settings with the limits, the workers and the device that options give."""
     stop, rollout = settings.stop, settings.rollout
     if options.workers == "ray":
         rollout = replace(rollout, pool="ray")

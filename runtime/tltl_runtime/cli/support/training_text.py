@@ -80,7 +80,7 @@ def confirmation_line(number: int, confirmation: Confirmation) -> str:
 
 
 def seconds_left(report: TrainingReport, stop: Stop) -> float:
-    """Return the estimated seconds until a limit ends the training, at its speed since the search."""
+    """Estimate the seconds until a limit ends the training, from its speed since the search."""
     trained_s = max(0.0, report.seconds - (report.searched.seconds if report.searched else 0.0))
     left = max(0.0, (stop.steps - report.steps) * trained_s / max(report.steps, 1))
     return min(left, max(0.0, stop.minutes * 60 - report.seconds)) if stop.minutes else left

@@ -24,7 +24,7 @@ def check_writable(files: Mapping[str, Path | None]) -> None:
             continue
         fileio.check_not_read(path, f"name another place with {option}")
         try:
-            # This fails if the system does not allow the name.
+            # If the system does not allow the name, this raises an error.
             with suppress(FileNotFoundError):
                 path.stat()
             # If the path is a link, its target is written.
