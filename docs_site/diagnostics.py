@@ -44,7 +44,7 @@ def navigation() -> list[Any]:
 
 
 def homes() -> dict[str, str]:
-    """Return the page of each file of a code, for links to the files."""
+    """Return the URIs of the pages that stand for the codes' files and their folder, by path."""
     return {FOLDER: "diagnostics/index.md"} | {f"{FOLDER}/{code}.md": _uri(code) for code in code_pages.codes()}
 
 

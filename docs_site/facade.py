@@ -16,7 +16,7 @@ _EMPTY: Final = inspect.Parameter.empty
 
 
 def page(lead: str) -> Page:
-    """Return the page: ``lead``, which is the README's section, then functions, then classes."""
+    """Return the page: ``lead``, a section of the README, then the functions, then the classes."""
     values = {name: getattr(tltlc, name) for name in tltlc.__all__ if not name.startswith("_")}
     functions = {name: value for name, value in values.items() if not isinstance(value, type)}
     lines = [lead.rstrip(), "", "## Functions", ""]

@@ -37,7 +37,7 @@ COPIED: Final = {
 _ROW: Final = re.compile(r"^\|.*$", re.MULTILINE)
 _CODE: Final = re.compile(r"`[^`]*`")
 _LINT_RULES: Final = "<!-- lint rules -->\n"
-"""Stands in a page for the table of the lint rules."""
+"""The place in a page where the table of the lint rules goes."""
 _COMMENT: Final = re.compile(r"^<!--.*?-->\n", re.DOTALL | re.MULTILINE)
 
 
@@ -64,7 +64,7 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
 def on_page_markdown(markdown: str, page: SitePage, config: MkDocsConfig, files: Files) -> str:
     """Adapt the Markdown of a page to the site, and remove comments, which are for the tests of the pages.
 
-    The table of the lint rules replaces its mark.
+    The table of the lint rules replaces ``_LINT_RULES``.
     """
     uri = page.file.src_uri
     origin = generated_pages()[uri].origin if uri in generated_pages() else f"docs/{uri}"
@@ -88,7 +88,7 @@ def generated_pages() -> dict[str, Page]:
 
 @lru_cache(maxsize=1)
 def homes() -> dict[str, str]:
-    """Return the URI of each file of the project that is in the site."""
+    """Return the URIs of the files and folders of the project that have a page, by path."""
     return {"docs": "index.md"} | COPIED | UNCHANGED | readme.homes() | diagnostics.homes() | sources.homes()
 
 
@@ -109,7 +109,8 @@ def _uris_of(entry: Any) -> list[str]:
 def _expand(entry: Any, unnamed: list[str]) -> Any:
     """Expand an entry of the navigation.
 
-    In a list, ``FOLDER/`` stands for the pages of that folder that no entry names.
+    In a list, ``FOLDER/`` stands for the pages of that folder that no entry names. ``unnamed`` are
+    the URIs of all pages that no entry names.
     """
     if isinstance(entry, dict):
         return {title: _expand(inner, unnamed) for title, inner in entry.items()}

@@ -21,9 +21,9 @@ _PART: Final = re.compile(
 def to_pages(text: str, origin: str, uri: str, homes: Mapping[str, str]) -> str:
     """Return the Markdown of the file ``origin`` with links that are right on the page ``uri``.
 
-    Codes of diagnostics become links. ``homes`` has the URI of the page of each file, or of a
-    heading (``FILE#ANCHOR``); files in ``docs/`` need no entry. A link without a target stays, and
-    MkDocs reports it.
+    Codes of diagnostics become links. ``homes`` has the URIs of the pages that stand for files, or
+    for sections of files (``FILE#ANCHOR``). Files in ``docs/`` need no entry. A link to a file
+    without a page stays as it is, and MkDocs reports it.
     """
 
     def replace_part(match: re.Match[str]) -> str:

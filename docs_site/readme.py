@@ -36,7 +36,7 @@ def pages() -> list[Page]:
 
 
 def homes() -> dict[str, str]:
-    """Return the URI for links to the README, and for links to each of its headings."""
+    """Return the URIs of the pages that stand for the README and for its sections, by path."""
     places = {f"README.md#{slug(heading)}": _PAGES_OF_SECTIONS.get(heading, "index.md") for heading in _parts()[-1]}
     return {"README.md": "index.md"} | places
 

@@ -30,7 +30,7 @@ def pages() -> Iterator[Page]:
 
 
 def homes() -> dict[str, str]:
-    """Return the URIs of the files and of their folders."""
+    """Return the URIs of the pages that stand for the files and their folders, by path."""
     uris = {EXAMPLES: "examples/index.md", LIBRARIES: "libraries/index.md"}
     for folder, place in ((EXAMPLES, "examples"), (LIBRARIES, "libraries")):
         uris |= {f"{folder}/{name}.tltl": f"{place}/{name}.md" for name in _names(folder)}

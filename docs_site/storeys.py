@@ -21,11 +21,11 @@ _SIDE_BY_SIDE: Final = " : "
 
 _COMPILER: Final = "tltlc"
 _STOREYS: Final = {"api": "façade", "interfaces": "interfaces", "tools": "tools"}
-"""The frame of a layer of the compiler: the façade or a storey; the other layers are the spine."""
+"""The frame around a layer of the compiler. The other layers are in the frame of the spine."""
 _SPINE: Final = "spine"
 _COLOURS: Final = {"façade": "#ede9fe", "interfaces": "#dbeafe", "tools": "#dcfce7", _SPINE: "#fef3c7"}
 _OTHER: Final = "#f1f5f9"
-"""The colour of modules that are on no storey of the compiler."""
+"""The colour of modules that are not in the compiler's frame."""
 
 _GRAPH: Final = {"rankdir": "TB", "fontname": "Helvetica", "fontsize": "13", "nodesep": "0.2", "ranksep": "0.2"}
 _NODE: Final = {"shape": "box", "style": "filled,rounded", "fontname": "Helvetica", "fontsize": "12", "height": "0.3"}
@@ -46,7 +46,7 @@ def main() -> None:
 
 
 def dot() -> str:
-    """Return the picture in the DOT language: a frame for each package whose layers a contract holds."""
+    """Return the picture in the DOT language: a frame for each package for which there are layers."""
     from graphviz import Digraph
 
     picture = Digraph("storeys", graph_attr=_GRAPH, node_attr=_NODE, edge_attr=_EDGE)
@@ -84,7 +84,7 @@ def _frame(picture: Any, name: str, label: str) -> Any:
 
 
 def _draw_modules(frame: Any, package: str, layers: Layers) -> None:
-    """Draw each module as a box; the modules of the compiler in a frame for each storey."""
+    """Draw each module as a box. In the compiler, put the modules of each storey in a frame."""
     modules = [module for layer in layers for module in layer]
     if package != _COMPILER:
         for module in modules:
