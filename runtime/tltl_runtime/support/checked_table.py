@@ -15,7 +15,7 @@ T = TypeVar("T")
 Point = tuple[float, float, float]
 
 REQUIRED: Final[Any] = object()
-"""Sentinel in place of a default: the key is required."""
+"""Sentinel in place of a default value. It means that the key is required."""
 
 FARTHEST: Final = 1000.0
 """The greatest absolute value of a coordinate, in metres."""
@@ -24,9 +24,9 @@ FARTHEST: Final = 1000.0
 class CheckedTable:
     """A table that is read key by key.
 
-    If a key is missing or its value is wrong, the method that reads it adds a diagnostic to ``log``
-    and returns a stand-in value. ``description`` is the name of the table in messages. After the
-    last key, call :meth:`report_unknown_keys`.
+    If a required key is missing or a value is wrong, the method that reads it adds a diagnostic to
+    ``log`` and returns a valid value in its place. ``description`` is the name of the table in
+    messages. After reading the last key, call :meth:`report_unknown_keys`.
     """
 
     def __init__(self, entry: Entry, description: str, log: list[Diagnostic]) -> None:
@@ -104,7 +104,8 @@ class CheckedTable:
     def report_unknown_keys(self, elsewhere: Mapping[str, str] = EMPTY) -> None:
         """Report the keys that no method has read (TLT0802).
 
-        ``elsewhere`` maps the keys of other tables to the tables where they belong, for the help.
+        ``elsewhere`` maps keys of other tables to the names of those tables. If the table has one
+        of these keys, the help says where the key belongs.
         """
         known = dict.fromkeys(self._read_keys)
         for key, entry in self.entries.items():

@@ -19,8 +19,8 @@ def lock_folder(folder: Path, busy: Diagnostic, advice: str) -> Iterator[None]:
     The operating system releases the lock when the process ends, even after a crash.
 
     Raises:
-        TltlError: TLT0005, with ``advice``, if the folder is not writable; ``busy`` if another
-            process has the lock.
+        TltlError: TLT0005, with ``advice`` as its help, if the folder is not writable; the
+            diagnostic ``busy`` if another process has the lock.
     """
     try:
         folder.mkdir(parents=True, exist_ok=True)

@@ -7,8 +7,9 @@ from tltlc.api import Diagnostic, TltlError, record
 
 @record
 class LoadErrors:
-    """The errors of one kind of file, which messages call ``article`` and ``noun``, such as "a" and "policy".
+    """The errors of one kind of file, such as policies.
 
+    In messages, ``article`` and ``noun`` name the kind, such as "a" and "policy".
     ``unreadable_code`` is the code for a file that is damaged or of another format,
     ``version_code`` for another version, and ``broken_code`` for invalid content. ``again`` says
     how to make the file again, such as "train the policy again".
@@ -22,7 +23,10 @@ class LoadErrors:
     again: str
 
     def unreadable_error(self, name: str, why: str) -> TltlError:
-        """Return the error for a file that is damaged or of another format; ``why`` says how."""
+        """Return the error for a file ``name`` that is damaged or of another format.
+
+        ``why`` is the reason.
+        """
         return self._error(self.unreadable_code, f"`{name}` cannot be read as {self.article} {self.noun}: {why}")
 
     def broken_error(self, name: str, why: str) -> TltlError:

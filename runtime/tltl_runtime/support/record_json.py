@@ -90,7 +90,10 @@ def _fits(data: object) -> bool:
 
 
 def _any_value(data: object, where: str) -> object:
-    """Return JSON data of any kind. ``json.loads`` also accepts numbers that are not finite; these are errors."""
+    """Return JSON data of any kind; raise RecordJsonError for numbers that are not finite.
+
+    ``json.loads`` accepts such numbers.
+    """
     if isinstance(data, dict):
         return {name: _any_value(item, f"{where}.{name}") for name, item in data.items()}
     if isinstance(data, list):
@@ -134,7 +137,10 @@ def _inlined(kind: type) -> Mapping[str, tuple[str, ...]]:
 
 
 def _gather_inlined(kind: Any, values: dict[str, object]) -> list[str]:
-    """Replace the keys of inlined fields by the records that they describe; return the missing keys."""
+    """Replace the keys of each inlined field by the inner record, in ``values``.
+
+    Return the missing keys. The value of a field with missing keys is None.
+    """
     missing = []
     for name, keys in _inlined(kind).items():
         inner = {key: values.pop(key) for key in keys if key in values}

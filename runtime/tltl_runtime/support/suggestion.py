@@ -17,9 +17,9 @@ _LONGEST: Final = 100
 
 
 def suggestion(name: str, known: Iterable[str], listed: str | None = None) -> str:
-    """Return a hint for an unknown name: a similar name, or else all names.
+    """Return a hint for an unknown name: a similar name, or else all ``known`` names.
 
-    If ``listed`` is given, the hint has this text in place of all names.
+    If ``listed`` is given, the hint has this text in place of the list of all names.
     """
     names = list(known)
     close = get_close_matches(name, names, n=1) if len(name) <= _LONGEST else []

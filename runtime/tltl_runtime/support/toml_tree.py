@@ -110,7 +110,7 @@ def _end(pattern: re.Pattern[str], text: str, position: int) -> int:
 
 
 def _value_end(text: str, position: int) -> int:
-    """Return the end of the line on which a value ends."""
+    """Return the end of the line on which the value at ``position`` ends."""
     depth = 0
     while position < len(text):
         part = _VALUE_PART.match(text, position)
