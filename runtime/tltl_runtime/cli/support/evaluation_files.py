@@ -85,7 +85,7 @@ class EvaluationFiles:
 
     @property
     def episode_counts(self) -> dict[str, int]:
-        """The number of episodes played with each way to choose actions (``sampled``, ``arg-max``)."""
+        """The number of played episodes, for ``sampled`` and for ``arg-max`` actions."""
         return {CHOICES[sampled]: len(summaries) for sampled, summaries in self._summaries.items()}
 
     @property
