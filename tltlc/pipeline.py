@@ -155,7 +155,7 @@ class Session:
 
     @cached_property
     def _built(self) -> tuple[tuple[Fspa | None, tuple[Diagnostic, ...]], ...]:
-        """The automaton of each spec with its warnings, or None with the errors."""
+        """For each spec, its automaton and warnings; or None and errors if it cannot be built."""
         return tuple(build_spec(spec, self.options) for spec in self.specs)
 
     def _unsilenced(self, diagnostics: tuple[Diagnostic, ...]) -> tuple[Diagnostic, ...]:
@@ -172,7 +172,7 @@ def compile_source(source: SourceFile, options: CompileOptions | None = None) ->
 
 
 def build_spec(spec: Spec, options: CompileOptions) -> tuple[Fspa | None, tuple[Diagnostic, ...]]:
-    """Return the automaton of a spec and its warnings, or None and the errors."""
+    """Return the automaton of a spec and its warnings; or None and errors if it cannot be built."""
     try:
         if spec.semantics == "infinite":
             from tltlc.automaton.infinite.build import build_infinite
@@ -188,7 +188,7 @@ def build_spec(spec: Spec, options: CompileOptions) -> tuple[Fspa | None, tuple[
 def pick_specs(specs: tuple[Spec, ...], names: tuple[str, ...], file: str) -> tuple[Spec, ...]:
     """Return the specs with these names in the order of ``specs``; all specs if ``names`` is empty.
 
-    ``file`` is the name of the file in messages. Errors: TLT0720 if no spec has one of the names.
+    ``file`` is the name of the file in messages. Errors: TLT0720 for a name that no spec has.
     """
     known = [spec.name for spec in specs]
     for name in names:

@@ -30,10 +30,10 @@ def codes_with_prefix(prefix: str) -> tuple[str, ...]:
 
 
 def nearest_codes(code: str, most: int = 3) -> tuple[str, ...]:
-    """Return at most ``most`` codes that resemble an unknown code, in order.
+    """Return at most ``most`` codes that resemble an unknown code, sorted.
 
-    They are the codes that could have been mistyped as ``code``. If there are none, they are the
-    codes with the nearest numbers.
+    They are codes that a typo may have turned into ``code``. If there are none, they are the codes
+    with the nearest numbers.
     """
     from difflib import get_close_matches
 

@@ -12,9 +12,9 @@ _DIM: Final = "2"
 _COLOURS: Final = {"error": "1;31", "warning": "1;33", "note": "1;36"}
 _TAB: Final = 4
 _WIDTH: Final = 160
-"""The most columns of a source line that are shown.
+"""The most characters of a source line that are shown.
 
-Of a longer line, only the part around the span is shown.
+If a line is longer, only the part around the span is shown.
 """
 
 
