@@ -25,8 +25,9 @@ def actions(
 ) -> list[types.CodeAction]:
     """Return the fixes for diagnostics that touch a span, as quick-fix actions.
 
-    ``findings`` are the findings of the linter. ``encoding`` is the unit of columns. ``uri_of``
-    converts a file name to a URI, and ``edit_of`` converts edits, by URI, to a workspace edit.
+    ``findings`` are those of the linter in this document. ``encoding`` is the unit of columns.
+    ``uri_of`` converts a file name to a URI. ``edit_of`` converts the edits of each URI to a
+    workspace edit.
     """
     uri = uri_of(document.source.name)
 

@@ -25,9 +25,9 @@ class Cursor:
 
     ``word`` is the span of the unfinished word that ends at the cursor. ``piece`` contains the
     tokens before that word, from the start of the declaration, clause or test line; ``start`` is
-    the grammar symbol to parse them as. ``around`` contains the tokens of the enclosing block.
-    ``allowed`` are the terminals that may follow ``piece``; None if ``piece`` contains a syntax
-    error.
+    the grammar symbol to parse them as. ``around`` contains the tokens of the enclosing block up to
+    the cursor; it is empty outside blocks. ``allowed`` are the terminals that may follow ``piece``;
+    None if ``piece`` contains a syntax error.
     """
 
     word: Span
@@ -71,10 +71,11 @@ def _word_start(text: str) -> int:
 
 
 def quoted_text(source: SourceFile, offset: int) -> tuple[str, Span] | None:
-    """Return the word before the quoted text around an offset, and the span of the quoted part.
+    """Return what a quoted text around an offset comes after, and the part of it before the offset.
 
-    The span goes from the quotation mark to the offset. The word is empty if nothing precedes the
-    quotation mark. Return None if the offset is not in a quoted text.
+    The first is the token before the quotation mark; it is empty if there is none. The second is a
+    span from the character after the quotation mark to the offset. Return None if the offset is not
+    in a quoted text.
     """
     tokens = tokenize(source.text[:offset]).tokens[:-1]
     if not tokens or tokens[-1].type != BAD or not tokens[-1].text.startswith('"'):

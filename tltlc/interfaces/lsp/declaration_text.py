@@ -30,7 +30,7 @@ from tltlc.resolve.values import Env, number_text, range_text
 _LONGEST: Final = 600
 """The most characters of a declaration that is shown whole.
 
-Of a longer declaration, only the part before its body is shown.
+If a declaration is longer, only the part before its body is shown.
 """
 
 _SUPPLIED_AS: Final = {

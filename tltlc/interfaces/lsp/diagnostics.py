@@ -28,8 +28,8 @@ def protocol_diagnostic(
 ) -> types.Diagnostic:
     """Convert a diagnostic for display in a document.
 
-    A diagnostic of an imported file appears at the import that leads there. ``encoding`` is the
-    unit of columns, and ``uri_of`` converts a file name to a URI.
+    A diagnostic of an imported file appears at the import through which the document reads that
+    file. ``encoding`` is the unit of columns, and ``uri_of`` converts a file name to a URI.
     """
     diagnostic = shorten(diagnostic)
     main = label_in(diagnostic, document)
@@ -77,9 +77,9 @@ def project_file_diagnostic(diagnostic: Diagnostic, encoding: str) -> types.Diag
 
 
 def _import_of(diagnostic: Diagnostic, document: Document) -> Span:
-    """Return the span of the import that leads to the file of a diagnostic.
+    """Return the span of the import through which the document reads the file of a diagnostic.
 
-    If no import leads there, return the span of the first import, or the start of the text.
+    Without such an import, return the span of the first import, or the start of the text.
     """
     names = {label.source.name for label in diagnostic.labels}
     for declaration, loaded in document.resolution.modules[-1].imports:

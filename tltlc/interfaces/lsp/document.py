@@ -116,7 +116,7 @@ class Document:
         return occurrences(self.scope, self.tokens)
 
     def name_at(self, offset: int) -> Occurrence | None:
-        """Return the name at an offset, or the name that ends there; None if there is neither."""
+        """Return the name at an offset, or the name that ends at it; None if there is neither."""
         return next((name for name in self.names if name.span.start <= offset <= name.span.end), None)
 
     def token_at(self, offset: int) -> Token | None:
@@ -131,8 +131,8 @@ class Document:
     def depends_on(self, name: str) -> bool:
         """Whether a change of the file at path ``name`` may affect this document.
 
-        A change of this document's file or of its imports may affect it. If an import failed, any
-        file may be the missing one.
+        Changes of this document's file and of the files that it imports may affect it. If an import
+        failed, any file may be the one that the import did not find.
         """
-        # Before the names are resolved, the imports are not known.
+        # Until the names are resolved, it is not known which files this one imports.
         return "resolution" not in self.__dict__ or name in self.reads or self.scope.incomplete

@@ -29,8 +29,8 @@ def apply_edits(text: str, edits: list[Edit]) -> str:
 def difference(source: SourceFile, after: str) -> list[Edit]:
     """Return the shortest edit that turns the text into ``after``, as a list of one edit.
 
-    The list is empty if both are equal. If the text has CRLF as line ends, ``after`` gets them
-    first.
+    The list is empty if both texts are equal. If the text of ``source`` contains CRLF line ends,
+    those of ``after`` are first converted to CRLF.
     """
     before = source.text
     if "\r\n" in before:

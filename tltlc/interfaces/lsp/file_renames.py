@@ -58,15 +58,15 @@ def _path_after(path: str, moves: Moves) -> str:
 
 
 def _leads_to(declaration: Import, folder: str, there: str) -> bool:
-    """Whether the import, as written, leads from a file in ``folder`` to the path ``there``."""
+    """Whether an import by path, written in a file in ``folder``, leads to the path ``there``."""
     return declaration.is_path and normpath(PurePath(folder, declaration.target)) == there
 
 
 def _target(declaration: Import, there: str, folder: str, libraries: tuple[Path, ...]) -> str | None:
-    """Return what to write after ``import`` in a file of ``folder`` for the file ``there``.
+    """Return what to write after ``import``, in a file of ``folder``, to import the file ``there``.
 
-    Return a name if the import was by name and the new path allows a name; otherwise a path in
-    quotation marks. Return None if the path cannot be quoted in a source text.
+    Return a name if ``declaration`` imports by name and the path ``there`` allows a name; otherwise
+    a path in quotation marks. Return None if the path cannot be quoted in a source text.
     """
     if not declaration.is_path:
         for place in (folder, *map(str, libraries)):

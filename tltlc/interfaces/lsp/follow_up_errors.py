@@ -24,7 +24,8 @@ class UnparsedParts:
 
     ``declared`` has the names that they may declare. ``imports`` says whether they may contain an
     import, and ``clock`` whether they may contain a clock. ``tests`` has, for each parsed test, the
-    span of the spec's name: a diagnostic about the whole test points there. ``source`` is the text.
+    span of the spec's name, because a diagnostic about the whole test has its label there.
+    ``source`` is the text.
     """
 
     declared: frozenset[str]
@@ -44,7 +45,7 @@ class UnparsedParts:
         if label is None:
             return False
         if diagnostic.code == _WRONG_TEST:
-            # A label on the whole test means that it has no `expect`, which may be what is being written.
+            # A label on the whole test means that the test has no `expect`. The user may be writing it now.
             return label.span in self.tests
         if diagnostic.code not in _NO_SUCH_NAME:
             return False

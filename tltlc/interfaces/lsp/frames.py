@@ -24,9 +24,9 @@ _HEADER: Final = re.compile(
 )
 _OTHER_HEADER: Final = re.compile(rb"Content-Type:", re.IGNORECASE)
 _OVERLAP: Final = 512
-"""Bytes at the end of the buffer that are searched again when more arrive.
+"""How many bytes at the end of the buffer are searched again when more arrive.
 
-A header may be cut off there; both header lines together are shorter.
+They may contain the start of a header. Both header lines together are shorter than this.
 """
 _MOST_DIGITS: Final = 9
 
@@ -68,7 +68,7 @@ class Frames:
         self._padding_fault: Fault | None = None
         """The fault to report if the bytes that ``_padding`` counts are not all white space."""
         self._is_skipping = False
-        """Whether bytes are being skipped, which is reported once."""
+        """Whether bytes are being skipped up to the next header. This is reported only once."""
         self._frames: list[Frame] = []
 
     def feed(self, data: bytes) -> list[Frame]:
@@ -127,7 +127,7 @@ class Frames:
     def _begin_body(self) -> None:
         if (self._length or 0) > MESSAGE.size:
             self._frames.append(Fault(f"a message is larger than {MESSAGE.size >> 20} MiB, and is passed over", True))
-            # Its bytes may never come, so search for the next header at once.
+            # The bytes of the body may never come, so search for the next header at once.
             self._length, self._is_skipping = None, True
         else:
             self._in_body = True
@@ -161,7 +161,7 @@ class Frames:
         json_end = self._json_end.find(self._buffer, length)
         limit = length if json_end is None else json_end
         start = max(0, self._searched - _OVERLAP)
-        # Most bodies have no line breaks, which is quick to check.
+        # A header contains a line break, but most bodies do not. This is quick to check.
         has_lines = self._buffer.find(b"\n", start, limit) >= 0
         header = _HEADER.search(self._buffer, start, limit) if has_lines else None
         if header:
@@ -181,9 +181,10 @@ class Frames:
         return True
 
     def _read_padding(self) -> bool:
-        """Skip white space after the last bracket of a body; return whether all of it is skipped.
+        """Skip the announced bytes after the last bracket of a body, if they are white space.
 
-        If other bytes follow before that, the header was wrong: record a fault.
+        Return whether there is nothing more to skip. If one of these bytes is not white space, the
+        header was wrong: record a fault, and skip no more.
         """
         padding = self._buffer[: self._padding]
         blank = len(padding) - len(padding.lstrip(_WHITE))
@@ -191,7 +192,7 @@ class Frames:
         self._padding -= blank
         if blank < len(padding) and self._padding_fault:
             self._frames.append(self._padding_fault)
-            # What is skipped up to the next header belongs to the same fault.
+            # Report no other fault for the bytes that are skipped up to the next header.
             self._padding, self._is_skipping = 0, True
         return self._padding == 0
 

@@ -28,7 +28,7 @@ _LARGEST: Final = 2000
 
 
 def hover(document: Document, offset: int, analysis: DocumentAnalysis | None, encoding: str) -> types.Hover | None:
-    """Describe the name, operator, duration or keyword at an offset; None if there is none.
+    """Describe the name, operator, duration or keyword at an offset; None if there is none of them.
 
     ``analysis`` has the size of each spec's automaton. ``encoding`` is the unit of columns.
     """

@@ -41,10 +41,10 @@ class JsonEnd:
         return None
 
     def _leave_string(self, data: bytearray, limit: int) -> bool:
-        """Move to the end of the string, and return whether it is in these bytes.
+        """Move to the end of the current string; return whether the end is in ``data[:limit]``.
 
-        If the end of the string is not in these bytes, the next call resumes at the end of these
-        bytes, or at an incomplete escape there.
+        If it is not, the next call resumes at ``limit``, or at an incomplete escape before
+        ``limit``.
         """
         match = _INSIDE.match(data, self._at, limit)
         self._at = match.end() if match else limit

@@ -39,7 +39,7 @@ class Symbol:
         return self.kind, self.source.name, self.span.start
 
     def is_same(self, other: Symbol) -> bool:
-        """Whether both are the same symbol, if their files belong to one program."""
+        """Whether both are the same symbol, provided that their files belong to one program."""
         if self.kind in MERGED:
             return (self.kind, self.name) == (other.kind, other.name)
         return self.key == other.key
@@ -85,7 +85,10 @@ class _Walk:
         self._visible: Mapping[str, Binding] = scope.names
         self._unaliased = {binding.name: binding for binding in scope.names.values()}
         self._label_start: int | None = None
-        """Where the label that is being read starts; the spans in its formula count from there."""
+        """The offset at which the current label starts; None outside labels.
+
+        The spans in the formula of the label count from this offset.
+        """
         self._specs: dict[str, Symbol] = {}
         for declaration in scope.module.declarations:
             if isinstance(declaration, tree.SpecDecl):

@@ -32,7 +32,10 @@ def _without_fixes(diagnostic: Diagnostic) -> Diagnostic:
 
 
 def _at_new_place(diagnostic: Diagnostic, edits: list[Edit], source: SourceFile) -> Diagnostic | None:
-    """Return the diagnostic at its new place, or None if that place was edited."""
+    """Return the diagnostic at its place in ``source``, the text after ``edits``.
+
+    Return None if that place was edited.
+    """
     labels: list[Label] = []
     for label in diagnostic.labels:
         if label.source.name != source.name:

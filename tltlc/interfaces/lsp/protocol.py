@@ -33,7 +33,7 @@ class Protocol(LanguageServerProtocol):
     """The protocol of pygls, which also answers malformed messages."""
 
     def receive(self, frame: Frame) -> None:
-        """Handle a message, or answer or log a fault of its headers."""
+        """Handle the body of a message; if its headers have a fault, answer or log the fault."""
         if isinstance(frame, Fault):
             if frame.is_answered:
                 self.refuse(None, JsonRpcInvalidRequest(frame.text))
@@ -58,7 +58,7 @@ class Protocol(LanguageServerProtocol):
             super().handle_message(structured)
 
     def refuse(self, message: Any, error: JsonRpcException) -> None:
-        """Log an error, and answer with it if the sender waits for an answer or may do so."""
+        """Log an error. Answer with it unless the message is a notification or itself an answer."""
         content = message if isinstance(message, dict) else {}
         LOG.warning("a message was refused (method: %s): %s", content.get("method"), error)
         if ("id" in content or "method" not in content) and not content.keys() & _ANSWERS:
@@ -80,7 +80,7 @@ class Protocol(LanguageServerProtocol):
         except JsonRpcException as error:
             raise JsonRpcInvalidParams("; ".join(transform_error(error.__cause__ or error))) from None
         if isinstance(structured, types.ExecuteCommandRequest) and structured.params.arguments is None:
-            # The library counts the arguments, so it needs a list.
+            # pygls counts the arguments, so it needs a list.
             structured.params.arguments = []
         if isinstance(structured, types.DidChangeTextDocumentNotification):
             uri = structured.params.text_document.uri
@@ -104,7 +104,7 @@ class Protocol(LanguageServerProtocol):
         if method != types.EXIT and self._shutdown:
             raise JsonRpcInvalidRequest(f"`{method}` came after `{types.SHUTDOWN}`")
         if self.get_message_type(method) is None:
-            # Unknown messages may lack params; the library then reports that the method is unknown.
+            # A message with an unknown method may lack params. With them, pygls reports the unknown method.
             message.setdefault("params", None)
 
 

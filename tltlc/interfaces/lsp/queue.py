@@ -14,15 +14,16 @@ from tltlc.interfaces.lsp.slow_analysis import DocumentAnalysis
 LONG_S: Final = 0.5
 """Seconds after which an analysis may be stopped for a document that the user looked at later.
 
-The analysis of a small file takes much less, and a restart of the process takes less.
+The analysis of a small file takes much less time. To start the process again also takes less.
 """
 
 
 class Queue:
     """Analyses documents one after another.
 
-    ``analyse(uri, again)`` analyses a document; unless ``again``, it may return a known analysis.
-    It returns None soon after ``give_up`` is called.
+    ``analyse(uri, again)`` analyses a document. If ``again`` is false, it may return an analysis
+    that is known already. ``give_up`` stops the current analysis: ``analyse`` then returns None
+    soon.
     """
 
     def __init__(
@@ -33,7 +34,7 @@ class Queue:
         self._waiting: dict[str, bool] = {}
         """The documents to analyse, by URI, with whether to do so even if the analysis is known."""
         self._looks: dict[str, int] = {}
-        """When the user last looked at each document, by URI: a number that each look increases."""
+        """By URI, when the user last looked at a document: greater numbers are later looks."""
         self._current: str | None = None
         self._current_since = 0.0
         self._task: asyncio.Task[None] | None = None
@@ -96,7 +97,7 @@ class Queue:
     def _give_way(self) -> None:
         """Stop a long analysis if the user has since looked at another document in the queue.
 
-        If the analysis has not taken long yet, check again when it has.
+        If the analysis has taken less than :data:`LONG_S` so far, check again after that time.
         """
         if self._timer is not None:
             self._timer.cancel()

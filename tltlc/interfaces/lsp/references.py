@@ -50,7 +50,7 @@ def may_have_references(symbol: Symbol, text: str) -> bool:
     """
     if symbol.kind in _FILE_LOCAL:
         return False
-    # A signal that two files declare is the same one in a third file that imports both.
+    # If two files declare a signal of the same name, it is one signal in a third file that imports both.
     return symbol.name in text or (symbol.kind in MERGED and may_import(text))
 
 
@@ -125,7 +125,7 @@ def _programs(symbol: Symbol, documents: list[Document]) -> set[str]:
     if symbol.kind not in MERGED:
         return known | {path_of(document.source.name) for document in documents if document.reads & known}
     while True:
-        # A signal that two files declare is the same one in a third file that imports both.
+        # If two files declare a signal of the same name, it is one signal in a third file that imports both.
         connected = set().union(*(document.reads for document in documents if document.reads & known))
         if connected <= known:
             return known
@@ -179,10 +179,10 @@ def _check_free(symbol: Symbol, name: str, changes: list[tuple[Document, list[Ed
 
 
 def _name_targets(document: Document, edits: list[Edit], *, shift: bool = False) -> list[tuple[int, str, int]]:
-    """Return, for each name, its place and the place of its declaration, as before the edits.
+    """Return, for each name, its offset and the file and offset of its declaration.
 
-    A correct rename does not change the result. With ``shift``, the document has been edited, and
-    its offsets are converted to those before the edits.
+    A correct rename does not change the result. So all offsets are those before the edits: with
+    ``shift``, the document is the edited one, and its offsets are converted.
     """
     own = document.source.name
     before = _offset_before(edits if shift else [])

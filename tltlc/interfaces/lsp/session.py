@@ -56,12 +56,12 @@ class EditorSession(LanguageServer):
         return str(getattr(agreed, "value", agreed) or UTF_16)
 
     def analysis(self, document: Document) -> DocumentAnalysis | None:
-        """Return the analysis of a document; None if there is none for its current text."""
+        """Return the analysis of a document; None if its current text has not been analysed."""
         analysed_document, analysis = self._analyses.get(document.source.name, (None, None))
         return analysis if analysed_document is document else None
 
     def last_analysis(self, document: Document) -> DocumentAnalysis | None:
-        """Return the last analysis of a document, perhaps of an earlier text; None if there is none."""
+        """Return the last analysis of a document, perhaps of an earlier text; None without one."""
         _, analysis = self._analyses.get(document.source.name, (None, None))
         return analysis
 
@@ -82,7 +82,7 @@ class EditorSession(LanguageServer):
         return types.WorkspaceEdit(document_changes=[*changes])
 
     def report_server_error(self, error: Exception, source: ServerErrors) -> None:
-        """Log the error of a message without showing it; requests get their errors as answers."""
+        """Log the error of a message, unless it is a request: the error is then its answer."""
         if source is not FeatureRequestError:
             LOG.error("a message was not understood: %s", error)
 
@@ -160,7 +160,7 @@ class EditorSession(LanguageServer):
     def _publish_project(self, document: Document) -> None:
         """Publish the diagnostics of the document's project file.
 
-        Update the diagnostics of other project files that had some before.
+        If diagnostics of other project files were published before, bring these up to date, too.
         """
         errors = self.texts.project(document.source.name)[1]
         places = {label.source.name for diagnostic in errors for label in diagnostic.labels}
@@ -192,7 +192,7 @@ class EditorSession(LanguageServer):
 
     def _schedule_reanalysis(self, uri: str) -> None:
         document = self.texts.document(uri)
-        # Names in a file without specs may all be used elsewhere.
+        # In a file without specs, the linter never calls a name unused, whatever other files use.
         if document is not None and any(
             isinstance(declaration, SpecDecl) for declaration in document.module.declarations
         ):
@@ -234,7 +234,7 @@ class EditorSession(LanguageServer):
     def _refresh_editor(self) -> None:
         """Ask the editor to refresh lenses and hints.
 
-        Lenses show the analysis, and hints may depend on other files.
+        Lenses show figures of the analysis, and hints may depend on other files.
         """
         workspace = self.client_capabilities.workspace or types.WorkspaceClientCapabilities()
         if workspace.code_lens and workspace.code_lens.refresh_support:

@@ -78,14 +78,14 @@ def analyse(request: Request) -> DocumentAnalysis:
         except TltlError as error:
             return DocumentAnalysis(apply_levels(map(LintFinding, error.diagnostics), request.levels))
         if _seems_unused(view):
-            # Reading the neighbouring files is slow, so do it only if their uses matter.
+            # Reading the neighbouring files is slow, so do it only if it matters which names they use.
             view = replace(view, used_elsewhere=_elsewhere(request))
         file_findings = findings(view, request.levels)
         return _with_tests(view, file_findings)
 
 
 def _seems_unused(view: View) -> bool:
-    """Whether the file itself never uses one of its declarations or imports."""
+    """Whether the file has a declaration or an import that it does not use itself."""
     return any(True for rule in rules() if rule.code in _USE_RULES for _ in rule.check(view))
 
 

@@ -43,7 +43,7 @@ class AnalysisWorker:
                 self.abandon()
             return None
         except asyncio.CancelledError:
-            # The server is ending and waits for the thread at the pipe.
+            # The server is ending, and will wait for the thread that reads from the pipe. So end the process.
             self.abandon()
             raise
 
@@ -52,7 +52,7 @@ class AnalysisWorker:
         if self._process is not None:
             self._process.kill()
             self._process.join()
-        # The thread that waits at the old pipe sees its end and releases it.
+        # The thread that reads from the old pipe sees its end, and then releases the pipe.
         self._process = self._pipe = None
 
     def _connection(self) -> Connection:

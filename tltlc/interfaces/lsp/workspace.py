@@ -59,13 +59,14 @@ class Workspace:
     # --- documents ----------------------------------------------------------------------------
 
     def document(self, uri: str) -> Document | None:
-        """Return the document at an address, as :meth:`document_named` finds it by its name."""
+        """Return the document with this URI: the open text, else the file; None without either."""
         return self.document_named(name_of(uri))
 
     def document_named(self, name: str) -> Document | None:
         """Return the document of the text that is open in the editor, else of the file on disk.
 
-        Return None if there is neither. The name is an absolute path, or ``<URI>`` for a text that is not a file.
+        Return None if there is neither. The name is an absolute path, or ``<URI>`` for a text that
+        is not a file.
         """
         opened = self._open.get(name)
         document = self._documents.get(name)
@@ -126,7 +127,7 @@ class Workspace:
     def is_own(self, name: str) -> bool:
         """Whether a file belongs to the workspace: it is open, or in a folder of :attr:`folders`.
 
-        The standard library does not belong to it, unless it is in one of these folders.
+        The standard library belongs to the workspace only if it is in one of these folders.
         """
         path = path_of(name)
         if path.startswith("<"):
