@@ -36,7 +36,7 @@ class AbandonedError(Exception):
 class Children:
     """Answers requests, at most :data:`MOST_AT_ONCE` at a time, each for at most ``limit_s`` seconds.
 
-    One child is always started before its request comes, because loading the compiler takes time.
+    One child is always ready before its request comes, because it takes time to load the compiler.
     """
 
     def __init__(self, limit_s: float = LIMIT_S) -> None:
@@ -117,8 +117,9 @@ class Children:
 def _answer(child: subprocess.Popen[bytes], request: bytes, limit_s: float, is_abandoned: Callable[[], bool]) -> bytes:
     """Return the answer of a child.
 
-    It may have one byte more than :data:`tltlc.io.limits.ANSWER` allows, but no more. Raises
-    AbandonedError if the client no longer waits, TimeoutExpired after ``limit_s`` seconds.
+    If the answer is larger than :data:`tltlc.io.limits.ANSWER` allows, return only its start, one
+    byte more than is allowed. Raises AbandonedError if the client no longer waits, TimeoutExpired
+    after ``limit_s`` seconds.
     """
     end = monotonic() + limit_s
     responses: list[bytes] = []
@@ -141,7 +142,7 @@ def _exchange(child: subprocess.Popen[bytes], request: bytes) -> bytes:
     """Send the whole request, then read the answer: a child reads everything before it writes."""
     assert child.stdin is not None
     assert child.stdout is not None
-    # A child that has ended reads nothing; its exit status says why.
+    # If the child has ended already, it reads nothing. Its exit status says why it ended.
     with suppress(OSError):
         child.stdin.write(request)
         child.stdin.close()
@@ -153,7 +154,7 @@ def _exchange(child: subprocess.Popen[bytes], request: bytes) -> bytes:
 
 
 def _failure_answer(status: int) -> str:
-    """Return an error as the answer, for a child that ended with this status without an answer."""
+    """Return an error in place of the answer of a child that ended with this status."""
     if status == NO_MEMORY:
         return error_answer(TOO_LARGE)
     if status >= 0:

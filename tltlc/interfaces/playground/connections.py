@@ -35,7 +35,7 @@ _INTERIM_S: Final = 0.2
 
 @record
 class Response:
-    """A response: a status, a body, and the headers that not every response has."""
+    """A response: a status, a body, and the headers beyond those that all responses have."""
 
     status: HTTPStatus
     headers: Mapping[str, str]
@@ -306,7 +306,7 @@ class Connection(asyncio.Protocol):
         self._send(response, with_body=head.method != "HEAD")
 
     def _refuse(self, status: HTTPStatus, head: Head | None = None) -> None:
-        """Refuse a request and close the connection, because the start of the next request is unknown."""
+        """Refuse a request. Close the connection, because the next request may start anywhere."""
         self._closes = True
         self._buffer.clear()
         if not self._hung_up.is_set():
@@ -329,7 +329,7 @@ class Connection(asyncio.Protocol):
     def _on_sent(self) -> None:
         """Read the next request, or wait for the client to hang up.
 
-        If the server closed the connection first, the answer could be cut off.
+        The server does not close the connection first, because the answer could then be cut off.
         """
         if self._closes:
             self._leave()

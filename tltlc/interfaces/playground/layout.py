@@ -51,7 +51,8 @@ class StateBox:
 class Layout:
     """The centres of states, the centres of edges' texts, the curves of edges, and the total size.
 
-    ``middles`` has the states by number. ``texts`` and ``curves`` have the edges by their ends.
+    The keys of ``middles`` are the numbers of the states; those of ``texts`` and ``curves`` are the
+    ends of the edges.
     """
 
     middles: Mapping[int, Point]
@@ -104,7 +105,7 @@ class _LayoutPass:
         return [node for node in self.columns[self.column[state]] if len(node) == 1][-1] == (state,)
 
     def _reach(self, node: Node) -> tuple[float, float]:
-        """Return how far a node extends above and below its level."""
+        """Return how far a node extends above and below its level, in pixels."""
         if len(node) == 1:
             box = self.boxes[node[0]]
             return box.height / 2 + box.over, box.height / 2 + box.under
@@ -154,9 +155,9 @@ class _LayoutPass:
         return self._reach(upper)[1] + gap + self._reach(lower)[0]
 
     def _straighten(self, nodes: Sequence[Node], levels: dict[Node, float]) -> None:
-        """Set as many nodes of an edge as possible to one level, then repeat with the rest.
+        """Change ``levels``, so that an edge through these nodes has few bends.
 
-        This gives the edge few bends. ``levels`` is changed.
+        Set as many of the nodes as possible to one level, then repeat with the rest.
         """
         while nodes:
             low, high = self._room(nodes[0], levels)

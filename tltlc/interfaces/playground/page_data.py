@@ -127,8 +127,8 @@ def diagnostic(
 ) -> dict[str, Any]:
     """Return a message as the page expects it.
 
-    ``source`` is the text on the page; labels in other files get no offsets. Of ``offered_fixes``,
-    only the fixes of this message are included.
+    ``source`` is the text on the page; labels in other files get no offsets. ``offered_fixes`` may
+    contain fixes of other messages, which are left out.
     """
     short = shorten(message)
     return {

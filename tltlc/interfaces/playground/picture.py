@@ -18,7 +18,7 @@ from tltlc.interfaces.playground.ordering import Ends
 
 MOST_STATES: Final = 40
 MOST_EDGES: Final = 120
-"""Pictures with more states or edges cannot be read, so they are not drawn."""
+"""The most states and the most edges of a picture. People cannot read a larger one."""
 
 # Widths of characters and heights of lines in pixels, for monospaced fonts.
 _LABEL_CHARACTER, _LABEL_LINE = 7.3, 17.0
@@ -26,7 +26,7 @@ _GUARD_CHARACTER, _GUARD_LINE = 6.7, 14.0
 _LABEL, _GUARD, _WIDE_GUARD = 26, 22, 30
 """Characters in a line of a label, of a guard, and of a guard with more room.
 
-A longer word may take up to twice as many.
+A line with a longer word may have up to twice as many.
 """
 _MOST_LINES: Final = 6
 _LOOP: Final = 26.0
@@ -83,7 +83,7 @@ class _PictureText:
         )
 
     def _lines(self, ends: Ends) -> list[str]:
-        """Return the lines of an edge's text; a text over or under a state gets longer lines."""
+        """Return the lines of an edge's text. They are longer if it goes over or under a state."""
         is_wide = ends[0] == ends[1] or ends[1] == self.trap
         return _shorten(self.guards[ends], _WIDE_GUARD if is_wide else _GUARD)
 
@@ -154,7 +154,7 @@ class _PictureText:
 
 
 def _trap(drawing: Drawing) -> int | None:
-    """Return the violated state that no edge leaves; None if there is none but the initial state."""
+    """Return the violated state that no edge leaves, unless it is the initial state; else None."""
     leaving = {edge.source for edge in drawing.edges if edge.source != edge.target}
     traps = (state.id for state in drawing.states if state.verdict == "violated" and state.id not in leaving)
     return next((state for state in traps if state), None)

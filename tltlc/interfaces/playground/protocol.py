@@ -87,7 +87,7 @@ def error_answer(title: str, help_: str = "make the spec smaller: bounds and lar
 
 
 def size_error_answer() -> str:
-    """Return the answer in place of an answer that is larger than :data:`tltlc.io.limits.ANSWER`."""
+    """Return the error that replaces an answer larger than :data:`tltlc.io.limits.ANSWER`."""
     return error_answer(f"the answer is larger than {ANSWER.size >> 20} MiB, and was given up")
 
 

@@ -16,7 +16,7 @@ from tltlc.core.record import record
 from tltlc.io.limits import REQUEST_HEAD, REQUEST_LINE
 
 _TOKEN: Final = rb"[!#$%&'*+.^_`|~0-9A-Za-z-]+"
-# Neighbouring parts of these patterns never match the same character, so matching takes linear time.
+# In these patterns, two adjacent parts never match the same character. So matching takes linear time.
 _LINE: Final = re.compile(rb"(%s) ([!-~]+) HTTP/([0-9])\.([0-9])" % _TOKEN)
 _NAME: Final = re.compile(_TOKEN)
 _VALUE: Final = re.compile(rb"[\t -~\x80-\xff]*")

@@ -31,8 +31,8 @@ TOKEN_HEADER: Final = "Tltlc-Token"
 _NAMES: Final = {HOST, "localhost"}
 """The host names that requests may use.
 
-All other host names are refused: a foreign page could use a domain name that resolves to this
-address.
+All other host names are refused, because a foreign page could use a domain name of its own that
+resolves to this address.
 """
 
 _API: Final = "/api"
@@ -61,8 +61,8 @@ class PageHandler:
         self.files = page_files()
         self._children = children
         self._token = token.encode()
-        # A connection blocks its thread while it waits for a child, and there may be more connections than children.
-        # So each connection gets a thread.
+        # A connection blocks its thread while it waits for a child, and there may be more connections than
+        # children. So there is a thread for every connection.
         self._threads = ThreadPoolExecutor(PLAYGROUND.most)
 
     def check(self, head: Head) -> None:
@@ -215,8 +215,8 @@ class PlaygroundServer:
     def shutdown(self) -> None:
         """Stop :meth:`serve_forever` if it runs in another thread, and wait until it ends.
 
-        In the thread that ran :meth:`serve_forever`, do nothing, because it has ended there
-        already.
+        If it is called in the thread that ran :meth:`serve_forever`, do nothing, because
+        :meth:`serve_forever` has ended already.
         """
         if self._thread is not current_thread() and not self._stopped.is_set():
             self._loop.call_soon_threadsafe(self._loop.stop)
@@ -269,7 +269,7 @@ class PlaygroundServer:
         """
         self._loop.remove_reader(self._listener)
         if self.connections.make_room():
-            # The connection is closed before this callback runs.
+            # The event loop closes that connection before it runs this callback.
             self._loop.call_soon(self._watch_listener)
         else:
             self._retry_timer = self._loop.call_later(_AGAIN_S, self._watch_listener)
@@ -298,7 +298,8 @@ class PlaygroundServer:
             for end in (reader, writer):
                 end.setblocking(False)
             self._loop.add_reader(reader, _read_all, reader)
-            # Two calls: an interrupt between them leaves no descriptor set that is closed below.
+            # Remove the old descriptor before `try`, and set ours inside. If one call did both, an interrupt
+            # right after it would leave our descriptor set, although it is closed below.
             before = signal.set_wakeup_fd(-1)
             try:
                 signal.set_wakeup_fd(writer.fileno(), warn_on_full_buffer=False)
@@ -308,5 +309,5 @@ class PlaygroundServer:
                 self._loop.remove_reader(reader)
 
     def _wake(self) -> None:
-        """Keep the loop awake: on Windows, Ctrl-C is noticed only when something else happens."""
+        """Wake the loop twice a second. On Windows, it notices Ctrl-C only when it is awake."""
         self._loop.call_later(0.5, self._wake)

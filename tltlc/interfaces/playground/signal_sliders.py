@@ -9,7 +9,10 @@ from tltlc.resolve.spec import Signal
 
 UNITS: Final = {"length": "m", "time": "s", "speed": "m/s", "angle": "rad"}
 _OPEN: Final = 100.0
-"""The greatest value of a slider for an open range, in SI units, if no param has the same type."""
+"""How far a slider reaches where the range of its signal is open, in SI units.
+
+If params have the type of the signal, their values say instead how far it reaches.
+"""
 
 
 def signal_values(fspa: Fspa) -> list[dict[str, Any]]:

@@ -19,7 +19,7 @@ Letter = Union[Sequence[str], Mapping[str, float]]
 """A step of a trace: the names of the atoms that hold, or the values of the signals by name."""
 
 _MOST_WORK: Final = 200_000
-"""Steps that the search for an infinite trace may take."""
+"""The most steps of the search for a trace, if the spec is over infinite traces."""
 _LONGEST: Final = 200
 """The most steps of a trace that the page shows in a table."""
 
@@ -30,7 +30,7 @@ def rows(fspa: Fspa, letters: Iterable[Letter]) -> list[dict[str, Any]]:
     If the monitor refuses a step, its row has an ``error`` and is the last row. A letter gives the
     names of the atoms that hold (unknown names are ignored), or the values of the signals. In a
     row, ``from`` is the state before the step, ``values`` are the values of the atoms in order, and
-    ``signals`` is a sample of signal values for the letter, or None if none was found.
+    ``signals`` has a value of each signal that fits the letter, or is None if none were found.
     """
     monitor, finder = Monitor(fspa), SampleFinder(fspa)
     result: list[dict[str, Any]] = []
@@ -88,8 +88,8 @@ def idle_step(fspa: Fspa) -> dict[str, Any]:
 def shortest_traces(fspa: Fspa) -> dict[str, Any]:
     """Return a shortest trace that succeeds and one that fails: ``{"succeed": …, "fail": …}``.
 
-    A trace is None if there is none, if it is too long for the page, or if the search for both
-    takes too many steps.
+    None stands for a trace that does not exist or is too long for the page. Both are None if one of
+    the two searches takes too many steps.
     """
     moves = Moves(fspa)
     try:
