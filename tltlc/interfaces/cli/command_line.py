@@ -64,8 +64,8 @@ RUNTIME_COMMANDS: Final = {
 }
 """The commands of the runtime, with their summaries for the help text.
 
-They ship with tltlc, but each needs an extra (optional dependencies) of tltlc. They are entry
-points, like the commands of plugins.
+They come with tltlc, but each needs an extra of tltlc, that is, optional dependencies. Like the
+commands of other distributions, they are entry points.
 """
 
 ENTRY_POINTS: Final = "tltlc.commands"
@@ -125,7 +125,7 @@ class CommandLine(click.Group):
                 return super().invoke(ctx)
         except click.UsageError as error:
             if error.ctx is None and ctx.invoked_subcommand is not None:
-                # click's option parser does not know which command it parses for.
+                # click's option parser does not know for which command it parses.
                 command = self.get_command(ctx, ctx.invoked_subcommand)
                 if command is not None:
                     error.ctx = click.Context(command, parent=ctx, info_name=ctx.invoked_subcommand)
@@ -140,7 +140,7 @@ class CommandLine(click.Group):
         return [*BUILT_IN, *sorted(plugin.name for plugin in plugins.find(ENTRY_POINTS) if plugin.name not in BUILT_IN)]
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        """Load and return the command with this name, or None."""
+        """Load and return the command with this name; None if there is no such command."""
         if cmd_name in BUILT_IN:
             from importlib import import_module
 
@@ -196,7 +196,8 @@ class CommandLine(click.Group):
 def _completion_error(error: Exception | OutOfTimeError) -> Exception | OutOfTimeError:
     """Return the error, or a usage error if it comes from a wrong :data:`COMPLETE_VARIABLE`.
 
-    The scripts of ``tltlc completion`` set this variable together with other variables.
+    A user may set this variable by mistake. The scripts of ``tltlc completion`` also set the other
+    variables that click needs.
     """
     if os.environ.get(COMPLETE_VARIABLE) and isinstance(error, (KeyError, ValueError)):
         return click.UsageError(f"{COMPLETE_VARIABLE} is for the scripts that `tltlc completion` prints: unset it")

@@ -53,11 +53,11 @@ received_signals: Final[list[int]] = []
 _OUTPUT_ERRORS: Final = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EBADF}
 """Errors of the system that a write to standard output may raise.
 
-Writes to files have messages of their own.
+Errors of writes to files are reported where they occur.
 """
 
 _PATH_ERRORS: Final = {errno.ENAMETOOLONG, errno.EACCES, errno.EPERM, errno.ELOOP}
-"""Errors that the system may raise when we only check whether a path exists."""
+"""Errors that the system may raise at a mere check whether a path exists."""
 
 _RESOURCE_MESSAGES: Final = {
     errno.EMFILE: "this process may open no more files",
@@ -79,7 +79,7 @@ class StopQuietlyError(Exception):
 
 
 def status_of(diagnostics: Iterable[Diagnostic]) -> int:
-    """Return the greatest exit status of the errors among diagnostics, or 0 if there is none."""
+    """Return the greatest exit status of the errors among the diagnostics; 0 without errors."""
     errors = (diagnostic.code for diagnostic in diagnostics if diagnostic.severity == "error")
     return max((_STATUS_OF_CODE.get(code, FINDINGS) for code in errors), default=CLEAN)
 
@@ -219,9 +219,10 @@ def _discard_output() -> None:
 
 
 def _bug(error: BaseException) -> int:
-    """Report an unforeseen exception with a short reference.
+    """Report an unforeseen exception with a short reference, and return the exit status.
 
-    Show the traceback only if TLTLC_DEBUG is 1.
+    The reference is a hash of the exception's type and its place in the code. The traceback appears
+    only if TLTLC_DEBUG is 1.
     """
     import traceback
     import zlib

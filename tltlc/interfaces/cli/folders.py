@@ -29,7 +29,7 @@ def every_source(arguments: Iterable[str], report: Report) -> list[str]:
 
 
 def files_in_folders(arguments: Iterable[str]) -> list[str]:
-    """Return the source files that the folders among the arguments contain now."""
+    """Return the source files that are now in and below the folders among the arguments."""
     return [file for argument in arguments if _is_folder(argument) for file in _files_inside(argument)]
 
 
@@ -71,14 +71,14 @@ def is_free(folder: Path) -> bool:
 
 
 def occupied_folder_error(folder: Path, advice: str) -> TltlError:
-    """Return TLT0722 for a folder that is not empty but that a command must create."""
+    """Return TLT0722 for a folder that a command must create, but that exists and is not empty."""
     return TltlError([Diagnostic("TLT0722", f"`{folder}` is there already, and not empty", help=advice)])
 
 
 def links_outside(path: str, arguments: Iterable[str]) -> bool:
-    """Whether ``path``, which was found in a folder, is a link to a file outside all given folders.
+    """Whether ``path``, which was found in a folder, is a link to a file outside all named folders.
 
-    ``arguments`` are the files and folders given. False if ``path`` itself is one of them.
+    ``arguments`` are the files and folders that the user named. False if ``path`` is one of them.
     """
     arguments = tuple(arguments)
     folders = [os.path.realpath(argument) for argument in arguments if _is_folder(argument)]

@@ -60,9 +60,9 @@ class Input:
 def open_input(argument: str, settings: CompileSettings, specs: Sequence[str] = ()) -> Input:
     """Read and compile an argument.
 
-    ``specs`` names the specs to compile, in addition to a name in the argument; without any name,
-    all are compiled. Raises TltlError with all diagnostics of reading and compiling, with the
-    severities that the project file sets; click.UsageError if the argument is a TOML file.
+    ``specs`` are names of specs to compile. A name in the argument is added to them. Without any
+    name, all specs are compiled. Raises TltlError with all diagnostics of reading and compiling,
+    with the severities that the project file sets; click.UsageError if the argument is a TOML file.
     """
     path, name = split(argument)
     if path.endswith(".toml"):

@@ -26,7 +26,7 @@ _RETRY_S: Final = 0.05
 """Seconds until the next attempt, if an interrupt comes while uninterruptible code runs."""
 
 _PATIENCE_S: Final = 1.0
-"""Seconds that an import may take after an interrupt; then the process ends without cleaning up."""
+"""Seconds that an import may go on after an interrupt. After that, the process ends at once."""
 
 _arrival_times: Final[dict[int, float]] = {}
 """Arrival times of interrupts that wait for an import to end, by signal number."""
@@ -59,7 +59,7 @@ def end_on_signals() -> Iterator[None]:
 
 def _listen() -> None:
     if hasattr(os, "register_at_fork"):
-        # exec resets the handlers of started programs; only forked copies need this.
+        # Programs that this process starts get the default handlers from exec. Forked copies need this.
         os.register_at_fork(after_in_child=_stop_listening)
     if signal.getsignal(signal.SIGINT) in (signal.default_int_handler, end_at_once):
         signal.signal(signal.SIGINT, interrupt)
@@ -96,7 +96,7 @@ def interrupt(number: int, frame: FrameType | None) -> None:
 def _end_process(status: int) -> NoReturn:
     """Flush the standard streams and end the process at once."""
     for stream in (sys.stdout, sys.stderr):
-        # The reader may be gone.
+        # The program that reads the stream may have ended.
         with suppress(OSError, ValueError):
             stream.flush()
     os._exit(status)

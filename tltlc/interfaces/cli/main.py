@@ -1,6 +1,7 @@
 """The entry point. Loading it imports nothing, so Ctrl-C is handled before anything slow starts.
 
-Python's own handler would print a traceback, and raise in the middle of an import.
+Python's own handler would raise an exception, even in the middle of an import, and Python would
+print its traceback.
 """
 
 TYPE_CHECKING = False
@@ -39,7 +40,7 @@ def _run_process() -> "NoReturn":
         # Loading the modules and compiling a spec makes fewer objects than this, and none of them is garbage. With
         # Python's own threshold, the collector would visit them about a hundred times.
         gc.set_threshold(100_000)
-        # At its exit, Python collects garbage whatever the threshold is. It leaves out frozen objects.
+        # At its exit, Python collects garbage, whatever the threshold is. It skips frozen objects.
         atexit.register(gc.freeze)
         if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
             signal.signal(signal.SIGINT, end_at_once)

@@ -47,7 +47,7 @@ def targets_of(lists: Iterable[str]) -> list[str]:
 def files_of(automata: Iterable[Fspa], requested: Sequence[str], project: Project, report: Report) -> Files:
     """Generate the files of each automaton for the requested targets.
 
-    If none are requested, use the targets of the project, or else the default targets. Raises
+    If no targets are requested, use those of the project file, or else the default targets. Raises
     click.UsageError if two targets write the same file.
     """
     from tltlc import backends

@@ -45,8 +45,8 @@ def find(group: str) -> tuple[Plugin, ...]:
 def load(plugin: Plugin, wanted_by: str) -> Any:
     """Import the object that an entry point names.
 
-    Raise TLT0730, with installation help, if a component is missing. ``wanted_by`` is what needs
-    the object, for the message.
+    Raise TLT0730, with installation help, if a component is missing. In the message, ``wanted_by``
+    says what needs the object.
     """
     from functools import reduce
     from importlib import import_module

@@ -15,18 +15,18 @@ from tltlc.io.resources import OutOfTimeError, resource_limits
 PAUSE_S: Final = 0.2
 """Seconds between two checks of the files.
 
-Work starts only when the next check finds no further change, so that files are complete.
+After a change, work starts only when a check finds no further change, so that files are complete.
 """
 
 _MOST_LOOKS: Final = 10
-"""Work starts after this many checks that find changes: some programs never stop writing."""
+"""The most checks with changes before work starts. Some programs never stop writing."""
 
 
 def repeat(work: Callable[[tuple[str, ...]], None], list_files: Callable[[], Iterable[str]] = tuple) -> NoReturn:
     """Run ``work`` at once, and again after each change, until an exception such as Ctrl-C.
 
     ``work`` receives the paths that changed; the first time, none. Two kinds of files are watched:
-    those that the last run read, or looked for in vain, with :mod:`tltlc.io.files`, and those that
+    those that the last run read, or tried to find, with :mod:`tltlc.io.files`, and new files that
     ``list_files`` returns.
     """
     changed: tuple[str, ...] = ()
@@ -66,7 +66,7 @@ def _changes(
         look_start = time.monotonic()
         if look_start >= due:
             new = tuple(path for path in list_files() if path not in known and path not in before)
-            # Searching a large folder takes at most a twentieth of the time.
+            # Spend at most a twentieth of the time on searching folders, which may be large.
             due = look_start + 20 * (time.monotonic() - look_start)
         previous, changed = (
             changed,
@@ -75,7 +75,7 @@ def _changes(
         changed.update({path: stamp(path) for path in new})
         looks += bool(changed)
         if changed and (changed == previous or looks > _MOST_LOOKS):
-            # The same file may appear under several paths; messages use the first one.
+            # The same file may appear under several paths. Keep only the first one of each file.
             files = {_real_path(path): path for path in reversed(changed)}
             return tuple(path for path in changed if path in files.values())
 

@@ -106,7 +106,7 @@ _Alike = tuple[str, str, str]
 def _first_of_each(diagnostics: Iterable[Diagnostic]) -> tuple[tuple[Diagnostic, ...], Counter[_Alike]]:
     """Return the diagnostics to show, at most 20 of each kind, and how many of each are left out.
 
-    The kind is severity, code and file.
+    Diagnostics are of the same kind if their severity, code and file are equal.
     """
     counts: Counter[_Alike] = Counter()
     shown = []

@@ -92,7 +92,7 @@ format_option = click.option(
 
 
 def compile_settings(settings: CompileSettings, project: Project, specs: tuple[str, ...] = ()) -> CompileOptions:
-    """Return the options to compile specs of a file; ``specs`` are their names, empty for all."""
+    """Return the options to compile the specs named ``specs``, or all specs if it is empty."""
     from tltlc.automaton.finite.build import DEFAULT_STATE_BUDGET
     from tltlc.pipeline import CompileOptions
 
@@ -107,7 +107,7 @@ def compile_settings(settings: CompileSettings, project: Project, specs: tuple[s
 def search_steps(settings: CompileSettings) -> int:
     """Return how many steps a search may take.
 
-    Building an automaton over infinite traces may take as many.
+    This is also the most steps for building an automaton over infinite traces.
     """
     from tltlc.automaton.finite.build import DEFAULT_STATE_BUDGET
     from tltlc.automaton.work import STEPS_PER_STATE

@@ -18,7 +18,10 @@ _MOST_SUGGESTIONS: Final = 3
 
 
 def with_suggestion(error: TltlError, argument: str) -> TltlError:
-    """Suggest ``NAME.tltl`` or ``FILE:NAME`` in the error for an argument that is not a file."""
+    """Return the error for an argument that is not a file, with a suggestion if there is one.
+
+    The suggestion, ``NAME.tltl`` or ``FILE:NAME``, becomes the help of the error.
+    """
     if exists(argument):
         return error
     if is_file(f"{argument}.tltl"):

@@ -40,7 +40,7 @@ def _is_open(number: int) -> bool:
 
 
 def _open(number: int, mode: int) -> int:
-    """Open the null device under this file descriptor number, which child processes inherit."""
+    """Open the null device as file descriptor ``number``. Child processes inherit it."""
     descriptor = os.open(os.devnull, mode)
     if descriptor != number:
         os.dup2(descriptor, number)

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from tltlc.tools.diff.revisions import EarlierTree
 
 _SERVICE_FORMATS: Final = ("github", "sarif")
-"""Formats for services that know only the current files, so diagnostics must point into them."""
+"""Formats for services that know only the current files. Labels must point into current files."""
 
 
 @click.command(
@@ -102,7 +102,7 @@ def _files(argument: str, old: EarlierTree) -> list[str]:
     folders = [folder for folder in (argument, old.old_path(argument)) if folder is not None and os.path.isdir(folder)]  # noqa: PTH112
     if not folders:
         return [argument]
-    # The old folder may lie inside the new one; skip its files.
+    # The folder with the old files may lie inside the new folder. Skip the old files.
     candidates = {path for folder in folders for path in files_below(Path(folder), SOURCE_ENDINGS)}
     spec_files = [path for path in sorted(candidates) if not old.contains(Path(argument, path))]
     if not spec_files:

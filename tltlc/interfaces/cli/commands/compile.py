@@ -78,7 +78,7 @@ def command(
         try:
             status = compile_once(changed)
         except click.UsageError as error:
-            # The clash of two targets may come from a new edit of `tltl.toml`, so keep waiting for changes.
+            # A new edit of `tltl.toml` may have caused the clash of two targets, so keep waiting for changes.
             if not changed:
                 raise
             status = exits.report(error)
@@ -101,7 +101,7 @@ def command(
 def _valid_inputs(
     specs: list[str], settings: CompileSettings, names: tuple[str, ...], report: Report
 ) -> Iterator[Input]:
-    """Yield the compiled arguments that have no errors; report the diagnostics of each."""
+    """Compile each argument and report its diagnostics. Yield those that have no errors."""
     from tltlc.diagnostics.diagnostic import TltlError
     from tltlc.interfaces.cli.inputs import open_input
 
@@ -116,10 +116,10 @@ def _valid_inputs(
 
 
 def _check_distinct(files: Files, source: str, sources: dict[str, str], *, is_waiting: bool) -> None:
-    """Record in ``sources``, by file name, the source that each file is generated from.
+    """Record ``source`` in ``sources``, under the name of each of the ``files`` made from it.
 
-    Raise TLT0700 if two sources make the same file. ``is_waiting`` says whether the command runs
-    again after each change of a file; then an edit can fix the error.
+    Raise TLT0700 if another source makes a file of the same name. ``is_waiting`` says whether the
+    command runs again after each change of a file; then an edit can fix the error.
     """
     from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 

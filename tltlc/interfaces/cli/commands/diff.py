@@ -72,10 +72,10 @@ def command(a: str, b: str, by_name: bool, settings: CompileSettings, format: st
 
 
 def _open_sides(a: str, b: str, settings: CompileSettings) -> tuple[Input, Input, bool]:
-    """Open both files, and select the specs to compare.
+    """Open both sides, and select the specs to compare.
 
-    Also return whether each side is a single spec; then the two are compared even if their names
-    differ.
+    Also return whether an argument names a spec. Each side then has a single spec, and the two are
+    compared even if their names differ.
     """
     (path_a, name_a), (path_b, name_b) = split(a), split(b)
     if path_a == path_b == STDIN:
@@ -117,7 +117,7 @@ def _open_side(argument: str, settings: CompileSettings) -> Input:
 
 
 def _split_revision(path: str) -> tuple[str, str]:
-    """Split ``REV:FILE`` into revision and file; for a current file, the revision is empty."""
+    """Split ``REV:FILE`` into revision and file; the revision is empty if ``path`` has none."""
     from tltlc.tools.diff.revisions import SOURCE_ENDINGS
 
     revision, _, file = path.partition(":")
@@ -128,17 +128,17 @@ def _split_revision(path: str) -> tuple[str, str]:
 
 
 def _exclusive_declarations(a: Input, b: Input) -> DeclaredGroups:
-    """Return the ``exclusive`` declarations of both files.
+    """Return the ``exclusive`` declarations of both sides.
 
-    An artefact has None, because it does not store them.
+    For an artefact, return None in their place, because artefacts do not store them.
     """
     return (a.program.exclusive if a.program else None, b.program.exclusive if b.program else None)
 
 
 def _matching_spec(name: str | None, side: Input) -> Input:
-    """Return the side with only the spec ``name``, the name in the argument for the other side.
+    """Return the side with only the spec that the argument for the other side names.
 
-    If the side has no spec of this name, return the side unchanged.
+    Return the side unchanged if ``name`` is None or if it has no spec of that name.
     """
     matches = tuple(fspa for fspa in side.automata if fspa.name == name)
     return replace(side, automata=matches or side.automata)

@@ -131,7 +131,7 @@ _LISTS: dict[str, Callable[[], Iterator[Row]]] = {"targets": _targets, "levels":
 def _lines(rows: list[Row]) -> None:
     """Print tab-separated columns.
 
-    If there is a signature, the name is left out, because the signature contains it.
+    If the rows have signatures, leave out the names, because the signatures contain them.
     """
     for row in rows:
         print("\t".join(value for key, value in row.items() if not (key == "name" and "signature" in row)))

@@ -267,7 +267,7 @@ def _every_second(report: Report) -> Callable[[str], None]:
 
 
 def _unread_messages(words: MiningVocabulary) -> Iterator[str]:
-    """Yield a message if some atoms were not read because there are more than the limit."""
+    """Yield a message if the traces have more atoms than the limit, and some were not read."""
     from tltlc.io.limits import WORK
 
     if words.unread_count:

@@ -97,7 +97,7 @@ def _trace_name(trace: str) -> str:
 
 
 def _with_notices(rows: Iterator[RunStep], notices: list[Diagnostic], report: Report) -> Iterator[RunStep]:
-    """Yield the rows unchanged; before each row, report the notices that it caused."""
+    """Yield the rows unchanged. Before each row, report the monitor's notices about it."""
     for row in rows:
         report.add(notices)
         notices.clear()
@@ -143,7 +143,7 @@ def _show_json(fspa: Fspa, rows: Iterator[RunStep]) -> Iterator[RunStep]:
             between = ",\n"
             yield row
     except TltlError:
-        # Complete the JSON document anyway; it says that there is no verdict.
+        # Complete the JSON document even after an error. It then says that there is no verdict.
         print('\n], "accepted": null, "verdict": null}', flush=True)
         raise
 

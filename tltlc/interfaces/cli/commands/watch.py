@@ -69,8 +69,8 @@ def _check_files(arguments: tuple[str, ...], settings: CompileSettings) -> None:
     report = Report()
     paths = every_source(arguments, report)
     for path in (*paths, *arguments):
-        # A changed file is reported under the path that was logged first. So log these paths
-        # before the linter logs the files beside them.
+        # If a file is logged under several paths, its changes are reported under the first one. So log the
+        # paths that the user knows before the linter logs the files beside them.
         log_lookup(path)
     neighbour_words = [importer_names(str(path), text) for path, text in neighbours(paths).items()]
     passed = 0
