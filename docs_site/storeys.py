@@ -46,7 +46,7 @@ def main() -> None:
 
 
 def dot() -> str:
-    """Return the picture in the DOT language: a frame for each package for which there are layers."""
+    """Return the picture in the DOT language: a frame for each package that has layers."""
     from graphviz import Digraph
 
     picture = Digraph("storeys", graph_attr=_GRAPH, node_attr=_NODE, edge_attr=_EDGE)
