@@ -26,7 +26,7 @@ _RETRY_S: Final = 0.05
 """Seconds until the next attempt, if an interrupt comes while uninterruptible code runs."""
 
 _PATIENCE_S: Final = 1.0
-"""Seconds that an import may go on after an interrupt. After that, the process ends at once."""
+"""Seconds that an import may take after an interrupt. Then the process ends without cleaning up."""
 
 _arrival_times: Final[dict[int, float]] = {}
 """Arrival times of interrupts that wait for an import to end, by signal number."""

@@ -71,11 +71,10 @@ def _word_start(text: str) -> int:
 
 
 def quoted_text(source: SourceFile, offset: int) -> tuple[str, Span] | None:
-    """Return what a quoted text around an offset comes after, and the part of it before the offset.
+    """Return the word before the quoted text that contains an offset, and a span of that text.
 
-    The first is the token before the quotation mark; it is empty if there is none. The second is a
-    span from the character after the quotation mark to the offset. Return None if the offset is not
-    in a quoted text.
+    The span goes from the character after the quotation mark to the offset. The word is empty if
+    nothing precedes the quotation mark. Return None if the offset is not in a quoted text.
     """
     tokens = tokenize(source.text[:offset]).tokens[:-1]
     if not tokens or tokens[-1].type != BAD or not tokens[-1].text.startswith('"'):

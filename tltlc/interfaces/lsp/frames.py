@@ -184,7 +184,7 @@ class Frames:
         """Skip the announced bytes after the last bracket of a body, if they are white space.
 
         Return whether there is nothing more to skip. If one of these bytes is not white space, the
-        header was wrong: record a fault, and skip no more.
+        header was wrong: record a fault, and search for the next header.
         """
         padding = self._buffer[: self._padding]
         blank = len(padding) - len(padding.lstrip(_WHITE))
