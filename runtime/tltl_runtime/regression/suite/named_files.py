@@ -87,7 +87,8 @@ def _is_level(path: Path) -> bool:
 def level_with_fitting_policy(level: str) -> str | None:
     """Return the level of the package whose policy may fit ``level``; None without such a level.
 
-    Their spec files have the same name, so ``level`` may be a copy of the level of the package.
+    Their specs have the same name and file name, so ``level`` may be a copy of the level of the
+    package.
     """
     game = registered_game()
     with suppress(TltlError):
