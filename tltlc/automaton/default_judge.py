@@ -19,10 +19,11 @@ def judge_of(parts: Iterable[Conjunct]) -> Judge:
 
 
 def default_judge(formula: Formula) -> Judge:
-    """Return ``limit`` if the formula is true before the first sample, ``goal`` otherwise.
+    """Return how a spec without a ``judge`` clause is judged: at its ``limit`` or at its ``goal``.
 
-    In negation normal form, literals and formulas with the outermost operator ``G``, ``R``, ``W``
-    or ``N`` are true before the first sample; those with ``F``, ``U``, ``M`` or ``X`` are false.
+    It is judged at its limit if its formula holds of the empty trace. By convention, in negation
+    normal form, literals (``p`` and ``!p`` alike) and formulas with the outermost operator ``G``,
+    ``R``, ``W`` or ``N`` hold of the empty trace; those with ``F``, ``U``, ``M`` or ``X`` do not.
     """
     normal = negation_normal_form(formula)
     value: dict[Formula, bool] = {}

@@ -140,10 +140,10 @@ class TraceLines:
         return self.error(remark, (column, column + 1), help)
 
     def error(self, remark: str, columns: tuple[int, int] | None = None, help: str | None = None) -> TltlError:  # noqa: A002
-        """Return the error TLT0622 with a label on the first line of the current row.
+        """Return TLT0622: the current row cannot be read. Its label marks the first line of the row.
 
-        ``columns`` are the start and the end of the part of the line to mark, in characters from 0;
-        by default the whole line.
+        ``remark`` is the message of the label. ``columns`` are the start and the end of the part of
+        the line to mark, in characters from 0; by default the whole line.
         """
         title = f"line {self._first} of the trace cannot be read"
         return TltlError([Diagnostic("TLT0622", title, (self.label(remark, columns),), help)])

@@ -12,7 +12,8 @@ _MODULE: Final = "tltl_runtime.stealth.stealth_game"
 
 It is imported by its name, so that evaluation, training and regression tests need not import a
 particular game. To put another game in its place, write a module with a ``GAME`` and name it here.
-The commands in ``tltl_runtime.cli`` still import the stealth game themselves.
+The commands in ``tltl_runtime.cli``, and the maps of ``regression.report.page.stealth``, still
+import the stealth game themselves.
 """
 
 

@@ -35,7 +35,7 @@ class MultiCategorical(Distribution):
         return sum(self.branches)
 
     def update(self, mlp_output: Tensor) -> None:
-        """Set the distribution to logits [..., sum(branches)]."""
+        """Set the distribution from ``mlp_output``: the logits of all branches, [..., sum(branches)]."""
         self._logs = tuple(part.log_softmax(-1) for part in mlp_output.split(self.branches, dim=-1))
 
     def sample(self) -> Tensor:

@@ -219,7 +219,7 @@ def _inputs(prepared: PreparedCase, reference: Reference, error: float) -> str:
 
 
 def _cached_report(folder: Path, inputs: str) -> CaseReport | None:
-    """Return the cached report if it is up to date and all of its recordings exist; else None."""
+    """Return the cached report if it was made from the same ``inputs``, a hash, and its recordings exist; else None."""
     report = read_cache(CaseReport, folder / _REPORT, inputs)
     return report if report and all((folder / name).is_file() for _, name in report.recordings) else None
 

@@ -60,7 +60,11 @@ def _goals(implicant: Implicant, entities: list[str | None], settled: list[bool 
 
 
 def _entity(atom: Atom, distances: Mapping[str, str]) -> str | None:
-    """Return the entity whose distance an atom depends on; None if it depends on no distance."""
+    """Return the first entity whose distance an atom depends on; None if it depends on no distance.
+
+    ``distances`` has the entities by the names of the signals, as :func:`distance_signals` returns
+    them.
+    """
     read = (node.name for node in expressions.nodes(atom.expression) if isinstance(node, expressions.SignalValue))
     return next((distances[name] for name in read if name in distances), None)
 

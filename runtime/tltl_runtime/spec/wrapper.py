@@ -192,7 +192,11 @@ def _own_signals(env: gymnasium.Env[Any, Any]) -> Mapping[str, SupportsFloat]:
 
 
 def _with_automaton(space: spaces.Space[Any], states: int) -> spaces.Dict:
-    """Return the space with the automaton's keys added."""
+    """Return the space with the keys ``automaton``, shape (states,), and ``progress``, shape (1,).
+
+    A space that is not a Dict becomes the key ``observation``. Raises ValueError if the space has
+    one of the keys already.
+    """
     inner = dict(space.spaces) if isinstance(space, spaces.Dict) else {"observation": space}
     conflicts = {"automaton", "progress"} & inner.keys()
     if conflicts:

@@ -51,9 +51,10 @@ def text_of(failure: ParseFailure, start: int, stop: int) -> str:
 
 
 def operand_text(failure: ParseFailure, start: int, stop: int) -> str:
-    """Return the text of the tokens from ``start`` up to ``stop`` as one operand.
+    """Return the text of the tokens from ``start`` up to ``stop``, written so that it can be an operand.
 
-    A keyword of a clause becomes the operator of the same meaning; several operands get brackets.
+    A clause keyword at the start becomes the operator of the same meaning. The rest is put in
+    brackets if it has one of the operators :data:`LOOSE` outside brackets.
     """
     operator = ""
     if start < stop and failure.tokens[start].text in OPERATORS:

@@ -180,7 +180,10 @@ def _goals(body: Formula, context: _SentenceContext) -> str:
 
 
 def _linked_goals(body: Formula, context: _SentenceContext) -> Iterator[tuple[str, str]]:
-    """Yield the goals of ``F body`` in order, each with the word that links it to the previous one."""
+    """Yield pairs (link, goal) for the goals of ``F body`` in order.
+
+    The link is the word that joins the goal to the previous one; the first is empty.
+    """
     link = ""
     while True:
         following, rest = _next_goal(body)

@@ -181,7 +181,7 @@ def clock_changed(difference: Difference, specs: Sequence[str], place: Label) ->
 
 
 def library_clock_changed(old: float | None, new: float | None, place: Label) -> Diagnostic:
-    """Return TLT0758: a library declares another clock."""
+    """Return TLT0758: the clock that a library declares has changed."""
     title = f"specs are sampled {_clock(new)} now, and were sampled {_clock(old)}"
     return Diagnostic("TLT0758", title, (place,), _clock_help(new), BREAKING)
 

@@ -68,9 +68,10 @@ def diff_files(
     """Return the differences between the specs of A and of B.
 
     ``a`` and ``b`` are the name of each file and its automata. Specs are paired by name, in the order
-    of A. ``one_each`` pairs the first spec of A with the first of B, whatever their names. With
-    ``by_name``, atoms with the same name always count as the same atom. ``declared`` has what each
-    file declares, whether or not a spec uses it; None for an artefact.
+    of A. With ``one_each``, only the first spec of A is compared with the first of B, whatever their
+    names. With ``by_name``, atoms with the same name always count as the same atom. ``declared`` has
+    for each file the ``exclusive`` groups that it declares, also those that no spec uses; None for
+    an artefact.
 
     Errors: TLT0750 if a comparison takes more than ``work`` steps.
     """

@@ -93,7 +93,10 @@ def _outermost(places: Iterable[Span]) -> set[Span]:
 
 
 def _joints(text: str, place: Span) -> Iterator[int]:
-    """Yield the offsets where a statement or its closing brace follows something on its line."""
+    """Yield the start of the statement at ``place``, and the offset of its closing brace if it has one.
+
+    Each is yielded only if other text precedes it on its line.
+    """
     for offset in (place.start, *((place.end - 1,) if text[place.end - 1] == "}" else ())):
         if text[text.rfind("\n", 0, offset) + 1 : offset].strip():
             yield offset

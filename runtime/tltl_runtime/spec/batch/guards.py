@@ -49,7 +49,7 @@ class PrimeSets:
         return self._distinct_robustness(values).index_select(0, self._rows)
 
     def robustness_of(self, choice: Tensor, values: Tensor) -> Tensor:
-        """Return the robustness of the chosen sets, shape [N]."""
+        """Return, for each environment, the robustness of the set of primes that ``choice`` gives for it, shape [N]."""
         rows = self._rows.index_select(0, choice)
         if self._dense:
             robustness = self._distinct_robustness(values)

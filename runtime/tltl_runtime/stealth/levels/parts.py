@@ -98,7 +98,8 @@ class NamedParts:
 def solids(table: CheckedTable, places: NamedParts, shift: Point = (0.0, 0.0, 0.0), prefix: str = "") -> list[Solid]:
     """Read the walls, low obstacles, platforms and stairs of a level or a part.
 
-    ``shift`` is the position of a part in the level; ``prefix`` begins the names of its things.
+    ``shift`` is the position of a part in the level; ``prefix`` begins the names of the part's
+    things. The solids are added to ``places``.
     """
     solids = []
     for kind in _SOLIDS:

@@ -31,7 +31,8 @@ def class_of(setting: str, name: str, base: type) -> Any:
 def device_of(device: str) -> str:
     """Return the device of this process. With several processes, "cuda" gives each its own GPU.
 
-    Raises TltlError, TLT0862, if the device does not exist.
+    Raises TltlError, TLT0862: the device does not exist, several processes name one device, or there
+    are more processes than GPUs.
     """
     if not device.startswith("cuda"):
         return device
