@@ -48,7 +48,7 @@ def test_a_clash_of_names_on_this_file_system_suggests_another_folder(
     with pytest.raises(TltlError) as caught:
         unpack(tmp_path, [("other", b""), *((name, b"") for name in names)], ARCHIVE)
     (diagnostic,) = caught.value.diagnostics
-    title = f"the archive holds `{names[0]}` and `{names[1]}`, which the file system here takes for one path"
+    title = f"the archive contains `{names[0]}` and `{names[1]}`, which are the same path in this file system"
     assert (diagnostic.code, diagnostic.title, diagnostic.help) == ("TLT0009", title, ARCHIVE.elsewhere_help)
 
 
@@ -79,7 +79,7 @@ def test_a_name_that_the_system_rejects_is_an_error(tmp_path: Path) -> None:
 
 
 def test_a_name_that_is_too_long_for_file_systems_is_rejected(tmp_path: Path) -> None:
-    with pytest.raises(TltlError, match=r"TLT0009: .* a part of which is longer than 255 bytes"):
+    with pytest.raises(TltlError, match=r"TLT0009: .* with a part that is longer than 255 bytes"):
         unpack(tmp_path, [("a/" + "x" * 256, b"")], ARCHIVE)
 
 

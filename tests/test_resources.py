@@ -41,8 +41,8 @@ def test_a_command_stops_at_its_limit_of_processor_time(tmp_path: Path) -> None:
     result = _run("--max-cpu", "1", "compile", str(tmp_path / "goals.tltl"), "-o", str(tmp_path / "out"))
     assert result.returncode == 1
     assert result.stderr == (
-        "error[TLT0007]: the command was not done after 1 seconds of processor time\n"
-        "  help: make its input smaller, or permit more: `tltlc --max-cpu SECONDS COMMAND …`\n"
+        "error[TLT0007]: the command did not finish within 1 seconds of processor time\n"
+        "  help: make its input smaller, or allow more: `tltlc --max-cpu SECONDS COMMAND …`\n"
     )
     assert not (tmp_path / "out").exists()
 
@@ -53,7 +53,7 @@ def test_a_command_stops_at_its_limit_of_memory() -> None:
     # Python may print another line first, if it has no memory to call the exception hook.
     assert result.stderr.endswith(
         "error[TLT0007]: the command ran out of memory (it may use 0.05 GiB)\n"
-        "  help: make its input smaller, or permit more: `tltlc --max-memory GIB COMMAND …`\n"
+        "  help: make its input smaller, or allow more: `tltlc --max-memory GIB COMMAND …`\n"
     )
     assert "Traceback" not in result.stderr
 

@@ -142,7 +142,7 @@ def test_a_new_temporary_folder_removes_the_one_of_a_killed_process(
 
 def test_a_temporary_folder_that_cannot_be_created_is_an_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "gone"))
-    with pytest.raises(TltlError, match="TLT0005: cannot make a temporary folder"), temporary_folder():
+    with pytest.raises(TltlError, match="TLT0005: cannot create a temporary folder"), temporary_folder():
         pass
 
 

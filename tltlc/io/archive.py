@@ -59,8 +59,8 @@ def unpack(folder: Path, files: Iterable[tuple[str, bytes]], archive: Archive) -
         except (FileExistsError, NotADirectoryError, IsADirectoryError):
             raise _clash_error(name, written, archive) from None
         except (OSError, ValueError) as error:
-            title = f"cannot write `{name}` of {archive.name}: {reason(error)}"
-            raise TltlError([Diagnostic("TLT0005", title, help="check the space and the permissions")]) from None
+            title = f"cannot write `{name}` from {archive.name}: {reason(error)}"
+            raise TltlError([Diagnostic("TLT0005", title, help="check the free space and the permissions")]) from None
         written.append(name)
 
 
@@ -75,13 +75,13 @@ def entry_path(folder: Path, name: str, archive: Archive) -> Path:
     parts = name.split("/")
     if _IS_WINDOWS and any(map(_is_invalid_on_windows, parts)):
         raise _archive_error(
-            f"{archive.name} holds the path `{name}`, which cannot be a file on Windows", archive.elsewhere_help
+            f"{archive.name} contains the path `{name}`, which cannot be a file on Windows", archive.elsewhere_help
         )
     is_plain = not any(part in ("", ".", "..") or "\0" in part for part in parts)
     path = folder.joinpath(*parts) if is_plain else folder
     if path == folder or not Path(os.path.realpath(path.parent)).is_relative_to(os.path.realpath(folder)):
         raise _archive_error(
-            f"{archive.name} holds the path `{name}`, which leads out of its folder", archive.damaged_help
+            f"{archive.name} contains the path `{name}`, which leads out of its folder", archive.damaged_help
         )
     return path
 
@@ -100,11 +100,11 @@ def check_extent(name: str, archive: Archive) -> None:
     elif name.count("/") >= depth:
         problem = f"which has more than {depth} parts"
     elif any(len(part.encode(errors="surrogatepass")) > UNPACKED_NAME.size for part in name.split("/")):
-        title = f"{archive.name} holds the path `{name}`, a part of which is longer than {UNPACKED_NAME.size} bytes"
-        raise _archive_error(title, "use a version of it in which that part has a shorter name")
+        title = f"{archive.name} contains the path `{name}`, with a part that is longer than {UNPACKED_NAME.size} bytes"
+        raise _archive_error(title, "use a version of it in which this part has a shorter name")
     else:
         return
-    raise _archive_error(f"{archive.name} holds the path `{name}`, {problem}", archive.damaged_help)
+    raise _archive_error(f"{archive.name} contains the path `{name}`, {problem}", archive.damaged_help)
 
 
 def _is_invalid_on_windows(part: str) -> bool:
@@ -119,8 +119,8 @@ def _clash_error(name: str, written: Sequence[str], archive: Archive) -> TltlErr
     """Return the error TLT0009 for a path that cannot exist together with one of the ``written`` paths."""
     earlier = next((earlier for earlier in written if _clash(_fold_case(name), _fold_case(earlier))), name)
     if _clash(name, earlier):
-        return _archive_error(f"{archive.name} holds two entries for `{name}`", archive.damaged_help)
-    title = f"{archive.name} holds `{earlier}` and `{name}`, which the file system here takes for one path"
+        return _archive_error(f"{archive.name} contains two entries for `{name}`", archive.damaged_help)
+    title = f"{archive.name} contains `{earlier}` and `{name}`, which are the same path in this file system"
     return _archive_error(title, archive.elsewhere_help)
 
 

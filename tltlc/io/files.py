@@ -336,14 +336,14 @@ def reason(error: OSError | ValueError) -> str:
     if isinstance(error, IsADirectoryError):
         return "it is a folder"
     if isinstance(error, FileExistsError):
-        return "it is a file, and no folder"
+        return "it is a file, not a folder"
     if isinstance(error, NotADirectoryError):
-        return "a part of its path is a file, and no folder"
+        return "a part of its path is a file, not a folder"
     if isinstance(error, PermissionError):
         return "permission denied"
     if isinstance(error, OSError) and error.strerror:
         return error.strerror[0].lower() + error.strerror[1:]
-    return "its name is not one that the system allows"
+    return "the system does not allow its name"
 
 
 def _missing_file_help(name: str) -> str | None:
@@ -356,7 +356,7 @@ def _missing_file_help(name: str) -> str | None:
     except OSError:
         return f"there is no folder `{folder}` either"
     if close_matches and close_matches[0] == file:
-        return "it is a link: what it leads to is gone"
+        return "it is a link, and its target does not exist"
     return f"did you mean `{os.path.join(folder, close_matches[0])}`?" if close_matches else None  # noqa: PTH118
 
 
@@ -367,5 +367,5 @@ def _not_utf8(data: bytes, name: str, start: int) -> TltlError:
     """
     source = SourceFile(name, data.decode(errors="replace"))
     offset = len(data[:start].decode())
-    label = Label(source, Span(offset, offset + 1), f"the byte 0x{data[start]:02X} is no UTF-8")
+    label = Label(source, Span(offset, offset + 1), f"the byte 0x{data[start]:02X} is not valid UTF-8")
     return TltlError([Diagnostic("TLT0002", f"`{name}` is not UTF-8 text", (label,), help="save it as UTF-8")])

@@ -34,7 +34,7 @@ def loads(text: str | bytes, limit: Limit, parse_constant: Callable[[str], Any] 
     # This also counts commas inside strings: a small error, but it is fast.
     commas = text.count(b",") if isinstance(text, bytes) else str.count(text, ",")
     if limit.values is not None and commas >= limit.values:
-        raise JsonLimitError(f"it holds more than {limit.values:,} values")
+        raise JsonLimitError(f"it contains more than {limit.values:,} values")
     try:
         value = json.loads(text, parse_int=_whole_number, parse_constant=parse_constant)
     except RecursionError:

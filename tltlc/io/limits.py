@@ -215,7 +215,7 @@ def too_deep_error(source: SourceFile, limit: Limit, span: Span | None = None) -
 
     ``span`` is the place, if it is known.
     """
-    return _structure_error(source, f"nests deeper than {limit.depth} levels", "flatten it", span)
+    return _structure_error(source, f"nests deeper than {limit.depth} levels", "reduce the nesting", span)
 
 
 def too_many_values_error(source: SourceFile, limit: Limit, span: Span | None = None) -> TltlError:
@@ -223,8 +223,8 @@ def too_many_values_error(source: SourceFile, limit: Limit, span: Span | None = 
 
     ``span`` is the place, if it is known.
     """
-    problem = f"holds more than {limit.values:,} values"
-    return _structure_error(source, problem, "split it, or leave out what nothing reads", span)
+    problem = f"contains more than {limit.values:,} values"
+    return _structure_error(source, problem, "split it, or leave out values that nothing reads", span)
 
 
 def _structure_error(source: SourceFile, problem: str, help_: str, span: Span | None) -> TltlError:

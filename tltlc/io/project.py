@@ -112,10 +112,10 @@ def read_project(path: Path) -> Project:
     from tltlc.io.toml_text import parse
 
     if not may_be_file(path):
-        title, help_ = f"`{_display_path(path)}` is no file", "remove it, or give it another name"
+        title, help_ = f"`{_display_path(path)}` is not a file", "remove it, or give it another name"
         raise TltlError([Diagnostic("TLT0001", title, help=help_)])
     source = read_source(path, _display_path(path))
-    table = parse(source, "TLT0701", 'values are written as in `targets = ["json", "dot"]`')
+    table = parse(source, "TLT0701", 'write values as in `targets = ["json", "dot"]`')
     style = table.get("style", {})
     errors = _unknown_keys(table, _KEYS, source)
     if not isinstance(style, dict):
@@ -175,7 +175,7 @@ def _lint_levels(table: object, source: SourceFile, errors: list[Diagnostic]) ->
             continue
         for code in listed:
             if not _is_lint_code(code):
-                errors.append(_wrong_value(source, level, "codes that `tltlc lint` has, TLT04 and two digits", code))
+                errors.append(_wrong_value(source, level, "codes of `tltlc lint`: TLT04 and two digits", code))
             elif code in levels:
                 errors.append(_wrong_value(source, level, f"each code once; `{levels[code]}` has it, too", code))
             levels[code] = level
@@ -200,7 +200,7 @@ def _wrong_value(source: SourceFile, key: str, expected: str, value: object) -> 
 
 def _missing_folder(source: SourceFile, library: str) -> Diagnostic:
     title = f"there is no folder `{library}` beside this file"
-    return Diagnostic("TLT0703", title, _key_labels(source, "libraries"), "create it, or name one that is there")
+    return Diagnostic("TLT0703", title, _key_labels(source, "libraries"), "create it, or name a folder that exists")
 
 
 _KINDS: Final = {

@@ -151,15 +151,15 @@ def exhaustion_error(error: BaseException) -> TltlError | None:
     """Return the error TLT0007 for OutOfTimeError, MemoryError and RecursionError, None for other exceptions."""
     permitted = _command_limits[0] if _command_limits else ProcessLimit(memory=0, work_s=0)
     if isinstance(error, OutOfTimeError):
-        title = f"the command was not done after {permitted.work_s} seconds of processor time"
-        help_ = "make its input smaller, or permit more: `tltlc --max-cpu SECONDS COMMAND …`"
+        title = f"the command did not finish within {permitted.work_s} seconds of processor time"
+        help_ = "make its input smaller, or allow more: `tltlc --max-cpu SECONDS COMMAND …`"
     elif isinstance(error, MemoryError):
         title, help_ = "the command ran out of memory", "make its input smaller"
         if permitted.memory and sys.platform != "win32":
             title += f" (it may use {permitted.memory / 2**30:g} GiB)"
-            help_ += ", or permit more: `tltlc --max-memory GIB COMMAND …`"
+            help_ += ", or allow more: `tltlc --max-memory GIB COMMAND …`"
     elif isinstance(error, RecursionError):
-        title, help_ = "the input nests too deeply for this command", "flatten what nests in it"
+        title, help_ = "the input is nested too deeply for this command", "reduce its nesting"
     else:
         return None
     return TltlError([Diagnostic("TLT0007", title, help=help_)])

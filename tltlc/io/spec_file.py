@@ -108,7 +108,7 @@ def standard_input() -> BinaryIO:
 def input_error(name: str, error: OSError | ValueError) -> TltlError:
     """Return the error TLT0001 for a file or standard input that cannot be read."""
     if name == STDIN_NAME and isinstance(error, OSError) and error.errno == EBADF:
-        help_ = "send it something, as in `tltlc check - < level.tltl`, or name a file"
+        help_ = "send input to it, as in `tltlc check - < level.tltl`, or name a file"
         return TltlError([Diagnostic("TLT0001", "cannot read standard input: it is closed", help=help_)])
     return reading_error(name, error)
 

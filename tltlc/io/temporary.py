@@ -180,8 +180,8 @@ def temporary_folder() -> Iterator[Path]:
 
 
 def _no_folder_error(error: OSError) -> TltlError:
-    title = f"cannot make a temporary folder: {(error.strerror or str(error)).lower()}"
-    help_ = "make room, or set TMPDIR to a folder that you may write into"
+    title = f"cannot create a temporary folder: {(error.strerror or str(error)).lower()}"
+    help_ = "free some space, or set TMPDIR to a folder that you can write to"
     return TltlError([Diagnostic("TLT0005", title, help=help_)])
 
 

@@ -69,7 +69,7 @@ def _too_large_error(source: SourceFile, code: str) -> TltlError:
     # A number in a comment or a string matches, too. With several matches, label none.
     label = (Label(source, Span(*numbers[0].span()), "this whole number"),) if len(numbers) == 1 else ()
     title = f"`{source.name}` is not TOML: a whole number is too large"
-    help_ = f"whole numbers end at {_WHOLE_NUMBERS[-1]:,}; write a larger number with an exponent, as in 1e20"
+    help_ = f"the largest whole number is {_WHOLE_NUMBERS[-1]:,}; write a larger number with an exponent, as in 1e20"
     return TltlError([Diagnostic(code, title, label, help_)])
 
 

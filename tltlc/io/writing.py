@@ -73,7 +73,7 @@ def check_not_read(path: Path, advice: str = _OPTION) -> None:
     This keeps an output from replacing an input. ``advice`` is the help of the error.
     """
     if was_read(path):
-        raise TltlError([Diagnostic("TLT0700", f"`{path}` would be written over: it is an input", help=advice)])
+        raise TltlError([Diagnostic("TLT0700", f"`{path}` would be overwritten, but it is an input", help=advice)])
 
 
 def rewrite(path: Path, content: str) -> None:
@@ -84,8 +84,8 @@ def rewrite(path: Path, content: str) -> None:
             new content would be too large to read.
     """
     if len(content.encode(errors="replace")) > SOURCE.size:
-        title = f"`{path}` would be larger than {SOURCE.size >> 20} MiB"
-        raise TltlError([Diagnostic("TLT0004", title, help="it stays as it is; split it: a file may `import` others")])
+        title = f"`{path}` would be larger than {SOURCE.size >> 20} MiB, so it was not changed"
+        raise TltlError([Diagnostic("TLT0004", title, help="split it: a file may `import` others")])
     mode = _mode(path)
     # Writing renames a temporary file, which would replace even a read-only file: check this first.
     if mode is not None and not (mode & _WRITABLE and os.access(path, os.W_OK)):

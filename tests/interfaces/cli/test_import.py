@@ -105,7 +105,7 @@ def test_wrong_usage_is_rejected(tltlc, files: Path, arguments: list[str], messa
 def test_an_input_is_not_overwritten(tltlc, files: Path) -> None:  # type: ignore[no-untyped-def]
     outcome = tltlc("import", "again.hoa", "--predicates", "game.tltl", "-t", "hoa")
     assert outcome.status == 2
-    assert "`again.hoa` would be written over" in outcome.err
+    assert "`again.hoa` would be overwritten" in outcome.err
     assert (files / "again.hoa").read_text() == AGAIN
     assert tltlc("import", "again.hoa", "--predicates", "game.tltl", "-t", "hoa", "-o", "build").status == 0
 

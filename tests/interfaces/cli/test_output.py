@@ -106,7 +106,7 @@ def test_no_output_overwrites_an_input(
     before = {path: path.read_bytes() for path in inside.rglob("*") if path.is_file()}
     outcome = tltlc(*arguments)
     assert outcome.status == 2
-    assert f"`{input_}` would be written over: it is an input" in outcome.err
+    assert f"`{input_}` would be overwritten, but it is an input" in outcome.err
     assert before == {path: path.read_bytes() for path in inside.rglob("*") if path.is_file()}
 
 
@@ -119,7 +119,7 @@ def test_a_file_on_standard_input_is_not_overwritten(process: Callable[..., Outc
     with artefact.open("rb") as stdin:
         completed = subprocess.run(command, stdin=stdin, capture_output=True, cwd=inside, text=True, check=False)
     assert completed.returncode == 2
-    assert "`a.fspa.json` would be written over: it is an input" in completed.stderr
+    assert "`a.fspa.json` would be overwritten, but it is an input" in completed.stderr
     assert artefact.read_bytes() == before
 
 

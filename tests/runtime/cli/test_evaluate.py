@@ -95,7 +95,7 @@ def test_the_report_does_not_overwrite_an_input(tltlc: Run, policy: Path, tmp_pa
     shutil.copy(policy, copied_policy)
     result = tltlc("evaluate", copied_policy, "--episodes", "1", "--json", copied_policy)
     assert result.status == 2
-    assert f"`{copied_policy}` would be written over: it is an input" in result.err
+    assert f"`{copied_policy}` would be overwritten, but it is an input" in result.err
     assert "played" not in result.err
     assert copied_policy.read_bytes() == policy.read_bytes()
 

@@ -412,7 +412,7 @@ def test_invalid_options_are_rejected(tltlc: Run, game: Path) -> None:  # noqa: 
     result = tltlc("regress", "game.toml", "--out", "taken/run", *ONE)
     assert (result.status, result.out) == (3, "")
     assert result.err == (
-        "error[TLT0005]: cannot write into `taken/run`: a part of its path is a file, and no folder\n"
+        "error[TLT0005]: cannot write into `taken/run`: a part of its path is a file, not a folder\n"
         "  help: make sure that there is room and that you may write there, or name another folder with --out\n"
     )
     for name in ("nowhere.toml", ".", "", "/"):

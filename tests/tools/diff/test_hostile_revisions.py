@@ -70,7 +70,7 @@ def test_an_entry_above_the_folder_is_rejected(inside: Path, tltlc: Run, levels:
     assert (outcome.status, outcome.out) == (3, "")
     path = "../" * levels + "mine.tltl"
     assert outcome.err == (
-        f"error[TLT0009]: the revision `bad` holds the path `{path}`, which leads out of its folder\n"
+        f"error[TLT0009]: the revision `bad` contains the path `{path}`, which leads out of its folder\n"
         "  help: use another revision: `git fsck` names the damaged tree, which `git add` does not make\n"
     )
     assert files(inside) == before
@@ -105,8 +105,8 @@ def test_the_help_for_names_that_differ_in_case_suggests_linux(
     outcome = tltlc("breaking", "specs/leave.tltl", "--against", name)
     assert outcome.status == 3
     assert outcome.err == (
-        "error[TLT0009]: the revision `capitals` holds `Leave.tltl` and `leave.tltl`, which the file system here takes "
-        "for one path\n"
+        "error[TLT0009]: the revision `capitals` contains `Leave.tltl` and `leave.tltl`, which are the same path "
+        "in this file system\n"
         "  help: run this on Linux, or name a revision in which the file has another name\n"
     )
 
@@ -192,7 +192,7 @@ def test_a_path_across_two_blocks_of_the_stream_is_read_whole() -> None:
     [
         (b"d", 1000, "which has more than 100 parts"),
         (b"d" * 200, 60, "which is longer than 4,096 bytes"),
-        (b"d" * 400, 1, "a part of which is longer than 255 bytes"),
+        (b"d" * 400, 1, "with a part that is longer than 255 bytes"),
     ],
     ids=["deep", "long", "long part"],
 )
@@ -206,7 +206,7 @@ def test_a_path_that_no_folder_can_hold_is_rejected(
     top = nested(name, levels, tree((PLAIN, b"leave.tltl", store("blob", b"spec a = true\n"))))
     outcome = tltlc("breaking", "specs/leave.tltl", "--against", revision("bad", top))
     assert (outcome.status, outcome.out) == (3, "")
-    assert "error[TLT0009]: the revision `bad` holds the path `dd" in outcome.err or "`d/d" in outcome.err
+    assert "error[TLT0009]: the revision `bad` contains the path `dd" in outcome.err or "`d/d" in outcome.err
     assert why in outcome.err
     # The message shortens the name.
     assert len(outcome.err) < 700

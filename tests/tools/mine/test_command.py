@@ -202,7 +202,7 @@ def test_a_library_is_not_overwritten(tltlc: Run, recorded: Path) -> None:
     Path("lib.tltl").write_text("signal alive: bool\n")
     outcome = tltlc("mine", "good", "--against", "bad", "--predicates", "lib.tltl", "-o", "lib.tltl")
     assert outcome.status == 2
-    assert "would be written over" in outcome.err
+    assert "would be overwritten" in outcome.err
     assert Path("lib.tltl").read_text() == "signal alive: bool\n"
 
 
