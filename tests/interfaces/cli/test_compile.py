@@ -158,8 +158,8 @@ def test_other_names_of_a_target_get_a_suggestion(name: str, suggestion: str, tl
 def test_two_targets_that_write_the_same_file_are_rejected(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
     outcome = tltlc("compile", "hide.tltl", "-t", "gdscript,gdscript3")
     assert outcome.status == 2
-    message = "`gdscript` and `gdscript3` both write `hide_monitor.gd`: ask for one, with -t, and for the other with"
-    assert f"{message} an -o of its own" in outcome.err
+    message = "`gdscript` and `gdscript3` both write `hide_monitor.gd`: choose one with -t, and write the other to"
+    assert f"{message} another folder with -o" in outcome.err
     assert [path.name for path in inside.iterdir()] == ["hide.tltl"]
 
 
@@ -173,7 +173,7 @@ def test_a_file_without_specs_is_reported(tltlc, inside: Path) -> None:  # type:
     Path("library.tltl").write_text("signal seen: bool\n")
     outcome = tltlc("compile", "library.tltl")
     assert outcome.status == 0
-    assert outcome.err == "library.tltl: there is no spec in it\n"
+    assert outcome.err == "library.tltl: it contains no spec\n"
 
 
 def test_hostile_documentation_is_escaped(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]

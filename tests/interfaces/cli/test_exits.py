@@ -198,9 +198,9 @@ def test_the_summary_counts_files_with_errors(tltlc, inside: Path) -> None:  # t
 @pytest.mark.parametrize(
     ("type_", "text", "message"),
     [
-        (click.FLOAT, "1,5", "`1,5` is no number; write 1.5"),
-        (click.FloatRange(min=0.0), "fast", "`fast` is no number"),
-        (click.IntRange(min=0), "1.5", "`1.5` is no whole number"),
+        (click.FLOAT, "1,5", "`1,5` is not a number; write 1.5"),
+        (click.FloatRange(min=0.0), "fast", "`fast` is not a number"),
+        (click.IntRange(min=0), "1.5", "`1.5` is not a whole number"),
     ],
 )
 def test_an_invalid_number_is_reported(
@@ -218,7 +218,7 @@ def test_a_path_that_the_system_rejects_is_not_reported_as_a_bug(capsys: pytest.
         Path("a" * 300).stat()
     assert exits.report(error.value) == exits.UNREADABLE
     message = capsys.readouterr().err
-    assert message.startswith(f"error[TLT0001]: cannot look at `{'a' * 300}`: file name too long\n  help: ")
+    assert message.startswith(f"error[TLT0001]: cannot access `{'a' * 300}`: file name too long\n  help: ")
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="needs limits of processes")
@@ -231,7 +231,7 @@ def test_a_system_limit_is_not_reported_as_a_bug(files: int, inside: Path) -> No
     )
     assert (completed.returncode, completed.stdout) == (3, "")
     assert completed.stderr == (
-        "error[TLT0768]: this process may open no more files\n"
+        "error[TLT0768]: this process cannot open more files\n"
         "  help: `ulimit -a` shows your limits: raise the one that is too small, or close other programs\n"
     )
 

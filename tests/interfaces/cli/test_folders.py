@@ -107,7 +107,7 @@ def test_an_artefact_is_rejected_as_a_source(command: str, tltlc: Command, insid
     tltlc("compile", "hide.tltl", "-t", "json")
     before = Path("hide.fspa.json").read_bytes()
     outcome = tltlc(command, "hide.fspa.json")
-    title = "error[TLT0722]: `hide.fspa.json` is an artefact: it holds an automaton, and no source text"
+    title = "error[TLT0722]: `hide.fspa.json` is an artefact: it contains an automaton and no source text"
     assert (outcome.status, outcome.err.splitlines()[0]) == (2, title)
     assert Path("hide.fspa.json").read_bytes() == before
 

@@ -88,7 +88,7 @@ def test_an_automaton_is_read_from_standard_input(process, files: Path) -> None:
     ("arguments", "message"),
     [
         (["again.hoa"], "missing option '--predicates'"),
-        (["again.hoa", "--predicates", "game.tltl", "--name", "no word"], "`no word` is no word of ASCII letters"),
+        (["again.hoa", "--predicates", "game.tltl", "--name", "no word"], "`no word` is not a word of ASCII letters"),
         (["again.hoa", "--predicates", "game.tltl", "--atom", "near(post_1)"], "is not of the form AP=PREDICATE"),
         (["again.hoa", "--predicates", "game.tltl", "-t", "jsn"], "did you mean `json`?"),
         (["agin.hoa", "--predicates", "game.tltl"], "did you mean `again.hoa`?"),
@@ -115,7 +115,7 @@ def test_other_commands_suggest_the_import(tltlc, files: Path) -> None:  # type:
     for name in ("again.hoa", "late.hoa"):
         outcome = tltlc("check", name)
         assert outcome.status == 1
-        assert f"help: `tltlc import {name} --predicates LIB.tltl`" in outcome.err
+        assert f"help: make an artefact of it with `tltlc import {name} --predicates LIB.tltl`" in outcome.err
 
 
 @pytest.mark.skipif(os.name == "nt", reason="a shell is asked to close standard input")

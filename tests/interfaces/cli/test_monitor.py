@@ -142,8 +142,8 @@ def test_a_file_without_tests_is_reported(tltlc, inside: Path) -> None:  # type:
     outcome = tltlc("test", "hide.tltl", "tested.tltl", "none")
     assert (outcome.status, outcome.out.splitlines()[-1]) == (0, "1 passed, 0 failed")
     assert [line.partition(";")[0] for line in outcome.err.splitlines()] == [
-        "hide.tltl: no test block",
-        "none: no test block",
+        "hide.tltl: it contains no test block",
+        "none: it contains no test block",
     ]
     assert tltlc("test", ".").err == "", "some file of the folder has one"
 

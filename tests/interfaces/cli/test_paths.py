@@ -50,7 +50,7 @@ def test_every_output_handles_a_hyphen(command: str, parameter: click.Parameter)
         assert kind.convert("-", parameter, None) == Path("-")
         assert kind.convert("./-", parameter, None) == Path.cwd() / "-"
     else:
-        with pytest.raises(click.BadParameter, match="is needed, and `-` is none"):
+        with pytest.raises(click.BadParameter, match=r"expected a .*, found `-`"):
             kind.convert("-", parameter, None)
 
 
@@ -68,7 +68,7 @@ def test_every_output_handles_a_hyphen(command: str, parameter: click.Parameter)
 def test_a_hyphen_is_rejected_as_a_folder(arguments: tuple[str, ...], tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
     outcome = tltlc(*arguments)
     assert (outcome.status, outcome.out) == (2, "")
-    assert "a folder is needed, and `-` is none (`./-` is one of that name)" in outcome.err
+    assert "expected a folder, found `-` (write `./-` for a folder with this name)" in outcome.err
     assert [path.name for path in inside.iterdir()] == ["hide.tltl"]
 
 
@@ -89,4 +89,4 @@ def test_proposals_are_written_to_standard_output(tltlc, inside: Path) -> None: 
     assert not Path("-").exists()
     both = tltlc(*mine, "-", "--json")
     assert (both.status, both.out) == (2, "")
-    assert "--json and `-o -` both print" in both.err
+    assert "--json and `-o -` both write to standard output" in both.err

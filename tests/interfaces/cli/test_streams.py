@@ -268,7 +268,7 @@ def test_lasting_commands_start_and_end_with_closed_streams(
     ) as running:
         try:
             assert running.stderr is not None
-            assert any("until Ctrl-C" in line for line in running.stderr)
+            assert any("press Ctrl-C to stop" in line for line in running.stderr)
             running.send_signal(signal.SIGINT)
             _, err = running.communicate(timeout=HANG_S)
         finally:

@@ -15,7 +15,7 @@ import pytest
 from tests.waiting import HANG_S
 
 ROOT = Path(__file__).parents[3]
-WAITS = "waiting for changes, until Ctrl-C\n"
+WAITS = "waiting for changes (press Ctrl-C to stop)\n"
 LIBRARY = "signal seen: bool\nlet hidden = !seen\n"
 SPECS = "import lib\nspec calm = G hidden\nspec found = F seen\n"
 

@@ -15,7 +15,7 @@ import pytest
 from tests.interfaces.cli.conftest import ROOT
 from tests.waiting import HANG_S
 
-WAITS = "waiting for changes, until Ctrl-C\n"
+WAITS = "waiting for changes (press Ctrl-C to stop)\n"
 SPEC = "import lib\nspec found { limit 9 steps  reach seen }\n"
 TEST = 'test "seen" for found { step seen  expect satisfied }\n'
 

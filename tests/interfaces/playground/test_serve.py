@@ -42,7 +42,9 @@ def serve(
     try:
         assert running.stderr is not None
         line = running.stderr.readline()
-        match = re.fullmatch(r"the playground is at http://127\.0\.0\.1:(\d+)/#token=[\w-]{32} until Ctrl-C\n", line)
+        match = re.fullmatch(
+            r"the playground is at http://127\.0\.0\.1:(\d+)/#token=[\w-]{32} \(press Ctrl-C to stop\)\n", line
+        )
         assert match, line
         yield running, int(match[1])
     finally:
@@ -163,7 +165,7 @@ def test_without_a_temporary_file_the_page_is_served(tmp_path: Path) -> None:
     code = "import tempfile; tempfile.tempdir = 'none/there'\nfrom tltlc.interfaces.cli.main import main; main()"
     with serve("--open", program=("-c", code)) as (running, _):
         assert running.stderr is not None
-        assert running.stderr.readline() == "no temporary file can be written: open the address yourself\n"
+        assert running.stderr.readline() == "cannot write a temporary file: open the address yourself\n"
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="elsewhere the system itself opens pages")

@@ -149,7 +149,7 @@ def test_inputs_of_the_suite_are_not_overwritten(tltlc: Run, game: Path, name: s
 
 def test_a_baseline_is_not_written_to_standard_output(tltlc: Run, game: Path) -> None:  # noqa: F811
     result = tltlc("baseline", "game.toml", "-o", "-")
-    assert (result.status, result.out) == (2, "") and "a file is needed, and `-` is none" in result.err
+    assert (result.status, result.out) == (2, "") and "expected a file, found `-`" in result.err
     assert not Path("-").exists()
 
 

@@ -62,8 +62,8 @@ def test_unchanged_files_break_nothing(repository: Path, tltlc: Run) -> None:  #
     outcome = tltlc("breaking", "specs/leave.tltl", "libs/mine.tltl", "--against", "v1")
     assert (outcome.status, outcome.out) == (0, "")
     assert outcome.err == (
-        "specs/leave.tltl: nothing has changed that others notice\n"
-        "libs/mine.tltl: nothing has changed that others notice\n"
+        "specs/leave.tltl: no changes that others notice\n"
+        "libs/mine.tltl: no changes that others notice\n"
         "0 breaking, 0 changed, 0 compatible\n"
     )
 

@@ -49,7 +49,7 @@ def test_missing_files_and_revisions_are_reported(repository: Path, tltlc: Run) 
     assert (gone.status, gone.out) == (3, "")
     assert gone.err == (
         "error[TLT0751]: there is no file `leave.tltl` in `v1`\n"
-        "  help: name a file that was there, by its path from the current folder\n"
+        "  help: name a file of that revision, by its path from the current folder\n"
     )
     assert "there is no revision and no folder `v9`" in tltlc("diff", "v9:specs/leave.tltl", "-").err
     # A file in the working tree with exactly this name takes precedence.

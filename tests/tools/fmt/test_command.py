@@ -20,7 +20,7 @@ def test_only_files_that_change_are_rewritten(tltlc, inside: Path) -> None:  # t
     os.utime("levels/done.tltl", (0, 0))
     outcome = tltlc("fmt", "levels")
     assert (outcome.status, outcome.out) == (0, "")
-    assert outcome.err == f"formatted {Path('levels/rough.tltl')}\n1 file had this layout already\n"
+    assert outcome.err == f"formatted {Path('levels/rough.tltl')}\n1 file already had this layout\n"
     assert Path("levels/rough.tltl").read_text(encoding="utf-8") == WORDS
     assert Path("levels/.hidden/rough.tltl").read_text(encoding="utf-8") == ROUGH
     assert Path("levels/other.txt").read_text(encoding="utf-8") == ROUGH

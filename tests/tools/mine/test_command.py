@@ -72,7 +72,10 @@ def proposals(outcome: Outcome) -> list[dict[str, Any]]:
 def test_the_text_output_matches_the_golden_file(tltlc: Run, recorded: Path) -> None:
     outcome = tltlc("mine", "good", "--against", "bad", "--top", "2")
     assert outcome.status == 0
-    assert outcome.err == "columns left out, being no atoms: time (`--predicates LIB` computes atoms from numbers)\n"
+    assert (
+        outcome.err
+        == "columns left out because they are not atoms: time (`--predicates LIB` computes atoms from numbers)\n"
+    )
     expected = Path(__file__).with_name("expected.txt")
     assert outcome.out == expected.read_text(encoding="utf-8")
     assert max(map(len, outcome.out.splitlines())) <= 100
@@ -237,7 +240,7 @@ def test_a_folder_without_traces_is_reported(tltlc: Run, inside: Path) -> None:
     Path("empty/.hidden.csv").write_text("a\ntrue\n")
     outcome = tltlc("mine", "empty")
     assert outcome.status == 3
-    assert "the folder `empty` holds no trace" in outcome.err
+    assert "the folder `empty` contains no trace" in outcome.err
 
 
 def test_traces_in_which_nothing_holds_give_no_proposal(tltlc: Run, inside: Path) -> None:
@@ -258,7 +261,7 @@ def test_a_column_missing_in_one_trace_is_reported(tltlc: Run, recorded: Path) -
     outcome = tltlc("mine", "good", "--against", "bad")
     assert outcome.status == 0
     assert f"warning[TLT0763]: `{path}` lacks the column `seen`, so it is left out\n" in outcome.err
-    assert "columns left out, being no atoms: time, noticed (" in outcome.err
+    assert "columns left out because they are not atoms: time, noticed (" in outcome.err
 
 
 def test_columns_that_cannot_name_an_atom_are_reported(tltlc: Run, inside: Path) -> None:
@@ -266,8 +269,9 @@ def test_columns_that_cannot_name_an_atom_are_reported(tltlc: Run, inside: Path)
     outcome = tltlc("mine", "run.csv")
     assert (outcome.status, outcome.err) == (
         0,
-        "columns left out, being no atoms: x (`--predicates LIB` computes atoms from numbers)\n"
-        "columns left out, as no atom can be called so: the door (atoms are called `seen` or `at(key)`)\n",
+        "columns left out because they are not atoms: x (`--predicates LIB` computes atoms from numbers)\n"
+        "columns left out because no atom can have such a name: the door "
+        "(atoms have names like `seen` or `at(key)`)\n",
     )
 
 
@@ -335,5 +339,5 @@ def test_a_library_that_cannot_be_imported_is_rejected_before_the_search(
     (recorded / folder / "c.tltl").write_text("signal seen: bool\n")
     outcome = tltlc("mine", "good", "--predicates", f"{folder}/c.tltl", "-o", output)
     assert (outcome.status, outcome.out) == (2, "")
-    assert "for a quote or a line break in its path: rename it" in outcome.err
+    assert "because its path contains a quote or a line break: rename it" in outcome.err
     assert not (recorded / "mined.tltl").exists()

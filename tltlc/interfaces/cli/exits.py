@@ -60,9 +60,9 @@ _PATH_ERRORS: Final = {errno.ENAMETOOLONG, errno.EACCES, errno.EPERM, errno.ELOO
 """Errors that the system may raise at a mere check whether a path exists."""
 
 _RESOURCE_MESSAGES: Final = {
-    errno.EMFILE: "this process may open no more files",
-    errno.ENFILE: "the system can open no more files",
-    errno.EAGAIN: "the system can start no more processes",
+    errno.EMFILE: "this process cannot open more files",
+    errno.ENFILE: "the system cannot open more files",
+    errno.EAGAIN: "the system cannot start more processes",
     errno.ENOMEM: "there is not enough memory",
 }
 """The message for each error that the system raises if a resource is used up."""
@@ -179,7 +179,7 @@ def _usage_diagnostic(error: click.ClickException) -> Diagnostic:
 
 def _number_message(text: str, kind: str) -> str:
     """Reword click's message about an invalid number; suggest a decimal point for a comma."""
-    message = f"`{text}` is no {'whole ' if kind == 'integer' else ''}number"
+    message = f"`{text}` is not a {'whole ' if kind == 'integer' else ''}number"
     with_point = text.replace(",", ".", 1)
     return f"{message}; write {with_point}" if kind == "float" and re.fullmatch(r"-?\d+\.\d+", with_point) else message
 
@@ -200,14 +200,18 @@ def _output_error(error: OSError) -> TltlError:
 
     closed = error.errno == errno.EBADF
     title = f"cannot write to standard output: {'it is closed' if closed else reason(error)}"
-    help_ = "send it to a file, or to /dev/null" if closed else "make room, or send it to another place"
+    help_ = (
+        "send the output to a file, or to /dev/null"
+        if closed
+        else "free some space, or send the output to another place"
+    )
     return TltlError([Diagnostic("TLT0005", title, help=help_)])
 
 
 def _path_error(error: OSError) -> TltlError:
     from tltlc.io.files import reason
 
-    title = f"cannot look at `{os.fsdecode(error.filename)}`: {reason(error)}"
+    title = f"cannot access `{os.fsdecode(error.filename)}`: {reason(error)}"
     return TltlError([Diagnostic("TLT0001", title, help="check its name and its permissions")])
 
 

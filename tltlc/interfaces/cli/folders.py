@@ -72,7 +72,7 @@ def is_free(folder: Path) -> bool:
 
 def occupied_folder_error(folder: Path, advice: str) -> TltlError:
     """Return TLT0722 for a folder that a command must create, but that exists and is not empty."""
-    return TltlError([Diagnostic("TLT0722", f"`{folder}` is there already, and not empty", help=advice)])
+    return TltlError([Diagnostic("TLT0722", f"`{folder}` already exists and is not empty", help=advice)])
 
 
 def links_outside(path: str, arguments: Iterable[str]) -> bool:

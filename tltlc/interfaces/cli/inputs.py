@@ -48,9 +48,9 @@ class Input:
             return self.automata[0]
         names = [fspa.name for fspa in self.automata]
         title = (
-            f"`{self.name}` holds {len(names)} specs, and this command takes one"
+            f"`{self.name}` contains {len(names)} specs, but this command takes one"
             if names
-            else (f"`{self.name}` holds no spec")
+            else (f"`{self.name}` contains no spec")
         )
         path = STDIN if self.name == STDIN_NAME else self.name
         help_ = f"name one of them, e.g. `{path}:{names[0]}`" if names else "declare one: `spec NAME { … }`"
@@ -66,7 +66,7 @@ def open_input(argument: str, settings: CompileSettings, specs: Sequence[str] = 
     """
     path, name = split(argument)
     if path.endswith(".toml"):
-        message = f"`{path}` is no spec; where it is a level, `tltlc check --level {path}` checks it"
+        message = f"`{path}` is not a spec; if it is a level, check it with `tltlc check --level {path}`"
         raise click.UsageError(message, click.get_current_context(silent=True))
     spec_names = (*specs, name) if name else tuple(specs)
     check_libraries(settings.libraries)
@@ -104,13 +104,13 @@ def check_text(source: SourceFile) -> None:
 
 def artefact_error(artefact: str) -> Diagnostic:
     """Return the diagnostic for an artefact where a source text is required."""
-    title = f"`{artefact}` is an artefact: it holds an automaton, and no source text"
+    title = f"`{artefact}` is an artefact: it contains an automaton and no source text"
     return Diagnostic("TLT0722", title, help="name the .tltl file that it was compiled from")
 
 
 def _hoa_diagnostic(source: SourceFile) -> Diagnostic:
-    title = f"`{source.name}` is an automaton in the Hanoi format, and no spec"
-    help_ = f"`tltlc import {source.name} --predicates LIB.tltl` makes an artefact of it"
+    title = f"`{source.name}` is an automaton in the Hanoi format, not a spec"
+    help_ = f"make an artefact of it with `tltlc import {source.name} --predicates LIB.tltl`"
     return Diagnostic("TLT0652", title, help=help_)
 
 

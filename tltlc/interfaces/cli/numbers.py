@@ -42,5 +42,5 @@ class FiniteRange(click.FloatRange):
         """Return the number; fail with a usage error if it is no finite number in the range."""
         number = super().convert(value, param, ctx)
         if not isfinite(number):
-            self.fail("write a number", param, ctx)
+            self.fail("write a finite number", param, ctx)
         return number

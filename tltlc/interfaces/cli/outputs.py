@@ -62,8 +62,8 @@ def files_of(automata: Iterable[Fspa], requested: Sequence[str], project: Projec
                 earlier = writers.setdefault(name, target)
                 if earlier != target:
                     raise click.UsageError(
-                        f"`{earlier}` and `{target}` both write `{name}`: ask for one, with -t, and for the other with "
-                        "an -o of its own"
+                        f"`{earlier}` and `{target}` both write `{name}`: choose one with -t, and write the other to "
+                        "another folder with -o"
                     )
                 files[name] = content
     return files

@@ -43,7 +43,7 @@ class OutputPath(click.Path):
         if value == STDOUT and not self.stdout:
             kind = "file or a folder" if self.kind == "place" else self.kind
             # Without `stdout`, the option needs a file or folder; standard output is neither.
-            self.fail(f"a {kind} is needed, and `-` is none (`./-` is one of that name)", param, ctx)
+            self.fail(f"expected a {kind}, found `-` (write `./-` for a {kind} with this name)", param, ctx)
         path = Path(super().convert(value, param, ctx))  # type: ignore[arg-type] # `path_type` makes it one
         return Path.cwd() / path if str(path) == STDOUT != value else path
 

@@ -85,5 +85,5 @@ def _real_path(path: str) -> str:
     try:
         return os.path.realpath(path)
     except FileNotFoundError:
-        title, help_ = "the current folder has been deleted", "start the command again in another one"
+        title, help_ = "the current folder has been deleted", "start the command again in another folder"
         raise TltlError([Diagnostic("TLT0001", title, help=help_)]) from None

@@ -119,8 +119,8 @@ def check_libraries(libraries: tuple[Path, ...]) -> None:
     """Raise TLT0001 for a library folder that does not exist."""
     for folder in libraries:
         if not is_dir(folder):
-            title = f"the library folder `{folder}` is not there"
-            raise TltlError([Diagnostic("TLT0001", title, help="name a folder that is there")])
+            title = f"the library folder `{folder}` does not exist"
+            raise TltlError([Diagnostic("TLT0001", title, help="name a folder that exists")])
 
 
 def parse_assignments(texts: tuple[str, ...], form: str, option: str) -> dict[str, str]:

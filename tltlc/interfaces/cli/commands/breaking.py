@@ -55,7 +55,7 @@ def command(paths: tuple[str, ...], against: str, settings: CompileSettings, for
 
     for path in paths:
         if path == STDIN or split(path)[1] is not None:
-            raise click.UsageError(f"`{path}` is no path: name files and folders")
+            raise click.UsageError(f"`{path}` is not a path: name files and folders")
     diagnostics: list[Diagnostic] = []
     with Report(format) as report, earlier_files(against, paths) as old:
 
@@ -82,7 +82,7 @@ def command(paths: tuple[str, ...], against: str, settings: CompileSettings, for
             report.add(file_diagnostics)
             diagnostics += file_diagnostics
             if not file_diagnostics and os.path.exists(change.path):  # noqa: PTH110 (as below)
-                report.say(f"{change.path}: nothing has changed that others notice")
+                report.say(f"{change.path}: no changes that others notice")
         counts = [
             sum(diagnostic.severity == severity for diagnostic in diagnostics)
             for severity in ("error", "warning", "note")

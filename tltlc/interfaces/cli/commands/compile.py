@@ -66,7 +66,7 @@ def command(
             sources: dict[str, str] = {}
             for spec_input in _valid_inputs(every_source(specs, report), settings, names, report):
                 if not spec_input.automata and spec_input.name not in files_in_folders(specs):
-                    report.say(f"{spec_input.name}: there is no spec in it")
+                    report.say(f"{spec_input.name}: it contains no spec")
                 generated = files_of(spec_input.automata, targets, spec_input.project, report)
                 _check_distinct(generated, spec_input.name, sources, is_waiting=bool(changed))
                 files |= generated
@@ -86,7 +86,7 @@ def command(
         if status in (exits.USAGE, exits.UNREADABLE) and not changed:
             raise exits.StopQuietlyError(status)
         if format == "text":
-            print("waiting for changes, until Ctrl-C", file=sys.stderr)
+            print("waiting for changes (press Ctrl-C to stop)", file=sys.stderr)
 
     if watch:
         from tltlc.interfaces.cli.repeated_runs import repeat

@@ -106,7 +106,7 @@ def _open_side(argument: str, settings: CompileSettings) -> Input:
     with earlier_files(revision, [file]) as old:
         before = old.old_path(file)
         if before is None:
-            help_ = "name a file that was there, by its path from the current folder"
+            help_ = "name a file of that revision, by its path from the current folder"
             raise TltlError([Diagnostic("TLT0751", f"there is no file `{file}` in `{revision}`", help=help_)])
         old_settings = replace(settings, libraries=old.old_libraries(settings.libraries))
         try:

@@ -52,7 +52,7 @@ def command(paths: tuple[str, ...], check: bool, diff: bool, style: str | None) 
             try:
                 file_style = style or project_for(path).formatting
                 if not check and not diff and links_outside(path, paths or (".",)):
-                    report.say(f"{path} is left as it is: it is a link out of the folder")
+                    report.say(f"{path} was not changed: it is a link to a file outside the folder")
                     continue
                 is_same = _format(path, file_style, report, check=check, diff=diff)
             except TltlError as error:
@@ -63,7 +63,7 @@ def command(paths: tuple[str, ...], check: bool, diff: bool, style: str | None) 
             report.say(f"{count_text(changed, 'file')} would change, {unchanged} would not")
             report.status = report.status or (exits.FINDINGS if changed else exits.CLEAN)
         elif unchanged and not diff and paths != ("-",):
-            report.say(f"{count_text(unchanged, 'file')} had this layout already")
+            report.say(f"{count_text(unchanged, 'file')} already had this layout")
     return report.status
 
 

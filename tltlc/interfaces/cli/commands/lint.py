@@ -51,7 +51,7 @@ def command(paths: tuple[str, ...], fixing: bool, settings: CompileSettings, for
             try:
                 can_fix = fixing and not links_outside(path, paths or (".",))
                 if fixing and not can_fix:
-                    report.say(f"{path} is left as it is: it is a link out of the folder")
+                    report.say(f"{path} was not changed: it is a link to a file outside the folder")
                 diagnostics = _lint_file(
                     path, names_used_elsewhere(path, neighbour_words.values()), can_fix, settings, report
                 )
@@ -81,7 +81,7 @@ def _lint_file(
     from tltlc.tools.lint.run import lint
 
     if fixing and path == STDIN:
-        raise click.UsageError("`--fix` writes the file that it mends: name one", click.get_current_context())
+        raise click.UsageError("`--fix` cannot change standard input: name a file", click.get_current_context())
     project = project_for(path)
     source, _ = read(path)
     check_text(source)

@@ -121,9 +121,11 @@ def command(
     from tltlc.tools.mine.search import MiningOptions, SpecSearch
 
     if (*traces, *counterexamples).count(STDIN) > 1:
-        raise click.UsageError("standard input can be one trace", click.get_current_context())
+        raise click.UsageError("standard input can be only one of the traces", click.get_current_context())
     if as_json and is_stdout(output):
-        raise click.UsageError("--json and `-o -` both print: name a file with -o", click.get_current_context())
+        raise click.UsageError(
+            "--json and `-o -` both write to standard output: name a file with -o", click.get_current_context()
+        )
     interrupted = False
     with Report(format, results=True) as report:
         options = _compile_options(predicates, settings)
@@ -164,10 +166,11 @@ def _column_messages(words: MiningVocabulary, predicates: str | None) -> Iterato
     not_atoms = [name for name in words.left_out if name not in words.misnamed]
     if not_atoms:
         hint = "" if predicates else " (`--predicates LIB` computes atoms from numbers)"
-        yield f"columns left out, being no atoms: {', '.join(not_atoms)}{hint}"
+        yield f"columns left out because they are not atoms: {', '.join(not_atoms)}{hint}"
     if misnamed:
         names = ", ".join(misnamed)
-        yield f"columns left out, as no atom can be called so: {names} (atoms are called `seen` or `at(key)`)"
+        hint = "(atoms have names like `seen` or `at(key)`)"
+        yield f"columns left out because no atom can have such a name: {names} {hint}"
 
 
 # --- input ----------------------------------------------------------------------------------------
@@ -198,8 +201,10 @@ def _traces_in(folder: str) -> list[str]:
 
     paths = files_below(Path(folder), ENDINGS)
     if not paths:
-        title = f"the folder `{folder}` holds no trace"
-        raise TltlError([Diagnostic("TLT0001", title, help=f"traces in it end in {' or '.join(ENDINGS)}")])
+        title = f"the folder `{folder}` contains no trace"
+        raise TltlError(
+            [Diagnostic("TLT0001", title, help=f"in a folder, the names of traces end with {' or '.join(ENDINGS)}")]
+        )
     return [str(Path(folder, path)) for path in paths]
 
 
@@ -272,8 +277,8 @@ def _unread_messages(words: MiningVocabulary) -> Iterator[str]:
 
     if words.unread_count:
         most, instances = WORK["mined columns"], WORK["mined instances"]
-        of_each = f", {instances:,} of one predicate" if words.entities else ""
-        yield f"only the first {most:,} atoms are read{of_each}, and {words.unread_count:,} others are not"
+        of_each = f", at most {instances:,} of one predicate" if words.entities else ""
+        yield f"only the first {most:,} atoms are read{of_each}; {words.unread_count:,} others are left out"
 
 
 def _limit_warning(title: str, predicates: str | None) -> Diagnostic:
@@ -283,11 +288,11 @@ def _limit_warning(title: str, predicates: str | None) -> Diagnostic:
 
 def _no_proposal(evidence: Evidence, *, whole: bool) -> Diagnostic:
     if not whole:
-        return Diagnostic("TLT0761", "no spec was found so far", help="give it more time, with --time")
-    title = "there is no spec to propose: what the traces have in common, the counterexamples have, too"
+        return Diagnostic("TLT0761", "no spec was found so far", help="allow more time with --time")
+    title = "there is no spec to propose: the counterexamples have everything that the traces have in common"
     if evidence.made_up:
         title = "there is no spec to propose: the traces have nothing in common"
-    help_ = "lower --min-support, or record signals of what makes the difference"
+    help_ = "lower --min-support, or record signals that show the difference"
     return Diagnostic("TLT0761", title, help=help_)
 
 
@@ -338,5 +343,7 @@ def _import_line(library: SourceFile, predicates: str, path: Path) -> str:
         relative = str(Path(predicates).absolute())
     target = quote(Path(relative).as_posix())
     if target is None:
-        raise click.UsageError(f"no file can import `{relative}`, for a quote or a line break in its path: rename it")
+        raise click.UsageError(
+            f"no file can import `{relative}`, because its path contains a quote or a line break: rename it"
+        )
     return f"import {target}\n"

@@ -74,7 +74,7 @@ def command(
     path = None if is_stdout(path) else path
     kind = target or _target_of(path)
     if path is None and kind == "png" and sys.stdout.isatty():
-        raise click.UsageError("a PNG is nothing for a terminal: name a file with -o")
+        raise click.UsageError("a terminal cannot show a PNG: name a file with -o")
     with Report(format, results=path is None) as report:
         spec_input = open_input(spec, settings)
         report.add(spec_input.diagnostics)
@@ -99,5 +99,5 @@ def _target_of(path: Path | None) -> str:
     kind = _TARGET_OF_ENDING.get(path.suffix.lower())
     if kind is None:
         endings = ", ".join(_TARGET_OF_ENDING)
-        raise click.UsageError(f"the ending of `{path}` says no kind of picture: use one of {endings}, or -t")
+        raise click.UsageError(f"`{path}` does not have the ending of a picture: use one of {endings}, or -t")
     return kind

@@ -53,7 +53,9 @@ def command(port: int, open_browser: bool, folder: Path | None, pyodide: Path) -
     with Report() as report:
         if folder is not None:
             if open_browser:
-                raise click.UsageError("--static writes files, which need a server to be opened: leave out --open")
+                raise click.UsageError(
+                    "--static only writes files, and a browser can open them only from a server: leave out --open"
+                )
             _write_site(folder, pyodide)
         else:
             _serve(port, open_browser)
@@ -74,7 +76,7 @@ def _serve(port: int, open_browser: bool) -> None:
     from tltlc.interfaces.playground.server import PlaygroundServer
 
     with PlaygroundServer(port) as server, ExitStack() as stack:
-        print(f"the playground is at {server.address} until Ctrl-C", file=sys.stderr, flush=True)
+        print(f"the playground is at {server.address} (press Ctrl-C to stop)", file=sys.stderr, flush=True)
         _report_ignored_project()
         if open_browser:
             _open_browser(server.address, stack)
@@ -111,7 +113,7 @@ def _open_browser(address: str, stack: ExitStack) -> None:
     try:
         file = stack.enter_context(redirect_file(address))
     except (OSError, TltlError):
-        print("no temporary file can be written: open the address yourself", file=sys.stderr, flush=True)
+        print("cannot write a temporary file: open the address yourself", file=sys.stderr, flush=True)
         return
     # `webbrowser.open` may block until the browser is closed, and the browser needs our answer before that.
     Thread(target=_start_browser, args=(file,), daemon=True).start()

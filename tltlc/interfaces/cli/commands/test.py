@@ -52,7 +52,7 @@ def command(paths: tuple[str, ...], settings: CompileSettings, format: str) -> i
                     passed, failed = passed + result.passed, failed + (not result.passed)
                     report.add([result.failure] if result.failure else [])
             if passed + failed + unreadable == before:
-                report.say(f"{argument}: no test block; the form is {DECLARATIONS['test']}")
+                report.say(f"{argument}: it contains no test block; the form is {DECLARATIONS['test']}")
         print(f"{passed} passed, {failed} failed{_unread_text(unreadable)}")
     return report.status
 

@@ -53,7 +53,7 @@ def command(paths: tuple[str, ...], settings: CompileSettings) -> int:
         change = f" changed: {', '.join(changed)}" if changed else ""
         print(f"{time.strftime('%H:%M:%S')}{change}", file=sys.stderr, flush=True)
         _check_files(arguments, settings)
-        print("waiting for changes, until Ctrl-C", file=sys.stderr, flush=True)
+        print("waiting for changes (press Ctrl-C to stop)", file=sys.stderr, flush=True)
 
     repeat(run_once, lambda: files_in_folders(arguments))
 

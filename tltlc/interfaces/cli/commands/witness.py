@@ -82,8 +82,10 @@ def command(
                 report.say(f"unchanged: {len(files) - len(changed_paths)}")
             return report.status
         if kind == "csv" and len(files) > 1:
-            hint = "write them to a folder with -o, or ask for one, by SPEC:NAME with --accepting or --rejecting"
-            raise click.UsageError(f"{len(files)} traces are no one CSV file: {hint}", click.get_current_context())
+            hint = "write them to a folder with -o, or choose one with SPEC:NAME and --accepting or --rejecting"
+            raise click.UsageError(
+                f"one CSV file cannot contain {len(files)} traces: {hint}", click.get_current_context()
+            )
         click.echo("\n".join(str(text) for text in files.values()), nl=False)
     return report.status
 
