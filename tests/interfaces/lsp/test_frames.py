@@ -105,7 +105,7 @@ def test_the_end_of_a_json_text_is_found_in_pieces_of_any_size(value: object, si
 def test_a_length_above_the_limit_is_reported_at_once() -> None:
     reader = Frames()
     (fault,) = reader.feed(b"Content-Length: %d\r\n\r\n" % (MESSAGE.size + 1))
-    assert fault == Fault("a message is larger than 4 MiB, and is passed over", is_answered=True)
+    assert fault == Fault("a message is larger than 4 MiB and is skipped", is_answered=True)
     assert reader.feed(b"{" + b"a" * 100_000 + b"}") == []
     # Of the skipped bytes, at most the size of a header is kept.
     assert len(reader._buffer) <= MESSAGE_HEAD.size
@@ -114,7 +114,7 @@ def test_a_length_above_the_limit_is_reported_at_once() -> None:
 
 def test_skipped_bytes_are_reported_once() -> None:
     (fault, *rest) = frames(b"Content-Length: -5\r\n\r\n{\n" + b' "a": 1,\n' * 1000 + b"}" + with_header(b"{}"))
-    assert fault == Fault(r"a message without a header `Content-Length` is passed over: b'Content-Length: -5\r\n'")
+    assert fault == Fault(r"a message without a header `Content-Length` is skipped: b'Content-Length: -5\r\n'")
     assert rest == [Body(b"{}")]
 
 

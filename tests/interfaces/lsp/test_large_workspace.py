@@ -38,7 +38,7 @@ def test_a_workspace_that_is_too_large_is_not_parsed(
 ) -> None:
     workspace = _workspace(tmp_path, 4)
     monkeypatch.setattr(module, limit, most)
-    with pytest.raises(TltlError, match=f"TLT0004: the folders in the editor hold more than .*{message}"):
+    with pytest.raises(TltlError, match=f"TLT0004: the folders in the editor contain more than .*{message}"):
         asyncio.run(workspace.parse(lambda text: True))
 
 
@@ -81,5 +81,5 @@ def test_a_rename_in_a_workspace_that_is_too_large_is_rejected(client: Client, t
         (tmp_path / f"{number}.tltl").write_text(f"{TEXT}{filler}")
     uri = client.open(tmp_path / "0.tltl", TEXT)
     at = {"textDocument": {"uri": uri}, "position": {"line": 0, "character": 8}}
-    with pytest.raises(RefusedError, match=r"hold more than 4 MiB of sources that may matter here.*TLT0004"):
+    with pytest.raises(RefusedError, match=r"contain more than 4 MiB of sources that may matter here.*TLT0004"):
         client.ask("textDocument/rename", {**at, "newName": "calm"})

@@ -159,7 +159,7 @@ def test_invalid_notifications_are_only_logged(client: Client) -> None:
     client._listening.join()
     assert len(client.errors) == 4
     assert client.errors[2] == (
-        f"a message was refused (method: textDocument/didChange): a document was changed that is not open: {HERE}\n"
+        f"a message was refused (method: textDocument/didChange): cannot change a document that is not open: {HERE}\n"
     )
 
 

@@ -165,7 +165,7 @@ def test_tests_that_could_not_run_are_reported(client: Client, tmp_path: Path) -
     client.start("workspace/executeCommand", request)
     client.change(uri, SPEC + "\n", 2)
     text = client.message("window/showMessage")["message"]
-    assert text == "the tests of `leave` did not run: a text changed, or its automata take over 60 s"
+    assert text == "the tests of `leave` did not run: a text changed, or its automata take more than 60 s"
 
 
 def test_a_long_analysis_gives_way_to_the_edited_document(client: Client, tmp_path: Path) -> None:

@@ -186,7 +186,7 @@ async def run_tests(server: EditorSession, uri: str, spec: str) -> None:
     ):
         text = f"there is no spec `{spec}`, so there are no tests to run"
     elif analysis is None and document.is_clean:
-        text = f"the tests of `{spec}` did not run: a text changed, or its automata take over {LONGEST_S:g} s"
+        text = f"the tests of `{spec}` did not run: a text changed, or its automata take more than {LONGEST_S:g} s"
     else:
         text = f"`{spec}` has errors, so its tests did not run"
     kind = types.MessageType.Info if figures is not None and not figures.failed else types.MessageType.Warning

@@ -99,7 +99,7 @@ class Frames:
     def _read_line(self) -> bool:
         """Read a line of the headers; return False if it is not complete."""
         if self._length is not None and self._buffer.startswith((b"{", b"[")):
-            self._frames.append(Fault("a message without an empty line before it is read as if it had one"))
+            self._frames.append(Fault("a message has no empty line before it, but it is read as if it had one"))
             self._begin_body()
             return True
         end = self._buffer.find(b"\n", self._searched)
@@ -120,13 +120,13 @@ class Frames:
         number = digits.lstrip(b"0")
         length = int(number or b"0") if len(number) <= _MOST_DIGITS else MESSAGE.size + 1
         if self._length not in (None, length):
-            self._frames.append(Fault("a message has two lengths, of which the last one counts"))
+            self._frames.append(Fault("a message has two lengths; the last one is used"))
         self._length = length
         self._is_skipping = False
 
     def _begin_body(self) -> None:
         if (self._length or 0) > MESSAGE.size:
-            self._frames.append(Fault(f"a message is larger than {MESSAGE.size >> 20} MiB, and is passed over", True))
+            self._frames.append(Fault(f"a message is larger than {MESSAGE.size >> 20} MiB and is skipped", True))
             # The bytes of the body may never come, so search for the next header at once.
             self._length, self._is_skipping = None, True
         else:
@@ -140,7 +140,7 @@ class Frames:
         """
         if skipped.strip() and not self._is_skipping and (is_long or not _OTHER_HEADER.match(skipped)):
             self._is_skipping = True
-            self._frames.append(Fault(f"a message without a header `Content-Length` is passed over: {skipped[:60]!r}"))
+            self._frames.append(Fault(f"a message without a header `Content-Length` is skipped: {skipped[:60]!r}"))
 
     def _drop_long_line(self) -> None:
         """Keep only the end of a line that is too long; the next header may start there."""

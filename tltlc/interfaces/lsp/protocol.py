@@ -68,11 +68,11 @@ class Protocol(LanguageServerProtocol):
 
     def _parse(self, message: Any) -> Any:
         if not isinstance(message, dict) or message.get("jsonrpc") != self.VERSION:
-            raise JsonRpcInvalidRequest("this is no message of JSON-RPC 2.0")
+            raise JsonRpcInvalidRequest("this is not a message of JSON-RPC 2.0")
         if "method" in message:
             self._check_request(message)
         elif not _is_id(message.get("id", "")) and message["id"] is not None:
-            raise JsonRpcInvalidRequest("an id is a number or a text")
+            raise JsonRpcInvalidRequest("an id must be a number or a text")
         elif "id" not in message or not message.keys() & _ANSWERS:
             raise JsonRpcInvalidRequest("this is neither a request nor an answer")
         try:
@@ -85,20 +85,20 @@ class Protocol(LanguageServerProtocol):
         if isinstance(structured, types.DidChangeTextDocumentNotification):
             uri = structured.params.text_document.uri
             if uri not in self.workspace.text_documents:
-                raise JsonRpcInvalidParams(f"a document was changed that is not open: {uri}")
+                raise JsonRpcInvalidParams(f"cannot change a document that is not open: {uri}")
         return structured
 
     def _check_request(self, message: dict[str, Any]) -> None:
         """Raise JsonRpcException if a message is malformed or comes at a wrong time."""
         method = message["method"]
         if not isinstance(method, str) or ("id" in message and not _is_id(message["id"])):
-            raise JsonRpcInvalidRequest("a method is a text, an id is a number or a text")
+            raise JsonRpcInvalidRequest("a method must be a text, and an id must be a number or a text")
         if method == types.CANCEL_REQUEST and not _has_id(message.get("params")):
-            raise JsonRpcInvalidParams("an id is a number or a text")
+            raise JsonRpcInvalidParams("an id must be a number or a text")
         if method.startswith(_NOTEBOOK_METHODS):
             raise JsonRpcInvalidRequest("notebooks are not supported, as the server has said at its start")
         if method == types.INITIALIZE and self._workspace is not None:
-            raise JsonRpcInvalidRequest("the server is initialized already")
+            raise JsonRpcInvalidRequest("the server is already initialized")
         if method not in (types.INITIALIZE, types.EXIT) and self._workspace is None:
             raise JsonRpcServerNotInitialized(f"`{method}` came before `{types.INITIALIZE}`")
         if method != types.EXIT and self._shutdown:

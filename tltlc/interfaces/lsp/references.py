@@ -142,7 +142,7 @@ def _distinct(places: list[Occurrence]) -> list[Occurrence]:
 def _check_form(symbol: Symbol, name: str) -> None:
     pattern = _NAME if symbol.kind in ("signal", "param", "predicate", "let", "entity") else _PLAIN
     if not pattern.match(name):
-        raise _rename_error(f"`{name}` is no name", "a name has letters, digits and `_`, and begins with no digit")
+        raise _rename_error(f"`{name}` is not a name", "use letters, digits and `_`, and do not begin with a digit")
     if any(part in load().words for part in name.split(".")[:1]) and name in load().words:
         raise _rename_error(f"`{name}` is a reserved word", f"choose another one, e.g. `{name}_`")
     if name in FUNCTIONS:
@@ -163,7 +163,7 @@ def _check_free(symbol: Symbol, name: str, changes: list[tuple[Document, list[Ed
         ):
             where = document.source.name
             raise _rename_error(
-                f"`{name}` means something else in `{where}` already", "choose a name that is not taken"
+                f"`{name}` already means something else in `{where}`", "choose a name that is not taken"
             )
     importing = (
         [] if symbol.kind in _LOCAL else [document for document in workspace.all() if may_import(document.source.text)]
@@ -174,7 +174,7 @@ def _check_free(symbol: Symbol, name: str, changes: list[tuple[Document, list[Ed
         ):
             after = Document(document.source, document.project, texts)
             if _errors(after) > _errors(document):
-                title = f"`{name}` means something else in `{document.source.name}` already"
+                title = f"`{name}` already means something else in `{document.source.name}`"
                 raise _rename_error(title, "choose a name that is not taken")
 
 
@@ -210,8 +210,8 @@ def _errors(document: Document) -> int:
 
 def _outside_workspace(symbol: Symbol, name: str) -> TltlError:
     title = f"`{symbol.name}` is declared in `{name}`, outside of this workspace"
-    let_help = "a `let` of yours may give it another name"
-    help_ = let_help if symbol.kind in ("predicate", "let") else "change it there, in an editor that shows its folder"
+    let_help = "give it another name with a `let` of your own"
+    help_ = let_help if symbol.kind in ("predicate", "let") else "rename it there, in an editor that shows its folder"
     return TltlError([Diagnostic("TLT0770", title, help=help_)])
 
 

@@ -211,7 +211,7 @@ def _is_source(file: str) -> bool:
 
 
 def _too_large(content: str) -> TltlError:
-    title = f"the folders in the editor hold more than {content}"
+    title = f"the folders in the editor contain more than {content}"
     return TltlError([Diagnostic("TLT0004", title, help="open a smaller folder in the editor")])
 
 
