@@ -104,7 +104,7 @@ def current(page: Page) -> str | None:
 
 def test_an_error_is_underlined_and_can_be_fixed(page: Page) -> None:
     write(page, BROKEN)
-    summary(page, "^1 error; what is shown is of an earlier text$")
+    summary(page, "^1 error; the rest of the page shows an earlier text$")
     marked = page.locator("#backdrop .mark.error")
     expect(marked).to_have_text("c")
     messages = page.locator("#messages li")
@@ -211,7 +211,7 @@ def test_a_trace_is_built_by_clicks_until_it_is_accepted(page: Page) -> None:
     expect(page.locator("#picture .edge.taken")).to_have_count(1)
     expect(page.locator("#steps .progress span")).to_have_text(["0.5", "1"])
     expect(page.locator("#moment")).to_contain_text("An episode ends here, in success.")
-    page.get_by_role("button", name="Step back").click()
+    page.get_by_role("button", name="Previous step").click()
     assert current(page) == page.locator("#steps tbody tr").first.locator(".at").inner_text()
     page.get_by_role("button", name="Remove step 1").click()
     expect(page.locator("#steps .verdict")).to_have_text(["pending"])
@@ -282,7 +282,7 @@ def test_the_table_can_be_used_by_keyboard(page: Page) -> None:
 def test_buttons_move_to_both_ends_of_a_trace_by_keyboard(page: Page) -> None:
     page.get_by_role("button", name="Show a success").click()
     expect(page.locator("#steps .verdict")).to_have_count(3)
-    back, forth = (page.get_by_role("button", name=name) for name in ("Step back", "Step on"))
+    back, forth = (page.get_by_role("button", name=name) for name in ("Previous step", "Next step"))
     for button, other, last in ((forth, back, "3"), (back, forth, "1")):
         button.focus()
         for _ in range(4):
@@ -301,7 +301,7 @@ def test_a_link_restores_everything(page: Page, browser: Browser, address: str) 
     page.get_by_role("button", name="Show a failure").click()
     expect(page.locator("#steps .verdict")).to_have_text(["violated"])
     page.get_by_role("button", name="Copy link").click()
-    summary(page, "text is in it")
+    summary(page, "it contains the text")
     link = page.url.removeprefix(address.partition("#")[0])
     assert "token" not in link
     for other_page in open_page(browser, address, link=link):
@@ -350,7 +350,7 @@ def test_a_text_too_long_for_a_link_is_reported(page: Page) -> None:
     )
     summary(page, "^It compiles$")
     page.get_by_role("button", name="Copy link").click()
-    summary(page, "^The text is too long for a link: keep it as a file.$")
+    summary(page, "^The text is too long for a link: save it as a file.$")
     assert "#" not in page.url
 
 
@@ -377,7 +377,7 @@ def test_the_token_leaves_the_address_and_is_kept_for_reloads_and_tabs(browser: 
         page.reload()
         summary(page, "^1 error")
         page.get_by_role("button", name="Copy link").click()
-        summary(page, "text is in it")
+        summary(page, "it contains the text")
         assert "token" not in page.url
         other = page.context.new_page()
         other.goto(page.url)
@@ -503,7 +503,7 @@ def test_light_and_dark_schemes_can_be_switched(browser: Browser, address: str, 
     lightness = "() => getComputedStyle(document.body).backgroundColor.match(/\\d+/g).map(Number)[0]"
     for page in open_page(browser, address, color_scheme=scheme):
         assert (page.evaluate(lightness) > 128) == (scheme == "light")
-        page.get_by_role("button", name="Dark or light").click()
+        page.get_by_role("button", name="Switch between dark and light").click()
         assert (page.evaluate(lightness) > 128) == (scheme == "dark")
         page.reload()
         expect(page.locator("#picture svg")).to_be_visible()
@@ -608,8 +608,8 @@ def test_the_site_compiles_in_the_browser(browser: Browser, tmp_path: Path) -> N
             write(page, SLOW)
             summary(page, "^Compiling…$")
             page.clock.run_for(10_000)
-            summary(page, "^1 error; what is shown is of an earlier text$")
-            expect(page.locator("#messages li")).to_contain_text("was given up")
+            summary(page, "^1 error; the rest of the page shows an earlier text$")
+            expect(page.locator("#messages li")).to_contain_text("was stopped")
             write(page, FIXED)
             summary(page, "^It compiles$")
             assert wrong == []

@@ -235,8 +235,8 @@ def test_without_pyodide_no_site_is_written(tltlc, inside: Path) -> None:  # typ
     outcome = tltlc("serve", "--static", "site")
     assert (outcome.status, outcome.err) == (
         4,
-        "error[TLT0730]: the site needs Pyodide, and `node_modules/pyodide` has no `pyodide.mjs`\n"
-        "  help: npm install pyodide, and name its folder: `--pyodide node_modules/pyodide`\n",
+        "error[TLT0730]: the site needs Pyodide, but `node_modules/pyodide` does not contain `pyodide.mjs`\n"
+        "  help: run `npm install pyodide`, and name its folder: `--pyodide node_modules/pyodide`\n",
     )
     assert not (inside / "site").exists()
     assert tltlc("serve", "--static", "site", "--open").status == 2

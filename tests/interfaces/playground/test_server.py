@@ -275,7 +275,7 @@ def test_localhost_is_accepted_as_host(server: PlaygroundServer) -> None:
 def test_a_slow_compilation_is_abandoned_and_the_next_text_answered() -> None:
     with running_server(limit_s=2.0) as server:
         (diagnostic,) = json.loads(ask(server, "POST", "/api", json.dumps({"text": SLOW}), JSON)[2])["diagnostics"]
-        assert (diagnostic["code"], diagnostic["title"]) == ("TLT0775", "this takes longer than 2 s, and was given up")
+        assert (diagnostic["code"], diagnostic["title"]) == ("TLT0775", "this takes longer than 2 s, so it was stopped")
         server.children._limit_s = HANG_S
         assert json.loads(ask(server, "POST", "/api", "{}", JSON)[2]) == start()
 
@@ -295,7 +295,7 @@ def test_a_child_that_hangs_is_killed(monkeypatch: pytest.MonkeyPatch, tmp_path:
     assert json.loads(answer)["diagnostics"][0] == {
         "code": "TLT0775",
         "severity": "error",
-        "title": "this takes longer than 0.3 s, and was given up",
+        "title": "this takes longer than 0.3 s, so it was stopped",
         "help": "make the spec smaller: bounds and large conjunctions cost most",
         "labels": [],
         "ways_out": [],
@@ -308,7 +308,10 @@ def test_a_port_in_use_is_reported(server: PlaygroundServer) -> None:
     with pytest.raises(TltlError) as caught:
         PlaygroundServer(server.server_address[1])
     (diagnostic,) = caught.value.diagnostics
-    assert (diagnostic.code, diagnostic.help) == ("TLT0776", "give another port, or 0 for any: `--port 0`")
+    assert (diagnostic.code, diagnostic.help) == (
+        "TLT0776",
+        "choose another port, or let the system choose one: `--port 0`",
+    )
     assert diagnostic.title.startswith(f"cannot serve at 127.0.0.1:{server.server_address[1]}: ")
 
 
@@ -433,7 +436,7 @@ def test_an_answer_that_is_too_large_is_rejected(code: str, monkeypatch: pytest.
         (diagnostic,) = json.loads(ask(server, "POST", "/api", '{"text": ""}', JSON)[2])["diagnostics"]
         assert (diagnostic["code"], diagnostic["title"]) == (
             "TLT0775",
-            "the answer is larger than 32 MiB, and was given up",
+            "the answer is larger than 32 MiB, so it was not sent",
         )
 
 

@@ -25,7 +25,7 @@ MOST_AT_ONCE: Final = 4
 _CHECK_S: Final = 0.1
 """Seconds between two checks whether the client still waits."""
 
-_REPORT_HELP: Final = "try again; if it ends again, report it with the text"
+_REPORT_HELP: Final = "try again; if this happens again, report it with the text"
 _KILLED_HELP: Final = "try again; the system does this if memory is short, and then a smaller spec may help"
 
 
@@ -67,7 +67,7 @@ class Children:
             finally:
                 self._replace_child(child)
         except subprocess.TimeoutExpired:
-            return error_answer(f"this takes longer than {self._limit_s:g} s, and was given up")
+            return error_answer(f"this takes longer than {self._limit_s:g} s, so it was stopped")
         finally:
             self._slots.release()
         if child.returncode == NO_REQUEST:

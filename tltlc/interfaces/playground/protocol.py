@@ -64,19 +64,19 @@ def question(request: str) -> Question | None:
     try:
         parsed = loads(request, MESSAGE)
     except (ValueError, RecursionError) as error:
-        raise RequestError("a request is JSON") from error
+        raise RequestError("a request must be JSON") from error
     if parsed == {}:
         return None
     if not isinstance(parsed, dict) or not isinstance(parsed.get("text"), str):
-        raise RequestError("a request has a `text`")
+        raise RequestError("a request must have a `text`")
     spec, letters = parsed.get("spec", ""), parsed.get("letters", [])
     if not isinstance(spec, str) or not isinstance(letters, list) or len(letters) > MOST_LETTERS:
-        raise RequestError(f"`spec` is a name, and `letters` a list of at most {MOST_LETTERS}")
+        raise RequestError(f"`spec` must be a name, and `letters` a list of at most {MOST_LETTERS}")
     notation = parsed.get("notation", "english")
     if notation not in get_args(Notation):
-        raise RequestError(f"`notation` is one of {', '.join(get_args(Notation))}")
+        raise RequestError(f"`notation` must be one of {', '.join(get_args(Notation))}")
     if not all(map(_is_letter, letters)):
-        raise RequestError("a letter is a list of atoms, or an object of numbers by the names of signals")
+        raise RequestError("a letter must be a list of atoms, or an object that maps names of signals to numbers")
     return Question(parsed["text"], spec, tuple(letters), notation)
 
 
@@ -88,7 +88,7 @@ def error_answer(title: str, help_: str = "make the spec smaller: bounds and lar
 
 def size_error_answer() -> str:
     """Return the error that replaces an answer larger than :data:`tltlc.io.limits.ANSWER`."""
-    return error_answer(f"the answer is larger than {ANSWER.size >> 20} MiB, and was given up")
+    return error_answer(f"the answer is larger than {ANSWER.size >> 20} MiB, so it was not sent")
 
 
 def _is_letter(letter: Any) -> bool:

@@ -175,7 +175,7 @@ class PlaygroundServer:
             self._listener = socket.create_server((HOST, port))
         except OSError as error:
             title = f"cannot serve at {HOST}:{port}: {reason(error)}"
-            help_ = "give another port, or 0 for any: `--port 0`"
+            help_ = "choose another port, or let the system choose one: `--port 0`"
             raise TltlError([Diagnostic("TLT0776", title, help=help_)]) from None
         self._listener.setblocking(False)
         self.server_address: tuple[str, int] = self._listener.getsockname()

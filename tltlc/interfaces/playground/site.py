@@ -41,8 +41,8 @@ def site_files(pyodide: Path) -> dict[str, bytes]:
     """
     missing = [name for name in PYODIDE if not (pyodide / name).is_file()]
     if missing:
-        title = f"the site needs Pyodide, and `{pyodide}` has no `{missing[0]}`"
-        help_ = "npm install pyodide, and name its folder: `--pyodide node_modules/pyodide`"
+        title = f"the site needs Pyodide, but `{pyodide}` does not contain `{missing[0]}`"
+        help_ = "run `npm install pyodide`, and name its folder: `--pyodide node_modules/pyodide`"
         raise TltlError([Diagnostic("TLT0730", title, help=help_)])
     files = page_files()
     files["index.html"] = files["index.html"].replace(_BY_SERVER.encode(), _BY_BROWSER.encode())

@@ -105,8 +105,8 @@ function inBrowser() {
 const NOTHING = { diagnostics: [], more: 0, specs: [], tests: [], spec: null };
 
 const GIVEN_UP = {
-  late: `this takes longer than ${LIMIT_MS / 1000} s, and was given up`,
-  deep: "this nests deeper than a browser can follow, and was given up",
+  late: `this takes longer than ${LIMIT_MS / 1000} s, so it was stopped`,
+  deep: "this nests too deep for a browser, so it was stopped",
 };
 
 function givenUp(title) {

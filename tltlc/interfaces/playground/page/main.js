@@ -145,9 +145,9 @@ function summary(diagnostics, more, specs, tests) {
   const parts = [...count("error", "error"), ...count("warning", "warning"), ...count("note", "note")];
   if (more) parts.push(`${more} more messages`);
   if (tests.length) parts.push(`${tests.filter((test) => test.passed).length} of ${tests.length} tests passed`);
-  if (!specs.length && !parts.length) return "There is no spec yet: spec NAME { reach … keep … }";
+  if (!specs.length && !parts.length) return "There is no spec yet. Write one: spec NAME { reach … keep … }";
   if (specs.length) return ["It compiles", ...parts].join("; ");
-  return `${parts.join("; ")}${page.view ? "; what is shown is of an earlier text" : ""}`;
+  return `${parts.join("; ")}${page.view ? "; the rest of the page shows an earlier text" : ""}`;
 }
 
 function showSummary(text) {
@@ -269,14 +269,14 @@ const LETTERS = {
 };
 
 async function share() {
-  if (!(await keep())) return showSummary("The text is too long for a link: keep it as a file.");
+  if (!(await keep())) return showSummary("The text is too long for a link: save it as a file.");
   const { length } = location.href;
   const long = length > LONG_LINK ? ` It has ${length} characters, and some programs cut long links.` : "";
   try {
     await navigator.clipboard.writeText(location.href);
-    showSummary(`The link is in the clipboard; the text is in it.${long}`);
+    showSummary(`The link is in the clipboard; it contains the text.${long}`);
   } catch {
-    showSummary(`Copy the address of this page: the text is in it.${long}`);
+    showSummary(`Copy the address of this page: it contains the text.${long}`);
   }
 }
 

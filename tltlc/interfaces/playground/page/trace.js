@@ -127,12 +127,12 @@ function warn(names, mode) {
 
 function showStep(step, length) {
   const place = byId("moment");
-  if (!length) place.textContent = "No step yet: add one, and say what holds at it.";
+  if (!length) place.textContent = "There is no step yet: add one, and set what holds at it.";
   else if (!step) place.textContent = "";
   else if (step.error) place.replaceChildren(...prose(`${step.error}: ${step.help}`));
   else {
     const end = step.done ? (step.accepting ? "  An episode ends here, in success." : "  An episode ends here, in failure.") : "";
-    const near = step.limiting ? `  Nearest to what leads on: ${step.limiting}.` : "";
+    const near = step.limiting ? `  The nearest edge towards the goal is held back by ${step.limiting}.` : "";
     place.textContent = `${step.label}${near}${end}`;
   }
 }
