@@ -110,7 +110,7 @@ def test_the_server_is_started(extension: Path, tmp_path: Path) -> None:
 
 def test_a_failed_start_is_reported_once(extension: Path, tmp_path: Path) -> None:
     missing = run_extension(extension, tmp_path, ["no-such-tltlc"], fails=True)
-    assert missing[-1].startswith("error TLTL: `no-such-tltlc` is not found. Install tltlc with its extra `lsp`")
+    assert missing[-1].startswith("error TLTL: `no-such-tltlc` was not found. Install tltlc with its extra `lsp`")
     failing_command = [sys.executable, "-c", "raise SystemExit('error: no pygls')"]
     *_, message = run_extension(extension, tmp_path, failing_command, fails=True)
     assert message.endswith("lsp` does not start. error: no pygls")

@@ -1,4 +1,4 @@
-// The command `tltlc` of a window.
+// Find and run the command `tltlc` for a window.
 "use strict";
 
 const { execFile } = require("node:child_process");
@@ -7,7 +7,7 @@ const os = require("node:os");
 const path = require("node:path");
 const vscode = require("vscode");
 
-/** Its words: a path in the workspace made absolute, and without a setting the one of the workspace's `.venv`. */
+/** Return the command as a list of words. A relative path becomes absolute; by default, use the `.venv` of the workspace. */
 function configured() {
   const [first = "tltlc", ...rest] = vscode.workspace.getConfiguration("tltl").get("command", ["tltlc"]);
   const root = folder();
@@ -19,12 +19,12 @@ function configured() {
   return [/[\\/]/.test(first) && root ? path.resolve(root, first) : first, ...rest];
 }
 
-/** Where it runs: not in a folder that is not trusted, since Windows would start a `tltlc.exe` that lies there. */
+/** Return the folder to run in. A folder that is not trusted is not used: Windows would start a `tltlc.exe` in it. */
 function folder() {
   return vscode.workspace.isTrusted ? vscode.workspace.workspaceFolders?.[0]?.uri.fsPath : os.homedir();
 }
 
-/** What a command wrote, and its status, or `ENOENT` where there is none; it has nothing to read. */
+/** Run a command with empty input. Return its output, and its status or, if it does not exist, `ENOENT`. */
 function run(command, words) {
   return new Promise((resolve) => {
     const started = execFile(command, words, { cwd: folder(), maxBuffer: 1 << 26 }, (error, output, errors) =>

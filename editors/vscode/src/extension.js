@@ -1,4 +1,4 @@
-// Starts `tltlc lsp` and keeps an editor's window in touch with it.
+// Start `tltlc lsp` and connect the window of the editor to it.
 "use strict";
 
 const vscode = require("vscode");
@@ -27,13 +27,13 @@ async function deactivate() {
   await stop();
 }
 
-/** Waits for a start that is under way: what is only starting cannot be stopped. */
+/** Stop the server and start it again. This first waits for a start in progress, which cannot be stopped. */
 function restart() {
   return (ready = ready.then(stop).then(start));
 }
 
 async function stop() {
-  // One that never ran, or that no longer answers, is dropped without its answer.
+  // If the server never ran or no longer answers, do not wait for its answer.
   await client?.dispose().catch(() => {});
 }
 
@@ -52,12 +52,12 @@ async function start() {
     await client.start();
     client.hasRun = true;
   } catch {
-    // Nobody waits for the answer: the commands have to work meanwhile.
+    // Do not wait for the answer, so that the commands work in the meantime.
     complain(command, words);
   }
 }
 
-/** A client that leaves it to `complain` to say that a server has never run. */
+/** A client that does not report a server that never ran, because `complain` does. */
 class Client extends LanguageClient {
   hasRun = false;
   usual = this.createDefaultErrorHandler();
@@ -72,12 +72,12 @@ class Client extends LanguageClient {
 }
 
 async function complain(command, words) {
-  // With nothing to read, a server that can start ends at once; one that cannot says why.
+  // With empty input, a server that can start ends at once, and one that cannot start prints the reason.
   const { code, errors } = await run(command, words);
   const why =
     code === "ENOENT"
-      ? `\`${command}\` is not found. Install tltlc with its extra \`lsp\`, or say in the setting \`tltl.command\` where it is.`
-      : `\`${[command, ...words].join(" ")}\` does not start. ${errors || "The output panel says more."}`;
+      ? `\`${command}\` was not found. Install tltlc with its extra \`lsp\`, or write its path into the setting \`tltl.command\`.`
+      : `\`${[command, ...words].join(" ")}\` does not start. ${errors || "See the output panel for details."}`;
   const answer = await vscode.window.showErrorMessage(`TLTL: ${why}`, "Open the Setting", "Try Again");
   if (answer === "Open the Setting") {
     await vscode.commands.executeCommand("workbench.action.openSettings", "tltl.command");
@@ -86,7 +86,7 @@ async function complain(command, words) {
   }
 }
 
-/** The lenses of the server; a click on a spec's number of states draws its automaton. */
+/** Return the lenses of the server. A click on the number of states of a spec draws its automaton. */
 async function lenses(document, token, next) {
   const found = (await next(document, token)) ?? [];
   for (const { command, range } of found) {

@@ -1,22 +1,22 @@
-// Pictures of automata, below the text that they are of, and drawn anew when it is saved.
+// Pictures of automata, shown below their text and drawn again when the text is saved.
 "use strict";
 
 const vscode = require("vscode");
 const { configured, run } = require("./command");
 
-// They are made for white paper.
+// The pictures are made for a white background.
 const STYLE = "body { background: white } svg { max-width: 100%; height: auto }";
 
-/** The panels that are open, by file and spec. */
+/** The open panels, by file and spec. */
 const panels = new Map();
 
-/** Saves the file that is shown and draws one of its specs; which one is asked, unless it is given or there is one. */
+/** Save the shown file and draw one of its specs. Ask which one, unless its name is given or there is only one. */
 async function showPicture(wanted) {
   const { document } = vscode.window.activeTextEditor ?? {};
   if (document?.languageId !== "tltl") {
     return;
   }
-  // From a menu comes the file, from a lens the name.
+  // A menu passes the file, a lens the name.
   const name = typeof wanted === "string" ? wanted : await chosen(document);
   if (!name || !(await document.save())) {
     return;
@@ -35,7 +35,7 @@ async function showPicture(wanted) {
   fill(key, drawn);
 }
 
-/** Draws the pictures of a file anew; where that fails, the text has marks that say why. */
+/** Draw the pictures of a file again. If that fails, marks in the text show why. */
 async function redraw(document) {
   for (const [key, { name }] of panels) {
     if (key === keyOf(document, name)) {
@@ -57,7 +57,7 @@ function draw(document, name) {
   return run(command, [...rest, "render", `${document.uri.fsPath}:${name}`, "-t", "svg"]);
 }
 
-/** Automata are wide, so their place is below; the text keeps the focus. */
+/** Open a panel below the text, because automata are wide. The text keeps the focus. */
 async function open(name, key) {
   const [other] = panels.values();
   if (!other) {
