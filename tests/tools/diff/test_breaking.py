@@ -74,8 +74,8 @@ def test_old_files_import_the_old_libraries(repository: Path, tltlc: Run) -> Non
     outcome = tltlc("breaking", "specs", "--against", "v1", "--format", "json")
     assert (outcome.status, codes(outcome)) == (1, ["error TLT0757"])
     (diagnostic,) = json.loads(outcome.out)["diagnostics"]
-    assert diagnostic["title"] == "the atom `alive` is judged otherwise"
-    assert "at health = 0.1 it is 0 (it does not hold), and was 0.1 (it holds)" in diagnostic["help"]
+    assert diagnostic["title"] == "the atom `alive` is judged differently"
+    assert "at health = 0.1, it is now 0 (it does not hold) and was 0.1 (it holds)" in diagnostic["help"]
     assert diagnostic["labels"][0]["file"] == "specs/leave.tltl"
     assert codes(tltlc("breaking", ".", "--against", "v1", "--format", "json")) == ["error TLT0757"] * 2
 
@@ -94,7 +94,7 @@ def test_the_repository_is_the_one_that_holds_the_file(
     assert codes(tltlc("breaking", path, "--against", "v1", "--format", "json")) == ["error TLT0753"]
     outside = tltlc("breaking", path, ROOT / "examples/patrol.tltl", "--against", "v1")
     assert outside.status == 3
-    assert "patrol.tltl` does not lie in the repository" in outside.err
+    assert "patrol.tltl` is not in the repository" in outside.err
 
 
 @needs_git
@@ -136,7 +136,7 @@ def test_a_renamed_spec_is_breaking(repository: Path, tltlc: Run) -> None:  # no
         outcome = tltlc("breaking", "specs", "--against", "v1", "--format", "json")
         assert codes(outcome) == ["error TLT0752", "note TLT0752"]
         first, second = (diagnostic["title"] for diagnostic in json.loads(outcome.out)["diagnostics"])
-        assert (first, second) == ("the spec `leave` is called `escape` now", "the spec `other` is new")
+        assert (first, second) == ("the spec `leave` is now called `escape`", "the spec `other` is new")
 
 
 @needs_git
@@ -236,8 +236,8 @@ def test_a_file_outside_a_repository_is_reported(tmp_path: Path, tltlc: Run, mon
     outcome = tltlc("breaking", "leave.tltl", "--against", "v1")
     assert outcome.status == 3
     assert outcome.err == (
-        f"error[TLT0751]: there is no folder `v1`, and `{tmp_path}` lies in no git repository in which it could be a "
-        "revision\n  help: name a folder that is there, or a file of the repository\n"
+        f"error[TLT0751]: there is no folder `v1`, and it cannot be a revision, because `{tmp_path}` is not in a git "
+        "repository\n  help: name a folder that exists, or a file in a git repository\n"
     )
 
 
@@ -270,7 +270,7 @@ def test_missing_git_is_reported(tmp_path: Path, tltlc: Run, monkeypatch: pytest
     assert outcome.status == 4
     assert outcome.err == (
         "error[TLT0730]: comparing with a revision needs `git`, which is not installed\n"
-        "  help: install git, or name a folder that holds the old files: `--against DIR`\n"
+        "  help: install git, or name a folder that contains the old files: `--against DIR`\n"
     )
 
 
@@ -281,7 +281,7 @@ def test_renamed_atoms_are_reported(tmp_path: Path, tltlc: Run, monkeypatch: pyt
     write(old__hush=old, hush=old.replace("calm", "quiet").replace("= 20 %", "in [0, 1] = 20 %"))
     outcome = tltlc("breaking", "hush.tltl", "--against", "old", "--format", "json")
     (diagnostic,) = json.loads(outcome.out)["diagnostics"]
-    assert (outcome.status, diagnostic["severity"], diagnostic["title"]) == (0, "note", "`calm` is called `quiet` now")
+    assert (outcome.status, diagnostic["severity"], diagnostic["title"]) == (0, "note", "`calm` is now called `quiet`")
     write(hush=old.replace("most", "greatest"))
     assert codes(tltlc("breaking", "hush.tltl", "--against", "old", "--format", "json")) == ["error TLT0756"]
     write(hush=old.replace("calm", "quiet").replace("1  otherwise: -1", "-1  otherwise: 1"))
@@ -298,7 +298,7 @@ spec win = F strong
 """
 
 
-IN_PLACE = "the signal `hp` must be supplied now in place of `health`, to `live` and `win`"
+IN_PLACE = "the signal `hp` must now be supplied to `live` and `win` in place of `health`"
 
 
 @pytest.mark.parametrize(
@@ -306,26 +306,26 @@ IN_PLACE = "the signal `hp` must be supplied now in place of `health`, to `live`
     [
         ({"health": "hp"}, [IN_PLACE]),
         # A param may be renamed at the same time.
-        ({"health": "hp", "low": "least"}, [IN_PLACE, "the param `low` is called `least` now"]),
+        ({"health": "hp", "low": "least"}, [IN_PLACE, "the param `low` is now called `least`"]),
         # A changed range, and a predicate that changed in another way too, are reported as well.
         (
             {"health in [0, 1]": "health in [0, 0.9]", "health": "hp"},
-            [IN_PLACE, "the signal `hp` has the range [0, 0.9] now, and had [0, 1]"],
+            [IN_PLACE, "the range of the signal `hp` is now [0, 0.9] (it was [0, 1])"],
         ),
-        ({"= health": "= health / 2", "health": "hp"}, [IN_PLACE, "the atom `alive` is judged otherwise"]),
+        ({"= health": "= health / 2", "health": "hp"}, [IN_PLACE, "the atom `alive` is judged differently"]),
         # A signal that replaces two others is not a rename of both.
         (
             {"min(health, armour)": "min(hp, hp)", "health": "hp"},
             [
-                "the signal `hp` must be supplied now in place of `health`, to `live`",
-                "the signal `armour` is no longer read, by `live` and `win`",
-                "the signal `health` is no longer read, by `win`",
-                "the signal `hp` must be supplied now, to `win`",
-                "the atom `strong` is judged otherwise",
+                "the signal `hp` must now be supplied to `live` in place of `health`",
+                "the signal `armour` is no longer read by `live` and `win`",
+                "the signal `health` is no longer read by `win`",
+                "the signal `hp` must now be supplied to `win`",
+                "the atom `strong` is judged differently",
             ],
         ),
         # Both signals still exist, so this is not a rename.
-        ({"= health": "= armour"}, ["the atom `alive` is judged otherwise"]),
+        ({"= health": "= armour"}, ["the atom `alive` is judged differently"]),
     ],
 )
 def test_renamed_signals_are_breaking(
@@ -357,8 +357,8 @@ def test_an_old_folder_is_compared(tmp_path: Path, tltlc: Run, monkeypatch: pyte
     assert tltlc("breaking", "leave.tltl", "--against", "../old").status == 1
     assert tltlc("breaking", ".", "--against", "../old/").status == 1
     # An old folder inside the new one is not part of it.
-    shutil.copytree("../old", "before")
-    assert "before" not in tltlc("breaking", ".", "--against", "before").err
+    shutil.copytree("../old", "earlier")
+    assert "earlier" not in tltlc("breaking", ".", "--against", "earlier").err
 
 
 def test_github_and_sarif_have_the_changed_place(tmp_path: Path, tltlc: Run, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
@@ -447,24 +447,24 @@ def test_changed_declarations_of_a_library_are_reported(
 
     with_rules = f"clock 20 Hz\n{plain}exclusive a, b\n"
     assert diagnostics(plain, with_rules) == [
-        ("error", "`a` and `b` are exclusive now"),
-        ("error", "specs are sampled every 0.05 s now, and were sampled by no clock"),
+        ("error", "`a` and `b` are now exclusive"),
+        ("error", "specs are now sampled every 0.05 s (they were sampled without a clock)"),
     ]
     assert diagnostics(with_rules, plain) == [
         ("warning", "`a` and `b` are no longer exclusive"),
-        ("error", "specs are sampled by no clock now, and were sampled every 0.05 s"),
+        ("error", "specs are now sampled without a clock (they were sampled every 0.05 s)"),
     ]
     assert diagnostics(with_rules, with_rules.replace("a, b", "b, a").replace("20 Hz", "50 ms")) == []
     # A group that a wider group implies is not reported.
     wide = f"{plain}exclusive a, b, c\n"
     narrow = wide.replace("a, b, c", "a, b")
-    assert diagnostics(narrow, wide) == [("error", "`a`, `b` and `c` are exclusive now")]
+    assert diagnostics(narrow, wide) == [("error", "`a`, `b` and `c` are now exclusive")]
     assert diagnostics(wide, narrow) == [("warning", "`a`, `b` and `c` are no longer exclusive")]
     assert diagnostics(wide, f"{narrow}exclusive b, c\nexclusive c, a\n") == []
     # The same holds for specs.
     spec = "spec s = F (a | b | c)\n"
     assert diagnostics(wide + spec, narrow + spec) == [("warning", "`a`, `b` and `c` are no longer exclusive in `s`")]
-    assert diagnostics(narrow + spec, wide + spec) == [("error", "`a`, `b` and `c` are exclusive in `s` now")]
+    assert diagnostics(narrow + spec, wide + spec) == [("error", "`a`, `b` and `c` are now exclusive in `s`")]
     # A declaration that was imported is reported for the file that declares it.
     assert diagnostics(plain, "let d = true\n") == [("error", f"the signal `{name}` is gone") for name in "abc"]
     Path("old/mine.tltl").unlink()
@@ -493,7 +493,7 @@ def test_a_predicate_that_reads_more_signals_is_reported(
     (added_signals, _) = json.loads(tltlc("breaking", "mine.tltl", "--against", "old", "--format", "json").out)[
         "diagnostics"
     ]
-    assert added_signals["title"] == "the predicate `p` reads `b` and `c` now"
+    assert added_signals["title"] == "the predicate `p` now reads `b` and `c`"
     assert added_signals["help"] == "have the game supply them wherever the predicate is used"
 
 

@@ -175,7 +175,7 @@ def test_exclusive_groups_of_a_source_apply_to_an_artefact(tltlc: Run, inside: P
     assert forward["exclusive"] == [{"atoms": ["a", "b"], "in_a": False, "in_b": True}]
     assert backward["exclusive"] == [{"atoms": ["a", "b"], "in_a": True, "in_b": False}]
     judged_on = (
-        "judged on traces in which at most one of these holds at a time:\n    `a` and `b` (exclusive in B alone)\n"
+        "judged on traces in which at most one of these holds at a time:\n    `a` and `b` (exclusive only in B)\n"
     )
     assert judged_on in tltlc("diff", "s.fspa.json", "new.tltl").out
 
@@ -207,8 +207,8 @@ def test_finite_and_infinite_specs_have_a_reason_in_place_of_a_relation(tltlc: R
     (spec,) = json.loads(outcome.out)["specs"]
     assert (outcome.status, spec["relation"]) == (1, None)
     assert spec["reason"] == (
-        "B is of another kind than A: A is about traces that end, B about traces that never end, so no trace is one of "
-        "both. To compare what they ask for, give both the same `semantics`."
+        "A and B are of different kinds: A is about traces that end, B is about traces that never end, so no trace "
+        "belongs to both. To compare what they require, give both the same `semantics`."
     )
     assert spec["beginnings"] == {"relation": "equivalent", "only_a": None, "only_b": None}
     text = "signal seen: bool\nspec hide { semantics infinite avoid not seen }\n"
@@ -226,7 +226,7 @@ def test_a_spec_named_on_one_side_is_compared_on_both(tltlc: Run, inside: Path) 
     assert tltlc("diff", "hide.tltl:hide", "two.tltl").status == 0
     assert tltlc("diff", "two.tltl", "hide.tltl:hide").status == 0
     # A file with a single spec needs no name.
-    assert "show and hide\n  B accepts other traces than A" in tltlc("diff", "two.tltl:show", "hide.tltl").out
+    assert "show and hide\n  B accepts different traces than A" in tltlc("diff", "two.tltl:show", "hide.tltl").out
     assert tltlc("diff", "two.tltl", "hide.tltl").status == 1
     two = tltlc("diff", "hide.tltl", "two.tltl:nothing")
     assert (two.status, two.out) == (2, "")

@@ -70,8 +70,8 @@ def test_an_entry_above_the_folder_is_rejected(inside: Path, tltlc: Run, levels:
     assert (outcome.status, outcome.out) == (3, "")
     path = "../" * levels + "mine.tltl"
     assert outcome.err == (
-        f"error[TLT0009]: the revision `bad` contains the path `{path}`, which leads out of its folder\n"
-        "  help: use another revision: `git fsck` names the damaged tree, which `git add` does not make\n"
+        f"error[TLT0009]: the revision `bad` holds the path `{path}`, which leads out of its folder\n"
+        "  help: use another revision: `git fsck` names the damaged tree (`git add` never makes such a tree)\n"
     )
     assert files(inside) == before
 
@@ -123,8 +123,8 @@ def test_a_tree_of_billions_of_paths_is_rejected(
     outcome = tltlc("breaking", "specs/leave.tltl", "--against", revision("bomb", top))
     assert (outcome.status, outcome.out) == (3, "")
     assert outcome.err == (
-        "error[TLT0764]: the revision `bomb` holds more than 1,000 paths\n"
-        "  help: take out the part to compare, and name its folder: `--against DIR`\n"
+        "error[TLT0764]: the revision `bomb` contains more than 1,000 paths\n"
+        "  help: check out the part to compare, and name its folder: `--against DIR`\n"
     )
 
 
@@ -134,7 +134,7 @@ def test_a_tree_of_too_many_specs_is_rejected(inside: Path, tltlc: Run) -> None:
     name = revision("bomb", tree(*((FOLDER, b"%03d" % number, folder) for number in range(101))))
     outcome = tltlc("breaking", "specs/leave.tltl", "--against", name)
     assert outcome.status == 3
-    assert "the revision `bomb` holds more than 20,000 specs and artefacts" in outcome.err
+    assert "the revision `bomb` contains more than 20,000 specs and artefacts" in outcome.err
 
 
 def test_specs_that_are_too_large_together_are_rejected(inside: Path, tltlc: Run) -> None:  # noqa: F811
@@ -142,7 +142,7 @@ def test_specs_that_are_too_large_together_are_rejected(inside: Path, tltlc: Run
     name = revision("bomb", tree(*((PLAIN, b"%03d.tltl" % number, blob) for number in range(30))))
     outcome = tltlc("breaking", "specs/leave.tltl", "--against", name)
     assert outcome.status == 3
-    assert "the revision `bomb` holds more than 256 MiB of specs and artefacts" in outcome.err
+    assert "the revision `bomb` contains more than 256 MiB of specs and artefacts" in outcome.err
 
 
 def nested(name: bytes, levels: int, top: bytes) -> bytes:
@@ -170,12 +170,12 @@ def test_endless_folders_are_rejected(inside: Path, tltlc: Run, monkeypatch: pyt
     outcome = tltlc("breaking", "specs/leave.tltl", "--against", revision("bomb", top))
     assert (outcome.status, outcome.out) == (3, "")
     reason = "paths of more than 1 MiB" if kind == "long" else "more than 1,000 paths"
-    assert f"error[TLT0764]: the revision `bomb` holds {reason}" in outcome.err
+    assert f"error[TLT0764]: the revision `bomb` contains {reason}" in outcome.err
 
 
 def test_reading_stops_early_in_a_path_of_many_megabytes(monkeypatch: pytest.MonkeyPatch) -> None:
     stream = io.BytesIO(b"100644 blob 0\t" + bytes([97]) * (50 << 20))
-    with pytest.raises(TltlError, match="TLT0764: the revision `bomb` holds a path of more than 1 MiB"):
+    with pytest.raises(TltlError, match="TLT0764: the revision `bomb` contains a path of more than 1 MiB"):
         list(revisions._parse_listing(stream, "bomb"))
     assert stream.tell() < 2 << 20
 

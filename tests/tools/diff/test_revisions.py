@@ -69,15 +69,15 @@ def test_a_branch_named_like_a_file_is_a_revision(repository: Path, tltlc: Run) 
     assert tltlc("breaking", "specs", "--against", "same").status == 0
     Path("other").write_text("a file")
     outcome = tltlc("breaking", "specs", "--against", "other")
-    assert "error[TLT0751]: `other` is a file, and neither a folder nor a revision\n" in outcome.err
+    assert "error[TLT0751]: `other` is a file, not a folder or a revision\n" in outcome.err
 
 
 @pytest.mark.parametrize(
     ("name", "title", "help_text"),
     [
         ("^HEAD", "there is no revision and no folder `^HEAD`", "`git log` and `git tag` list revisions"),
-        ("blob", "`blob` names something in git that is no commit", "name the commit that holds it"),
-        ("folder", "`folder` names something in git that is no commit", "name the commit that holds it"),
+        ("blob", "`blob` exists in git, but is not a commit", "name the commit that contains it"),
+        ("folder", "`folder` exists in git, but is not a commit", "name the commit that contains it"),
     ],
 )
 def test_an_object_that_is_no_commit_is_reported(
@@ -102,14 +102,14 @@ def test_a_lost_or_damaged_file_is_reported(repository: Path, tltlc: Run, lost: 
     if not lost:
         place.write_bytes(b"")
     outcome = tltlc("diff", "HEAD:specs/leave.tltl", "specs/leave.tltl")
-    title = "git does not give `specs/leave.tltl` of the revision `HEAD`"
+    title = "git cannot provide `specs/leave.tltl` of the revision `HEAD`"
     assert (outcome.status, f"error[TLT0751]: {title}\n  help: fetch it, or take it" in outcome.err) == (3, True)
 
 
 def test_a_file_outside_the_repository_is_reported(repository: Path, tltlc: Run) -> None:  # noqa: F811
     outcome = tltlc("diff", "HEAD:../../x.tltl", "specs/leave.tltl")
     outside = repository.absolute().parents[1]
-    assert f"`{outside}` lies in no git repository in which it could be a revision\n" in outcome.err
+    assert f"because `{outside}` is not in a git repository\n" in outcome.err
 
 
 def test_a_damaged_repository_is_reported(repository: Path, tltlc: Run) -> None:  # noqa: F811
@@ -121,7 +121,7 @@ def test_a_damaged_repository_is_reported(repository: Path, tltlc: Run) -> None:
 def test_the_git_folder_itself_is_reported(repository: Path, tltlc: Run, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
     monkeypatch.chdir(repository / ".git")
     outcome = tltlc("breaking", ".", "--against", "HEAD")
-    assert "belongs to git itself, and holds no files of now" in outcome.err
+    assert "belongs to git itself, and contains no checked-out files" in outcome.err
 
 
 def test_a_repository_whose_name_ends_in_a_line_break_works(

@@ -25,26 +25,26 @@ COMPATIBLE: Final[Severity] = "note"
 
 _MOST_LINES: Final = 8
 """The most lines that a trace takes in a message."""
-_ANEW: Final = "if this is meant, record baselines anew"
+_ANEW: Final = "if you want this change, record the baselines again"
 
 
 def spec_removed(name: str, place: Label) -> Diagnostic:
     """Return TLT0752: a spec was removed."""
-    help_ = "keep it, or tell those who load its artefact or monitor"
+    help_ = "keep it, or tell the people who load its artefact or monitor"
     return Diagnostic("TLT0752", f"the spec `{name}` is gone", (at_old_place(place),), help_, BREAKING)
 
 
 def spec_renamed(old: str, new: str, before: Label, place: Label) -> Diagnostic:
     """Return TLT0752: a spec has another name, but accepts the same traces."""
-    title = f"the spec `{old}` is called `{new}` now"
-    help_ = "keep the old name, or tell those who load its artefact or monitor by it"
+    title = f"the spec `{old}` is now called `{new}`"
+    help_ = "keep the old name, or tell the people who load its artefact or monitor by that name"
     return Diagnostic("TLT0752", title, (place, at_old_place(before)), help_, BREAKING)
 
 
 def spec_moved(name: str, before: Label, place: Label) -> Diagnostic:
     """Return TLT0752: a spec moved to another file."""
     title = f"the spec `{name}` has moved here from `{before.source.name}`"
-    help_ = "name this file where that one is named; artefacts and monitors are called as before"
+    help_ = "name this file instead of the old one; artefacts and monitors keep their names"
     return Diagnostic("TLT0752", title, (place,), help_, COMPATIBLE)
 
 
@@ -58,15 +58,15 @@ def traces_changed(pair: SpecPair, place: Label) -> Diagnostic:
     name, comparison = pair.b.name, pair.comparison
     if comparison.only_a is None:
         assert comparison.only_b is not None
-        title = f"`{name}` is looser: it accepts traces that it did not"
-        help_ = f"if this is not meant, it must rule out:{_trace(pair, comparison.only_b)}"
+        title = f"`{name}` is looser: it accepts traces that it did not accept before"
+        help_ = f"if you do not want this change, make it reject:{_trace(pair, comparison.only_b)}"
         return Diagnostic("TLT0753", title, (place,), help_, CHANGED)
-    title = f"`{name}` is stricter: traces that it accepted are not accepted now"
+    title = f"`{name}` is stricter: it no longer accepts some traces that it accepted before"
     if comparison.relation == "incomparable":
-        title = f"`{name}` accepts other traces: some that it accepted are not accepted now, and others are"
+        title = f"`{name}` accepts different traces: it no longer accepts some, and now accepts others"
     if pair.b.states[0].verdict == "violated":
         title = f"`{name}` is stricter: no trace satisfies it any more"
-    help_ = f"if this is not meant, it must accept:{_trace(pair, comparison.only_a)}"
+    help_ = f"if you do not want this change, make it accept:{_trace(pair, comparison.only_a)}"
     return Diagnostic("TLT0753", title, (place,), help_, BREAKING)
 
 
@@ -78,15 +78,15 @@ def signal_changed(difference: Difference, specs: Sequence[str], place: Label) -
     name, used_by = difference.name, name_list(specs)
     if difference.a is None:
         assert isinstance(difference.b, Signal)
-        title = f"the signal `{name}` must be supplied now, to {used_by}"
+        title = f"the signal `{name}` must now be supplied to {used_by}"
         help_ = f"have the game supply it: {type_text(difference.b)}"
         return Diagnostic("TLT0754", title, (place,), help_, BREAKING)
     if difference.b is None:
-        title = f"the signal `{name}` is no longer read, by {used_by}"
+        title = f"the signal `{name}` is no longer read by {used_by}"
         return Diagnostic("TLT0754", title, (place,), "the game may stop supplying it", COMPATIBLE)
     assert isinstance(difference.a, Signal) and isinstance(difference.b, Signal)
     if difference.b.name != name:
-        title = f"the signal `{difference.b.name}` must be supplied now in place of `{name}`, to {used_by}"
+        title = f"the signal `{difference.b.name}` must now be supplied to {used_by} in place of `{name}`"
         return Diagnostic("TLT0754", title, (place,), f"have the game supply it: {type_text(difference.b)}", BREAKING)
     return signal_type_changed(difference.a, difference.b, place)
 
@@ -95,13 +95,13 @@ def signal_type_changed(old: Signal, new: Signal, place: Label) -> Diagnostic:
     """Return TLT0755: a signal has another type, unit or range."""
     name = new.name
     if old.type != new.type:
-        title = f"the signal `{name}` is {_with_article(new.type)} now, and was {_with_article(old.type)}"
+        title = f"the signal `{name}` is now {_with_article(new.type)} (it was {_with_article(old.type)})"
         return Diagnostic("TLT0755", title, (place,), f"have the game supply it as {type_text(new)}", BREAKING)
-    title = f"the signal `{name}` has the range {ends_text(new)} now, and had {ends_text(old)}"
+    title = f"the range of the signal `{name}` is now {ends_text(new)} (it was {ends_text(old)})"
     if _is_within(old, new):
-        help_ = "nothing needs to be done for hosts; atoms that are scaled by the range are reported themselves"
+        help_ = "nothing needs to be done in hosts; atoms that the range scales have messages of their own"
         return Diagnostic("TLT0755", title, (place,), help_, COMPATIBLE)
-    help_ = "what the game supplies beyond an end counts as that end: look whether it does"
+    help_ = "check what the game supplies: a value outside this range counts as the nearest end"
     return Diagnostic("TLT0755", title, (place,), help_, BREAKING)
 
 
@@ -113,25 +113,26 @@ def param_changed(difference: Difference, new_name: str | None, place: Label) ->
         title = f"the param `{name}` is new, with the value {value_text(new.value, new.type)}"
         return Diagnostic("TLT0756", title, (place,), "nothing needs to be done", COMPATIBLE)
     if new_name is not None:
-        title = f"the param `{name}` is called `{new_name}` now"
+        title = f"the param `{name}` is now called `{new_name}`"
         return Diagnostic("TLT0756", title, (place,), f"set `{new_name}` wherever `{name}` is set", BREAKING)
     if not isinstance(new, Param):
         title = f"the param `{name}` is gone"
-        return Diagnostic("TLT0756", title, (place,), "no longer set it: to do so is an error", BREAKING)
+        return Diagnostic("TLT0756", title, (place,), "do not set it any more: setting it is an error", BREAKING)
     if old.type != new.type:
-        title = f"the param `{name}` is {_with_article(new.type)} now, and was {_with_article(old.type)}"
+        title = f"the param `{name}` is now {_with_article(new.type)} (it was {_with_article(old.type)})"
         return Diagnostic("TLT0756", title, (place,), f"set it as {type_text(new)}", BREAKING)
     if old.value != new.value:
         now, before = value_text(new.value, new.type), value_text(old.value, old.type)
-        title = f"the param `{name}` is {now} now, and was {before}"
+        title = f"the param `{name}` is now {now} (it was {before})"
         if not _is_within(old, new):
-            title += f", and its range is {ends_text(new)}, and was {ends_text(old)}"
-        help_ = f"where the old value is needed, set it: `{name}={before}`"
+            title += f", and its range is now {ends_text(new)} (it was {ends_text(old)})"
+        help_ = f"if you need the old value, set it: `{name}={before}`"
         return Diagnostic("TLT0756", title, (place,), help_, CHANGED if _is_within(old, new) else BREAKING)
-    title = f"the param `{name}` has the range {ends_text(new)} now, and had {ends_text(old)}"
+    title = f"the range of the param `{name}` is now {ends_text(new)} (it was {ends_text(old)})"
     if _is_within(old, new):
         return Diagnostic("TLT0756", title, (place,), "nothing needs to be done", COMPATIBLE)
-    return Diagnostic("TLT0756", title, (place,), "set it to a value inside: others are an error now", BREAKING)
+    help_ = "set it only to values in this range: other values are an error now"
+    return Diagnostic("TLT0756", title, (place,), help_, BREAKING)
 
 
 def atom_changed(difference: Difference, others: Sequence[str], pair: SpecPair, place: Label) -> Diagnostic:
@@ -145,8 +146,8 @@ def atoms_renamed(renamings: Sequence[Difference], place: Label) -> Diagnostic:
     """Return TLT0757: atoms of a predicate have other names, but the same meaning."""
     names = [renaming.b.name for renaming in renamings if isinstance(renaming.b, Atom)]
     are = "is" if len(names) == 1 else "are"
-    title = f"{name_list([renaming.name for renaming in renamings])} {are} called {name_list(names)} now"
-    help_ = "nothing needs to be done, unless the game looks for the name in what a monitor says"
+    title = f"{name_list([renaming.name for renaming in renamings])} {are} now called {name_list(names)}"
+    help_ = "nothing needs to be done, unless the game looks for the old name in what a monitor reports"
     return Diagnostic("TLT0757", title, (place,), help_, COMPATIBLE)
 
 
@@ -162,34 +163,34 @@ def values_changed(
 
     ``subject`` is its name in the title. ``others`` are the names of atoms that changed alike.
     """
-    title = f"the {kind} {subject} is {'judged' if difference.differs_in_truth else 'scaled'} otherwise"
+    title = f"the {kind} {subject} is {'judged' if difference.differs_in_truth else 'scaled'} differently"
     if others:
-        title += f", as {'is' if len(others) == 1 else 'are'} {name_list(others)}"
+        title += f", and so {'is' if len(others) == 1 else 'are'} {name_list(others)}"
     before, now = values_text(difference)
     where = sample_text(difference.sample, types)
-    help_ = f"{where} it is {now}, and was {before}; {_ANEW}"
+    help_ = f"{where}, it is now {now} and was {before}; {_ANEW}"
     if not difference.differs_in_truth:
-        help_ = f"{where} it is {now}, and was {before}: progress and rewards differ, and no verdict does"
+        help_ = f"{where}, it is now {now} and was {before}: progress and rewards differ, but verdicts do not"
     return Diagnostic("TLT0757", title, (place,), help_, BREAKING if difference.differs_in_truth else CHANGED)
 
 
 def clock_changed(difference: Difference, specs: Sequence[str], place: Label) -> Diagnostic:
     """Return TLT0758: ``specs`` have another clock."""
-    are, were = ("is", "was") if len(specs) == 1 else ("are", "were")
-    title = f"{name_list(specs)} {are} sampled {_clock(difference.b)} now, and {were} sampled {_clock(difference.a)}"
+    are, were = ("is", "it was") if len(specs) == 1 else ("are", "they were")
+    title = f"{name_list(specs)} {are} now sampled {_clock(difference.b)} ({were} sampled {_clock(difference.a)})"
     return Diagnostic("TLT0758", title, (place,), _clock_help(difference.b), BREAKING)
 
 
 def library_clock_changed(old: float | None, new: float | None, place: Label) -> Diagnostic:
     """Return TLT0758: the clock that a library declares has changed."""
-    title = f"specs are sampled {_clock(new)} now, and were sampled {_clock(old)}"
+    title = f"specs are now sampled {_clock(new)} (they were sampled {_clock(old)})"
     return Diagnostic("TLT0758", title, (place,), _clock_help(new), BREAKING)
 
 
 def exclusive_added(names: Sequence[str], place: Label) -> Diagnostic:
     """Return TLT0758: a library now declares atoms to be exclusive."""
-    help_ = "a sample in which two of them hold is an error to specs that name both: look whether the game has such"
-    return Diagnostic("TLT0758", f"{name_list(names)} are exclusive now", (place,), help_, BREAKING)
+    help_ = "check the game: a sample in which two of them hold is an error for specs that name both"
+    return Diagnostic("TLT0758", f"{name_list(names)} are now exclusive", (place,), help_, BREAKING)
 
 
 def exclusive_removed(names: Sequence[str], place: Label) -> Diagnostic:
@@ -206,20 +207,20 @@ def setting_changed(name: str, difference: Difference, place: Label) -> Diagnost
     severity, help_ = BREAKING, _ANEW
     match difference.kind:
         case "semantics":
-            title = f"`{name}` is about {_traces(new)} now, and was about {_traces(old)}"
+            title = f"`{name}` is now about {_traces(new)} (it was about {_traces(old)})"
         case "judge":
-            title = f"`{name}` is judged at the {new} now, and was judged at the {old}"
-            help_ = f"if this is not meant, write `judge at {old}`"
+            title = f"`{name}` is now judged at the {new} (it was judged at the {old})"
+            help_ = f"if you do not want this change, write `judge at {old}`"
         case "limit":
-            title = f"`{name}` has {_limit(new)} now, and had {_limit(old)}"
+            title = f"`{name}` now has {_limit(new)} (it had {_limit(old)})"
         case "level":
-            title = f"`{name}` is about {_level(new)} now, and was about {_level(old)}"
-            severity, help_ = CHANGED, "look whether what loads it picks the level by this"
+            title = f"`{name}` is now about {_level(new)} (it was about {_level(old)})"
+            severity, help_ = CHANGED, "check whether a program that loads it uses this to choose the level"
         case _:
             names = new if isinstance(new, tuple) else old if isinstance(old, tuple) else ()
             if old is None:
-                title = f"{name_list(names)} are exclusive in `{name}` now"
-                help_ = "a sample in which two of them hold is an error now: look whether the game has such"
+                title = f"{name_list(names)} are now exclusive in `{name}`"
+                help_ = "check the game: a sample in which two of them hold is an error now"
             else:
                 title = f"{name_list(names)} are no longer exclusive in `{name}`"
                 severity, help_ = CHANGED, "steps may be skipped, so progress and rewards may differ"
@@ -228,19 +229,19 @@ def setting_changed(name: str, difference: Difference, place: Label) -> Diagnost
 
 def declaration_removed(kind: str, name: str, place: Label) -> Diagnostic:
     """Return TLT0759: a library no longer declares a name."""
-    help_ = "keep it, at least as another name for what took its place"
+    help_ = "keep it, at least as another name for its replacement"
     return Diagnostic("TLT0759", f"the {kind} `{name}` is gone", (at_old_place(place),), help_, BREAKING)
 
 
 def parameters_changed(kind: str, name: str, place: Label, why: str) -> Diagnostic:
     """Return TLT0759: uses of a library declaration are no longer valid; ``why`` is the reason."""
-    help_ = "add parameters behind the others, with a default, and leave the others as they are"
+    help_ = "add new parameters after the others, with a default, and leave the others as they are"
     return Diagnostic("TLT0759", f"the {kind} `{name}` takes other parameters: {why}", (place,), help_, BREAKING)
 
 
 def signals_added(predicate: str, signals: Sequence[str], place: Label) -> Diagnostic:
     """Return TLT0754: a predicate of a library reads additional signals."""
-    title = f"the predicate `{predicate}` reads {name_list(signals)} now"
+    title = f"the predicate `{predicate}` now reads {name_list(signals)}"
     help_ = f"have the game supply {'it' if len(signals) == 1 else 'them'} wherever the predicate is used"
     return Diagnostic("TLT0754", title, (place,), help_, BREAKING)
 
@@ -292,9 +293,9 @@ def _level(level: object) -> str:
 
 def _clock_help(period: object) -> str:
     if period is None:
-        return "declare the old clock, if the game takes steps by it"
-    return "have the game take a step as often"
+        return "declare the old clock if the game takes its steps at that interval"
+    return "have the game take its steps at this interval"
 
 
 def _clock(period: object) -> str:
-    return f"every {number_text(period)} s" if isinstance(period, float) else "by no clock"
+    return f"every {number_text(period)} s" if isinstance(period, float) else "without a clock"

@@ -62,15 +62,16 @@ def repository(folder: Path) -> Path | None:
     if completed.returncode == 0:
         return Path(os.fsdecode(completed.stdout.removesuffix(b"\n")))
     if b"safe.directory" in completed.stderr:
-        title = f"git does not look into the repository of `{folder}`, which belongs to another user"
+        title = f"git refuses to read the repository of `{folder}`, because it belongs to another user"
         raise no_version(title, "allow it: `git config --global --add safe.directory FOLDER`")
     if b"work tree" in completed.stderr:
-        raise no_version(f"`{folder}` belongs to git itself, and holds no files of now", "go into a clone with files")
+        title = f"`{folder}` belongs to git itself, and contains no checked-out files"
+        raise no_version(title, "use a clone that has checked-out files")
     git_folder = next((place for place in (folder, *folder.parents) if exists(place / ".git")), None)
     if git_folder is not None:
         title = f"git cannot use the repository of `{git_folder}`"
         raise no_version(
-            title, f"check that you may read `{git_folder / '.git'}`: `git status` there tells what is wrong"
+            title, f"check that you may read `{git_folder / '.git'}`: `git status` there says what is wrong"
         )
     return None
 
@@ -81,7 +82,7 @@ def commit(repository: Path, revision: str) -> str:
     if name is not None:
         return name
     if _object_hash(repository, revision) is not None:
-        raise no_version(f"`{revision}` names something in git that is no commit", "name the commit that holds it")
+        raise no_version(f"`{revision}` exists in git, but is not a commit", "name the commit that contains it")
     raise no_version(f"there is no revision and no folder `{revision}`", _revision_help(repository, revision))
 
 
@@ -115,7 +116,7 @@ def write_out(repository: Path, commit: str, revision: str, is_wanted: Callable[
 def _archive(revision: str) -> Archive:
     return Archive(
         f"the revision `{revision}`",
-        damaged_help="use another revision: `git fsck` names the damaged tree, which `git add` does not make",
+        damaged_help="use another revision: `git fsck` names the damaged tree (`git add` never makes such a tree)",
         elsewhere_help="run this on Linux, or name a revision in which the file has another name",
     )
 
@@ -156,7 +157,9 @@ def _files(repository: Path, commit: str, revision: str) -> Iterator[_File]:
             raise
         if git.wait() != 0:
             raise_if_interrupted(git.returncode)
-            raise no_version(f"git cannot list the files of the revision `{revision}`", "repair it: `git fsck`")
+            raise no_version(
+                f"git cannot list the files of the revision `{revision}`", "check the repository: `git fsck`"
+            )
 
 
 def _parse_listing(stream: IO[bytes], revision: str) -> Iterator[_File]:
@@ -249,8 +252,9 @@ def _contents(repository: Path, files: Sequence[_File], revision: str) -> Iterat
 
 
 def _missing_content(file: _File, revision: str) -> TltlError:
-    title = f"git does not give `{file.path}` of the revision `{revision}`"
-    return no_version(title, "fetch it, or take it from another clone: `git fsck` tells if it is missing or damaged")
+    title = f"git cannot provide `{file.path}` of the revision `{revision}`"
+    help_ = "fetch it, or take it from another clone: `git fsck` says whether it is missing or damaged"
+    return no_version(title, help_)
 
 
 def _run(folder: Path, *arguments: str, stdin: bytes = b"") -> bytes | None:
@@ -276,7 +280,7 @@ def _git(folder: Path, *arguments: str, stdin: bytes = b"") -> CompletedProcess[
         completed = run(command, input=stdin, capture_output=True, env=_environment(), check=False)
     except FileNotFoundError:
         title = "comparing with a revision needs `git`, which is not installed"
-        help_ = "install git, or name a folder that holds the old files: `--against DIR`"
+        help_ = "install git, or name a folder that contains the old files: `--against DIR`"
         raise TltlError([Diagnostic("TLT0730", title, help=help_)]) from None
     raise_if_interrupted(completed.returncode)
     return completed
@@ -305,8 +309,8 @@ def _revision_help(repository: Path, revision: str) -> str:
 
 
 def _too_large(revision: str, contents: str) -> TltlError:
-    help_ = "take out the part to compare, and name its folder: `--against DIR`"
-    return TltlError([Diagnostic("TLT0764", f"the revision `{revision}` holds {contents}", help=help_)])
+    help_ = "check out the part to compare, and name its folder: `--against DIR`"
+    return TltlError([Diagnostic("TLT0764", f"the revision `{revision}` contains {contents}", help=help_)])
 
 
 def no_version(title: str, help_: str) -> TltlError:

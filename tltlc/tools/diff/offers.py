@@ -80,17 +80,17 @@ def _why_uses_break(before: OfferedName, after: OfferedName) -> str | None:
     """Return why some use of a declaration is no longer valid; None if all uses are still valid."""
     if before.kind == "signal":
         count, now = len(before.parameters), len(after.parameters)
-        return None if count == now else f"{now} where there were {count}"
+        return None if count == now else f"{now} instead of {count}"
     for old, new in zip(before.parameters, after.parameters, strict=False):
         if old.name != new.name:
-            return f"`{new.name}` stands where `{old.name}` stood"
+            return f"`{new.name}` is now in the place of `{old.name}`"
         if old.type != new.type and new.type is not None:
-            return f"`{new.name}` is of another type"
+            return f"`{new.name}` has another type"
         if old.default is not None and new.default is None:
             return f"`{new.name}` has no default any more"
     if len(after.parameters) < len(before.parameters):
         return f"`{before.parameters[len(after.parameters)].name}` is gone"
     for added in after.parameters[len(before.parameters) :]:
         if added.default is None:
-            return f"`{added.name}` must be given, too"
+            return f"`{added.name}` must now be given, too"
     return None

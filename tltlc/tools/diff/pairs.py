@@ -117,5 +117,5 @@ def diff(
         title = f"comparing the two versions of `{a.name}` takes too long"
         if a.name != b.name:
             title = f"comparing `{a.name}` with `{b.name}` takes too long"
-        help_ = "allow more by a greater `--state-budget N` (by default 50000)"
+        help_ = "allow more with a greater `--state-budget N` (the default is 50000)"
         raise TltlError([Diagnostic("TLT0750", title, help=help_)]) from None

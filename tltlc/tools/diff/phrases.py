@@ -23,8 +23,8 @@ def unrelated_reason(a: Fspa, b: Fspa) -> str:
     The text also says what to do.
     """
     return (
-        f"B is of another kind than A: A is about {_KINDS[a.semantics]}, B about {_KINDS[b.semantics]}, so no trace is "
-        "one of both. To compare what they ask for, give both the same `semantics`."
+        f"A and B are of different kinds: A is about {_KINDS[a.semantics]}, B is about {_KINDS[b.semantics]}, so no "
+        "trace belongs to both. To compare what they require, give both the same `semantics`."
     )
 
 

@@ -146,11 +146,9 @@ def _revision(name: str, folder: Path) -> tuple[Path, str]:
             if not is_file(name):
                 raise
     if is_file(name):
-        raise git.no_version(
-            f"`{name}` is a file, and neither a folder nor a revision", "name the folder in which it lies"
-        )
-    title = f"there is no folder `{name}`, and `{folder}` lies in no git repository in which it could be a revision"
-    raise git.no_version(title, "name a folder that is there, or a file of the repository")
+        raise git.no_version(f"`{name}` is a file, not a folder or a revision", "name the folder that contains it")
+    title = f"there is no folder `{name}`, and it cannot be a revision, because `{folder}` is not in a git repository"
+    raise git.no_version(title, "name a folder that exists, or a file in a git repository")
 
 
 def _is_accessible(path: Path) -> bool:
@@ -171,8 +169,8 @@ def _path_in_repository(repository: Path, path: str) -> str:
     """
     inside = _relative_path(path, repository)
     if inside is None:
-        title = f"`{path}` does not lie in the repository `{repository}`"
-        raise TltlError([Diagnostic("TLT0751", title, help="name files of one repository in one run")])
+        title = f"`{path}` is not in the repository `{repository}`"
+        raise TltlError([Diagnostic("TLT0751", title, help="name only files of one repository in one run")])
     return inside.as_posix()
 
 

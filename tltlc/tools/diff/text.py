@@ -22,14 +22,14 @@ if TYPE_CHECKING:
 
 _RELATIONS: Final = {
     "equivalent": ("B accepts the same traces as A", ""),
-    "stricter": ("B is stricter than A", "every trace that B accepts A accepts, too"),
-    "looser": ("B is looser than A", "every trace that A accepts B accepts, too"),
-    "incomparable": ("B accepts other traces than A", "each accepts some that the other does not"),
+    "stricter": ("B is stricter than A", "A also accepts every trace that B accepts"),
+    "looser": ("B is looser than A", "B also accepts every trace that A accepts"),
+    "incomparable": ("B accepts different traces than A", "each accepts some that the other does not"),
 }
 _BREAKING: Final[Mapping[Relation | None, str]] = {
     "equivalent": "The same beginnings of traces break both for good, if any do.",
-    "stricter": "Every beginning of a trace that breaks A for good breaks B, too, and others do.",
-    "looser": "Every beginning of a trace that breaks B for good breaks A, too, and others do.",
+    "stricter": "Every beginning of a trace that breaks A for good also breaks B, and some others break only B.",
+    "looser": "Every beginning of a trace that breaks B for good also breaks A, and some others break only A.",
     "incomparable": "Each is broken for good by beginnings of traces that do not break the other.",
 }
 """What to print about the beginnings of traces that violate A or B.
@@ -59,7 +59,7 @@ def text(report: FileDiff) -> str:
         both = f"`{a}:{report.only_a[0]}` and `{b}:{report.only_b[0]}`"
         paragraphs.append(f"to compare specs of different names, name both, e.g. {both}")
     if len(paragraphs) == 1:
-        paragraphs.append("there is no spec in either of them")
+        paragraphs.append("neither of them contains a spec")
     return "\n\n".join(paragraphs) + "\n"
 
 
@@ -74,7 +74,7 @@ def _pair(pair: SpecPair) -> Iterator[str]:
     else:
         summary, meaning = _RELATIONS[comparison.relation]
         if comparison.relation == "equivalent":
-            summary += ", but not all else is the same" if pair.differences else ", and nothing else differs"
+            summary += ", but something else differs" if pair.differences else ", and nothing else differs"
         yield f"{name}\n  {summary}{f': {meaning}' if meaning else ''}."
     one_sided = [group for group in comparison.exclusive if not (group.in_a and group.in_b)]
     if one_sided:
@@ -96,23 +96,24 @@ def _pair(pair: SpecPair) -> Iterator[str]:
 def _exclusive(groups: Sequence[ExclusiveGroup]) -> str:
     lines = ["  judged on traces in which at most one of these holds at a time:"]
     lines += [
-        f"    {name_list(group.names, _MOST_ATOMS)} (exclusive in {'A' if group.in_a else 'B'} alone)"
+        f"    {name_list(group.names, _MOST_ATOMS)} (exclusive only in {'A' if group.in_a else 'B'})"
         for group in groups
     ]
     return "\n".join(lines)
 
 
 def _split(names: tuple[str, ...]) -> str:
-    first, other = names[0], "another atom" if len(names) == 1 else "other atoms"
-    verb = "is" if len(names) == 1 else "are"
+    first = names[0]
+    are, atoms, they_are = ("is", "atom", "it is") if len(names) == 1 else ("are", "atoms", "they are")
     return (
-        f"  {name_list(names)} {verb} {other} in B than in A, and so called `{first} of A` and `{first} of B`\n"
-        "  (--by-name takes atoms of one name for one)"
+        f"  {name_list(names)} {are} not the same {atoms} in B as in A, so {they_are} called `{first} of A` and "
+        f"`{first} of B`\n"
+        "  (--by-name treats atoms with the same name as one atom)"
     )
 
 
 def _left_out(impossible: Sequence[Literals]) -> str:
-    lines = ["  no sample of the signals was found that gives these, so traces with them are left out:"]
+    lines = ["  no values of the signals were found that give these, so traces with them are left out:"]
     for literals in impossible[:_MOST_LEFT_OUT]:
         terms = [f"{'' if holds else 'not '}`{name}`" for name, holds in literals]
         lines.append(f"    {' and '.join(terms)}")
@@ -173,7 +174,7 @@ def sentence(difference: Difference, pair: SpecPair) -> str:
         case "clock":
             return f"clock: {_clock(a)} in A, {_clock(b)} in B"
         case "exclusive":
-            return f"exclusive {', '.join(_names(a) or _names(b))}: in {'A' if a else 'B'} alone"
+            return f"exclusive {', '.join(_names(a) or _names(b))}: only in {'A' if a else 'B'}"
         case "atom":
             return f"`{name}`: {_atom(difference, pair)}"
         case _:
@@ -182,7 +183,7 @@ def sentence(difference: Difference, pair: SpecPair) -> str:
 
 def _atom(difference: Difference, pair: SpecPair) -> str:
     if difference.value_difference is None:
-        return "another expression in B; no sample was found at which its value differs"
+        return "B has another expression; no sample was found at which its value differs"
     types = {signal.name: signal.type for signal in (*pair.a.signals, *pair.b.signals)}
     first, second = values_text(difference.value_difference)
     return f"{first} in A, {second} in B, {sample_text(difference.value_difference.sample, types)}"
