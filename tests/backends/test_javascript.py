@@ -193,12 +193,12 @@ def test_a_host_gets_results_notices_and_errors(tmp_path: Path) -> None:
     lines = [
         "true MonitorError the param `level_size` cannot be 1: its range is [2, 10000]",
         "true MonitorError the param `level_size` cannot be nan",
-        "true MonitorError the value given for the param `level_size` is no number",
+        "true MonitorError the value given for the param `level_size` is not a number",
         "true MonitorError there is no param `size` to set",
         *[
             "true MonitorError step 1: no value for `distance(s1)` and `distance(exit)`",
             "true MonitorError step 1: the signal `health` is nan, not a finite number",
-            "true MonitorError step 1: the signal `health` is no number",
+            "true MonitorError step 1: the signal `health` is not a number",
             f"true {step.progress!r} near(s1)",
             f"true MonitorError step 2: `near(s1)` and `near(exit)` hold at once, against `exclusive {group}`",
             f"0 1 {step.label} false",
@@ -228,8 +228,8 @@ for (const [x, seen] of [[1, true], [true, 1], [1, false], [1, 0.5], ["1", 1], [
 }}
 """)
     _, out, err = run_module(tmp_path / "use.mjs")
-    problems = ["seen` is 0.5, not true or false", "x` is no number", "x` is no number", "seen` is no number"]
-    messages = [f"step 1: the signal `{message}" for message in [*problems, "x` is no number"]]
+    problems = ["seen` is 0.5, not true or false", "x` is not a number", "x` is not a number", "seen` is not a number"]
+    messages = [f"step 1: the signal `{message}" for message in [*problems, "x` is not a number"]]
     assert out.splitlines() == ["0.5", "0.5", "0.5", *messages], err
 
 

@@ -221,12 +221,12 @@ def test_a_host_gets_results_notices_and_errors(interpreter: str, tmp_path: Path
     lines = [
         "nil\tthe param `level_size` cannot be 1: its range is [2, 10000]",
         "nil\tthe param `level_size` cannot be nan",
-        "nil\tthe value given for the param `level_size` is no number",
+        "nil\tthe value given for the param `level_size` is not a number",
         "nil\tthere is no param `size` to set",
         *[
             "nil\tstep 1: no value for `distance(s1)` and `distance(exit)`",
             "nil\tstep 1: the signal `health` is inf, not a finite number",
-            "nil\tstep 1: the signal `health` is no number",
+            "nil\tstep 1: the signal `health` is not a number",
             f"true\t{step.progress:.17g}\tnear(s1)",
             f"nil\tstep 2: `near(s1)` and `near(exit)` hold at once, against `exclusive {group}`",
             f"0\t1\t{step.label}\tfalse",

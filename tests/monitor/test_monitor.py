@@ -142,8 +142,8 @@ def test_missing_signals_are_all_named() -> None:
     [
         (math.nan, "is nan, not a finite number"),
         (-math.inf, "is -inf, not a finite number"),
-        ("1.0", "is no number"),
-        (None, "is no number"),
+        ("1.0", "is not a number"),
+        (None, "is not a number"),
         (10**400, "is too large for a number"),
     ],
 )
@@ -227,7 +227,7 @@ def test_params_override_the_values_of_the_spec() -> None:
         ({"size": 1.0}, "TLT0308", "there is no param `size` to set"),
         ({"level_size": 1.0}, "TLT0307", "the param `level_size` cannot be 1: its range is [2, 10000]"),
         ({"level_size": math.nan}, "TLT0308", "the param `level_size` cannot be nan"),
-        ({"level_size": "3"}, "TLT0308", "the value given for the param `level_size` is no number"),
+        ({"level_size": "3"}, "TLT0308", "the value given for the param `level_size` is not a number"),
     ],
 )
 def test_invalid_params_are_rejected(params: dict[str, float], code: str, text: str) -> None:

@@ -219,16 +219,16 @@ def test_a_truncated_episode_succeeds_only_at_its_goal() -> None:
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"mode": "Sparse"}, f"mode is one of {', '.join(map(repr, MODES))}, not 'Sparse'"),
-        ({"mode": ""}, "mode is one of"),
-        ({"mode": "os"}, "mode is one of"),
-        ({"mode": None}, "mode is one of"),
-        ({"termination": "zzz"}, "termination is one of 'entry', 'paper', not 'zzz'"),
-        ({"terminal_penalty": "zzz"}, "terminal_penalty is one of 'undiscounted', 'discounted', not 'zzz'"),
-        ({"gamma": 2}, "gamma is a number above 0, and 1 at most, not 2"),
-        ({"gamma": 0.0}, "gamma is a number"),
-        ({"gamma": float("nan")}, "gamma is a number"),
-        ({"gamma": "1"}, "gamma is a number"),
+        ({"mode": "Sparse"}, f"mode must be one of {', '.join(map(repr, MODES))}, not 'Sparse'"),
+        ({"mode": ""}, "mode must be one of"),
+        ({"mode": "os"}, "mode must be one of"),
+        ({"mode": None}, "mode must be one of"),
+        ({"termination": "zzz"}, "termination must be one of 'entry', 'paper', not 'zzz'"),
+        ({"terminal_penalty": "zzz"}, "terminal_penalty must be one of 'undiscounted', 'discounted', not 'zzz'"),
+        ({"gamma": 2}, "gamma must be a number above 0 and at most 1, not 2"),
+        ({"gamma": 0.0}, "gamma must be a number"),
+        ({"gamma": float("nan")}, "gamma must be a number"),
+        ({"gamma": "1"}, "gamma must be a number"),
     ],
 )
 def test_invalid_options_are_rejected(options: dict[str, Any], message: str) -> None:

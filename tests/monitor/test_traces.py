@@ -83,23 +83,23 @@ HEADER = 'open,"near(a, b)"\n'
 @pytest.mark.parametrize(
     ("text", "expected"),
     [
-        ("", ("TLT0620", "the trace `trace` holds no sample", "", "")),
-        ("\n\n", ("TLT0620", "the trace `trace` holds no sample", "", "")),
-        (HEADER, ("TLT0620", "the trace `trace` holds no sample", "", "")),
+        ("", ("TLT0620", "the trace `trace` contains no sample", "", "")),
+        ("\n\n", ("TLT0620", "the trace `trace` contains no sample", "", "")),
+        (HEADER, ("TLT0620", "the trace `trace` contains no sample", "", "")),
         ("open\n1\n", ("TLT0621", "the trace has no column for `near(a, b)`", "1:1", "")),
-        (HEADER + "1,1\n1\n", ("TLT0622", "line 3 of the trace cannot be read", "3:1", "1 value, under 2 columns")),
+        (HEADER + "1,1\n1\n", ("TLT0622", "line 3 of the trace cannot be read", "3:1", "1 value for 2 columns")),
         (HEADER + "1,\n", ("TLT0622", "line 2 of the trace cannot be read", "2:3", "`near(a, b)` has no value")),
         (
             HEADER + "x,1\n",
-            ("TLT0622", "line 2 of the trace cannot be read", "2:1", "this value of `open` is no number"),
+            ("TLT0622", "line 2 of the trace cannot be read", "2:1", "this value of `open` is not a number"),
         ),
         (
             HEADER + "1,1_0\n",
-            ("TLT0622", "line 2 of the trace cannot be read", "2:3", "this value of `near(a, b)` is no number"),
+            ("TLT0622", "line 2 of the trace cannot be read", "2:3", "this value of `near(a, b)` is not a number"),
         ),
         (
             HEADER + "1,١\n",
-            ("TLT0622", "line 2 of the trace cannot be read", "2:3", "this value of `near(a, b)` is no number"),
+            ("TLT0622", "line 2 of the trace cannot be read", "2:3", "this value of `near(a, b)` is not a number"),
         ),
         (
             'open,open,"near(a, b)"\n',
@@ -111,10 +111,10 @@ HEADER = 'open,"near(a, b)"\n'
         ),
         (HEADER.encode() + b"1,\xff\n", ("TLT0622", "line 2 of the trace cannot be read", "2:3", "it is not UTF-8")),
         ('{"open": 1}\n{"open" 1}', ("TLT0622", "line 2 of the trace cannot be read", "2:9", "this is not JSON")),
-        ('{"open": 1}\n[1]', ("TLT0622", "line 2 of the trace cannot be read", "2:1", "this is no object")),
+        ('{"open": 1}\n[1]', ("TLT0622", "line 2 of the trace cannot be read", "2:1", "this is not an object")),
         (
             '{"open": "yes"}',
-            ("TLT0622", "line 1 of the trace cannot be read", "1:1", "this value of `open` is no number"),
+            ("TLT0622", "line 1 of the trace cannot be read", "1:1", "this value of `open` is not a number"),
         ),
     ],
 )

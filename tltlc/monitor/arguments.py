@@ -10,7 +10,7 @@ def automaton_argument(given: object) -> Fspa:
     """Return ``given`` if it is an automaton; raise TypeError otherwise."""
     if isinstance(given, Fspa):
         return given
-    advice = "`tltlc.compile_file` returns a tuple of them, `tltlc.load` the one of an artefact"
+    advice = "`tltlc.compile_file` returns a tuple of automata, `tltlc.load` returns the automaton of an artefact"
     raise TypeError(f"an automaton is needed, not {given!r:.60}: {advice}")
 
 
@@ -20,4 +20,4 @@ def reward_options_argument(given: object) -> RewardOptions:
         return RewardOptions()
     if isinstance(given, RewardOptions):
         return given
-    raise TypeError(f'a reward is given as RewardOptions, e.g. RewardOptions(mode="sparse"), not {given!r:.60}')
+    raise TypeError(f'RewardOptions are needed, e.g. RewardOptions(mode="sparse"), not {given!r:.60}')

@@ -56,9 +56,9 @@ class RewardOptions:
         for name, choice in (("mode", Mode), ("termination", Termination), ("terminal_penalty", TerminalPenalty)):
             value, choices = getattr(self, name), get_args(choice)
             if value not in choices:
-                raise ValueError(f"{name} is one of {', '.join(map(repr, choices))}, not {value!r:.40}")
+                raise ValueError(f"{name} must be one of {', '.join(map(repr, choices))}, not {value!r:.40}")
         if not isinstance(self.gamma, (float, int)) or not 0.0 < self.gamma <= 1.0:
-            raise ValueError(f"gamma is a number above 0, and 1 at most, not {self.gamma!r:.40}")
+            raise ValueError(f"gamma must be a number above 0 and at most 1, not {self.gamma!r:.40}")
 
 
 @record

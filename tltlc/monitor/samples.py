@@ -114,11 +114,13 @@ def param_values(params: Sequence[Param], given: Mapping[str, float]) -> dict[st
     for name, value in given.items():
         if name not in param_by_name:
             advice = (
-                f"there are: {name_list(list(param_by_name))}" if param_by_name else "its atoms use none: leave it out"
+                f"there are: {name_list(list(param_by_name))}"
+                if param_by_name
+                else "its atoms use no params: leave it out"
             )
             raise _param_error("TLT0308", f"there is no param `{name}` to set", advice)
         if isinstance(value, str) or not hasattr(value, "__float__"):
-            raise _param_error("TLT0308", f"the value given for the param `{name}` is no number")
+            raise _param_error("TLT0308", f"the value given for the param `{name}` is not a number")
         low, high = param_by_name[name].low, param_by_name[name].high
         if not isfinite(value):
             raise _param_error("TLT0308", f"the param `{name}` cannot be {number_text(value)}")
@@ -179,7 +181,7 @@ def _as_float(signal: Signal, given: SupportsFloat, when: int | str) -> float:
     if getattr(given, "ndim", 0):
         raise _error("TLT0612", when, f"the signal `{signal.name}` is an array, not a number")
     if isinstance(given, str) or not hasattr(given, "__float__"):
-        raise _error("TLT0612", when, f"the signal `{signal.name}` is no number")
+        raise _error("TLT0612", when, f"the signal `{signal.name}` is not a number")
     try:
         return float(given)
     except OverflowError:
@@ -188,10 +190,10 @@ def _as_float(signal: Signal, given: SupportsFloat, when: int | str) -> float:
 
 SUGGESTIONS: Final = {
     "TLT0611": "supply every signal that the atoms use, at each step",
-    "TLT0612": "look where the game computes it",
-    "TLT0613": "say in its predicate what holds there, with `when`",
-    "TLT0614": "remove the declaration, or look where the game computes them",
-    "TLT0615": "supply it on the scale that is declared, or declare the range that it has",
+    "TLT0612": "check how the game computes it",
+    "TLT0613": "give its predicate a value for this case, with `when`",
+    "TLT0614": "remove the declaration, or check how the game computes them",
+    "TLT0615": "supply it on the declared scale, or declare the range that it has",
     "TLT0616": "write `clamp(…, -1, 1)` in its predicate",
 }
 """The advice of each diagnostic about a sample, by its code."""

@@ -69,7 +69,7 @@ def run_test(test: Test, fspa: Fspa) -> TestResult:
                     break  # Further steps with the same sample would give the same result.
         except MonitorError as error:
             label = Label(test.source, test.span, "in this test")
-            advice = "let each step name one of them at most"
+            advice = "name at most one of them in each step"
             return TestResult(test, replace(error.diagnostics[0], labels=(label,), help=advice))
     return TestResult(test, None)
 

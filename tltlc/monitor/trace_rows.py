@@ -118,7 +118,7 @@ class TraceLines:
         line = line.removesuffix(b"\n")
         if len(line) > room:
             self.text = self.text or line[:80].decode(errors="replace")
-            raise self.error(f"more than {TRACE_LINE.size:,} bytes", (0, 80), "close each quote, end each row")
+            raise self.error(f"more than {TRACE_LINE.size:,} bytes", (0, 80), "close each quote, and end each row")
         self._used += len(line) + 1
         if self._read == 1:
             line = line.removeprefix(_BYTE_ORDER_MARK)
@@ -131,7 +131,7 @@ class TraceLines:
             before = len(line[: error.start].decode())
             raise self._bad_line(line, "it is not UTF-8", before, "save it as UTF-8") from None
         if "\0" in text:
-            raise self._bad_line(line, "it holds a NUL", text.index("\0"), "save it as text, in UTF-8")
+            raise self._bad_line(line, "it contains a NUL", text.index("\0"), "save it as text, in UTF-8")
         return text
 
     def _bad_line(self, line: bytes, remark: str, column: int, help: str) -> TltlError:  # noqa: A002
@@ -174,8 +174,8 @@ def _rows(lines: TraceLines, count: int) -> Iterator[list[str]]:
     for line in _lines(lines):
         cells = _cells(line, lines)
         if len(cells) != count:
-            remark = f"{_count_text(len(cells), 'value')}, under {_count_text(count, 'column')}"
-            raise lines.error(remark, help="give each column one value, in quotes where it holds a comma")
+            remark = f"{_count_text(len(cells), 'value')} for {_count_text(count, 'column')}"
+            raise lines.error(remark, help="give each column one value; put a value that contains a comma in quotes")
         yield cells
 
 
@@ -205,7 +205,7 @@ def _cells(line: str, lines: TraceLines) -> list[str]:
 
 def _check_returns(text: str, lines: TraceLines) -> None:
     if "\r" in text:
-        raise lines.error("a carriage return stands alone", help="end lines with LF or CR LF")
+        raise lines.error("a carriage return without a line feed", help="end lines with LF or CR LF")
 
 
 def _quoted_cell(line: str, start: int, lines: TraceLines) -> tuple[str, str, int]:
@@ -220,13 +220,15 @@ def _quoted_cell(line: str, start: int, lines: TraceLines) -> tuple[str, str, in
         pieces.append(line[start:])
         following = lines.next_of_row()
         if following is None:
-            raise lines.error("a quote is not closed", help="close each quote; write those inside as two")
+            raise lines.error(
+                "a quote is not closed", help="close each quote; write a quote inside a cell as two quotes"
+            )
         line, start = following, 0
     pieces.append(line[start:end])
     position = _after_blanks(line, end + 1)
     position = len(line) if line.endswith("\r") and position == len(line) - 1 else position
     if position < len(line) and line[position] != ",":
-        raise lines.error("a cell goes on after its quotes", help="write quotes inside a cell as two")
+        raise lines.error("a cell continues after its closing quote", help="write a quote inside a cell as two quotes")
     return "\n".join(pieces).replace('""', '"'), line, position
 
 
@@ -258,9 +260,9 @@ def _object(line: str, lines: TraceLines) -> dict[str, Any]:
     assert TRACE_LINE.depth is not None
     try:
         if line.count(",") >= TRACE_LINE.values:
-            raise _BadObjectError(f"this holds more than {TRACE_LINE.values:,} values")
+            raise _BadObjectError(f"this contains more than {TRACE_LINE.values:,} values")
         if "\r" in line.removesuffix("\r"):
-            raise _BadObjectError("a carriage return stands alone")
+            raise _BadObjectError("a carriage return without a line feed")
         # Integers may have more digits than Python's int() accepts.
         value = json.loads(line, parse_int=float, object_pairs_hook=_with_unique_keys)
         if line.count("{") + line.count("[") > TRACE_LINE.depth and _depth(value) > TRACE_LINE.depth:
@@ -272,16 +274,16 @@ def _object(line: str, lines: TraceLines) -> dict[str, Any]:
     except _BadObjectError as error:
         raise lines.error(str(error), help=JSON_LINES_HELP) from None
     if not isinstance(value, dict):
-        raise lines.error("this is no object", help=JSON_LINES_HELP)
+        raise lines.error("this is not an object", help=JSON_LINES_HELP)
     return value
 
 
 def _with_unique_keys(pairs: Sequence[tuple[str, Any]]) -> dict[str, Any]:
     object_ = dict(pairs)
     if len(object_) < len(pairs):
-        raise _BadObjectError("a key stands twice")
+        raise _BadObjectError("a key occurs twice")
     if any("\ud800" <= character <= "\udfff" for key in object_ if not key.isascii() for character in key):
-        raise _BadObjectError("a key holds half a character")
+        raise _BadObjectError("a key contains half a character")
     return object_
 
 

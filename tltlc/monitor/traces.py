@@ -39,7 +39,9 @@ def read_trace(stream: Stream, name: str, signals: Sequence[Signal]) -> Iterator
     for count, sample in enumerate(samples, start=1):  # noqa: B007 (counts)
         yield sample
     if not count:
-        raise TltlError([Diagnostic("TLT0620", f"the trace `{name}` holds no sample", help="record at least one step")])
+        raise TltlError(
+            [Diagnostic("TLT0620", f"the trace `{name}` contains no sample", help="record at least one step")]
+        )
 
 
 # --- CSV ------------------------------------------------------------------------------------------
@@ -76,7 +78,7 @@ def _suggestion(name: str, columns: Sequence[str]) -> str | None:
 
     squeezed = {"".join(column.split()): column for column in columns}
     close = get_close_matches("".join(name.split()), list(squeezed), n=1)
-    return f"is the column `{squeezed[close[0]]}` meant?" if close else None
+    return f"did you mean the column `{squeezed[close[0]]}`?" if close else None
 
 
 def _row_sample(row: Sequence[str], columns: Sequence[tuple[Signal, int]], lines: TraceLines) -> Sample:
@@ -96,7 +98,7 @@ def _is_allowed(signal: Signal, value: float) -> bool:
 
 def _problem(signal: Signal, value: float | None) -> str:
     """Return in words what is wrong with the value of a signal."""
-    return f"this value of `{signal.name}` is {'no number' if value is None else 'not true or false'}"
+    return f"this value of `{signal.name}` is {'not a number' if value is None else 'not true or false'}"
 
 
 def _advice(signal: Signal) -> str:

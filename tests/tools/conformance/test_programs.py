@@ -40,33 +40,33 @@ SPELLINGS = [
 
 # Traces and the expected messages; `…` stands for text that differs between languages.
 ERRORS = [
-    ("", "the trace holds no sample"),
-    ("\n\n", "the trace holds no sample"),
-    (HEAD, "the trace holds no sample"),
+    ("", "the trace contains no sample"),
+    ("\n\n", "the trace contains no sample"),
+    (HEAD, "the trace contains no sample"),
     ("health,distance(s1)\n1\n", "line 1: the trace has no column for `distance(s2)` and `distance(exit)`"),
     ("\ndistance(exit)\n1\n", "line 2: the trace has no column for `distance(s1)`, `distance(s2)` and `health`"),
     ("health,distance(s1),distance(s2)\n1\n", "line 1: the trace has no column for `distance(exit)`"),
-    ('{"health": 1}\n', "the trace is JSON, and this program reads CSV: `tltlc monitor` takes both"),
-    (' \t{, "health" 1}\n', "the trace is JSON, and this program reads CSV: `tltlc monitor` takes both"),
+    ('{"health": 1}\n', "the trace is JSON, but this program reads only CSV: `tltlc monitor` reads both"),
+    (' \t{, "health" 1}\n', "the trace is JSON, but this program reads only CSV: `tltlc monitor` reads both"),
     (f"health,{HEAD}1,1,1,1,1\n", "line 1: two columns are called `health`"),
-    (f"{HEAD}1,1\n", "line 2: 2 values under 4 columns"),
-    (f"{HEAD}x,1,1,1\n", "line 2: the signal `health` is `x`, no number"),
-    (f"{HEAD}0x1,1,1,1\n", "line 2: the signal `health` is `0x1`, no number"),
-    (f"{HEAD}--1,1,1,1\n", "line 2: the signal `health` is `--1`, no number"),
-    (f"{HEAD},1,1,1\n", "line 2: the signal `health` is ``, no number"),
+    (f"{HEAD}1,1\n", "line 2: 2 values for 4 columns"),
+    (f"{HEAD}x,1,1,1\n", "line 2: the signal `health` is `x`, not a number"),
+    (f"{HEAD}0x1,1,1,1\n", "line 2: the signal `health` is `0x1`, not a number"),
+    (f"{HEAD}--1,1,1,1\n", "line 2: the signal `health` is `--1`, not a number"),
+    (f"{HEAD},1,1,1\n", "line 2: the signal `health` is ``, not a number"),
     (f"{HEAD}nan,1,1,1\n", "step 1: …`health`"),
     (f"{HEAD}-Inf,1,1,1\n", "step 1: …`health`"),
     (f"{HEAD}1e999,1,1,1\n", "step 1: …`health`"),
     (f'{HEAD}"1,1,1,1\n', "line 2: a quote is not closed"),
-    (f'{HEAD}"1"2,1,1,1\n', "line 2: a cell goes on after its quotes"),
-    (f"{HEAD}1\r,1,1,1\n", "line 2: a carriage return stands alone"),
-    (f"{HEAD}\0,1,1,1\n", "line 2: it is not UTF-8, or holds a NUL"),
+    (f'{HEAD}"1"2,1,1,1\n', "line 2: a cell continues after its closing quote"),
+    (f"{HEAD}1\r,1,1,1\n", "line 2: a carriage return without a line feed"),
+    (f"{HEAD}\0,1,1,1\n", "line 2: it is not UTF-8, or contains a NUL"),
     (f"{HEAD}\n{'-' * (ROW_BYTES + 1)}\n", "line 3: more than 1048576 bytes"),
     (f"{HEAD}1,1,1,{' ' * 3 * ROW_BYTES}1", "line 2: more than 1048576 bytes"),
     (f'{HEAD}1,1,1,"{chr(10) * ROW_BYTES}\xe9', "line 2: more than 1048576 bytes"),
     # Long runs of digits, on which a backtracking regular expression would take quadratic time.
-    (f"{HEAD}{'1' * 200_000}x,1,1,1\n", "line 2: the signal `health` is `1…no number"),
-    (f"{HEAD}1{' ' * 200_000}1,1,1,1\n", "line 2: the signal `health` is `1…no number"),
+    (f"{HEAD}{'1' * 200_000}x,1,1,1\n", "line 2: the signal `health` is `1…not a number"),
+    (f"{HEAD}1{' ' * 200_000}1,1,1,1\n", "line 2: the signal `health` is `1…not a number"),
     (f"{HEAD}1,0.5,0.5,20\n", "step 1: `near(s1)` and `near(s2)` hold at once, against …"),
 ]
 USAGE = [[], ["--full"], ["-", "--full"], ["--full", "a", "b"], ["--what", "a"]]
@@ -183,7 +183,7 @@ def test_rows_before_an_unreadable_line_are_printed(run: Run) -> None:
     status, out, err = run("trace.csv", trace=f"{HEAD}1,20,20,20\n2,20,20,20\n1,20,?,20\n")
     assert (status, out.count("\n")) == (1, 3)
     assert err == (
-        "error: line 4: the signal `distance(s2)` is `?`, no number\n"
+        "error: line 4: the signal `distance(s2)` is `?`, not a number\n"
         "warning: step 2: the signal `health` is 2, outside [0, 1]: it counts as 1\n"
     )
 

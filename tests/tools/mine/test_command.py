@@ -287,7 +287,7 @@ def test_an_empty_trace_is_reported(tltlc: Run, recorded: Path, text: str) -> No
     Path("bad/empty.csv").write_text(text)
     outcome = tltlc("mine", "good", "--against", "bad")
     assert outcome.status == 1
-    assert f"error[TLT0620]: the trace `{Path('bad/empty.csv')}` holds no sample" in outcome.err
+    assert f"error[TLT0620]: the trace `{Path('bad/empty.csv')}` contains no sample" in outcome.err
 
 
 def test_a_missing_trace_is_reported(tltlc: Run, inside: Path) -> None:
