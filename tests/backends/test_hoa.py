@@ -136,7 +136,7 @@ def test_an_automaton_over_finite_traces_has_marks_on_states() -> None:
     assert "Alias: @allowed !(0&1) & !(0&2) & !(1&2)\n" in text
     assert "acc-name: Buchi\nAcceptance: 1 Inf(0)\n" in text
     assert "properties: trans-labels explicit-labels state-acc deterministic\n" in text
-    assert 'Tltlc-semantics: "finite"\n/* A finite trace is accepted where its run ends ' in text
+    assert 'Tltlc-semantics: "finite"\n/* A finite trace is accepted if its run ends ' in text
     assert 'State: 4 "G alive" {0}\n[@allowed & !3] 2\n[@allowed & 3] 4\n--END--\n' in text
     check(cover_and_hide())
 

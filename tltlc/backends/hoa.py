@@ -28,7 +28,7 @@ TARGET = Target("hoa", "an omega-automaton in the Hanoi format (HOA), for model 
 # By the format, a tool that does not know a header with a capital first letter must refuse the file or warn. Without
 # this header, the tool would read an automaton with another meaning.
 FINITE_HEADER = 'Tltlc-semantics: "finite"'
-FINITE_COMMENT = "A finite trace is accepted where its run ends in a state of set 0."
+FINITE_COMMENT = "A finite trace is accepted if its run ends in a state of set 0."
 ALLOWED_COMMENT = "Exclusive atoms never hold at once: a letter that is not @allowed has no edge."
 
 

@@ -264,9 +264,9 @@ def test_too_many_prime_implicants_are_rejected(monkeypatch: pytest.MonkeyPatch)
     [
         ("Start: 99999999999999999999", "this number is too large"),
         ('Start: 0 Tltlc-semantics: "infinite"', 'the only value of this header is `"finite"`'),
-        ("Start: 0 tltlc-judge: later", "this header says `goal` or `limit`"),
-        ("Start: 0 tltlc-limit: 0", "this header says a number of steps"),
-        ('Start: 0 AP: 15000 "p0"', "`AP:` says 15000, and 1 name follows"),
+        ("Start: 0 tltlc-judge: later", "this header must be `goal` or `limit`"),
+        ("Start: 0 tltlc-limit: 0", "this header must be a number of steps"),
+        ('Start: 0 AP: 15000 "p0"', "`AP:` says 15000, but 1 name follows"),
     ],
 )
 def test_wrong_headers_are_reported(text: str, message: str) -> None:
@@ -278,7 +278,7 @@ def test_wrong_headers_are_reported(text: str, message: str) -> None:
 def test_letters_of_many_atoms_are_not_enumerated() -> None:
     names = " ".join(f'"p{place}"' for place in range(15_000))
     library = SourceFile("p.tltl", "\n".join(f"signal p{place}: bool" for place in range(15_000)))
-    with pytest.raises(tltlc.TltlError, match=r"has 1 edge without labels, for 2\^15000 letters"):
+    with pytest.raises(tltlc.TltlError, match=r"has 1 edge without labels, but there are 2\^15000 letters"):
         import_text(f"HOA: v1 Start: 0 AP: 15000 {names} Acceptance: 0 t --BODY-- State: 0 0 --END--", library)
 
 

@@ -49,23 +49,23 @@ def _check_header(hoa: Hoa, header: Header) -> None:
     """
     if header.name == FINITE and header.values == ("finite",):
         if (hoa.sets, hoa.condition.op, hoa.condition.outside) != (1, "inf", False):
-            title = "over finite traces a state accepts or does not: `Acceptance: 1 Inf(0)`"
-            raise unsupported_error(hoa.source, header.span, title, "set 0 holds the states in which a trace may end")
+            title = "over finite traces, the acceptance must be `Acceptance: 1 Inf(0)`"
+            raise unsupported_error(hoa.source, header.span, title, "put the states in which a trace may end in set 0")
         for state in hoa.states:
             for edge in state.edges:
                 if edge.sets.numbers:
-                    title = "over finite traces states accept, and no edges do"
+                    title = "over finite traces, states accept, but edges do not"
                     raise unsupported_error(
-                        hoa.source, edge.sets.span, title, "put the set behind the states that it leads to"
+                        hoa.source, edge.sets.span, title, "write the set after the state that this edge leads to"
                     )
     elif header.name == FINITE:
         title, help_ = (
             'the only value of this header is `"finite"`',
-            "leave the header out where traces are infinite",
+            "leave out the header if traces are infinite",
         )
         raise unsupported_error(hoa.source, header.span, title, help_)
     elif header.name[0].isupper():
-        title = f"the header `{header.name}` changes what the automaton means, and is not known here"
+        title = f"tltlc does not know the header `{header.name}`, which changes what the automaton means"
         raise unsupported_error(hoa.source, header.span, title, "write the automaton without it")
 
 
@@ -82,18 +82,21 @@ def _check_states(hoa: Hoa) -> None:
     for state in hoa.states:
         if state.number in numbers:
             raise format_error(
-                hoa.source, state.span, f"state {state.number} stands here again", "join its edges in one"
+                hoa.source,
+                state.span,
+                f"state {state.number} occurs here again",
+                "write all of its edges after one `State:`",
             )
         numbers.add(state.number)
     if hoa.count is not None and (excess := next((state for state in hoa.states if state.number >= hoa.count), None)):
-        title = f"there is no state {excess.number}: `States:` declares {hoa.count}, counted from 0"
-        raise format_error(hoa.source, excess.span, title, "declare more states, or leave `States:` out")
+        title = f"state {excess.number} does not exist: `States:` declares {hoa.count}, counted from 0"
+        raise format_error(hoa.source, excess.span, title, "declare more states, or leave out `States:`")
     for targets in _targets(hoa):
         if len(targets.states) > 1:
             title = "this leads to several states at once, so the automaton is alternating"
             raise unsupported_error(hoa.source, targets.span, title, DETERMINISTIC)
         if targets.states[0] not in numbers:
-            title = f"there is no state {targets.states[0]}"
+            title = f"state {targets.states[0]} does not exist"
             raise format_error(hoa.source, targets.span, title, f"add it to the body: `State: {targets.states[0]}`")
     for sets in _sets(hoa):
         _check_set(hoa, max(sets.numbers, default=-1), sets.span)
@@ -111,8 +114,8 @@ def _check_condition(hoa: Hoa, condition: HoaExpression) -> None:
 def _check_set(hoa: Hoa, number: int, span: Span) -> None:
     """Raise TltlError, TLT0651, if there is no set with this number."""
     if number >= hoa.sets:
-        title = f"there is no set {number}: `Acceptance:` declares {hoa.sets}, counted from 0"
-        raise format_error(hoa.source, span, title, "name one of those, or declare more")
+        title = f"set {number} does not exist: `Acceptance:` declares {hoa.sets}, counted from 0"
+        raise format_error(hoa.source, span, title, "use one of those, or declare more")
 
 
 def _targets(hoa: Hoa) -> Iterator[Targets]:

@@ -119,12 +119,12 @@ def load(source: SourceFile, library: SourceFile, options: ImportOptions) -> tup
 def _trivial_warnings(fspa: Fspa, source: SourceFile) -> tuple[Diagnostic, ...]:
     """Return a warning if the automaton accepts every trace, or no trace."""
     if fspa.states[0].verdict == "violated":
-        title, help_ = f"`{source.name}` accepts no trace", "look at its acceptance, and at what is `exclusive`"
+        title, help_ = f"`{source.name}` accepts no trace", "check its acceptance, and which atoms are `exclusive`"
         return (Diagnostic("TLT0410", title, help=help_, severity="warning"),)
     if fspa.states[0].verdict == "satisfied":
         title, help_ = (
             f"`{source.name}` accepts every trace",
-            "look at its acceptance: it asks nothing of the game",
+            "check its acceptance: it requires nothing of the game",
         )
         return (Diagnostic("TLT0411", title, help=help_, severity="warning"),)
     return ()
@@ -168,13 +168,13 @@ def _label(name: str, formula_of: FormulaOf) -> Formula | Text:
 
 def _too_large(source: SourceFile, reason: Exception, options: ImportOptions) -> Diagnostic:
     if isinstance(reason, TooManyPrimes):
-        help_ = "name the condition as a predicate, and use that in the automaton"
+        help_ = "declare the condition as a predicate, and use the predicate in the automaton"
         return Diagnostic("TLT0502", reason.title(source.name), help=help_)
     if isinstance(reason, OutOfStates):
         title = f"the automaton of `{source.name}` needs more than {options.state_budget} states"
-        return Diagnostic("TLT0501", title, help="give a smaller one, or allow more by `--state-budget`")
-    title = f"the automaton of `{source.name}` is too large, or its acceptance for Rabin pairs"
-    return Diagnostic("TLT0501", title, help="give one with parity acceptance, e.g. by Spot: `autfilt --parity -D -C`")
+        return Diagnostic("TLT0501", title, help="use a smaller one, or allow more with `--state-budget`")
+    title = f"the automaton of `{source.name}` is too large, or its acceptance is too large for Rabin pairs"
+    return Diagnostic("TLT0501", title, help="use one with parity acceptance, e.g. from Spot: `autfilt --parity -D -C`")
 
 
 @resource_limits()

@@ -44,7 +44,10 @@ def metadata(hoa: Hoa) -> Metadata:
 
 def _choice(hoa: Hoa, header: Header, values: tuple[str, ...]) -> str:
     if len(header.values) != 1 or header.values[0] not in values:
-        title, help_ = f"this header says {' or '.join(f'`{value}`' for value in values)}", "or leave it out"
+        title, help_ = (
+            f"this header must be {' or '.join(f'`{value}`' for value in values)}",
+            "write one of these, or leave it out",
+        )
         raise unsupported_error(hoa.source, header.span, title, help_)
     return header.values[0]
 
@@ -52,6 +55,6 @@ def _choice(hoa: Hoa, header: Header, values: tuple[str, ...]) -> str:
 def _steps(hoa: Hoa, header: Header) -> int:
     value = header.values[0] if len(header.values) == 1 else ""
     if not value.isdecimal() or not 0 < int(value[:12]) <= _LARGEST:
-        title, help_ = "this header says a number of steps, at least 1", "or leave it out"
+        title, help_ = "this header must be a number of steps, at least 1", "write such a number, or leave it out"
         raise unsupported_error(hoa.source, header.span, title, help_)
     return int(value)

@@ -23,13 +23,13 @@ _ESCAPE: Final = re.compile(r"\\(?:u([0-9a-fA-F]{4})|U(000[0-9a-fA-F]{5}|0010[0-
 _LARGEST: Final = 2**31 - 1
 
 _NAMES: Final = {
-    "ALIAS": "an alias as `@name`",
-    "HEADER": "a header as `name:`",
+    "ALIAS": "an alias like `@name`",
+    "HEADER": "a header like `name:`",
     "IDENTIFIER": "a word",
     "INT": "a number",
-    "LABEL": "a label as `[0 & !1]`",
+    "LABEL": "a label like `[0 & !1]`",
     "STRING": "a text in double quotes",
-    "VERSION": "a version as `v1`",
+    "VERSION": "a version like `v1`",
 }
 """What messages call each terminal of the grammar that matches a pattern."""
 _MOST_EXPECTED: Final = 5
@@ -47,7 +47,7 @@ def read_hoa(source: SourceFile) -> Hoa:
     """
     if source.text.lstrip().startswith("{"):
         title, help_ = (
-            f"`{source.name}` is JSON, and no automaton in the Hanoi format",
+            f"`{source.name}` is JSON, not an automaton in the Hanoi format",
             "an artefact needs no import",
         )
         raise TltlError([Diagnostic("TLT0651", title, help=help_)])
@@ -115,7 +115,10 @@ def _syntax_error(source: SourceFile, error: UnexpectedInput, whole: Span, at_en
     if not isinstance(error, UnexpectedToken):
         start = whole.start + (error.pos_in_stream or 0)
         if source.text.startswith("--ABORT--", start):
-            title, help_ = "the tool that wrote this automaton gave it up", "have it written again, to its end"
+            title, help_ = (
+                "the tool that wrote this automaton did not finish it",
+                "let the tool write it again, to its end",
+            )
             return unsupported_error(source, Span(start, start + len("--ABORT--")), title, help_)
         character = source.text[start]
         endless = {'"': "this text does not end", "[": "this label does not end"}
@@ -129,9 +132,9 @@ def _syntax_error(source: SourceFile, error: UnexpectedInput, whole: Span, at_en
         span, title = Span(whole.end, whole.end + 1), f"{at_end} is not expected here"
     else:
         here = Span(whole.end, whole.end)
-        return format_error(source, here, "the file ends too soon", "it was cut off: an automaton ends with `--END--`")
+        return format_error(source, here, "the file ends too early", "it was cut off: an automaton ends with `--END--`")
     if error.accepts == {"$END"} and token == "HOA:":
-        title, help_ = f"`{source.name}` holds several automata", "give a file with one of them"
+        title, help_ = f"`{source.name}` contains several automata", "use a file with only one of them"
         return unsupported_error(source, span, title, help_, "another one")
     expected = sorted(at_end if name == "$END" else _terminal_name(name) for name in error.accepts)
     remark = f"expected {_alternatives(expected)}" if 0 < len(expected) <= _MOST_EXPECTED else ""
@@ -178,17 +181,19 @@ class _Tree(Transformer_NonRecursive[Token, Hoa]):
     def automaton(self, version: Token, *items: Any) -> Hoa:
         """Build the whole automaton. Raises TltlError, TLT0651, if the header is wrong."""
         if version != "v1":
-            help_ = "this reads version 1 of the format, `HOA: v1`"
-            raise format_error(self._source, self._span(version), f"`{_shorten(version)}` is no version known", help_)
+            help_ = "tltlc reads version 1 of the format, `HOA: v1`"
+            raise format_error(
+                self._source, self._span(version), f"the version `{_shorten(version)}` is not known", help_
+            )
         states = tuple(item for item in items if isinstance(item, HoaState))
         header: dict[str, list[Any]] = {}
         for kind, value, span in (item for item in items if not isinstance(item, HoaState)):
             values = header.setdefault(kind, [])
             if values and kind in _ONCE:
-                raise format_error(self._source, span, f"`{kind}` stands here again", "keep one of the two")
+                raise format_error(self._source, span, f"`{kind}` occurs here again", "keep one of the two")
             values.append(value)
         if "Acceptance:" not in header:
-            title, help_ = "the header says nothing of acceptance", "it needs a line as `Acceptance: 1 Inf(0)`"
+            title, help_ = "the header has no acceptance", "add a line like `Acceptance: 1 Inf(0)`"
             raise format_error(self._source, Span(0, 4), title, help_)
         ((sets, condition),) = header["Acceptance:"]
         return Hoa(
@@ -217,8 +222,8 @@ class _Tree(Transformer_NonRecursive[Token, Hoa]):
     def atoms(self, word: Token, count: Token, *names: HoaString) -> Any:
         """Read the header item ``AP: 2 "a" "b"``."""
         if self._number(count) != len(names):
-            title = f"`AP:` says {count}, and {len(names)} {'name follows' if len(names) == 1 else 'names follow'}"
-            raise format_error(self._source, self._span(word), title, "give the number of names")
+            title = f"`AP:` says {count}, but {len(names)} {'name follows' if len(names) == 1 else 'names follow'}"
+            raise format_error(self._source, self._span(word), title, "write the number of names")
         return "AP:", names, self._span(word)
 
     def alias(self, name: Token, term: HoaExpression) -> Any:
@@ -313,7 +318,7 @@ class _Tree(Transformer_NonRecursive[Token, Hoa]):
     def set(self, kind: Token, outside: Token | None, number: Token) -> HoaExpression:
         """Build a term of an acceptance condition, e.g. ``Fin(0)`` or ``Inf(!0)``."""
         if kind not in ("Fin", "Inf"):
-            title, help_ = f"`{kind}` is no acceptance", "it is `Fin` or `Inf` of a set"
+            title, help_ = f"`{kind}` is not an acceptance condition", "use `Fin` or `Inf` of a set"
             raise format_error(self._source, self._span(kind), title, help_)
         op: Any = kind.lower()
         return HoaExpression(op, (), self._number(number), outside is not None, self._span(number))
@@ -323,7 +328,7 @@ class _Tree(Transformer_NonRecursive[Token, Hoa]):
     def _number(self, digits: Token) -> int:
         # Check the length first: Python refuses to convert thousands of digits.
         if len(digits) > len(str(_LARGEST)) or int(digits) > _LARGEST:
-            title, help_ = "this number is too large", f"numbers of the format end at {_LARGEST:,}"
+            title, help_ = "this number is too large", f"the largest number in the format is {_LARGEST:,}"
             raise format_error(self._source, self._span(digits), title, help_)
         return int(digits)
 

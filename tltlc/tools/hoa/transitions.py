@@ -98,8 +98,10 @@ class HoaTransitions:
         # The message says 2^count: Python refuses to print numbers of thousands of digits.
         if count > _MOST_UNLABELLED or len(state.edges) != 2**count:
             edges = f"{len(state.edges)} edge{'' if len(state.edges) == 1 else 's'}"
-            title = f"state {state.number} has {edges} without labels, for 2^{count} letters"
-            raise format_error(self._hoa.source, state.span, title, "give one edge for each letter, or labels")
+            title = f"state {state.number} has {edges} without labels, but there are 2^{count} letters"
+            raise format_error(
+                self._hoa.source, state.span, title, "write one edge for each letter, or label the edges"
+            )
 
         def function(atom: int, holding: int) -> int:
             if atom == count:
@@ -134,13 +136,13 @@ class HoaTransitions:
                 return result
             case "alias":
                 if term.value not in self._aliases:
-                    title = f"there is no alias `{term.value}` before this"
+                    title = f"the alias `{term.value}` is not declared before this"
                     raise format_error(self._hoa.source, term.span, title, "declare it: `Alias: @name 0 & !1`")
                 return self._aliases[str(term.value)]
         assert isinstance(term.value, int)
         if term.value >= len(self._hoa.atoms):
-            title = f"there is no atom {term.value}: `AP:` has {len(self._hoa.atoms)}, counted from 0"
-            raise format_error(self._hoa.source, term.span, title, "name one of those, or add it to `AP:`")
+            title = f"atom {term.value} does not exist: `AP:` has {len(self._hoa.atoms)}, counted from 0"
+            raise format_error(self._hoa.source, term.span, title, "use one of those, or add it to `AP:`")
         return letters.node(term.value, no, yes)
 
     def _is_unlabelled(self, state: HoaState) -> bool:
@@ -154,15 +156,15 @@ class HoaTransitions:
         if state.label is not None:
             for edge in state.edges:
                 if edge.label is not None:
-                    raise self._label_problem(edge, "this edge has a label, and its state has one, too")
+                    raise self._label_problem(edge, "this edge and its state both have a label")
             return False
         unlabelled = [edge for edge in state.edges if edge.label is None]
         if unlabelled and len(unlabelled) < len(state.edges):
-            raise self._label_problem(unlabelled[0], "this edge has no label, and others of its state have one")
+            raise self._label_problem(unlabelled[0], "this edge has no label, but other edges of its state have one")
         return bool(unlabelled)
 
     def _label_problem(self, edge: HoaEdge, title: str) -> TltlError:
-        help_ = "label the state alone, all of its edges, or none of them"
+        help_ = "label only the state, all of its edges, or none of them"
         return format_error(self._hoa.source, edge.targets.span, title, help_)
 
     # --- letters with no edge or two --------------------------------------------------------------
@@ -177,7 +179,7 @@ class HoaTransitions:
         source = self._hoa.source
         if not taken:
             title = f"this automaton is not complete: state {state.number} has no edge for `{letter}`"
-            return Diagnostic("TLT0654", title, (Label(source, state.span, "of this state"),), DETERMINISTIC)
+            return Diagnostic("TLT0654", title, (Label(source, state.span, "this state"),), DETERMINISTIC)
         title = f"this automaton is not deterministic: state {state.number} has two edges for `{letter}`"
         first, second = (state.edges[place].targets.span for place in taken)
         labels = (Label(source, first, "one"), Label(source, second, "the other"))
