@@ -49,7 +49,7 @@ def test_an_artefact_of_an_infinite_spec_has_witnesses(tltlc: Run, inside: Path)
     )
     tltlc("compile", "watch.tltl", "-t", "json")
     outcome = tltlc("witness", "watch.fspa.json", "--accepting")
-    assert outcome.out.startswith("// Step 1 repeats for ever; here it stands once.\n")
+    assert outcome.out.startswith("// Step 1 repeats for ever; here it is written once.\n")
     Path("pasted.tltl").write_text(Path("watch.tltl").read_text() + outcome.out)
     assert tltlc("test", "pasted.tltl").status == 0
     csv = tltlc("witness", "watch.fspa.json", "--rejecting", "--as", "csv")

@@ -19,7 +19,7 @@ def ending(fspa: Fspa) -> str:
         too = ", too" if can_break else ""
         return (
             f"An episode ends with success as soon as the spec is met{or_fails}. "
-            f"One that is over before the spec is met is a failure{too}."
+            f"An episode that is over before the spec is met is a failure{too}."
         )
     until = "until the game ends it" if fspa.limit_steps is None else "to its limit"
     met = "it is in a state with 0 to go" if fspa.semantics == "infinite" else "the spec is met"

@@ -189,4 +189,4 @@ def _no_failure(explanation: Explanation) -> str:
         return "None was found."
     if explanation.states[0].verdict == "satisfied":
         return "There is none: every trace meets it."
-    return "There is none: it fails only by not being met when the episode is over."
+    return "There is none: it fails only if it is not met when the episode is over."

@@ -44,11 +44,11 @@ def no_trace_warning(moves: Moves, outcome: str) -> Diagnostic:
             f"edge {_edge(fspa, edge)}: {_none_found(' or '.join(obstacle.text(fspa) for obstacle in obstacles[:2]))}"
         )
         return Diagnostic(
-            "TLT0741", f"no samples were found that `{fspa.name}` would have {outcome}", (), help_, "warning"
+            "TLT0741", f"no samples were found for a trace that is {outcome} by `{fspa.name}`", (), help_, "warning"
         )
-    help_ = f"`tltlc explain` says what it asks for; weaken it where it should be {outcome} at times"
+    help_ = f"`tltlc explain` says what it requires; weaken it if some traces should be {outcome}"
     if outcome == "rejected":
-        help_ = "it asks nothing of the game, or nothing that can fail"
+        help_ = "it requires nothing of the game, or nothing that can fail"
     return Diagnostic("TLT0741", f"no trace is {outcome} by `{fspa.name}`", (), help_, "warning")
 
 
@@ -66,27 +66,25 @@ def untaken_warnings(fspa: Fspa, edges: Sequence[UntakenEdge]) -> list[Diagnosti
         else:
             text, help_ = (
                 "no way was found to",
-                "the state that it leaves is reached by edges alone that none takes",
+                "the state that it leaves is reached only by edges that no trace takes",
             )
         warnings.append(Diagnostic("TLT0740", f"{text} {name}", (), help_, "warning"))
     if len(edges) > _MOST_NAMED:
         rest = len(edges) - _MOST_NAMED
         text = f"no trace takes {rest} more edge{'s' * (rest > 1)} of `{fspa.name}`"
-        warnings.append(Diagnostic("TLT0740", text, (), "write fewer atoms over the same signals", "warning"))
+        warnings.append(Diagnostic("TLT0740", text, (), "use fewer atoms of the same signals", "warning"))
     return warnings
 
 
 def no_atoms_error(fspa: Fspa) -> Diagnostic:
     """Return the error about a spec without atoms, for which no test can be written."""
-    return Diagnostic(
-        "TLT0742", f"`{fspa.name}` has no atoms, so a trace of it says nothing", help="name an atom in it"
-    )
+    return Diagnostic("TLT0742", f"`{fspa.name}` has no atoms, so a trace of it says nothing", help="use an atom in it")
 
 
 def no_signals_error(fspa: Fspa) -> Diagnostic:
     """Return the error about a spec that reads no signal, for which no CSV can be written."""
     title = f"`{fspa.name}` reads no signal, so a CSV trace of it has no columns"
-    return Diagnostic("TLT0742", title, help="ask for `--as test`, or name a signal in it")
+    return Diagnostic("TLT0742", title, help="write `--as test`, or use a signal in it")
 
 
 def _none_found(literals: str) -> str:
@@ -104,7 +102,7 @@ def reporting_out_of_work(fspa: Fspa) -> Iterator[None]:
         yield
     except OutOfWork:
         text = f"the search for an infinite trace of `{fspa.name}` takes too many steps"
-        help_ = "raise `--state-budget`, or ask for `--cover`"
+        help_ = "raise `--state-budget`, or use `--cover`"
         raise TltlError([Diagnostic("TLT0743", text, help=help_)]) from None
 
 

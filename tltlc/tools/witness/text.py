@@ -52,8 +52,8 @@ def cycle_text(witness: Witness) -> str:
         return ""
     first, last = witness.cycle + 1, len(witness.moves)
     if first == last:
-        return f"step {last} repeats for ever; here it stands once"
-    return f"steps {first} to {last} repeat for ever; here they stand once"
+        return f"step {last} repeats for ever; here it is written once"
+    return f"steps {first} to {last} repeat for ever; here they are written once"
 
 
 def _check(fspa: Fspa, witness: Witness, states: list[int]) -> None:
