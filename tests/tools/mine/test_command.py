@@ -151,15 +151,18 @@ def test_traces_on_both_sides_are_reported_once(tltlc: Run, recorded: Path) -> N
     first, second = (str(Path(f"good/run_0{number}.csv")) for number in (0, 1))
     outcome = tltlc("mine", "good", "--against", "good")
     assert outcome.err.count("TLT0762") == 1
-    title = f"12 of 12 counterexamples are the same in atoms as a trace (`{first}`, for one), and no spec tells them"
+    title = (
+        f"12 of 12 counterexamples have the same atoms as a trace at every step (`{first}`, for example), so no spec"
+    )
     assert title in outcome.err
     outcome = tltlc("mine", "good", "--against", "bad", "--against", first)
-    assert f"TLT0762]: `{first}` is a trace and a counterexample, and no spec tells the two apart" in outcome.err
+    assert f"TLT0762]: `{first}` is both a trace and a counterexample, so no spec can tell the two apart" in outcome.err
     copies = [Path("bad/a.csv"), Path("bad/b.csv")]
     for path, source in zip(copies, (first, second), strict=True):
         path.write_text(Path(source).read_text())
     outcome = tltlc("mine", "good", "--against", "bad")
-    title = f"2 of 26 counterexamples are the same in atoms as a trace (`{copies[0]}` as `{first}`, for one)"
+    title = "2 of 26 counterexamples have the same atoms as a trace at every step "
+    title += f"(`{copies[0]}` and `{first}`, for example)"
     assert title in outcome.err and outcome.err.count("TLT0762") == 1
 
 
@@ -197,7 +200,7 @@ def test_mined_specs_have_no_limit(tltlc: Run, recorded: Path) -> None:
     tltlc("mine", "good", "--against", "bad", "-o", "mined.tltl")
     text = Path("mined.tltl").read_text(encoding="utf-8")
     longest = max(len(path.read_text().splitlines()) - 1 for path in Path("good").iterdir())
-    assert f"\n// Limits are yours to set: the longest of the traces takes {longest} steps.\n" in text
+    assert f"\n// Set limits yourself: the longest of the traces takes {longest} steps.\n" in text
     assert all(fspa.limit_steps is None for fspa in compile_file("mined.tltl"))
 
 
@@ -213,7 +216,7 @@ def test_counterexamples_are_made_up_if_none_are_given(tltlc: Run, recorded: Pat
     outcome = tltlc("mine", "good")
     assert outcome.status == 0
     assert "made-up counterexamples" in outcome.out
-    assert "stand in for them.\n" in outcome.out
+    assert "so made-up ones are used: " in outcome.out
 
 
 @pytest.mark.parametrize("example", ["navigation", "cover_and_hide", "racing"])

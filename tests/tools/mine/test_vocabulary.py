@@ -71,10 +71,10 @@ def test_a_duplicate_column_is_reported() -> None:
 @pytest.mark.parametrize(
     ("columns_of_traces", "title"),
     [
-        ({"F": True, "then": True, "x y": True, "speed": False}, "the columns `F`, `then` and `x y` hold"),
-        ({"F": True}, "the column `F` holds"),
-        ({"speed": False}, "no column of the traces holds"),
-        ({}, "no column of the traces holds"),
+        ({"F": True, "then": True, "x y": True, "speed": False}, "the columns `F`, `then` and `x y` contain only"),
+        ({"F": True}, "the column `F` contains only"),
+        ({"speed": False}, "no column of the traces contains only"),
+        ({}, "no column of the traces contains only"),
     ],
 )
 def test_the_error_says_why_there_is_no_atom(columns_of_traces: dict[str, bool], title: str) -> None:

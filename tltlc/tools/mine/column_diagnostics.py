@@ -47,8 +47,8 @@ class OddColumns:
             lack = "lacks" if len(self.traces) == 1 else "lack"
             title = f"{_first(self.traces)} {lack} the column{'s' * (not is_one)} {listed_names}, so {consequence}"
             return Diagnostic("TLT0763", title, help="record all traces with the same columns", severity="warning")
-        hold = "holds" if is_one else "hold"
-        title = f"{listed_names} {hold} other values than `true` and `false` in {_first(self.traces)}, so {consequence}"
+        have = "has" if is_one else "have"
+        title = f"{listed_names} {have} values other than `true` and `false` in {_first(self.traces)}, so {consequence}"
         help_ = "write `true` and `false` there, too, or compute atoms from numbers with `--predicates LIB`"
         return Diagnostic("TLT0763", title, help=help_, severity="warning")
 

@@ -77,15 +77,15 @@ def _contradictions(
         return ()
     name = contradicting[0].name
     other = name if name in trace_names else names_by_letters[contradicting[0].letters]
-    help_ = "move one of them to the other side, or record a signal that tells what differs"
+    help_ = "move one of them to the other side, or record a signal that shows the difference"
     if len(contradicting) > 1:
-        first = f"`{name}`" if name == other else f"`{name}` as `{other}`"
-        title = f"{len(contradicting)} of {len(counterexamples)} counterexamples are the same in atoms as a trace"
-        title += f" ({first}, for one), and no spec tells them apart"
+        first = f"`{name}`" if name == other else f"`{name}` and `{other}`"
+        title = f"{len(contradicting)} of {len(counterexamples)} counterexamples have the same atoms as a trace at "
+        title += f"every step ({first}, for example), so no spec can tell them apart"
     elif name == other:
-        title = f"`{name}` is a trace and a counterexample, and no spec tells the two apart"
+        title = f"`{name}` is both a trace and a counterexample, so no spec can tell the two apart"
     else:
-        title = f"`{name}` and `{other}` are the same in atoms, and no spec tells them apart"
+        title = f"`{name}` and `{other}` have the same atoms at every step, so no spec can tell them apart"
     if name == other:
-        help_ = "name each trace on one side alone"
+        help_ = "name each trace on only one side"
     return (Diagnostic("TLT0762", title, help=help_, severity="warning"),)

@@ -18,7 +18,7 @@ _WIDTH: Final = 100
 _INDENT: Final = " " * 5
 _MEASURE: Final = (
     f"The score is support + separation - 1, less {PRICE:g} for each atom. Support is the share of the traces that "
-    "satisfy a proposal, separation the share of the counterexamples that do not."
+    "satisfy a proposal; separation is the share of the counterexamples that do not."
 )
 
 
@@ -29,7 +29,9 @@ def proposals_text(proposals: Sequence[Proposal], evidence: Evidence, bits: Bits
     """
     parts = ["\n".join(_proposal(rank, proposal, evidence, bits)) for rank, proposal in enumerate(proposals, start=1)]
     if evidence.made_up:
-        parts.append("No counterexamples were given: made-up ones, cut short, reordered or broken, stand in for them.")
+        parts.append(
+            "No counterexamples were given, so made-up ones are used: traces that are cut short, reordered or broken."
+        )
     parts.append(fill(_MEASURE, _WIDTH))
     return "\n\n".join(parts)
 

@@ -100,7 +100,7 @@ class SpecSearch:
                 f"only {MOST_EVENTS} atoms are related to each other, and {self._unrelated:,} others are not"
             )
         if self._work.left < 0:
-            sentences.append(f"only sequences of {WORK['mined sequences']:,} steps together are tried, others are not")
+            sentences.append(f"only sequences of {WORK['mined sequences']:,} steps in total are tried, others are not")
         if self._candidates.is_cut:
             sentences.append(f"only the {WORK['mined candidates']:,} candidates with the best scores are kept")
         return sentences

@@ -37,7 +37,7 @@ def source_text(proposals: Sequence[Proposal], evidence: Evidence, bits: Bits, p
     longest = _count_text(max(len(trace.letters) for trace in evidence.traces), "step")
     parts = [
         f"// Proposed by `tltlc mine` from {origin}: read before use.\n"
-        f"// Limits are yours to set: the longest of the traces takes {longest}.\n{preamble}"
+        f"// Set limits yourself: the longest of the traces takes {longest}.\n{preamble}"
     ]
     for number, proposal in enumerate(proposals, start=1):
         named = replace(proposal, fspa=replace(proposal.fspa, name=f"mined_{number}"))

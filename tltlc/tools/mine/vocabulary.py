@@ -95,7 +95,11 @@ def _no_readable_atom(library: SourceFile, vocabulary: Vocabulary | None, column
     """Return the error TLT0760 for a library if none of its atoms can be computed."""
     title = f"no predicate of `{library.name.strip('<>')}` can be computed from the columns of the traces"
     missing = [signal.name for signal in vocabulary.signals if signal.name not in columns] if vocabulary else []
-    help_ = f"record what its predicates use: {name_list(missing[:3])}" if missing else "declare a predicate in it"
+    help_ = (
+        f"record the signals that its predicates use: {name_list(missing[:3])}"
+        if missing
+        else "declare a predicate in it"
+    )
     return TltlError([Diagnostic("TLT0760", title, help=help_)])
 
 
@@ -131,12 +135,15 @@ def _no_columns(truths: Sequence[str]) -> TltlError:
 
     ``truths`` lists the columns of true and false, whose names no atom can have.
     """
-    title = "no column of the traces holds `true` and `false` alone"
-    help_ = "with `--predicates LIB` atoms are computed from columns of numbers"
+    title = "no column of the traces contains only `true` and `false`"
+    help_ = "use `--predicates LIB` to compute atoms from columns of numbers"
     if truths:
-        columns = f"column {first_names(truths)} holds" if len(truths) == 1 else f"columns {first_names(truths)} hold"
-        title = f"the {columns} `true` and `false` alone, but no atom can be called so"
-        help_ = "call it as atoms are, e.g. `seen` or `at(key)`: letters, digits and `_`, and no word of the language"
+        columns, contain, their = "column", "contains", "its name"
+        if len(truths) > 1:
+            columns, contain, their = "columns", "contain", "their names"
+        title = f"the {columns} {first_names(truths)} {contain} only `true` and `false`, but no atom can have {their}"
+        help_ = "write a name that an atom can have, e.g. `seen` or `at(key)`: letters, digits and `_`, but "
+        help_ += "no word of the language"
     return TltlError([Diagnostic("TLT0760", title, help=help_)])
 
 
