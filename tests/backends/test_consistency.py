@@ -49,7 +49,7 @@ def test_compiled_automata_are_consistent(fspa: Fspa) -> None:
         (changed("atoms", 3, expression=SignalValue("mana")), "there is no signal `mana`"),
         (changed("atoms", 3, expression=ParamValue("mana")), "there is no param `mana`"),
         (changed("signals", 3, low=2.0), "the range of `health` is empty"),
-        (changed("params", 0, value=1.0), "the value of `level_size` lies outside its range"),
+        (changed("params", 0, value=1.0), "the value of `level_size` is outside its range"),
         (changed("states", 1, id=0), "state 1 has the id 0"),
         (replace(cover_and_hide(), exclusive=((0, 4),)), "there are only 4 atoms"),
         (changed("edges", 3, target=9), "there is no state 9"),
@@ -65,11 +65,11 @@ def test_compiled_automata_are_consistent(fspa: Fspa) -> None:
             changed("edges", 11, guard=Guard(TRUE, ((),))),
             "the guards from state 4 to states 2 and 4 can be true at once",
         ),
-        (changed("edges", 6, guard=SAFE), "some samples lead nowhere from state 2"),
+        (changed("edges", 6, guard=SAFE), "state 2 has no edge for some samples"),
         (changed("edges", 11, guard=Guard(atom("x"), (((3, True), (3, False)),))), "an implicant names an atom twice"),
         (
             changed("edges", 11, guard=Guard(atom("x"), (((0, True), (1, True)),))),
-            "an implicant asks for two exclusive atoms at once",
+            "an implicant requires two exclusive atoms at once",
         ),
         (
             changed("edges", 11, guard=Guard(atom("alive"), (((3, True),), ((0, True), (3, True))))),
@@ -116,17 +116,20 @@ def with_state(index: int, **values: Any) -> Fspa:
     [
         (again_and_again(acceptance=(Pair((), (4,)),)), ["there are only 4 edges"]),
         (again_and_again(acceptance=(Pair((9,), (3,)),)), ["there are only 4 edges"]),
-        (again_and_again(acceptance=()), ["two edges that the same pairs name lead from state 1 to state 1"]),
+        (
+            again_and_again(acceptance=()),
+            ["two edges that are in the same sets of the pairs lead from state 1 to state 1"],
+        ),
         (
             again_and_again(acceptance=(Pair((), (2, 3)),)),
-            ["two edges that the same pairs name lead from state 1 to state 1"],
+            ["two edges that are in the same sets of the pairs lead from state 1 to state 1"],
         ),
         (
             again_and_again(acceptance=(Pair((3,), (3,)),)),
             [
                 "the distance of state 0 is null, not 1",
                 "the verdict of state 0 is `violated`, not `pending`",
-                "state 1 lies on no accepted cycle, and is accepting",
+                "state 1 is not on an accepted cycle, but is accepting",
                 "the distance of state 1 is null, not 0",
                 "the verdict of state 1 is `violated`, not `holding`",
                 "spec_size is 0, not 1",
@@ -135,7 +138,7 @@ def with_state(index: int, **values: Any) -> Fspa:
         (
             again_and_again(acceptance=(Pair((), (0, 3)),)),
             [
-                "state 0 lies on an accepted cycle, and is not accepting",
+                "state 0 is on an accepted cycle, but is not accepting",
                 "the distance of state 0 is 0, not 1",
                 "the verdict of state 0 is `holding`, not `pending`",
                 "spec_size is 0, not 1",
@@ -147,7 +150,7 @@ def with_state(index: int, **values: Any) -> Fspa:
         ),
         (with_state(0, distance=2), ["the distance of state 0 is 1, not 2"]),
         (with_state(1, verdict="satisfied"), ["the verdict of state 1 is `holding`, not `satisfied`"]),
-        (with_state(1, accepting=False), ["state 1 lies on an accepted cycle, and is not accepting"]),
+        (with_state(1, accepting=False), ["state 1 is on an accepted cycle, but is not accepting"]),
     ],
 )
 def test_an_inconsistency_with_accepted_cycles_is_reported(fspa: Fspa, expected: list[str]) -> None:

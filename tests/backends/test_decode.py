@@ -67,7 +67,7 @@ def test_another_document_is_rejected_as_its_text_is(document: object) -> None:
 def test_a_number_that_is_not_finite_is_rejected_even_in_an_unknown_field(number: float, constant: str) -> None:
     (error,) = errors({**DOCUMENT, "generator": {"versions": [1.0, number]}})
     assert error.code == "TLT0601"
-    assert error.title == f"`bot/artefact` is not JSON: {constant} is no number"
+    assert error.title == f"`bot/artefact` is not JSON: {constant} is not a finite number"
 
 
 def test_an_error_points_into_the_document_on_one_line() -> None:

@@ -110,7 +110,7 @@ def test_a_non_finite_number_is_never_written() -> None:
     [
         ("", "TLT0601", "is not JSON"),
         ("{", "TLT0601", "is not JSON"),
-        ('{"format": "fspa", "version": NaN}', "TLT0601", "NaN is no number"),
+        ('{"format": "fspa", "version": NaN}', "TLT0601", "NaN is not a finite number"),
         ("[" * 100_000, "TLT0006", "it nests too deep"),
         ("9" * 10_000, "TLT0601", "is JSON, but not an artefact"),
         ("[]", "TLT0601", "is JSON, but not an artefact"),

@@ -131,9 +131,9 @@ def test_names_of_specs_are_plain(name: str) -> None:
     [
         (("states", 0, "accepting"), 0, "`states[0].accepting` must be true or false"),
         (("spec", "judge"), "me", "`spec.judge` must be `goal` or `limit`"),
-        (("edges", 0, "guard", "primes"), [], "`edges[0].guard.primes` must hold at least 1 value"),
-        (("atoms", 3, "expression", "b"), 1, "`atoms[3].expression` holds fields that do not go together"),
-        (("atoms", 3, "expression"), {"b": 1}, "`atoms[3].expression` may not hold `b`"),
+        (("edges", 0, "guard", "primes"), [], "`edges[0].guard.primes` must contain at least 1 value"),
+        (("atoms", 3, "expression", "b"), 1, "`atoms[3].expression` contains fields that do not go together"),
+        (("atoms", 3, "expression"), {"b": 1}, "`atoms[3].expression` must not contain `b`"),
         (("states", 0), {"id": 0}, "`states[0]` lacks `accepting`, `distance`, `label` and `verdict`"),
     ],
 )

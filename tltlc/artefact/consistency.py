@@ -74,7 +74,7 @@ def _values(fspa: Fspa) -> Iterator[Problem]:
         low = param.value if param.low is None else param.low
         high = param.value if param.high is None else param.high
         if not low <= param.value <= high:
-            yield Problem(("params", index, "value"), f"the value of `{param.name}` lies outside its range")
+            yield Problem(("params", index, "value"), f"the value of `{param.name}` is outside its range")
 
 
 def _indices(fspa: Fspa) -> Iterator[Problem]:
@@ -114,7 +114,7 @@ def _parallel_edges(fspa: Fspa) -> Iterator[Problem]:
     for index, edge in enumerate(fspa.edges):
         key = (edge.source, edge.target, marks[index])
         if key in seen:
-            alike = " that the same pairs name" if fspa.semantics == "infinite" else ""
+            alike = " that are in the same sets of the pairs" if fspa.semantics == "infinite" else ""
             message = f"two edges{alike} lead from state {edge.source} to state {edge.target}"
             yield Problem(("edges", index), message)
         seen.add(key)
@@ -145,8 +145,8 @@ def _distances(fspa: Fspa) -> Iterator[Problem]:
     to_goal = _steps_to(fspa, goals)
     for state in fspa.states:
         if state.accepting != (state.id in goals):
-            lies, accepts = ("no", "is") if state.accepting else ("an", "is not")
-            message = f"state {state.id} lies on {lies} accepted cycle, and {accepts} accepting"
+            lies, accepts = ("is not", "is") if state.accepting else ("is", "is not")
+            message = f"state {state.id} {lies} on an accepted cycle, but {accepts} accepting"
             yield Problem(("states", state.id, "accepting"), message)
         distance = to_goal.get(state.id)
         if state.distance != distance:

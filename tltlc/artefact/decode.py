@@ -72,7 +72,9 @@ def _refuse(constant: str) -> None:
 
 
 def _not_finite(name: str, constant: str) -> TltlError:
-    return TltlError([Diagnostic("TLT0601", f"`{name}` is not JSON: {constant} is no number", help=RECOMPILE)])
+    return TltlError(
+        [Diagnostic("TLT0601", f"`{name}` is not JSON: {constant} is not a finite number", help=RECOMPILE)]
+    )
 
 
 def _remark(message: str) -> str:

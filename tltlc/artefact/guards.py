@@ -76,7 +76,7 @@ def guard_problems(fspa: Fspa) -> Iterator[tuple[Path, str]]:
                     yield ("edges", other, "guard"), f"the guards from state {state} {targets} can be true at once"
                     return
             if not _covers_all([cube for index in edges for cube in cubes[index]] + pairs, work):
-                yield ("states", state), f"some samples lead nowhere from state {state}"
+                yield ("states", state), f"state {state} has no edge for some samples"
                 return
     except _TooManyCubesError:
         return
@@ -106,7 +106,7 @@ def _guard_problem(
             return "an implicant names an atom twice"
         work.spend(1 + len(pairs) // 8)
         if any(_lies_in(cube, pair) for pair in pairs):
-            return "an implicant asks for two exclusive atoms at once"
+            return "an implicant requires two exclusive atoms at once"
     work.spend(len(pairs) * len(cubes) // 8)
     uncovered = {pair for pair in pairs if not any(_lies_in(pair, cube) for cube in cubes)}
     whole = [*cubes, *sorted(uncovered)]

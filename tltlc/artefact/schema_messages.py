@@ -17,10 +17,10 @@ _TYPES = {
 }
 
 _COUNTS = {
-    "minItems": "must hold at least {} {}",
-    "maxItems": "must hold at most {} {}",
+    "minItems": "must contain at least {} {}",
+    "maxItems": "must contain at most {} {}",
     "minProperties": "is empty",
-    "maxProperties": "holds fields that do not go together",
+    "maxProperties": "contains fields that do not go together",
     "minLength": "is empty",
 }
 
@@ -41,7 +41,7 @@ def schema_error_title(error: JsonSchemaValueException) -> str:
         )
     if error.rule == "additionalProperties":
         fields = _list_items(remark.removeprefix("must not contain ").removesuffix(" properties"), " and ")
-        return f"{subject} may not hold {fields}"
+        return f"{subject} must not contain {fields}"
     if error.rule in _COUNTS:
         count = "".join(word for word in remark.split() if word.isdigit())
         return f"{subject} {_COUNTS[error.rule].format(count, 'value' if count == '1' else 'values')}"

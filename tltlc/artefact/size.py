@@ -25,7 +25,7 @@ def check_size(subject: str, size: int, commas: int = 0) -> None:
     if size > ARTEFACT.size:
         raise _too_large("TLT0004", f"{subject} would be larger than {ARTEFACT.size >> 20} MiB")
     if ARTEFACT.values is not None and commas >= ARTEFACT.values:
-        raise _too_large("TLT0006", f"{subject} would hold more than {ARTEFACT.values:,} values")
+        raise _too_large("TLT0006", f"{subject} would contain more than {ARTEFACT.values:,} values")
 
 
 def least_size(fspa: Fspa) -> tuple[int, int]:

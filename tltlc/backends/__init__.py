@@ -64,7 +64,7 @@ def emit(name: str, fspa: Fspa, options: Options | None = None) -> Files:
         ValueError: the automaton's name is not an ASCII identifier, so it cannot name a file.
     """
     if not (fspa.name.isascii() and fspa.name.isidentifier()):
-        raise ValueError(f"{fspa.name!r} is no plain name")
+        raise ValueError(f"{fspa.name!r} is not a plain name")
     files: Files = _module(name).emit(fspa, options or Options())
     return files
 

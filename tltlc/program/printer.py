@@ -189,7 +189,7 @@ class Printer:
                 word = self.WORDS["and" if isinstance(node, All) else "or"]
                 # Compilers warn about `a && b || c` without parentheses.
                 return f" {word} ".join(self.text(argument, _COMPARISON) for argument in args), binding
-        raise TypeError(f"no expression: {node!r}")
+        raise TypeError(f"not an expression: {node!r}")
 
 
 def comment_lines(text: str) -> list[str]:

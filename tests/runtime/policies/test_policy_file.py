@@ -215,7 +215,7 @@ BIAS = "actor.mlp.0.bias"
         (set_card(artefact={"format": "fspa", "version": 9}), "TLT0602"),
         (
             set_card(artefact={"format": "fspa", "version": float("nan")}),
-            "TLT0601.*`bot.safetensors/artefact` is not JSON: NaN is no number",
+            "TLT0601.*`bot.safetensors/artefact` is not JSON: NaN is not a finite number",
         ),
         (set_card(fspa=3), "TLT0842.*`fspa`"),
         (set_card(branches=[]), "TLT0842.*`card.branches`"),

@@ -166,7 +166,7 @@ def test_an_invalid_description_is_rejected(copy: TrainingRun, name: str, change
     [
         (None, "TLT0601: `run/run.json/artefact` is JSON, but not an artefact"),
         ({"format": "fspa", "version": 9}, "TLT0602: this artefact has version 9"),
-        ({"format": "fspa", "version": float("inf")}, "TLT0601: .* is not JSON: Infinity is no number"),
+        ({"format": "fspa", "version": float("inf")}, "TLT0601: .* is not JSON: Infinity is not a finite number"),
     ],
 )
 def test_an_invalid_automaton_in_the_description_is_rejected(copy: TrainingRun, artefact: object, reason: str) -> None:
