@@ -317,7 +317,7 @@ def test_the_versions_differ_only_in_keywords() -> None:
             new = re.sub(word, older, new)
         # The part that adapts to the engine may differ.
         new, old = (
-            re.sub(r"# --- what the engine gives ---.*?# ---", "", script, flags=re.DOTALL) for script in (new, old)
+            re.sub(r"# --- what the engine provides ---.*?# ---", "", script, flags=re.DOTALL) for script in (new, old)
         )
         new, old = (re.sub(r"^#     godot .*\n", "", script, flags=re.MULTILINE) for script in (new, old))
         differences = [line for line in difflib.ndiff(new.splitlines(), old.splitlines()) if line[0] in "+-"]
