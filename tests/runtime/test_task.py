@@ -42,7 +42,7 @@ def test_a_path_can_name_one_of_several_specs(tmp_path: Path) -> None:
     path = tmp_path / "with blanks.tltl"
     path.write_text(TWO, encoding="utf-8")
     assert load_task(f"{path}:show").fspa.name == "show"
-    with pytest.raises(tltlc.TltlError, match=r"TLT0721: .*holds 2 specs, .* `hide`, `show`") as error:
+    with pytest.raises(tltlc.TltlError, match=r"TLT0721: .*contains 2 specs, .* `hide`, `show`") as error:
         load_task(path)
     assert error.value.diagnostics[0].help == f"name one of them, e.g. `{path}:hide`"
     with pytest.raises(tltlc.TltlError) as error:
@@ -145,7 +145,7 @@ def test_the_import_loads_no_heavy_modules() -> None:
 
 @pytest.mark.parametrize("spec", [(), [], {}, b"plan.tltl", 3, None, "", " "])
 def test_a_value_that_is_no_spec_is_a_type_error(spec: Any) -> None:
-    with pytest.raises(TypeError, match="a spec is a path, a text or an automaton, not"):
+    with pytest.raises(TypeError, match="a spec must be a path, a text or an automaton, not"):
         load_task(spec)
 
 
@@ -156,7 +156,7 @@ def test_a_list_of_automata_is_rejected() -> None:
 
 def test_params_and_rewards_of_the_wrong_type_are_rejected() -> None:
     spec = "signal a: bool\nspec s = F a"
-    with pytest.raises(TypeError, match="params map names to numbers"):
+    with pytest.raises(TypeError, match="params must map names to numbers"):
         load_task(spec, [("a", 1.0)])  # type: ignore[arg-type]
     with pytest.raises(TypeError, match="RewardOptions"):
         load_task(spec, reward="sparse")  # type: ignore[arg-type]

@@ -358,7 +358,7 @@ def test_the_clock_must_match_the_environment() -> None:
         TltlEnv(Clocked([FAR]), cover_and_hide(), current)
     (diagnostic,) = error.value.diagnostics
     assert diagnostic.code == "TLT0617"
-    assert diagnostic.title == "`cover_and_hide` is sampled every 0.05 s, and a step of the environment takes 0.15 s"
+    assert diagnostic.title == "`cover_and_hide` is sampled every 0.05 s, but a step of the environment takes 0.15 s"
     assert diagnostic.help == "write `clock 0.15 s` in the specification"
     for clock in (0.15, None):
         TltlEnv(Clocked([FAR]), replace(cover_and_hide(), clock_s=clock), current)
@@ -401,7 +401,7 @@ def test_a_signal_must_be_one_number() -> None:
 
 
 def test_signals_are_a_function_or_a_method_of_the_environment() -> None:
-    with pytest.raises(TypeError, match=r"`signals` is a function of the environment, not .*health"):
+    with pytest.raises(TypeError, match=r"`signals` must be a function of the environment, .*health"):
         TltlEnv(Playback([FAR]), cover_and_hide(), {"health": 1.0})  # type: ignore[arg-type]
     with pytest.raises(TypeError, match="give `signals`, a function of the environment"):
         TltlEnv(Playback([FAR]), cover_and_hide())

@@ -48,6 +48,6 @@ def default_spec(level: Level) -> str:
         TltlError: TLT0721, the level is made for no spec.
     """
     if not level.spec:
-        title, help_ = f"the level `{level.name}` is made for no spec", "say which one: `FILE.tltl:NAME`"
+        title, help_ = f"the level `{level.name}` does not name a spec", "name one: `FILE.tltl:NAME`"
         raise TltlError([Diagnostic("TLT0721", title, help=help_)])
     return level.spec

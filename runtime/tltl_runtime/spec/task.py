@@ -71,7 +71,7 @@ def load_task(
         TypeError: ``spec``, ``params`` or ``reward`` is of another type.
     """
     if not isinstance(params, Mapping):
-        raise TypeError(f"params map names to numbers, e.g. {{'top_speed': 0.06}}; {params!r:.60} does not")
+        raise TypeError(f"params must map names to numbers, e.g. {{'top_speed': 0.06}}, not {params!r:.60}")
     fspa, _ = read_spec(spec)
     param_names = {param.name for param in fspa.params}
     values = {name: value for name, value in offered.items() if name in param_names}
@@ -90,7 +90,7 @@ def read_spec(spec: str | Path | Fspa) -> tuple[Fspa, Spec | None]:
         return spec, None
     if not isinstance(spec, (str, os.PathLike)) or not str(spec).strip():
         advice = ": give one of them, e.g. the first, `[0]`" if isinstance(spec, (tuple, list)) else ""
-        raise TypeError(f"a spec is a path, a text or an automaton, not {spec!r:.60}{advice}")
+        raise TypeError(f"a spec must be a path, a text or an automaton, not {spec!r:.60}{advice}")
     if isinstance(spec, str) and _is_text(spec):
         source, path, name = SourceFile("<text>", spec), "<text>", None
         is_artefact = _is_artefact(spec)
@@ -127,9 +127,9 @@ def _only_automaton(automata: tuple[Fspa, ...], file: str) -> Fspa:
         return automata[0]
     names = [fspa.name for fspa in automata]
     if not names:
-        title, advice = f"`{file}` holds no spec", "declare one: `spec NAME { … }`"
+        title, advice = f"`{file}` contains no spec", "declare one: `spec NAME { … }`"
     else:
         listed = ", ".join(f"`{name}`" for name in names[:10]) + (", …" if len(names) > 10 else "")
-        title = f"`{file}` holds {len(names)} specs, and an environment takes one: {listed}"
+        title = f"`{file}` contains {len(names)} specs, but an environment needs one: {listed}"
         advice = f"name one of them, e.g. `{file}:{names[0]}`" if file != "<text>" else "give a text with one spec"
     raise TltlError([Diagnostic("TLT0721", title, help=advice)])

@@ -85,9 +85,13 @@ class TltlEnv(gymnasium.Wrapper[Observation, Any, Any, Any], RecordConstructorAr
         gymnasium.Wrapper.__init__(self, env)
         self._signals: SignalsFunction = _own_signals if signals is None else signals
         if signals is None and not env.has_wrapper_attr("tltl_signals"):
-            raise TypeError("give `signals`, a function of the environment: it has no method tltl_signals() of its own")
+            raise TypeError(
+                "the environment has no method tltl_signals(): give `signals`, a function of the environment"
+            )
         if not callable(self._signals):
-            raise TypeError(f"`signals` is a function of the environment, not {signals!r:.60}: `lambda env: {{…}}`")
+            raise TypeError(
+                f"`signals` must be a function of the environment, such as `lambda env: {{…}}`, not {signals!r:.60}"
+            )
         offered = env.get_wrapper_attr("tltl_params")() if env.has_wrapper_attr("tltl_params") else {}
         self.task = load_task(spec, {} if params is None else params, reward, offered=offered)
         _check_clock(self.task.fspa, env)
@@ -212,7 +216,7 @@ def _check_clock(fspa: Fspa, env: gymnasium.Env[Any, Any]) -> None:
         return
     clock_s = env.get_wrapper_attr("tltl_clock_s")
     if not isclose(fspa.clock_s, clock_s, rel_tol=1e-9):
-        title = f"`{fspa.name}` is sampled every {fspa.clock_s:g} s, and a step of the environment takes {clock_s:g} s"
+        title = f"`{fspa.name}` is sampled every {fspa.clock_s:g} s, but a step of the environment takes {clock_s:g} s"
         raise TltlError([Diagnostic("TLT0617", title, help=f"write `clock {clock_s:g} s` in the specification")])
 
 

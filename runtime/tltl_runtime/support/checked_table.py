@@ -141,7 +141,7 @@ def wrong_value(entry: Entry, key: str, expected: str) -> Diagnostic:
     """Return TLT0803 for a value of a wrong type or out of its range."""
     help_ = f"expected {expected}"
     if "[x, y, z]" in expected and _has_decimal_commas(entry.value):
-        help_ += "; these are six numbers: decimals have a point, as in 6.5"
+        help_ += "; these are six numbers: write decimals with a point, as in 6.5"
     return Diagnostic("TLT0803", f"wrong value for `{key}`: {_value_text(entry.value)}", (entry.label,), help_)
 
 

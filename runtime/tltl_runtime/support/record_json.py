@@ -116,7 +116,7 @@ def _record(kind: Any, data: object, where: str, known: Mapping[str, object]) ->
     kinds = {name: field_kind for name, field_kind in _fields(kind).items() if name not in known}
     unknown = _object(data, where).keys() - kinds.keys()
     if unknown:
-        raise RecordJsonError(f"`{where}` has a key `{min(unknown)}`, which nothing is known of")
+        raise RecordJsonError(f"`{where}` has an unknown key `{min(unknown)}`")
     values = {name: _value(kinds[name], item, f"{where}.{name}") for name, item in _object(data, where).items()}
     missing = _gather_inlined(kind, values)
     try:

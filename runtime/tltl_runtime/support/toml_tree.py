@@ -10,7 +10,7 @@ from typing import Any, Final
 
 from tltlc.api import Label, SourceFile, Span, fileio, record
 
-_HELP: Final = 'values are written as in `at = [1.0, 2.0, 0.0]`, texts as in `asset = "corridor"`'
+_HELP: Final = 'write values as in `at = [1.0, 2.0, 0.0]`, and texts as in `asset = "corridor"`'
 _KEY: Final = r"(?:[A-Za-z0-9_-]+|\"[^\"\n]*\"|'[^'\n]*')"
 _DOTTED: Final = re.compile(rf"{_KEY}(?:[ \t]*\.[ \t]*{_KEY})*")
 _BLANK: Final = re.compile(r"(?:[ \t\r\n]|#[^\n]*)*")

@@ -17,22 +17,22 @@ def check_batch(space: Space[Any], batch: Any, count: int) -> None:
     """
     if isinstance(space, spaces.Dict):
         if not isinstance(batch, Mapping) or batch.keys() != space.keys():
-            raise ValueError(f"a batch of actions has the keys {', '.join(space)}")
+            raise ValueError(f"a batch of actions must have the keys {', '.join(space)}")
         for key, part in space.items():
             check_batch(part, batch[key], count)
         return
     if isinstance(space, spaces.Tuple):
         if len(batch) != len(space):
-            raise ValueError(f"a batch of actions has {len(space)} parts, not {len(batch)}")
+            raise ValueError(f"a batch of actions must have {len(space)} parts, not {len(batch)}")
         for part, values in zip(space, batch, strict=True):
             check_batch(part, values, count)
         return
     array = np.asarray(batch)
     shape = (count, *(space.shape or ()))
     if array.shape != shape:
-        raise ValueError(f"a batch of shape {shape} is needed, not {array.shape}")
+        raise ValueError(f"a batch must have the shape {shape}, not {array.shape}")
     if not np.can_cast(array.dtype, np.dtype(space.dtype), "same_kind"):
-        raise ValueError(f"actions of {space} are {space.dtype}, not {array.dtype}")
+        raise ValueError(f"actions of {space} must be {space.dtype}, not {array.dtype}")
     wrong = _outside_space(space, array).reshape(count, -1).any(axis=1)
     if wrong.any():
         row = int(wrong.argmax())

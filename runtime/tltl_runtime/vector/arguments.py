@@ -19,21 +19,21 @@ def check_arguments(
 ) -> None:
     """Raise ValueError or TypeError if the arguments of a ``WorkerVectorEnv`` are invalid."""
     if not functions:
-        raise ValueError("there is no function that makes an environment")
+        raise ValueError("expected at least one function that makes an environment")
     if not all(map(callable, functions)):
-        raise TypeError("functions are needed that make environments, not environments: `[lambda: make()] * 8`")
+        raise TypeError("expected functions that make environments, not environments: write `[lambda: make()] * 8`")
     if workers not in (None, "ray") and (not isinstance(workers, int) or isinstance(workers, bool)):
-        raise TypeError(f"workers is a whole number or 'ray', not {workers!r:.40}")
+        raise TypeError(f"workers must be a whole number or 'ray', not {workers!r:.40}")
     if isinstance(workers, int) and workers < 1:
         raise ValueError(f"at least one worker is needed, not {workers}")
     if names is not None and len(names) != len(functions):
         raise ValueError(f"{len(functions)} names are needed, not {len(names)}")
     if autoreset == AutoresetMode.DISABLED:
-        raise ValueError("autoreset is SAME_STEP or NEXT_STEP here, not DISABLED")
+        raise ValueError("autoreset must be SAME_STEP or NEXT_STEP here, not DISABLED")
     if on_death not in ("stop", "replace"):
-        raise ValueError(f"on_death is `stop` or `replace`, not {on_death!r}")
+        raise ValueError(f"on_death must be `stop` or `replace`, not {on_death!r}")
     if on_death == "replace" and autoreset != AutoresetMode.SAME_STEP:
-        raise ValueError("workers are replaced with autoreset SAME_STEP alone: new episodes begin in the same step")
+        raise ValueError("workers can be replaced only with autoreset SAME_STEP: new episodes begin in the same step")
 
 
 def split_mask(options: dict[str, Any] | None, count: int) -> tuple[NDArray[np.bool_], dict[str, Any] | None]:
@@ -46,5 +46,5 @@ def split_mask(options: dict[str, Any] | None, count: int) -> tuple[NDArray[np.b
         return np.ones(count, dtype=np.bool_), options
     mask = np.asarray(options["reset_mask"])
     if mask.shape != (count,) or mask.dtype != np.bool_ or not mask.any():
-        raise ValueError(f"options['reset_mask'] is an array of {count} bools, one of them True, not {mask!r:.80}")
+        raise ValueError(f"options['reset_mask'] must be an array of {count} bools, one of them True, not {mask!r:.80}")
     return mask, {key: value for key, value in options.items() if key != "reset_mask"}

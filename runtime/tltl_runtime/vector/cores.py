@@ -21,5 +21,5 @@ def torchrun_variable(variable: str, default: int) -> int:
     text = os.environ.get(variable, str(default))
     if len(text) <= 9 and text.isascii() and text.isdecimal() and int(text) >= default:
         return int(text)
-    title = f"the variable {variable} of the environment is `{text:.20}`, and not a whole number from {default} on"
+    title = f"the environment variable {variable} is `{text:.20}`, not a whole number of at least {default}"
     raise TltlError([Diagnostic("TLT0862", title, help="unset it, or start the command with torchrun, which sets it")])

@@ -150,7 +150,7 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
             self._workers.answers()
         chosen, options = split_mask(options, self.num_envs)
         if self._observations is None and not chosen.all():
-            raise ResetNeeded("there are no episodes that could go on: reset all environments first")
+            raise ResetNeeded("there are no episodes to continue: reset all environments first")
         seeds = self._seeds_of(seed)
         for index in np.flatnonzero(chosen):
             if seeds[index] is not None:
@@ -178,7 +178,7 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         """
         self._check_ready()
         if self._observations is None:
-            raise ResetNeeded("there is no episode to go on with: reset first")
+            raise ResetNeeded("there is no episode to continue: reset first")
         check_batch(self.single_action_space, actions, self.num_envs)
         write_batch(self._rows.action, actions)
         infos: dict[str, Any] = {}
@@ -244,7 +244,7 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
     def _check_ready(self) -> None:
         self._check_open()
         if self._workers.is_waiting:
-            raise ResetNeeded("what was last asked of the workers was interrupted: reset first")
+            raise ResetNeeded("the last command to the workers was interrupted: reset first")
 
     def _seeds_of(self, seed: int | Sequence[int | None] | None) -> list[int | None]:
         if isinstance(seed, (int, np.integer)):
@@ -296,7 +296,7 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         for row in range(share.start, share.stop):
             self._seeds[row] = self._new_seed()
         seeds = self._seeds[share]
-        _log.warning("%s\nanother begins with seeds %s", report(loss, playing), seeds)
+        _log.warning("%s\nanother worker begins with seeds %s", report(loss, playing), seeds)
         self._unproven.add(loss.worker)
         self._rows.busy[share] = False
         for failure in self._workers.start([loss.worker]):

@@ -8,8 +8,8 @@ from typing import Final
 from tltlc.api import record
 
 _NO_MAIN_GUARD: Final = (
-    "it ended before it made them: a worker begins by importing the program, so what the program does stands under",
-    '`if __name__ == "__main__":`, and the program in a file (python program.py, not python < program.py)',
+    "it ended before it made them: a worker first imports the program, so put the work of the program under",
+    '`if __name__ == "__main__":`, and put the program into a file (python program.py, not python < program.py)',
 )
 """A hint for the report on a worker that ended before it had made its environments.
 
@@ -79,7 +79,7 @@ def report(loss: Loss, playing: tuple[Playing, ...]) -> str:
 
     It has a line for the worker, a line for each environment, and the traceback or a likely cause.
     """
-    lines = [f"{loss}; it had", *(f"  {env}" for env in playing), *loss.traceback.splitlines()]
+    lines = [f"{loss}; its environments were", *(f"  {env}" for env in playing), *loss.traceback.splitlines()]
     if loss.starting and loss.status and not loss.traceback:
         lines += _NO_MAIN_GUARD
     return "\n".join(lines)

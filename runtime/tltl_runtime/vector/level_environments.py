@@ -44,7 +44,7 @@ def make_vec(
         TltlError, TypeError, WorkerError: the errors of ``make_env`` and of ``WorkerVectorEnv``.
     """
     if render_mode == "human" and num_envs > 1:
-        raise ValueError("render_mode 'human' shows one environment: with several, give 'rgb_array' and call render()")
+        raise ValueError("render_mode 'human' shows one environment: with several, use 'rgb_array' and call render()")
     game = registered_game()
     loaded_level = game.load_level(level, variant)
     chosen_spec = default_spec(loaded_level) if spec is None else spec

@@ -64,7 +64,7 @@ class Share:
             for name, space in rows.spaces.items():
                 env_space = getattr(env, name)
                 if env_space != space:
-                    raise ValueError(f"the {name} of env {row} is another than that of env 0: {env_space}, not {space}")
+                    raise ValueError(f"the {name} of env {row} differs from that of env 0: {env_space}, not {space}")
 
     def reset(
         self, seeds: Sequence[int | None], options: dict[str, Any] | None, chosen: Sequence[bool]

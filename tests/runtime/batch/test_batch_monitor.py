@@ -266,7 +266,7 @@ def test_arrays_and_lists_work_like_tensors() -> None:
     assert monitor.state.tolist() == [0, 0]
     with pytest.raises(ValueError, match=r"2 bools are needed, one for each environment, not \(3,\)"):
         monitor.reset([True] * 3)
-    with pytest.raises(ValueError, match=r"signals of shape \(2, 1\) needed, not \(2,\)"):
+    with pytest.raises(ValueError, match=r"the signals must have the shape \(2, 1\), not \(2,\)"):
         monitor.step([0.5, 0.5])
 
 

@@ -203,7 +203,7 @@ def test_a_missing_entity_is_reported_at_its_place_in_the_spec(tmp_path: Path) -
 
 
 def test_a_level_without_a_spec_needs_one() -> None:
-    with pytest.raises(TltlError, match="TLT0721: the level `bare` is made for no spec"):
+    with pytest.raises(TltlError, match="TLT0721: the level `bare` does not name a spec"):
         default_spec(replace(load_level("navigation"), name="bare", spec=""))
 
 
@@ -215,8 +215,8 @@ def test_a_level_without_a_spec_needs_one() -> None:
         ({"variant": None}, "the variant must be a text or a path, not None"),
         ({"sensors": ["exit"]}, r"sensors must be a mapping, e\.g\. {'entities': \['exit'\]}, not \['exit'\]"),
         ({"reward": "sparse"}, r"RewardOptions\(mode=\"sparse\"\), not 'sparse'"),
-        ({"params": [1.0]}, "params map names to numbers"),
-        ({"spec": ()}, "a spec is a path, a text or an automaton, not"),
+        ({"params": [1.0]}, "params must map names to numbers"),
+        ({"spec": ()}, "a spec must be a path, a text or an automaton, not"),
     ],
 )
 def test_options_of_the_wrong_type_are_rejected(options: dict[str, Any], text: str) -> None:

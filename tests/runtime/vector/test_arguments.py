@@ -60,7 +60,7 @@ def test_a_mask_selects_the_environments_to_reset(carts: WorkerVectorEnv) -> Non
 @pytest.mark.parametrize("mask", [[True], np.array([1, 0, 0]), np.zeros(3, dtype=bool), None])
 def test_invalid_masks_are_rejected(carts: WorkerVectorEnv, mask: Any) -> None:
     carts.reset(seed=1)
-    with pytest.raises(ValueError, match=r"options\['reset_mask'\] is an array of 3 bools, one of them True"):
+    with pytest.raises(ValueError, match=r"options\['reset_mask'\] must be an array of 3 bools, one of them True"):
         carts.reset(options={"reset_mask": mask})
 
 
@@ -68,7 +68,7 @@ def test_all_actions_are_checked_before_a_step(carts: WorkerVectorEnv) -> None:
     before, _ = carts.reset(seed=1)
     with pytest.raises(ValueError, match=r"the action of env 2 is 2, which is not in Discrete\(2\)"):
         carts.step([0, 1, 2])
-    with pytest.raises(ValueError, match=r"actions of Discrete\(2\) are int64, not float64"):
+    with pytest.raises(ValueError, match=r"actions of Discrete\(2\) must be int64, not float64"):
         carts.step(np.zeros(3))
     assert np.array_equal(carts.call("state")[0].astype(np.float32), before[0])
 
@@ -81,11 +81,11 @@ MULTI = spaces.MultiDiscrete([3, 2])
     [
         (MULTI, [[0, 0], [3, 0]], r"env 1 is \[3, 0\], which is not in MultiDiscrete"),
         (MULTI, [[0, -1], [0, 0]], r"env 0 is \[0, -1\]"),
-        (MULTI, [[0, 0]], r"shape \(2, 2\) is needed, not \(1, 2\)"),
+        (MULTI, [[0, 0]], r"shape \(2, 2\), not \(1, 2\)"),
         (spaces.Discrete(2, start=5), [5, 4], "env 1 is 4"),
         (spaces.MultiBinary(2), np.array([[0, 1], [2, 0]], dtype=np.int8), "env 1 is"),
-        (spaces.Dict(move=MULTI), {"go": [[0, 0]] * 2}, "has the keys move"),
-        (spaces.Tuple((MULTI,)), ([[0, 0]] * 2, 1), "has 1 parts, not 2"),
+        (spaces.Dict(move=MULTI), {"go": [[0, 0]] * 2}, "must have the keys move"),
+        (spaces.Tuple((MULTI,)), ([[0, 0]] * 2, 1), "must have 1 parts, not 2"),
         (spaces.Dict(move=MULTI), {"move": [[0, 0], [0, 2]]}, r"env 1 is \[0, 2\]"),
     ],
 )
@@ -101,7 +101,7 @@ def test_actions_in_their_space_are_accepted(space: spaces.Space[Any]) -> None:
 
 
 def test_environments_with_different_spaces_are_rejected() -> None:
-    with pytest.raises(WorkerError, match="the observation_space of env 1 is another than that of env 0"):
+    with pytest.raises(WorkerError, match="the observation_space of env 1 differs from that of env 0"):
         WorkerVectorEnv([CART[0], partial(gymnasium.make, "MountainCar-v0")], 2)
 
 
@@ -115,9 +115,9 @@ def test_attributes_can_be_read_and_set(carts: WorkerVectorEnv) -> None:
 
 
 def test_arguments_of_the_wrong_type_are_rejected() -> None:
-    with pytest.raises(TypeError, match="workers is a whole number or 'ray', not '2'"):
+    with pytest.raises(TypeError, match="workers must be a whole number or 'ray', not '2'"):
         WorkerVectorEnv(CART, "2")  # type: ignore[arg-type]
-    with pytest.raises(TypeError, match="functions are needed that make environments"):
+    with pytest.raises(TypeError, match="expected functions that make environments"):
         WorkerVectorEnv([gymnasium.make("CartPole-v1")])  # type: ignore[list-item]
     with pytest.raises(ValueError, match="render_mode 'human' shows one environment"):
         make_vec("navigation", num_envs=2, render_mode="human")
@@ -132,4 +132,4 @@ def test_a_script_without_a_main_guard_gets_a_hint(how: str, tmp_path: Path) -> 
         done = subprocess.run([sys.executable, *arguments], stdin=file, capture_output=True, text=True, timeout=HANG_S)
     last = done.stderr.rpartition("WorkerError: ")[2]
     assert "worker 0 ended with exit status 1" in last
-    assert 'stands under\n`if __name__ == "__main__":`, and the program in a file' in last
+    assert 'the program under\n`if __name__ == "__main__":`, and put the program into a file' in last

@@ -16,5 +16,5 @@ def test_the_variable_of_torchrun_is_read(monkeypatch: pytest.MonkeyPatch) -> No
 @pytest.mark.parametrize("text", ["", "x", "0", "-1", "1.5", "²", "9" * 5000])
 def test_invalid_values_are_rejected(text: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("WORLD_SIZE", text)
-    with pytest.raises(TltlError, match=r"TLT0862: the variable WORLD_SIZE of the environment is `.{0,20}`"):
+    with pytest.raises(TltlError, match=r"TLT0862: the environment variable WORLD_SIZE is `.{0,20}`"):
         torchrun_variable("WORLD_SIZE", 1)

@@ -57,7 +57,7 @@ def error_of_loss(env: WorkerVectorEnv, *actions: list[int]) -> WorkerError:
 def test_a_worker_that_exits_is_reported_with_its_status() -> None:
     error = error_of_loss(fragile(1), *[[GO, GO]] * 9, [GO, EXIT])
     assert str(error).splitlines() == [
-        "worker 0 ended with exit status 3; it had",
+        "worker 0 ended with exit status 3; its environments were",
         "  env 0: Fragile, seed 40, episode 2, step 3",
         "  env 1: Fragile, seed 41, episode 2, step 3 (at work)",
     ]
@@ -68,7 +68,7 @@ def test_a_worker_that_is_killed_between_two_steps_is_reported() -> None:
     env = fragile(2)
     kill(env.worker_pids[1])
     error = error_of_loss(env, [GO, GO])
-    assert str(error).splitlines()[:1] == ["worker 1 was killed by SIGKILL; it had"]
+    assert str(error).splitlines()[:1] == ["worker 1 was killed by SIGKILL; its environments were"]
     assert [playing.env for playing in error.playing] == [1]
 
 
@@ -76,7 +76,7 @@ def test_a_worker_that_raises_is_reported_with_its_traceback() -> None:
     error = error_of_loss(fragile(2, names=["left", "right"]), [GO, GO], [RAISE, GO])
     lines = str(error).splitlines()
     assert lines[:3] == [
-        "worker 0 ended with an exception; it had",
+        "worker 0 ended with an exception; its environments were",
         "  env 0: left, seed 40, episode 1, step 2 (at work)",
         "Traceback (most recent call last):",
     ]
@@ -87,7 +87,7 @@ def test_a_silent_worker_is_reported_and_killed(monkeypatch: pytest.MonkeyPatch)
     env = fragile(2)
     time_out_with(env, 1, monkeypatch)
     error = error_of_loss(env, [GO, HANG])
-    message = f"worker 1 was silent for {HANG_S:g} s, and was killed; it had\n  env 1: Fragile, seed 41"
+    message = f"worker 1 was silent for {HANG_S:g} s, and was killed; its environments were\n  env 1: Fragile, seed 41"
     assert str(error).startswith(message)
 
 
@@ -140,8 +140,11 @@ def test_a_lost_worker_is_replaced(caplog: pytest.LogCaptureFixture) -> None:
             assert list(rewards[2:]) == [0.0, 0.0] and list(observations["count"][2:]) == [0, 0]
             assert [final["count"] for final in infos["final_obs"][2:]] == [2, 2]
             seeds = env.call("seeds")[2:]
-            assert f"another begins with seeds {[env_seeds[0] for env_seeds in seeds]}" in caplog.text
-            assert "worker 1 was killed by SIGKILL; it had\n  env 2: Fragile, seed 42, episode 2, step 2" in caplog.text
+            assert f"another worker begins with seeds {[env_seeds[0] for env_seeds in seeds]}" in caplog.text
+            assert (
+                "worker 1 was killed by SIGKILL; its environments were\n  env 2: Fragile, seed 42, episode 2, step 2"
+                in caplog.text
+            )
         else:
             assert "lost" not in infos
     assert list(observations["count"][2:]) == [2, 2]

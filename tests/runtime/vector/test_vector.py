@@ -155,7 +155,7 @@ def test_workers_run_any_environment_with_spaces_of_fixed_size() -> None:
     assert env.observation_space.contains(observations)
     assert list(infos["options"]["why"]) == [4, 4, 4]
     assert equal_values(observations["pair"][0][0], observations["pair"][0][2])
-    with pytest.raises(ValueError, match=r"a batch of shape \(3,\) is needed, not \(\)"):
+    with pytest.raises(ValueError, match=r"a batch must have the shape \(3,\), not \(\)"):
         env.step(0)
     for step in range(1, 7):
         observations, rewards, terminated, _, infos = env.step(np.zeros(3, dtype=np.int64))
@@ -208,7 +208,7 @@ def test_invalid_arguments_are_rejected() -> None:
 
     with pytest.raises(ValueError, match="has no fixed size: workers share Box"):
         WorkerVectorEnv([Talks])
-    with pytest.raises(ValueError, match="no function"):
+    with pytest.raises(ValueError, match="at least one function"):
         WorkerVectorEnv([])
     with pytest.raises(ValueError, match="not 0"):
         WorkerVectorEnv([Fragile], workers=0)
@@ -216,7 +216,7 @@ def test_invalid_arguments_are_rejected() -> None:
         WorkerVectorEnv([Fragile] * 2, names=["one"])
     with pytest.raises(ValueError, match="not DISABLED"):
         WorkerVectorEnv([Fragile], autoreset=AutoresetMode.DISABLED)
-    with pytest.raises(ValueError, match="SAME_STEP alone"):
+    with pytest.raises(ValueError, match="with autoreset SAME_STEP"):
         WorkerVectorEnv([Fragile], autoreset=AutoresetMode.NEXT_STEP, on_death="replace")
 
 

@@ -89,7 +89,9 @@ class BatchSamples:
         if not isinstance(signals, Mapping):
             given = torch.as_tensor(signals)
             if given.shape != (self._count, len(self.names)):
-                raise ValueError(f"signals of shape {(self._count, len(self.names))} needed, not {tuple(given.shape)}")
+                raise ValueError(
+                    f"the signals must have the shape {(self._count, len(self.names))}, not {tuple(given.shape)}"
+                )
             columns = given.t()
             if columns.is_contiguous():
                 return columns.to(self._device, self._dtype)
@@ -105,7 +107,7 @@ class BatchSamples:
         rows = [torch.as_tensor(signals[name], dtype=self._dtype, device=self._device) for name in self.names]
         for name, row in zip(self.names, rows, strict=True):
             if row.shape != (self._count,):
-                raise ValueError(f"the signal {name}: shape {(self._count,)} needed, not {tuple(row.shape)}")
+                raise ValueError(f"the signal {name} must have the shape {(self._count,)}, not {tuple(row.shape)}")
         return torch.stack(rows)
 
     def _in_range(self, columns: Tensor) -> bool:
