@@ -86,7 +86,7 @@ def check_limit(fspa: Fspa) -> None:
     """Raise TltlError, TLT0851, if a spec has no limit."""
     if fspa.limit_steps is None:
         title = f"`{fspa.name}` has no limit, so an episode may go on for ever"
-        raise TltlError([Diagnostic("TLT0851", title, help="write `limit 60 s` or the like in the spec")])
+        raise TltlError([Diagnostic("TLT0851", title, help="write a limit in the spec, such as `limit 60 s`")])
 
 
 def results(
@@ -139,7 +139,7 @@ def local_results(
                 yield player.play(task)
         return
     if workers < 0:
-        raise ValueError(f"there are no {workers} workers")
+        raise ValueError(f"the number of workers must be at least 0, not {workers}")
     with ExitStack() as stack:
         team = [WorkerProcess(make) for _ in range(min(workers or cores(), len(tasks)))]
         for worker in team:

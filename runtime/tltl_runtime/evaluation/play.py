@@ -35,7 +35,7 @@ def play(policy: Policy, env: gymnasium.Env[Any, Any], seed: int, index: int, sa
             action = policy.choose(observation, generator)
         except NotFiniteError as error:
             where = f"episode {index} of seed {seed} (seed {reset_seed} of the level), step {steps + 1}"
-            help_ = "mend the environment where it gives them, else train the policy again"
+            help_ = "if the environment gives these values, fix it; otherwise train the policy again"
             raise TltlError([Diagnostic("TLT0854", f"{where}: {error}", help=help_)]) from None
         observation, step_reward, terminated, truncated, info = env.step(action)
         reward, steps, over = reward + float(step_reward), steps + 1, terminated or truncated

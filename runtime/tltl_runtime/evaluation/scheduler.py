@@ -77,7 +77,8 @@ def _lost_worker_error(
         f"(seed {episode_seed(seed, task.index)} of the level): {error}"
     )
     if replay_command:
-        help_ = f"to play that one alone: {replay_command(task)}"
+        help_ = f"to play only that episode: {replay_command(task)}"
     else:
-        help_ = f"`tltlc evaluate` plays that one alone: `--seed {seed} --first {task.index} --episodes 1 --workers 1`"
+        options = f"--seed {seed} --first {task.index} --episodes 1 --workers 1"
+        help_ = f"`tltlc evaluate` plays only that episode with `{options}`"
     return TltlError([Diagnostic("TLT0850", title, help=help_)])

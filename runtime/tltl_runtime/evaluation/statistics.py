@@ -39,7 +39,7 @@ def wilson(successes: int, count: int) -> tuple[float, float]:
     Raises ValueError unless 0 <= ``successes`` <= ``count`` and 0 < ``count``.
     """
     if not 0 <= successes <= count or count == 0:
-        raise ValueError(f"{successes} of {count} is no share")
+        raise ValueError(f"{successes} of {count} is not a share")
     share, z = successes / count, Z_95
     middle = share + z * z / (2 * count)
     half = z * sqrt(share * (1 - share) / count + z * z / (4 * count * count))

@@ -52,7 +52,7 @@ def _context() -> BaseContext:
     return worker_context(["tltl_runtime.evaluation.player", *registered_game().modules])
 
 
-_PROCESS_ENDED: Final = "its process ended; where it said nothing before, it was perhaps killed for want of memory"
+_PROCESS_ENDED: Final = "its process ended; if it printed no error, it was perhaps killed because no memory was left"
 
 _make: Callable[[], EpisodePlayer]
 _player: EpisodePlayer | None = None

@@ -112,7 +112,9 @@ def from_bytes(data: bytes, name: str) -> Policy:
 
 
 def _too_large(size: int) -> TltlError:
-    title = f"`network` gives a policy of {-(-size >> 20)} MiB, and a file of one has {MAX_BYTES >> 20} MiB at the most"
+    title = (
+        f"`network` gives a policy of {-(-size >> 20)} MiB, but the file of a policy has at most {MAX_BYTES >> 20} MiB"
+    )
     help_ = "give smaller `hidden` or `channels`, or a greater `stride`"
     return TltlError([Diagnostic("TLT0862", title, help=help_)])
 
@@ -131,7 +133,7 @@ def _header(data: bytes, name: str) -> dict[str, Any]:
     except (ValueError, RecursionError):
         header = None
     if not isinstance(header, dict):
-        raise _ERRORS.unreadable_error(name, "it is no whole safetensors file")
+        raise _ERRORS.unreadable_error(name, "it is not a complete safetensors file")
     return header
 
 
@@ -143,7 +145,7 @@ def _card(header: dict[str, Any], name: str) -> Card:
     except (ValueError, RecursionError):
         raise _ERRORS.broken_error(name, "its card is not JSON") from None
     if not isinstance(document, dict) or document.pop("format", None) != FORMAT:
-        raise _ERRORS.unreadable_error(name, "it holds the weights of something else")
+        raise _ERRORS.unreadable_error(name, "it contains the weights of something else")
     _ERRORS.check_version(name, document.pop("version", None), VERSION)
     try:
         fspa = compiler.decode_artefact(document.pop("artefact", None), f"{name}/artefact")
@@ -162,8 +164,8 @@ def _fault(card: Card) -> str | None:
     if len(shapes) < len(card.shapes) or shapes != expected or max(map(prod, shapes.values())) > MAX_BYTES:
         return "`card.shapes` are not those of its spec and its sensors"
     if not card.branches or min(card.branches) < 1 or sum(card.branches) > 1 << 16:
-        return "`card.branches` are none of an action"
-    return None if _HASH.match(card.level_hash) else "`card.level_hash` is no hash"
+        return "`card.branches` are not the branches of an action"
+    return None if _HASH.match(card.level_hash) else "`card.level_hash` is not a hash"
 
 
 def _observation_shapes(fspa: Fspa, sensors: Sensors) -> dict[str, tuple[int, ...]]:
@@ -186,13 +188,13 @@ def _check_tensors(header: dict[str, Any], card: Card, name: str) -> None:
     try:
         expected = {f"{_PREFIX}{key}": list(tensor.shape) for key, tensor in blank_actor(card).state_dict().items()}
     except (ValueError, RuntimeError, OverflowError) as error:
-        raise _ERRORS.broken_error(name, f"its card describes no network: {error!s:.80}") from None
+        raise _ERRORS.broken_error(name, f"its card does not describe a network: {error!s:.80}") from None
     stored = {key: entry for key, entry in header.items() if key != "__metadata__"}
     for key in sorted(expected.keys() | stored.keys()):
         if key not in stored:
             raise _ERRORS.broken_error(name, f"the tensor `{key}` is missing")
         if key not in expected:
-            raise _ERRORS.broken_error(name, f"there is a tensor `{key:.60}`, which its network has no use for")
+            raise _ERRORS.broken_error(name, f"its network does not use the tensor `{key:.60}`")
         entry = stored[key] if isinstance(stored[key], dict) else {}
         if entry.get("dtype") != "F16" or entry.get("shape") != expected[key]:
             is_ = f"{entry.get('dtype')!s:.20} of shape {entry.get('shape')!s:.40}"
@@ -206,5 +208,5 @@ def _weights(data: bytes, name: str) -> dict[str, Tensor]:
         raise _ERRORS.unreadable_error(name, "its weights are cut off or damaged") from None
     for key, tensor in tensors.items():
         if not bool(tensor.isfinite().all()):
-            raise _ERRORS.broken_error(name, f"the tensor `{key}` has values that are no finite numbers")
+            raise _ERRORS.broken_error(name, f"the tensor `{key}` has values that are not finite numbers")
     return {key.removeprefix(_PREFIX): tensor for key, tensor in tensors.items()}

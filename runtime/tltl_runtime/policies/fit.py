@@ -28,8 +28,8 @@ def check_policy(card: Card, level: Level, fspa: Fspa | None = None) -> None:
     """
     if card.observation != OBSERVATION:
         age = "a newer" if card.observation > OBSERVATION else "an older"
-        suggestion = "use that one, or train a policy with this one"
-        raise _unfit_error(f"the policy was trained with {age} tltlc, which shows agents other things", suggestion)
+        suggestion = "use that tltlc, or train a policy with this one"
+        raise _unfit_error(f"the policy was trained with {age} tltlc, whose agents observe other things", suggestion)
     game = registered_game()
     if card.branches != game.branches:
         own, sizes = _sizes(card.branches), _sizes(game.branches)
@@ -57,11 +57,11 @@ def differences(own: Fspa, fspa: Fspa) -> str:
 
 def _differences(own: Fspa, fspa: Fspa) -> Iterator[str]:
     if own.judge != fspa.judge:
-        yield f"it is judged at the {fspa.judge}, and was at the {own.judge}"
+        yield f"it is judged at the {fspa.judge}, and was judged at the {own.judge}"
     if own.limit_steps != fspa.limit_steps:
         yield f"its limit is {_limit(fspa)}, and was {_limit(own)}"
     if own.clock_s != fspa.clock_s:
-        yield "its clock is another one"
+        yield "its clock is different"
     yield from _differing("signal", _field_by_name(own.signals, "name"), _field_by_name(fspa.signals, "name"))
     yield from _differing("param", _field_by_name(own.params, "value"), _field_by_name(fspa.params, "value"))
     before, after = _field_by_name(own.atoms, "expression"), _field_by_name(fspa.atoms, "expression")
@@ -69,7 +69,7 @@ def _differences(own: Fspa, fspa: Fspa) -> Iterator[str]:
     if len(own.states) != len(fspa.states):
         yield f"its automaton has {len(fspa.states)} states, and had {len(own.states)}"
     elif list(before) != list(after):
-        yield "its atoms stand in another order"
+        yield "its atoms are in another order"
     elif before == after:
         yield from _states(own, fspa)
 
@@ -97,7 +97,7 @@ def _states(before: Fspa, after: Fspa) -> Iterator[str]:
         judged = (old.accepting, old.verdict, old.distance) == (new.accepting, new.verdict, new.distance)
         primes = [[(edge.target, edge.guard.primes) for edge in fspa.edges_from(new.id)] for fspa in (before, after)]
         if not judged or primes[0] != primes[1]:
-            yield f"the state {new.id} (`{label_text(after, new.id)}`) is another one"
+            yield f"the state {new.id} (`{label_text(after, new.id)}`) is different"
     if before.exclusive != after.exclusive:
         yield "other atoms are exclusive"
 

@@ -46,12 +46,16 @@ class Network:
         for name in ("hidden", "channels"):
             widths = getattr(self, name)
             if not (1 <= len(widths) <= MAX_LAYERS and all(1 <= width <= MAX_WIDTH for width in widths)):
-                raise ValueError(f"{name} are 1 to {MAX_LAYERS} layers, each 1 to {MAX_WIDTH} wide, not {widths!r:.60}")
+                raise ValueError(
+                    f"{name} must be 1 to {MAX_LAYERS} layers, each 1 to {MAX_WIDTH} wide, not {widths!r:.60}"
+                )
         for name, most in (("kernel", MAX_KERNEL), ("stride", MAX_STRIDE)):
             if not 1 <= getattr(self, name) <= most:
-                raise ValueError(f"{name} is from 1 to {most} cells, not {getattr(self, name)!r:.40}")
+                raise ValueError(f"{name} must be from 1 to {most} cells, not {getattr(self, name)!r:.40}")
         if self.activation not in get_args(Activation):
-            raise ValueError(f"activation is one of {', '.join(get_args(Activation))}, not {self.activation!r:.40}")
+            raise ValueError(
+                f"activation must be one of {', '.join(get_args(Activation))}, not {self.activation!r:.40}"
+            )
 
 
 def model_config(network: Network, shapes: Shapes, branches: Sequence[int] | None = None) -> dict[str, Any]:

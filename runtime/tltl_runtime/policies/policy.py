@@ -39,7 +39,7 @@ class Policy:
         rounded = {name: tensor.detach().cpu().half().contiguous() for name, tensor in weights.items()}
         if not all(bool(tensor.isfinite().all()) for tensor in rounded.values()):
             raise NotFiniteError(
-                "a weight of the actor is no finite number in half precision: its training has diverged"
+                "a weight of the actor is not a finite number in half precision: its training has diverged"
             )
         self.card = card
         self.actor = _actor_of(card, rounded)
@@ -78,7 +78,7 @@ class Policy:
 def _not_finite_message(observation: Mapping[str, NDArray[Any]]) -> str:
     parts = [key for key, values in observation.items() if not np.isfinite(values).all()]
     cause = f"`{parts[0]}` of the observation has values" if parts else "the policy's network gives values"
-    return f"{cause} that are no finite numbers"
+    return f"{cause} that are not finite numbers"
 
 
 def new_actor(card: Card) -> MLPModel:

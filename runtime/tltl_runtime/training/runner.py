@@ -142,7 +142,7 @@ class Runner(OnPolicyRunner):
             check_nan(observation, rewards, dones)
         except ValueError as error:
             title = f"iteration {self.current_learning_iteration + 1}: {error}"
-            help_ = "mend the environment, or the sensor or signal that gives them"
+            help_ = "fix the environment, or the sensor or signal that gives these values"
             raise TltlError([Diagnostic("TLT0854", title, help=help_)]) from None
 
 

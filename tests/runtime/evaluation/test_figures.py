@@ -53,7 +53,7 @@ def test_failed_episodes_are_grouped_by_state_and_end() -> None:
 
 
 def test_figures_of_no_episodes_are_an_error() -> None:
-    with pytest.raises(ValueError, match="0 of 0 is no share"):
+    with pytest.raises(ValueError, match="0 of 0 is not a share"):
         figures_of([])
 
 

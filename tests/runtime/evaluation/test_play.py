@@ -104,7 +104,7 @@ def diagnostic_of(policy: Policy, blinded: bool) -> tuple[str, str]:
 
 def test_nan_in_an_observation_is_reported(policy: Policy) -> None:
     where = f"episode 5 of seed 3 (seed {episode_seed(3, 5)} of the level), step 3"
-    title = f"{where}: `entities` of the observation has values that are no finite numbers"
+    title = f"{where}: `entities` of the observation has values that are not finite numbers"
     assert diagnostic_of(policy, blinded=True) == ("TLT0854", title)
 
 
@@ -113,5 +113,5 @@ def test_a_network_that_overflows_is_reported() -> None:
     for weights in huge.actor.parameters():
         weights.mul_(1e30)
     where = f"episode 5 of seed 3 (seed {episode_seed(3, 5)} of the level), step 1"
-    title = f"{where}: the policy's network gives values that are no finite numbers"
+    title = f"{where}: the policy's network gives values that are not finite numbers"
     assert diagnostic_of(huge, blinded=False) == ("TLT0854", title)

@@ -118,7 +118,9 @@ def test_a_lost_worker_is_reported_with_its_seed(policy: Policy, workers: Pool) 
     (diagnostic,) = caught.value.diagnostics
     assert diagnostic.code == "TLT0850"
     assert f"episode 6 of seed 3, sampled (seed {episode_seed(3, 6)} of the level): " in diagnostic.title
-    assert diagnostic.help == "`tltlc evaluate` plays that one alone: `--seed 3 --first 6 --episodes 1 --workers 1`"
+    assert (
+        diagnostic.help == "`tltlc evaluate` plays only that episode with `--seed 3 --first 6 --episodes 1 --workers 1`"
+    )
 
 
 @pytest.mark.parametrize("workers", [1, pytest.param("ray", marks=needs_ray)])
@@ -251,7 +253,7 @@ def test_errors_can_be_pickled() -> None:
 
 
 def test_a_negative_number_of_workers_is_rejected(policy: Policy) -> None:
-    with pytest.raises(ValueError, match="no -1 workers"):
+    with pytest.raises(ValueError, match="at least 0, not -1"):
         list(evaluate(policy, episodes=1, seed=0, workers=-1))
 
 

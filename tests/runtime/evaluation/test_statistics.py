@@ -51,7 +51,7 @@ def test_the_bounds_are_z_deviations_from_the_share(sample: tuple[int, int]) -> 
 
 @pytest.mark.parametrize(("successes", "count"), [(0, 0), (-1, 5), (6, 5)])
 def test_invalid_counts_are_rejected(successes: int, count: int) -> None:
-    with pytest.raises(ValueError, match="is no share"):
+    with pytest.raises(ValueError, match="is not a share"):
         wilson(successes, count)
 
 

@@ -70,9 +70,12 @@ def test_the_name_and_the_documentation_of_a_spec_do_not_count(card: Card) -> No
 
 CHANGES = {
     "limit": (("limit 400", "limit 401"), "its limit is 401 steps, and was 400 steps"),
-    "judge": (("keep alive", "keep alive\n    judge at limit"), "it is judged at the limit, and was at the goal"),
+    "judge": (
+        ("keep alive", "keep alive\n    judge at limit"),
+        "it is judged at the limit, and was judged at the goal",
+    ),
     "atom": (("keep alive", "keep not visible"), "the atom `visible` is new"),
-    "order": (("near(s1) then near(s2)", "near(s2) then near(s1)"), "its atoms stand in another order"),
+    "order": (("near(s1) then near(s2)", "near(s2) then near(s1)"), "its atoms are in another order"),
     "shorter": (("near(s1) then", ""), "its automaton has 4 states, and had 5"),
     "exclusive": (("near(s2), near(exit)\n", "near(s2)\n"), "the state"),
 }

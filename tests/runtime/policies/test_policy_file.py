@@ -97,7 +97,7 @@ def test_weights_outside_half_precision_are_rejected(policy: Policy, value: floa
     actor = new_actor(policy.card)
     with torch.no_grad():
         actor.mlp[0].bias[3] = value
-    with pytest.raises(NotFiniteError, match="no finite number in half precision"):
+    with pytest.raises(NotFiniteError, match="not a finite number in half precision"):
         Policy(policy.card, actor.state_dict())
 
 
@@ -208,7 +208,7 @@ BIAS = "actor.mlp.0.bias"
         (set_card(level=3), "TLT0842.*`card.level` is 3, and a text was expected"),
         (set_card(more=3), "TLT0842.*`more`"),
         (lambda _, card: card.__delitem__("sensors"), "TLT0842.*lacks one of the keys sensors"),
-        (set_card(level_hash="x"), "TLT0842.*`card.level_hash` is no hash"),
+        (set_card(level_hash="x"), "TLT0842.*`card.level_hash` is not a hash"),
         (set_card(params={"level_size": float("nan")}), "TLT0842.*`card.params.level_size` is nan"),
         (set_card(training={"curve": [[1, float("inf")]]}), r"TLT0842.*`card.training.curve\[0\]\[1\]` is inf"),
         (set_card(artefact=None), "TLT0601"),
@@ -228,7 +228,7 @@ BIAS = "actor.mlp.0.bias"
         (lambda _, card: card["sensors"]["map"].update(extent=10**9), "TLT0842.*`card.shapes`"),
         (lambda _, card: widen(card, 10**9), "TLT0842.*`card.shapes`"),
         (lambda _, card: widen(card, -1), "TLT0842"),
-        (network(hidden=[]), "TLT0842.*`card.network`: hidden are 1 to 16 layers"),
+        (network(hidden=[]), "TLT0842.*`card.network`: hidden must be 1 to 16 layers"),
         (network(hidden=[10**9]), "TLT0842.*`card.network`: hidden"),
         (network(hidden=[1] * 10**5), "TLT0842.*`card.network`: hidden"),
         (network(hidden=[16_384] * 16), "TLT0842.*`actor.mlp.0.bias`"),
@@ -236,10 +236,10 @@ BIAS = "actor.mlp.0.bias"
         (network(kernel=0), "TLT0842.*kernel"),
         (network(stride=0), "TLT0842.*stride"),
         (lambda tensors, _: tensors.__delitem__(BIAS), f"TLT0842.*the tensor `{BIAS}` is missing"),
-        (lambda tensors, _: tensors.update(more=torch.zeros(1)), "TLT0842.*no use for"),
+        (lambda tensors, _: tensors.update(more=torch.zeros(1)), "TLT0842.*does not use the tensor"),
         (tensor(BIAS, lambda each: each.float()), f"TLT0842.*`{BIAS}` is F32"),
         (tensor(BIAS, lambda each: each[:-1].clone()), f"TLT0842.*`{BIAS}` is F16 of shape"),
-        (tensor(BIAS, with_value(float("nan"))), f"TLT0842.*`{BIAS}` has values that are no finite numbers"),
+        (tensor(BIAS, with_value(float("nan"))), f"TLT0842.*`{BIAS}` has values that are not finite numbers"),
         (tensor(BIAS, with_value(float("-inf"))), f"TLT0842.*`{BIAS}` has values"),
     ],
 )

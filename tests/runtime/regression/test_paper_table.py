@@ -106,7 +106,7 @@ def test_a_lost_process_of_the_expert_is_reported(monkeypatch: pytest.MonkeyPatc
     seed_match = re.search(r"\(seed (\d+) of the level\)", str(error.value))
     assert seed_match is not None
     (diagnostic,) = error.value.diagnostics
-    assert diagnostic.help == f"to play that one alone: tltlc demonstrate cover_and_hide:v0 --seed {seed_match[1]}"
+    assert diagnostic.help == f"to play only that episode: tltlc demonstrate cover_and_hide:v0 --seed {seed_match[1]}"
 
 
 def test_the_expert_plays_again_when_the_spec_or_the_code_changes(

@@ -284,7 +284,7 @@ def test_a_lost_worker_ends_the_run(game: Path, monkeypatch: pytest.MonkeyPatch)
     (diagnostic,) = error.value.diagnostics
     assert diagnostic.code == "TLT0850"
     command = "tltlc evaluate easy.safetensors --level room.toml:v0 --seed 3 --first"
-    assert re.fullmatch(rf"to play that one alone: {command} [01] --episodes 1", diagnostic.help)
+    assert re.fullmatch(rf"to play only that episode: {command} [01] --episodes 1", diagnostic.help)
     assert not (Path("new") / CASES).exists()
 
 

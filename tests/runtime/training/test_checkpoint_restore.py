@@ -39,7 +39,7 @@ def refusal(run: TrainingRun) -> str:
     (diagnostic,) = caught.value.diagnostics
     assert diagnostic.code == "TLT0864"
     assert (run.folder / CHECKPOINT).read_bytes() == before
-    return diagnostic.title.partition(" cannot be resumed from: ")[2]
+    return diagnostic.title.partition("`: ")[2]
 
 
 @pytest.fixture(name="copy")
@@ -77,7 +77,7 @@ CHANGES: dict[str, tuple[Callable[[Content], object], str]] = {
     ),
     "critic of whole numbers": (
         lambda it: _first(it["algorithm"]["critic_state_dict"], lambda tensor: tensor.long()),
-        "is no tensor of float32",
+        "is not a tensor of float32",
     ),
     "critic without a layer": (
         lambda it: it["algorithm"]["critic_state_dict"].popitem(),
@@ -87,7 +87,7 @@ CHANGES: dict[str, tuple[Callable[[Content], object], str]] = {
         lambda it: it["algorithm"].update(critic_state_dict=1),
         "`algorithm.critic_state_dict` is of another network",
     ),
-    "no critic": (lambda it: it["algorithm"].pop("critic_state_dict"), "it lacks a part: 'critic_state_dict'"),
+    "no critic": (lambda it: it["algorithm"].pop("critic_state_dict"), "a part is missing: 'critic_state_dict'"),
     "best actor of another shape": (
         lambda it: it.update(best={"score": (0.5, 1.0, -2.0), "steps": 64, "actor": _cut(it)}),
         "and the network needs",
@@ -97,7 +97,10 @@ CHANGES: dict[str, tuple[Callable[[Content], object], str]] = {
         "`algorithm.exp_avg` has the shape [2]",
     ),
     "averages that are missing": (lambda it: _state(it).pop("exp_avg_sq"), "an optimizer in it has other averages"),
-    "averages that are no tensor": (lambda it: _state(it).update(exp_avg="text"), "holds what is no average"),
+    "averages that are no tensor": (
+        lambda it: _state(it).update(exp_avg="text"),
+        "contains a value that is not an average",
+    ),
     "optimizer of fewer weights": (lambda it: _group(it)["params"].pop(), "is of another optimizer"),
     "optimizer whose rate is a text": (
         lambda it: _group(it).update(lr="fast"),
@@ -117,13 +120,16 @@ CHANGES: dict[str, tuple[Callable[[Content], object], str]] = {
     ),
     "generator that is too short": (
         lambda it: it["processes"][0].update(cpu=torch.zeros(3, dtype=torch.uint8)),
-        "a state of random numbers in `processes` is none",
+        "the state of a random generator in `processes` is invalid",
     ),
     "generator of other numbers": (
         lambda it: it["processes"][0].update(cpu=it["processes"][0]["cpu"].float()),
-        "a state of random numbers in `processes` is none",
+        "the state of a random generator in `processes` is invalid",
     ),
-    "no generator": (lambda it: it["processes"][0].pop("cpu"), "a state of random numbers in `processes` is none"),
+    "no generator": (
+        lambda it: it["processes"][0].pop("cpu"),
+        "the state of a random generator in `processes` is invalid",
+    ),
 }
 
 

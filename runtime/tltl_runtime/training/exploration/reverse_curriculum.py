@@ -249,19 +249,19 @@ def _check_episodes(name: str, arrays: Mapping[str, NDArray[Any]]) -> None:
     actions, branches = sum(lengths.tolist()), registered_game().branches
     _check_array(f"{name}_actions", arrays, np.int8, (actions, len(branches)) if actions else (0,))
     if (lengths < 1).any() or (arrays[f"{name}_seeds"] < 0).any():
-        raise ValueError(f"`{name}_lengths` or `{name}_seeds` holds a number that is too small")
+        raise ValueError(f"`{name}_lengths` or `{name}_seeds` contains a number that is too small")
     choices = arrays[f"{name}_actions"].reshape(-1, len(branches))
     if (choices < 0).any() or (choices >= np.array(branches)).any():
-        raise ValueError(f"`{name}_actions` holds what is no action")
+        raise ValueError(f"`{name}_actions` contains a value that is not an action")
 
 
 def _check_figures(arrays: Mapping[str, NDArray[Any]]) -> None:
     """Raise ValueError for success rates outside [0, 1] and lengths that are not positive."""
     rates = np.append(arrays["rates"].ravel(), arrays["passed"])
     if not ((rates >= 0) & (rates <= 1)).all():
-        raise ValueError("`rates` or `passed` holds a number outside 0 to 1")
+        raise ValueError("`rates` or `passed` contains a number outside 0 to 1")
     if not ((arrays["lengths"] > 0) & np.isfinite(arrays["lengths"])).all():
-        raise ValueError("`lengths` holds what is no positive number")
+        raise ValueError("`lengths` contains a value that is not a positive number")
 
 
 def _weights(rates: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -103,7 +103,9 @@ def write_checkpoint(path: Path, checkpoint: Checkpoint) -> None:
             content[name] = {field: getattr(value, field) for field in kind.__match_args__}
     data = BytesIO()
     torch.save({"format": FORMAT, "version": VERSION, **content}, data)
-    fileio.write_file(path, data.getvalue(), "make room there, and go on with --resume", durable=True, over_inputs=True)
+    fileio.write_file(
+        path, data.getvalue(), "make room there, and continue with --resume", durable=True, over_inputs=True
+    )
 
 
 @fileio.resource_limits()
@@ -129,7 +131,7 @@ def read_checkpoint(path: Path, run: Mapping[str, str] | None = None) -> Checkpo
         checkpoint = _checkpoint(content)
         _check_figures(checkpoint)
     except KeyError as error:
-        raise checkpoint_error(path, f"it lacks a part: {error}") from None
+        raise checkpoint_error(path, f"a part is missing: {error}") from None
     except (RecordJsonError, RecursionError) as error:
         raise checkpoint_error(path, str(error) or "it is nested too deeply") from None
     if run is not None:
@@ -156,7 +158,7 @@ def _content(data: bytes, path: Path) -> Mapping[str, Any]:
     except TorchArchiveError as error:
         raise checkpoint_error(path, str(error)) from None
     if not isinstance(content, dict) or content.get("format") != FORMAT:
-        raise checkpoint_error(path, "it is no checkpoint of a training")
+        raise checkpoint_error(path, "it is not a checkpoint of a training")
     return content
 
 
@@ -167,7 +169,7 @@ def _checkpoint(content: Mapping[str, Any]) -> Checkpoint:
     """
     processes, algorithm = content["processes"], _object(content["algorithm"], "algorithm")
     if not isinstance(processes, (tuple, list)) or not processes:
-        raise RecordJsonError("`processes` is no list, or is empty")
+        raise RecordJsonError("`processes` is not a list, or is empty")
     _tensors(algorithm["actor_state_dict"], "algorithm.actor_state_dict")
     tensors = {
         "algorithm": algorithm,
@@ -210,14 +212,14 @@ def _best_policy(content: Mapping[str, Any]) -> BestPolicy:
 def _object(value: object, where: str) -> Mapping[str, Any]:
     if isinstance(value, dict):
         return value
-    raise RecordJsonError(f"`{where}` is no object")
+    raise RecordJsonError(f"`{where}` is not an object")
 
 
 def _tensors(value: object, where: str) -> Mapping[str, Tensor]:
     """Return ``value`` if it maps names to tensors. Raises RecordJsonError otherwise."""
     if isinstance(value, Mapping) and all(type(k) is str and isinstance(v, Tensor) for k, v in value.items()):
         return value
-    raise RecordJsonError(f"`{where}` holds no tensors")
+    raise RecordJsonError(f"`{where}` must contain only tensors")
 
 
 def _lists(value: object) -> object:
@@ -246,15 +248,15 @@ def _check_run(path: Path, actual: Mapping[str, str], expected: Mapping[str, str
 
 def checkpoint_error(path: Path, reason: str) -> TltlError:
     """Return error TLT0864: a checkpoint is damaged or does not fit, for this reason."""
-    help_ = "put back a copy of it, or move it away: the training then begins anew"
-    return TltlError([Diagnostic("TLT0864", f"`{path}` cannot be resumed from: {reason}", help=help_)])
+    help_ = "put back a copy of it, or move it away: the training then starts again"
+    return TltlError([Diagnostic("TLT0864", f"cannot resume from `{path}`: {reason}", help=help_)])
 
 
 def level_changed_error(folder: Path) -> TltlError:
     """Return error TLT0868: the level has changed since the training in ``folder`` began."""
     help_ = (
-        f"put it back and go on by `{resume_command(folder)}`, or train on the level as it is now: anew, or by "
-        f"`tltlc train --from {quote(str(folder))}` from what was learned"
+        f"put it back and continue with `{resume_command(folder)}`, or train on the level as it is now: from the "
+        f"beginning, or from what was learned with `tltlc train --from {quote(str(folder))}`"
     )
     title = f"the level has changed since the training in `{folder}` began"
     return TltlError([Diagnostic("TLT0868", title, help=help_)])
@@ -262,18 +264,18 @@ def level_changed_error(folder: Path) -> TltlError:
 
 def _demonstrations_changed_error(folder: Path) -> TltlError:
     again = resume_command(folder)
-    help_ = f"put them back and go on by `{again}`, or say where they are now: `{again} --demonstrations DIR`"
-    title = f"the demonstrations are others than those that the training in `{folder}` began with"
+    help_ = f"put them back and continue with `{again}`, or say where they are now: `{again} --demonstrations DIR`"
+    title = f"the demonstrations are not those that the training in `{folder}` began with"
     return TltlError([Diagnostic("TLT0922", title, help=help_)])
 
 
 def _part_name(part: str) -> str:
-    return "network, senses or settings" if part == "settings" else part
+    return "network, sensors or settings" if part == "settings" else part
 
 
 def _version_error(path: Path, version: object) -> TltlError:
     folder = quote(str(path.parent))
-    title = f"`{path}` cannot be resumed from: it was written by another version of tltlc"
-    title += f" (its own is {version!r:.20}, and only {VERSION} can be read)"
-    help_ = f"go on with that version, or train anew; `tltlc evaluate {folder}` plays what was learned"
+    title = f"cannot resume from `{path}`: it was written by another version of tltlc"
+    title += f" (it has version {version!r:.20} of the format, and only {VERSION} can be read)"
+    help_ = f"continue with that version, or train again; `tltlc evaluate {folder}` plays what was learned"
     return TltlError([Diagnostic("TLT0864", title, help=help_)])

@@ -18,7 +18,7 @@ from tltlc.api import Diagnostic, Fspa, TltlError, fileio, label_text
 
 METRICS: Final = "metrics.jsonl"
 
-_ADVICE: Final = "see that there is room, and that you may write there"
+_ADVICE: Final = "check that there is room, and that you may write there"
 WINDOW_MEANS: Final = ("pass_rate", "progress", "reward", "episode_steps")
 """The fields of a line of ``metrics.jsonl`` that are means over the last episodes."""
 _INTEGERS: Final = ("iteration", "steps", "episodes", "window")
@@ -113,7 +113,7 @@ def read_metrics(path: Path) -> list[dict[str, Any]]:
         raise fileio.reading_error(str(path), error) from None
     if len(data) > fileio.limits.MEASUREMENTS.size:
         title = f"`{path}` is larger than {fileio.limits.MEASUREMENTS.size >> 20} MiB"
-        raise TltlError([Diagnostic("TLT0004", title, help="move it away: the training then goes on without it")])
+        raise TltlError([Diagnostic("TLT0004", title, help="move it away: the training then continues without it")])
     text = data.decode(errors="replace")
     return [fields for line in text.splitlines() if (fields := _parse_line(line)) is not None]
 

@@ -34,7 +34,9 @@ MAY_CHANGE: Final = frozenset(
     {"device", "threads", "checkpoint_s", "rollout.workers", "rollout.pool", "stop.steps", "stop.minutes"}
 )
 """The settings, as named by :func:`leaves`, that may change when a training is resumed."""
-WRITABLE: Final = "see that there is room, and that you may write there; a new training may go elsewhere, with --out"
+WRITABLE: Final = (
+    "check that there is room, and that you may write there; for a new training, you can name another folder with --out"
+)
 """The help if the folder of a new or resumed training cannot be written to."""
 
 _FORMAT: Final = "tltl-run"
@@ -130,7 +132,7 @@ def read_run(folder: Path) -> TrainingRun:
     _check_settings(source, document)
     values = _values(source, document, tuple(_PLAIN))
     if "artefact" not in document:
-        raise _invalid_run_error(source, "it lacks 'artefact'")
+        raise _invalid_run_error(source, "it has no 'artefact'")
     fspa = compiler.decode_artefact(document["artefact"], f"{source.name}/artefact")
     return TrainingRun(folder=folder, fspa=fspa, **values)
 
@@ -158,9 +160,9 @@ def _read_document(folder: Path) -> tuple[SourceFile, Mapping[str, Any]]:
     try:
         document = fileio.parse_json(source.text, fileio.limits.ARTEFACT)
     except (ValueError, RecursionError):
-        raise _invalid_run_error(source, "it is no JSON") from None
+        raise _invalid_run_error(source, "it is not JSON") from None
     if not isinstance(document, dict) or document.get("format") != _FORMAT:
-        raise _invalid_run_error(source, "it describes no training")
+        raise _invalid_run_error(source, "it does not describe a training")
     if document.get("version") != _VERSION:
         raise _invalid_run_error(
             source, f"it has version {document.get('version')!r:.20}, and only {_VERSION} can be read"
@@ -171,14 +173,14 @@ def _read_document(folder: Path) -> tuple[SourceFile, Mapping[str, Any]]:
 def _check_settings(source: SourceFile, document: Mapping[str, Any]) -> None:
     """Raise TLT0863 if another version of tltlc, with other settings, wrote the document."""
     stored, known = set(dict(leaves(document.get("settings", {})))), set(dict(leaves(to_json(read_settings()))))
-    help_ = f"begin the training anew; `tltlc evaluate {quote(str(Path(source.name).parent))}` plays what it learned"
+    help_ = f"start the training again; `tltlc evaluate {quote(str(Path(source.name).parent))}` plays what it learned"
     if stored and (missing := sorted(known - stored)):
         raise _invalid_run_error(
-            source, f"it is of an older version of tltlc, which had no setting `{missing[0]}`", help_
+            source, f"it is from an older version of tltlc, which had no setting `{missing[0]}`", help_
         )
     if unknown := sorted(stored - known):
         raise _invalid_run_error(
-            source, f"it is of another version of tltlc, which had a setting `{unknown[0]}`", help_
+            source, f"it is from another version of tltlc, which had a setting `{unknown[0]}`", help_
         )
 
 
@@ -186,7 +188,7 @@ def _values(source: SourceFile, document: Mapping[str, Any], names: Sequence[str
     try:
         return {name: from_json(_PLAIN[name], document[name], name) for name in names}
     except KeyError as error:
-        raise _invalid_run_error(source, f"it lacks {error}") from None
+        raise _invalid_run_error(source, f"it has no {error}") from None
     except (RecordJsonError, RecursionError) as error:
         raise _invalid_run_error(source, str(error)) from None
 
@@ -256,12 +258,12 @@ def _content_hash(folder: Path) -> str:
 
 
 def _no_training_error(folder: Path) -> TltlError:
-    title = f"`{folder}` cannot be resumed from: there is no training in it"
-    help_ = named_trainings(folder) or "name the folder of a training, as `tltlc train --out` did"
+    title = f"cannot resume from `{folder}`: there is no training in it"
+    help_ = named_trainings(folder) or "name the folder of a training, as in `tltlc train --out`"
     return TltlError([Diagnostic("TLT0863", title, help=help_)])
 
 
 def _invalid_run_error(
-    source: SourceFile, reason: str, help_: str = "name the folder of a training, as `tltlc train --out` did"
+    source: SourceFile, reason: str, help_: str = "name the folder of a training, as in `tltlc train --out`"
 ) -> TltlError:
-    return TltlError([Diagnostic("TLT0863", f"`{source.name}` cannot be resumed from: {reason}", help=help_)])
+    return TltlError([Diagnostic("TLT0863", f"cannot resume from `{source.name}`: {reason}", help=help_)])

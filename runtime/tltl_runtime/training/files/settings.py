@@ -198,8 +198,8 @@ def read_settings(path: Path | None = None) -> TrainingSettings:
         values = {name: {**defaults, **overrides.get(name, {})} for name, defaults in values.items()}
     ppo, rollout = Ppo(**values["ppo"]), Rollout(**values["rollout"])
     if ppo.minibatches > rollout.envs * rollout.steps:
-        title = f"{ppo.minibatches} minibatches are more than there are decisions in a rollout"
-        raise TltlError([Diagnostic("TLT0862", title, help=f"give {rollout.envs * rollout.steps} at the most")])
+        title = f"{ppo.minibatches} minibatches are more than the decisions of a rollout"
+        raise TltlError([Diagnostic("TLT0862", title, help=f"give at most {rollout.envs * rollout.steps}")])
     return TrainingSettings(
         ppo=ppo,
         rollout=rollout,

@@ -30,7 +30,7 @@ class NumberSetting:
 
     def __str__(self) -> str:
         low, high = f"{self.low:g}", f"{self.high:,.0f}"
-        return f"a number above {low}, and {high} at most" if self.open else f"a number from {low} to {high}"
+        return f"a number above {low} and at most {high}" if self.open else f"a number from {low} to {high}"
 
 
 @record
@@ -167,7 +167,7 @@ KINDS: Final[Mapping[str, Mapping[str, Kind]]] = {
 """The kinds of values, by table and key. The table ``""`` has the keys before the first table."""
 
 _TOP: Final = "at the top, above the first `[...]`"
-_HELP: Final = 'values are written as in `envs = 32` and `device = "cpu"`'
+_HELP: Final = 'write values as in `envs = 32` and `device = "cpu"`'
 
 
 def read_values(source: SourceFile) -> dict[str, dict[str, Any]]:

@@ -49,7 +49,7 @@ def read_torch(data: bytes) -> Any:
         content = torch.load(BytesIO(archive), map_location="cpu", weights_only=True)
     except Exception as error:
         # torch raises exceptions of many classes for invalid files.
-        raise TorchArchiveError(f"it is damaged, or no checkpoint ({type(error).__name__})") from None
+        raise TorchArchiveError(f"it is damaged, or not a checkpoint ({type(error).__name__})") from None
     _check_values(content)
     return content
 
@@ -63,12 +63,12 @@ def _checked_archive(data: bytes) -> bytes:
     """
     # torch reads a file with another beginning in its older format, even if an archive follows.
     if not data.startswith(b"PK\x03\x04"):
-        raise TorchArchiveError("it is damaged, or no checkpoint (BadZipFile)")
+        raise TorchArchiveError("it is damaged, or not a checkpoint (BadZipFile)")
     try:
         with zipfile.ZipFile(BytesIO(data)) as archive:
             members = archive.infolist()
             if any(member.compress_type != zipfile.ZIP_STORED for member in members):
-                raise TorchArchiveError("its parts are compressed, as torch never writes them")
+                raise TorchArchiveError("its parts are compressed, but torch never compresses them")
             if sum(member.file_size for member in members) > len(data):
                 raise TorchArchiveError("its parts are larger than the file")
             if archive.testzip():
@@ -82,7 +82,7 @@ def _checked_archive(data: bytes) -> bytes:
         raise
     except Exception as error:
         # Invalid archives and pickles also raise exceptions of many classes.
-        raise TorchArchiveError(f"it is damaged, or no checkpoint ({type(error).__name__})") from None
+        raise TorchArchiveError(f"it is damaged, or not a checkpoint ({type(error).__name__})") from None
 
 
 def _archive(contents: Mapping[str, bytes]) -> bytes:
@@ -104,15 +104,15 @@ def _check_calls(pickled: bytes) -> None:
     memo: dict[int, str] = {}
     for count, (opcode, argument, _) in enumerate(pickletools.genops(pickled)):
         if count > _OPCODES * (fileio.limits.CHECKPOINT.values or 0):
-            raise TorchArchiveError(f"it holds more than {fileio.limits.CHECKPOINT.values:,} values")
+            raise TorchArchiveError(f"it contains more than {fileio.limits.CHECKPOINT.values:,} values")
         if opcode.proto > _PROTOCOL or opcode.name in ("INST", "OBJ", "EXT1", "EXT2", "EXT4"):
-            raise TorchArchiveError("it holds more than plain data")
+            raise TorchArchiveError("it contains more than plain data")
         if opcode.name == "GLOBAL" and argument not in _GLOBALS:
-            raise TorchArchiveError(f"it holds more than plain data: {argument:.60}")
+            raise TorchArchiveError(f"it contains more than plain data: {argument:.60}")
         operands = _pop_operands(stack, marks, opcode)
         keys = operands[1::2] if opcode.name in ("SETITEM", "SETITEMS") else []
         if _TUPLE in keys or (opcode.name == "REDUCE" and operands == [_ORDERED, _TUPLE]):
-            raise TorchArchiveError("a key in it is no text and no number")
+            raise TorchArchiveError("a key in it is neither a text nor a number")
         if opcode.name in ("BINPUT", "LONG_BINPUT", "PUT"):
             memo[int(str(argument))] = stack[-1]
         elif opcode.name in ("BINGET", "LONG_BINGET", "GET"):
@@ -170,16 +170,16 @@ def _check_values(content: object) -> None:
             _check_tensor(value)
             children += _children(value)
             if count + len(children) > (fileio.limits.CHECKPOINT.values or 0):
-                raise TorchArchiveError(f"it holds more than {fileio.limits.CHECKPOINT.values:,} values")
+                raise TorchArchiveError(f"it contains more than {fileio.limits.CHECKPOINT.values:,} values")
         if not children:
             return
         values = children
-    raise TorchArchiveError(f"it nests deeper than {fileio.limits.CHECKPOINT.depth} levels")
+    raise TorchArchiveError(f"it is nested more than {fileio.limits.CHECKPOINT.depth} levels deep")
 
 
 def _check_tensor(value: object) -> None:
     if isinstance(value, Tensor) and value.numel() * value.element_size() > value.untyped_storage().nbytes():
-        raise TorchArchiveError("a tensor in it is larger than the numbers that are there")
+        raise TorchArchiveError("a tensor in it is larger than its stored numbers")
 
 
 def _children(value: object) -> Iterable[object]:

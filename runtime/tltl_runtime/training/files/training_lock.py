@@ -18,6 +18,8 @@ def lock_training(folder: Path) -> AbstractContextManager[None]:
     Raises:
         TltlError: TLT0005, the folder cannot be written to; TLT0865, another process trains in it.
     """
-    title = f"another process trains in `{folder}`"
-    busy = Diagnostic("TLT0865", title, help="wait for its end; a new training may go elsewhere, with --out")
+    title = f"another process is training in `{folder}`"
+    busy = Diagnostic(
+        "TLT0865", title, help="wait until it ends; for a new training, you can name another folder with --out"
+    )
     return lock_folder(folder, busy, WRITABLE)

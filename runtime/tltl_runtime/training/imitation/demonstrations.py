@@ -145,10 +145,10 @@ def expert_attempts(env: EpisodeRecorder[Any], store: Demonstrations, number: in
 
 def _expert_failed(episode: RecordedEpisode) -> TltlError:
     level, spec = episode.level, episode.fspa.name
-    title = f"the expert met `{spec}` in none of {MOST_FAILURES} episodes in a row on `{level.name}:{level.variant}`"
+    title = f"the expert failed to meet `{spec}` in {MOST_FAILURES} episodes in a row on `{level.name}:{level.variant}`"
     help_ = (
         f"`tltlc demonstrate {level.name}:{level.variant}` shows how it fails; "
         f"`tltlc record --seed {episode.seed + 1}` tries other episodes; "
-        "`tltlc record --by keyboard` records a person, whose folder `tltlc train --demonstrations` takes"
+        "`tltlc record --by keyboard` records a person; give the folder to `tltlc train --demonstrations`"
     )
     return TltlError([Diagnostic("TLT0920", title, help=help_)])

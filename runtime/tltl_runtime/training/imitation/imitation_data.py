@@ -146,8 +146,10 @@ def nothing_to_imitate(folder: Path, left_out: list[str]) -> TltlError:
         rest = f", and {len(left_out) - 1} more" if len(left_out) > 1 else ""
         title += f"{left_out[0]}{rest}"
     else:
-        title += "it holds no recording" if folder.is_dir() else "there is no such folder"
-    help_ = "`tltlc record` makes demonstrations; without --demonstrations the expert's are recorded first"
+        title += "it contains no recording" if folder.is_dir() else "there is no such folder"
+    help_ = (
+        "record demonstrations with `tltlc record`; without --demonstrations, those of the expert are recorded first"
+    )
     return TltlError([Diagnostic("TLT0921", title, help=help_)])
 
 

@@ -57,9 +57,9 @@ class TrainingEnv(VecEnv):
         limit_steps: int | None = None,
     ) -> None:
         if not isinstance(env.single_action_space, spaces.MultiDiscrete):
-            raise TypeError(f"actions of several branches are needed, a MultiDiscrete, not {env.single_action_space}")
+            raise TypeError(f"the action space must be a MultiDiscrete, not {env.single_action_space}")
         if not isinstance(env.single_observation_space, spaces.Dict):
-            raise TypeError(f"an observation of several parts is needed, a Dict, not {env.single_observation_space}")
+            raise TypeError(f"the observation space must be a Dict, not {env.single_observation_space}")
         self.env = env
         self.num_envs = env.num_envs
         self.branches = tuple(int(choices) for choices in env.single_action_space.nvec)

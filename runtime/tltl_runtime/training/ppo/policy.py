@@ -48,5 +48,5 @@ def policy_of(card: Card, weights: Mapping[str, Tensor]) -> Policy:
     try:
         return Policy(card, weights)
     except NotFiniteError as error:
-        help_ = "train anew with a smaller `learning_rate` or `max_gradient`"
+        help_ = "train again with a smaller `learning_rate` or `max_gradient`"
         raise TltlError([Diagnostic("TLT0866", str(error), help=help_)]) from None

@@ -30,14 +30,14 @@ def restore_checkpoint(checkpoint: Checkpoint, runner: Runner, states: int) -> N
     initial = runner.alg.save()
     for name, expected in initial.items():
         if name not in checkpoint.algorithm:
-            raise RecordJsonError(f"it lacks a part: '{name}'")
+            raise RecordJsonError(f"a part is missing: '{name}'")
         _check_part(checkpoint.algorithm[name], expected, f"algorithm.{name}")
     if checkpoint.best:
         _check_weights(checkpoint.best.actor, initial["actor_state_dict"], "best.actor")
     for process in checkpoint.processes:
         _check_generators(process, runner.device)
     if any(state >= states for _, _, _, state, _ in checkpoint.window):
-        raise RecordJsonError("`window` holds a state that the spec does not have")
+        raise RecordJsonError("`window` contains a state that the spec does not have")
     try:
         runner.load_algorithm(checkpoint.algorithm)
     except Exception as error:
@@ -60,7 +60,7 @@ def _check_part(saved: object, expected: object, where: str) -> None:
         if all(isinstance(value, Tensor) for value in expected.values()):
             _check_weights(saved, expected, where)
     elif isinstance(expected, (int, float)) and not (_kind(saved) == _kind(expected) and _is_limit(saved)):
-        raise RecordJsonError(f"`{where}` is {saved!r:.60}, and a number from 0 on was expected")
+        raise RecordJsonError(f"`{where}` is {saved!r:.60}, and a number of at least 0 was expected")
 
 
 def _is_limit(value: Any) -> bool:
@@ -79,7 +79,7 @@ def _check_optimizer(saved: object, expected: Mapping[str, Any], where: str) -> 
     tensors.
     """
     if not isinstance(saved, Mapping) or saved.keys() != expected.keys():
-        raise RecordJsonError(f"`{where}` is no state of an optimizer")
+        raise RecordJsonError(f"`{where}` is not the state of an optimizer")
     state, groups = saved["state"], saved["param_groups"]
     if not isinstance(groups, list) or len(groups) != len(expected["param_groups"]):
         raise RecordJsonError(f"`{where}.param_groups` is of another optimizer")
@@ -92,7 +92,7 @@ def _check_optimizer(saved: object, expected: Mapping[str, Any], where: str) -> 
         raise RecordJsonError(f"`{where}.state` is of another optimizer")
     for number, averages in state.items():
         if not isinstance(averages, Mapping) or not all(map(_is_moment, averages.values())):
-            raise RecordJsonError(f"`{where}.state.{number}` holds what is no average")
+            raise RecordJsonError(f"`{where}.state.{number}` contains a value that is not an average")
 
 
 def _check_options(saved: Mapping[str, Any], expected: Mapping[str, Any]) -> None:
@@ -144,11 +144,11 @@ def _check_weights(saved: object, expected: Mapping[str, Tensor], where: str) ->
 
 def _check_tensor(saved: object, shape: torch.Size, dtype: torch.dtype, where: str) -> None:
     if not isinstance(saved, Tensor) or saved.dtype != dtype:
-        raise RecordJsonError(f"`{where}` is no tensor of {str(dtype).removeprefix('torch.')}")
+        raise RecordJsonError(f"`{where}` is not a tensor of {str(dtype).removeprefix('torch.')}")
     if saved.shape != shape:
         raise RecordJsonError(f"`{where}` has the shape {list(saved.shape)}, and the network needs {list(shape)}")
     if saved.is_floating_point() and not torch.isfinite(saved).all():
-        raise RecordJsonError(f"`{where}` holds what is no finite number")
+        raise RecordJsonError(f"`{where}` contains a value that is not a finite number")
 
 
 def _check_generators(process: Mapping[str, Tensor], device: str) -> None:
@@ -161,7 +161,7 @@ def _check_generators(process: Mapping[str, Tensor], device: str) -> None:
         try:
             torch.Generator(where).set_state(state)  # type: ignore[arg-type]
         except (RuntimeError, TypeError):
-            raise RecordJsonError("a state of random numbers in `processes` is none") from None
+            raise RecordJsonError("the state of a random generator in `processes` is invalid") from None
 
 
 def _kind(value: object) -> str:
@@ -188,7 +188,7 @@ def _check_moments(optimizer: Optimizer) -> None:
                     _check_tensor(average, shape, torch.float32, f"algorithm.{name}")
                     # Adam takes the root of these averages, and divides by a function of the steps.
                     if name in ("step", "exp_avg_sq", "max_exp_avg_sq") and (average < 0).any():
-                        raise RecordJsonError(f"`algorithm.{name}` holds a number below 0")
+                        raise RecordJsonError(f"`algorithm.{name}` contains a number below 0")
 
 
 def _moments(optimizer: Optimizer) -> set[str]:

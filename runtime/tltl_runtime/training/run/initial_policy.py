@@ -37,17 +37,17 @@ def read_initial_policy(initial: InitialPolicy, folder: Path) -> Policy:
     """
     if not Path(initial.path).is_file():
         raise _changed_policy_error(
-            f"`{initial.path}` is not there, with which the training in `{folder}` begins", folder
+            f"`{initial.path}`, the policy that the training in `{folder}` begins with, is missing", folder
         )
     policy = read_policy(initial.path)
     if weights_hash(policy) != initial.weights:
         raise _changed_policy_error(
-            f"`{initial.path}` is another policy now than when the training in `{folder}` was asked for", folder
+            f"`{initial.path}` is now another policy than when the training in `{folder}` was started", folder
         )
     return policy
 
 
 def _changed_policy_error(title: str, folder: Path) -> TltlError:
     again = resume_command(folder)
-    help_ = f"put it back and go on by `{again}`, or say where it is now: `{again} --from POLICY`"
+    help_ = f"put it back and continue with `{again}`, or say where it is now: `{again} --from POLICY`"
     return TltlError([Diagnostic("TLT0940", title, help=help_)])

@@ -18,7 +18,7 @@ def class_of(setting: str, name: str, base: type) -> Any:
     """
     try:
         cls = resolve_callable(name)
-        reason = "" if isinstance(cls, type) and issubclass(cls, base) else f"it is no subclass of {base.__name__}"
+        reason = "" if isinstance(cls, type) and issubclass(cls, base) else f"it is not a subclass of {base.__name__}"
     except (ImportError, AttributeError, ValueError) as error:
         reason = str(error)
     if reason:
@@ -42,10 +42,10 @@ def device_of(device: str) -> str:
             raise _no_device(f"there is no device `{device}` here, or torch was built without it", 'train on the "cpu"')
         return device
     if device != "cuda":
-        title = f"each of {group.count} processes takes a device of its own, and `{device}` is but one"
-        raise _no_device(title, 'say "cuda"; the variable CUDA_VISIBLE_DEVICES chooses which ones they take')
+        title = f"each of {group.count} processes needs its own device, but `{device}` is only one"
+        raise _no_device(title, 'write "cuda"; the variable CUDA_VISIBLE_DEVICES chooses which devices they use')
     if group.local_count > gpus:
-        title = f"each of {group.local_count} processes takes a device of its own, and torch finds {gpus} here"
+        title = f"each of {group.local_count} processes needs its own device, but torch finds {gpus} here"
         raise _no_device(title, 'start no more processes than devices, or train on the "cpu"')
     return f"cuda:{group.local_rank}"
 

@@ -71,6 +71,8 @@ def set_generators(state: ProcessState, runner: Runner) -> None:
 def _check_losses(iteration: Iteration) -> None:
     invalid = [name for name, loss in iteration.losses.items() if not isfinite(loss)]
     if invalid:
-        title = f"the training has diverged: in iteration {iteration.number} the loss `{invalid[0]}` is no number"
-        help_ = "train anew with a smaller `learning_rate` or `max_gradient`"
+        title = (
+            f"the training has diverged: in iteration {iteration.number} the loss `{invalid[0]}` is not a finite number"
+        )
+        help_ = "train again with a smaller `learning_rate` or `max_gradient`"
         raise TltlError([Diagnostic("TLT0866", title, help=help_)])

@@ -61,8 +61,8 @@ def start_or_resume(run: TrainingRun, resume: bool) -> Checkpoint | None:
             write_run(run)
         return checkpoint
     if (run.folder / RUN).exists():
-        title = f"`{run.folder}` holds a training already"
-        help_ = f"go on with it by `{resume_command(run.folder)}`, or name another place with --out"
+        title = f"`{run.folder}` already contains a training"
+        help_ = f"continue it with `{resume_command(run.folder)}`, or name another folder with --out"
         raise TltlError([Diagnostic("TLT0867", title, help=help_)])
     write_run(run)
     return None
@@ -172,7 +172,7 @@ def _player(run: TrainingRun, group: ProcessGroup, policy: Policy | None) -> Pla
             return policy.choose(observation, generator)
         except NotFiniteError as error:
             title = f"the policy that the training in `{run.folder}` begins with: {error}"
-            help_ = "begin with another one, or train without --from"
+            help_ = "begin with another policy, or train without --from"
             raise TltlError([Diagnostic("TLT0854", title, help=help_)]) from None
 
     return play
