@@ -71,7 +71,7 @@ def command(suite: Path | None, path: Path | None, fresh: bool, workers: Any) ->
         click.echo(f"wrote {output}", err=True)
         if output.resolve() != loaded.baseline.resolve():
             words = ["tltlc", "regress", *([str(suite)] if suite else []), "--baseline", str(output)]
-            click.echo(f"to judge by it: {join(words)}", err=True)
+            click.echo(f"to compare with it: {join(words)}", err=True)
         return cli.exits.CLEAN
     return report.status
 
@@ -98,9 +98,10 @@ def _stopped_text(path: Path, partial: Path | None, *, existed: bool) -> str:
 
     if partial and not existed:
         return (
-            f"no `{path}` was written; what is over is kept in `{path_text(partial)}`: the same command goes on with it"
+            f"`{path}` was not written; what is finished is kept in `{path_text(partial)}`: "
+            "run the same command again to continue"
         )
-    return f"`{path}` is as it was; the same command {'goes on with what is over' if partial else 'begins anew'}"
+    return f"`{path}` was not changed; run the same command again to {'continue' if partial else 'start again'}"
 
 
 def _print_reference(suite: Suite, recorded: RecordedReference, older: tuple[Reference, ...], *, fresh: bool) -> None:
@@ -149,7 +150,7 @@ def _advice(pass_rate: float, case: Case, error: float) -> str:
         from tltl_runtime.regression.verdict.baseline_run import episodes_for_certainty
 
         episodes = episodes_for_certainty(case.thresholds.pass_rate, error)
-        return f"{case.episodes} `episodes` are too few to be certain, give it {episodes} at least"
+        return f"{case.episodes} `episodes` are too few to be certain; give it at least {episodes}"
     if pass_rate < case.thresholds.pass_rate:
         return "train its policy further, or lower its `pass_rate`"
     return "train its policy further, lower its `pass_rate`, or give it more `episodes`"

@@ -106,7 +106,7 @@ def command(
     if policy is None and level is None:
         raise click.UsageError("name a POLICY or a --level, or both")
     if recorded and not folder:
-        raise click.UsageError("--record needs the folder for the recordings: --out DIR")
+        raise click.UsageError("--record needs a folder for the recordings: add --out DIR")
     with cli.Report() as report, require_learning("`tltlc evaluate`"):
         from tltl_runtime.cli.support.level_argument import check_named, check_no_toml
 
@@ -179,7 +179,7 @@ def _with_progress(playing: Iterator[PlayedEpisode], count: int) -> Iterator[Pla
 
 
 def _print_waiting(left: float) -> None:
-    click.echo(f"waiting for a worker to start on the Ray cluster, for {left:.0f} s at the most", err=True)
+    click.echo(f"waiting for a worker to start on the Ray cluster, for at most {left:.0f} s", err=True)
 
 
 def _bar(count: int) -> Any:
@@ -213,6 +213,8 @@ def _print_results(files: EvaluationFiles, json_file: Path | None, folder: Path 
         click.echo(text, nl=False)
     contents = files.write(text)
     if removed := files.removed_files:
-        click.echo(f"removed from {folder}, of an earlier evaluation: {short_list(removed, _MOST_NAMED)}", err=True)
+        click.echo(
+            f"removed files of an earlier evaluation from {folder}: {short_list(removed, _MOST_NAMED)}", err=True
+        )
     if contents:
         click.echo(f"wrote {contents}", err=True)

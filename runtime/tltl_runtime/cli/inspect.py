@@ -34,7 +34,7 @@ def command(files: tuple[str, ...], path: Path | None, format: str) -> int:  # n
     A POLICY is a .safetensors file, the folder of a training, or the name of a level for the policy that comes with it.
     """
     if path is not None and path.suffix.lower() != ".onnx":
-        raise click.UsageError(f"-o writes a .onnx, not `{path}`")
+        raise click.UsageError(f"-o writes a .onnx file, not `{path}`")
     if path is not None and len(files) > 1:
         raise click.UsageError("-o takes one POLICY")
     summaries: list[dict[str, Any]] = []

@@ -98,7 +98,10 @@ def command(
                 _record_expert(env, demonstrations, episodes, seed or 0, report)
         except KeyboardInterrupt:
             if demonstrations:
-                click.echo(f"stopped: {_count_text(demonstrations, episodes)}; the same command goes on", err=True)
+                click.echo(
+                    f"stopped: {_count_text(demonstrations, episodes)}; run the same command again to continue",
+                    err=True,
+                )
             raise
         finally:
             env.close()
@@ -133,7 +136,8 @@ def _existing_lines(demonstrations: Demonstrations, requested: int) -> list[str]
     # If there are enough demonstrations, the last line of the output says so.
     lines = [f"{_count_text(demonstrations, requested)} already"] if 0 < demonstrations.count < requested else []
     if number := len(demonstrations.rejected):
-        count_text = f"{number} recording{'s' * (number > 1)} there" + (" is none" if number == 1 else " are none")
+        count_text = f"{number} recording{'s' * (number > 1)} in the folder "
+        count_text += "is not a demonstration" if number == 1 else "are not demonstrations"
         first, suffix = demonstrations.rejected[0], " and others" * (number > 1)
         lines.append(plain_text(f"{count_text} of this level and spec: `{first.path.name}` ({first.reason}){suffix}"))
     return lines
@@ -199,7 +203,9 @@ class _DemonstrationRecorder:
 
         path = write_elsewhere(episode, file_stem(episode), error)
         count = f"{self._demonstrations.count} of {self._requested}"
-        click.echo(episode_line(episode, f"{path} ({count}, until it is moved to {self._demonstrations.folder})"))
+        click.echo(
+            episode_line(episode, f"{path} ({count}, not counted until you move it to {self._demonstrations.folder})")
+        )
         return f"{path}, {count}"
 
 
@@ -214,6 +220,5 @@ def _attempt_line(attempt: Attempt, requested: int) -> str:
 
 def _count_text(demonstrations: Demonstrations, requested: int) -> str:
     if demonstrations.count > requested:
-        request = f"{requested} {'is' if requested == 1 else 'are'} asked for"
-        return f"{demonstrations.count} demonstrations are in {demonstrations.folder}, and {request}"
+        return f"{demonstrations.count} demonstrations are in {demonstrations.folder}; you asked for {requested}"
     return f"{demonstrations.count} of {requested} demonstrations are in {demonstrations.folder}"

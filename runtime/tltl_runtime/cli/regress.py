@@ -100,9 +100,9 @@ def command(
         both = "both" if len(uses) == 2 else "all"
         raise click.UsageError(f"{', '.join(uses[:-1])} and {uses[-1]} {both} need standard output: {advice}")
     if minutes is not None and not retrain:
-        raise click.UsageError("--minutes are those of --retrain: give it, too")
+        raise click.UsageError("--minutes works only with --retrain: add --retrain")
     if suite is None and (swallowed := next(filter(_is_suite, changed or ()), None)):
-        raise click.UsageError(f"`{swallowed}` is taken as a word of --changed: put the suite before it")
+        raise click.UsageError(f"`{swallowed}` counts as a file of --changed: put the suite before --changed")
     with cli.Report() as report, require_learning("`tltlc regress`"), ignore_closed_pipe():
         check_suite_exists(suite)
         from tltl_runtime.cli.support.regression_run import RegressOptions, run

@@ -144,15 +144,15 @@ def _check_usage(
     """Reject options that would be ignored."""
     extension = None if path is None else path.suffix.lower()
     if extension is not None and extension not in _ENDINGS:
-        raise click.UsageError(f"the ending of `{path}` says no kind of output: use one of {', '.join(_ENDINGS)}")
+        raise click.UsageError(f"`{path}` does not end with a known extension: use one of {', '.join(_ENDINGS)}")
     for option in context.command.params:
         kinds = _ONLY_FOR.get(option.name or "", ())
         if kinds and context.params[option.name or ""] is not None and extension not in kinds:
-            raise click.UsageError(f"{option.opts[0]} is for what -o writes to a {_alternatives(kinds)}")
+            raise click.UsageError(f"{option.opts[0]} works only if -o writes a {_alternatives(kinds)} file")
     if path is not None and len(files) > 1:
         raise click.UsageError("-o takes one FILE")
     if extension == ".mp4" and size and (size[0] % 2 or size[1] % 2):
-        raise click.UsageError("the width and the height of an .mp4 are even numbers")
+        raise click.UsageError("the width and the height of an .mp4 must be even numbers")
 
 
 def _alternatives(names: Sequence[str]) -> str:

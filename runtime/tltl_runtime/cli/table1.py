@@ -72,15 +72,17 @@ def command(folder: Path, shipped: bool, minutes: float | None, workers: Any) ->
         from tltl_runtime.support.folder_lock import lock_folder
         from tltlc.api import fileio
 
-        title = f"another run of `tltlc table1` is at work in `{folder}`"
-        busy = Diagnostic("TLT0931", title, help="wait for its end, or name another folder with --out")
+        title = f"another run of `tltlc table1` is using `{folder}`"
+        busy = Diagnostic("TLT0931", title, help="wait until it ends, or name another folder with --out")
         check_no_training(folder)
         with lock_folder(folder, busy, _ELSEWHERE):
             options = _Table1Options(folder, shipped, minutes, workers)
             try:
                 text = _table(options)
             except KeyboardInterrupt:
-                click.echo(f"stopped: what is over is kept in `{folder}`; to go on: {options.resume_command}", err=True)
+                click.echo(
+                    f"stopped: what is finished is kept in `{folder}`; to go on: {options.resume_command}", err=True
+                )
                 raise
             click.echo(text, nl=False)
             fileio.write_files(folder, {"table1.md": text}, _ELSEWHERE)
@@ -150,7 +152,7 @@ def _training_result(options: _Table1Options, level: str, model: Model) -> Train
         _train(train_arguments(training))
         result = finished_training(training)
     if result is None:
-        title = f"the training in `{training.folder}` did not end"
+        title = f"the training in `{training.folder}` did not finish"
         raise TltlError([Diagnostic("TLT0930", title, help="run the command again")])
     return result
 

@@ -134,7 +134,9 @@ def command(
     The exit status is 0 if the spec was met, and 1 if a limit ended the training.
     """
     if resume is not None and folder is not None:
-        raise click.UsageError("--resume goes on in its own folder: leave --out out", click.get_current_context())
+        raise click.UsageError(
+            "--resume continues in the folder of the training: leave out --out", click.get_current_context()
+        )
     with cli.Report() as report, require_learning("`tltlc train`"):
         from tltl_runtime.cli.support.level_argument import check_no_toml
 
@@ -207,19 +209,19 @@ def _start_lines(run: TrainingRun, *, resume: bool) -> Iterator[str]:
     how = f" by {run.settings.method}" if run.settings.imitates else ""
     yield f"training {run.fspa.name} on {place}{how}, seed {run.seed}, in {run.folder}"
     if run.initial and not (run.folder / CHECKPOINT).exists():
-        critic_note = f"; its critic is new, and learns alone in the first {run.settings.ppo.warm_up} iterations"
+        critic_note = f"; its critic is new: only the critic learns in the first {run.settings.ppo.warm_up} iterations"
         yield f"it begins with the weights of {run.initial.path}{critic_note if run.settings.ppo.warm_up else ''}"
     files = [name for name in (METRICS, RECORD, POLICY) if (run.folder / name).exists()]
     if not resume or not files or (run.folder / CHECKPOINT).exists():
         return
     fates = {
-        METRICS: "what was measured is lost",
+        METRICS: "its measurements are lost",
         RECORD: "so is its record",
         POLICY: f"{POLICY} stays until there is a new one",
     }
     fate = ", and ".join(fates[name] for name in files)
     ways = "; Ctrl-C before the end of its search leaves these files as they are" if run.settings.searches else ""
-    yield f"there is no {CHECKPOINT} in {run.folder}: the training begins anew, {fate}{ways}"
+    yield f"there is no {CHECKPOINT} in {run.folder}: the training starts again, {fate}{ways}"
 
 
 def _end_lines(run: TrainingRun, last: TrainingReport, again: str) -> Iterator[str]:
@@ -235,7 +237,7 @@ def _end_lines(run: TrainingRun, last: TrainingReport, again: str) -> Iterator[s
     yield f"{folder}: policy.safetensors, record.json, curve.png"
     yield f"to evaluate it: tltlc evaluate {folder}"
     if last.stop != "met":
-        yield f"to go on, with a higher limit: {again} --{last.stop} N"
+        yield f"to go on with a higher limit: {again} --{last.stop} N"
 
 
 def _finished_text(run: TrainingRun, record: Mapping[str, Any], again: str) -> str:
@@ -245,7 +247,7 @@ def _finished_text(run: TrainingRun, record: Mapping[str, Any], again: str) -> s
     """
     from tltl_runtime.cli.support.training_text import minutes
 
-    prefix, stop = f"the training in `{run.folder}` is over", run.settings.stop
+    prefix, stop = f"the training in `{run.folder}` is finished", run.settings.stop
     if record["end"] == "met":
         return f"{prefix}, and stays as it is: the spec was met after {record['steps']:,} steps"
     if record["end"] == "steps":
@@ -254,4 +256,4 @@ def _finished_text(run: TrainingRun, record: Mapping[str, Any], again: str) -> s
         spent, limit = duration(record["seconds"]), minutes(stop.minutes)
     resume = f"{again} --{record['end']} N"
     limit_text = f"it took {spent}, and its limit is {limit}"
-    return f"{prefix}, and stays as it is: {limit_text}; to go on, with a higher one: {resume}"
+    return f"{prefix}, and stays as it is: {limit_text}; to go on with a higher limit: {resume}"

@@ -35,7 +35,7 @@ def test_a_baseline_is_recorded(tltlc: Run, game: Path) -> None:  # noqa: F811
     assert lines[-3:] == [
         "    `hopeless` is `fail` even if nothing changes: train its policy further, or lower its `pass_rate`",
         "wrote again.json",
-        "to judge by it: tltlc regress game.toml --baseline again.json",
+        "to compare with it: tltlc regress game.toml --baseline again.json",
     ]
     assert Path("again.json").read_bytes() == before
     assert len(read_baseline(Path("again.json"))) == 2
@@ -94,8 +94,8 @@ def test_a_stopped_first_baseline_reports_its_partial_file(
     result = tltlc("baseline", "game.toml", *ONE)
     assert (result.status, result.out) == (130, "")
     assert result.err == (
-        "stopped: no `game.baseline.json` was written; what is over is kept in `game.baseline.json.partial`: the same "
-        "command goes on with it\n"
+        "stopped: `game.baseline.json` was not written; what is finished is kept in `game.baseline.json.partial`: "
+        "run the same command again to continue\n"
     )
     assert Path("game.baseline.json.partial").exists()
 
@@ -131,7 +131,7 @@ def _with_many_episodes() -> bytes:
 
 def _check_old_baseline(before: bytes, status: int, err: str) -> None:
     assert status == 130
-    assert "stopped: `game.baseline.json` is as it was; the same command goes on with what is over" in err
+    assert "stopped: `game.baseline.json` was not changed; run the same command again to continue" in err
     assert Path("game.baseline.json").read_bytes() == before
     assert sorted(path.name for path in Path().glob(".*")) == []
 
@@ -155,5 +155,5 @@ def test_a_baseline_is_not_written_to_standard_output(tltlc: Run, game: Path) ->
 
 def test_the_advice_depends_on_the_pass_rate() -> None:
     case = Case("room:v0", "room", "v0", "v0", None, Path("bot"), 25, Thresholds(), "")
-    assert _advice(1.0, case, 0.05) == "25 `episodes` are too few to be certain, give it 29 at least"
+    assert _advice(1.0, case, 0.05) == "25 `episodes` are too few to be certain; give it at least 29"
     assert _advice(0.9, case, 0.05) == "train its policy further, lower its `pass_rate`, or give it more `episodes`"

@@ -163,7 +163,7 @@ def test_recordings_and_pictures_are_written(
     again = tltlc("evaluate", other, *command[2:], *fewer)
     assert sorted(path.name for path in folder.iterdir()) == sorted([*kept, *names[-3:]])
     assert again.err.splitlines()[-2:] == [
-        f"removed from {folder}, of an earlier evaluation: cover_and_hide-v0-5-0-arg-max.episode.npz, "
+        f"removed files of an earlier evaluation from {folder}: cover_and_hide-v0-5-0-arg-max.episode.npz, "
         "cover_and_hide-v0-5-0-arg-max.png, cover_and_hide-v0-5-0-sampled.episode.npz, "
         "cover_and_hide-v0-5-0-sampled.png, cover_and_hide-v0-5-1-arg-max.episode.npz, "
         "cover_and_hide-v0-5-1-arg-max.png and 2 more",
@@ -194,7 +194,7 @@ def test_files_that_no_evaluation_wrote_are_not_overwritten(
     path.write_text(text)
     result = tltlc("evaluate", policy, "--episodes", "1", "--out", path.parent)
     assert (result.status, result.out) == (2, "")
-    assert f"error[TLT0722]: `{path}` is there already, and no evaluation wrote it" in result.err
+    assert f"error[TLT0722]: `{path}` already exists, and no evaluation wrote it" in result.err
     assert (path.read_text(), len([*path.parent.iterdir()])) == (text, 1)
 
 
@@ -226,7 +226,7 @@ def test_a_recording_names_its_player_once(tltlc: Run, tmp_path: Path) -> None: 
 def test_recordings_need_a_folder(tltlc: Run, policy: Path) -> None:  # noqa: F811
     result = tltlc("evaluate", policy, "--record", "all")
     assert (result.status, result.out) == (2, "")
-    assert "--record needs the folder for the recordings: --out DIR" in result.err
+    assert "--record needs a folder for the recordings: add --out DIR" in result.err
 
 
 def test_the_folder_of_a_training_names_the_file_of_its_level(
@@ -287,12 +287,12 @@ def test_a_signal_ends_it_with_a_report_of_the_played_episodes(
         (
             ("POLICY", "--spec", "s.toml:v1"),
             2,
-            "error[TLT0700]: `s.toml` is no spec; where it is a level, `--level s.toml:v1`",
+            "error[TLT0700]: `s.toml` is not a spec: if it is a level, write `--level s.toml:v1`",
         ),
         (("POLICY", "--json", "file/report.json"), 3, "error[TLT0005]"),
         (("POLICY", "--json", "gone/report.json"), 3, "error[TLT0005]: cannot write `gone/report.json`: there is no"),
         (("POLICY", "--out", "-"), 2, "error[TLT0700]: invalid value for '--output'"),
-        (("bot.onnx",), 1, "error[TLT0840]: `bot.onnx` is the model for other engines, which `tltlc inspect -o` wrote"),
+        (("bot.onnx",), 1, "error[TLT0840]: `bot.onnx` is an ONNX model for other engines, not a policy"),
         (("POLICY", "--out", "file/runs"), 3, "error[TLT0005]"),
     ],
 )

@@ -160,7 +160,7 @@ def test_a_broken_training_does_not_hide_other_policies(
     (folder / broken).write_text("{}")
     result: Outcome = tltlc("inspect", str(folder), str(file))
     assert result.status == 1
-    assert f"error[{code}]: `{folder / broken}` cannot be resumed from" in result.err
+    assert f"error[{code}]: cannot resume from `{folder / broken}`" in result.err
     assert [line for line in result.out.splitlines() if line.endswith(("run", ".safetensors"))] == [str(file)]
     result = tltlc("inspect", str(folder), str(file), "--format", "json")
     assert [diagnostic["code"] for diagnostic in json.loads(result.err)["diagnostics"]] == [code]
@@ -203,7 +203,7 @@ def test_a_process_that_exports_prints_no_warnings(file: Path) -> None:
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (("a.safetensors", "-o", "a.pt"), "-o writes a .onnx, not `a.pt`"),
+        (("a.safetensors", "-o", "a.pt"), "-o writes a .onnx file, not `a.pt`"),
         (("a.safetensors", "b.safetensors", "-o", "a.onnx"), "-o takes one POLICY"),
         ((), "POLICY"),
     ],

@@ -37,9 +37,9 @@ def test_a_training_without_a_policy_is_reported(tltlc, here: Path, command: str
     result: Outcome = tltlc(command, "training/two words")
     assert (result.status, result.out) == (1, "")
     assert result.err == (
-        "error[TLT0872]: the training in `training/two words` has no policy yet: its first iteration is not over\n"
-        "  help: `tltlc train --resume 'training/two words'` goes on until it has one; "
-        "one that is going on has it soon\n"
+        "error[TLT0872]: the training in `training/two words` has no policy yet: its first iteration is not finished\n"
+        "  help: `tltlc train --resume 'training/two words'` continues it until it has one; "
+        "if it is running, it will have one soon\n"
     )
     fspa = run_in(here).fspa
     lines = [metrics_line(a_report(number, finished=(an_episode(True),) * number), fspa) for number in (1, 2)]
@@ -51,7 +51,7 @@ def test_a_training_without_a_policy_is_reported(tltlc, here: Path, command: str
 
 def test_a_folder_of_trainings_lists_the_trainings(tltlc, here: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     assert tltlc("evaluate", "training").err == (
-        "error[TLT0872]: `training` holds trainings, and is none itself\n"
+        "error[TLT0872]: `training` contains trainings, but is not a training itself\n"
         "  help: name one of them: `training/one`, `training/two words`\n"
     )
     for number in range(9):
@@ -89,4 +89,4 @@ def test_two_levels_are_rejected(tltlc, here: Path) -> None:  # type: ignore[no-
 def test_a_level_file_is_not_a_policy(tltlc, here: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     Path("vault.toml").write_text("", encoding="utf-8")
     result = tltlc("evaluate", "vault.toml")
-    assert result.err.startswith("error[TLT0840]: `vault.toml` is a TOML file, e.g. a level, and no policy")
+    assert result.err.startswith("error[TLT0840]: `vault.toml` is a TOML file, e.g. a level, not a policy")

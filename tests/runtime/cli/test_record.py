@@ -64,11 +64,11 @@ def test_the_expert_records_until_there_are_enough(tltlc: TltlcFunction, here: P
     again = tltlc("record", "--spec", "soon.tltl", "--episodes", "3")
     assert (again.status, again.err, len(again.out.splitlines())) == (0, "", 2)
     assert again.out.startswith("3 of 3 demonstrations are in demonstrations/cover_and_hide-v0-soon\n")
-    for count, text in (("2", "2 are asked for"), ("1", "1 is asked for")):
+    for count in ("2", "1"):
         fewer = tltlc("record", "--spec", "soon.tltl", "--episodes", count)
         assert (fewer.status, fewer.err) == (0, "")
         summary, _ = fewer.out.splitlines()
-        assert summary == f"3 demonstrations are in demonstrations/cover_and_hide-v0-soon, and {text}"
+        assert summary == f"3 demonstrations are in demonstrations/cover_and_hide-v0-soon; you asked for {count}"
 
 
 def test_failed_episodes_are_reported_and_not_kept(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
@@ -79,7 +79,7 @@ def test_failed_episodes_are_reported_and_not_kept(tltlc: TltlcFunction, here: P
         "seed 0: limit after 2 steps, 0.30 s, progress 0.56, return -0.439: not kept (0 of 1)",
         "  the expert finds no way to `exit`; limit after 2 steps, remaining: Reach near(exit)",
     ]
-    assert result.err.startswith("error[TLT0920]: the expert met `vain` in none of 20 episodes in a row")
+    assert result.err.startswith("error[TLT0920]: the expert failed to meet `vain` in 20 episodes in a row")
     assert not (here / "none").exists()
 
 
@@ -90,7 +90,8 @@ def test_other_recordings_in_the_folder_stay(tltlc: TltlcFunction, here: Path) -
     assert result.status == 0
     assert result.err.splitlines() == [
         "1 of 2 demonstrations are in mine already",
-        "1 recording there is none of this level and spec: `cover_and_hide-v1-7.episode.npz` (it is of another level)",
+        "1 recording in the folder is not a demonstration of this level and spec: "
+        "`cover_and_hide-v1-7.episode.npz` (it is of another level)",
     ]
     assert {path: path.read_bytes() for path in before} == before
     assert names(folder) == ["cover_and_hide-v0-0", "cover_and_hide-v0-5", "cover_and_hide-v1-7"]
@@ -102,7 +103,9 @@ def test_a_damaged_recording_does_not_count_and_stays(tltlc: TltlcFunction, here
     result = tltlc("record", "cover_and_hide", "--spec", "soon.tltl", "--episodes", "2", "-o", "mine")
     assert result.status == 0
     _, other = result.err.splitlines()
-    assert other.startswith("1 recording there is none of this level and spec: `damaged.episode.npz` (TLT0820, ")
+    assert other.startswith(
+        "1 recording in the folder is not a demonstration of this level and spec: `damaged.episode.npz` (TLT0820, "
+    )
     assert (folder / "damaged.episode.npz").read_bytes() == b"PK, and no more"
     assert names(folder) == ["cover_and_hide-v0-0", "cover_and_hide-v0-5", "damaged"]
 
@@ -111,7 +114,7 @@ def test_a_damaged_recording_does_not_count_and_stays(tltlc: TltlcFunction, here
     ("arguments", "status", "message"),
     [
         ([], 2, "say what to play: a level, or a --spec that names one"),
-        (["--spec", "nameless.tltl"], 2, "`soon` does not say which level it is about: name one as LEVEL"),
+        (["--spec", "nameless.tltl"], 2, "`soon` does not name a level: name one as LEVEL"),
         (["nowhere"], 2, "error[TLT08"),
         (["cover_and_hide", "--episodes", "0"], 2, "--episodes"),
         (["cover_and_hide", "--by", "ghost"], 2, "--by"),
@@ -141,7 +144,9 @@ def test_a_signal_ends_it_with_the_number_of_demonstrations(here: Path, name: st
         recording.send_signal(getattr(signal, name))
         _, err = recording.communicate(timeout=HANG_S)
     assert recording.returncode == status
-    assert re.fullmatch(r"stopped: \d+ of 9000 demonstrations are in many; the same command goes on\n", err)
+    assert re.fullmatch(
+        r"stopped: \d+ of 9000 demonstrations are in many; run the same command again to continue\n", err
+    )
     assert len(names(here / "many")) == int(err.split()[1]) >= 1
 
 
@@ -200,6 +205,6 @@ def test_a_recording_is_saved_elsewhere_if_its_folder_is_unwritable(
     assert read_episode(saved).success
     output = capsys.readouterr()
     assert output.err.startswith("TLT0005: cannot write ")
-    assert output.out.rstrip().endswith(f": {saved} (0 of 2, until it is moved to {folder})")
+    assert output.out.rstrip().endswith(f": {saved} (0 of 2, not counted until you move it to {folder})")
     folder.unlink()
     assert recorder.save(recorded_episode(5)) == "cover_and_hide-v0-5.episode.npz, 1 of 2"

@@ -34,7 +34,7 @@ def test_a_recording_is_saved_elsewhere_if_its_folder_is_unwritable(
 
 
 def test_the_target_is_a_folder_or_a_recording_name(tmp_path: Path) -> None:
-    with pytest.raises(click.UsageError, match=r"a folder or a name with \.episode\.npz"):
+    with pytest.raises(click.UsageError, match=r"a folder or a name that ends with \.episode\.npz"):
         RecordingFiles(tmp_path / "mine.txt", "x")
     with pytest.raises(TltlError, match=r"TLT0005: cannot record to `.*nowhere`: there is no such folder"):
         RecordingFiles(tmp_path / "nowhere" / "mine.episode.npz", "x")

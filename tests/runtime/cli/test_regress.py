@@ -207,7 +207,7 @@ def test_the_error_that_ended_a_run_is_reported_although_the_page_is_unwritable(
 def test_a_suite_after_changed_is_rejected(tltlc: Run, game: Path) -> None:  # noqa: F811
     refused = tltlc("regress", "--changed", "guard", "game.toml")
     assert refused.status == 2
-    assert "`game.toml` is taken as a word of --changed: put the suite before it" in refused.err
+    assert "`game.toml` counts as a file of --changed: put the suite before --changed" in refused.err
 
 
 def test_changed_runs_only_the_cases_that_depend_on_the_files(tltlc: Run, game: Path) -> None:  # noqa: F811
@@ -216,7 +216,7 @@ def test_changed_runs_only_the_cases_that_depend_on_the_files(tltlc: Run, game: 
     lines = result.err.splitlines()
     assert lines[:2] == [
         "no case depends on README.md",
-        "left out, since none of the named files concerns them: room:v0, room:v1",
+        "left out, because they depend on none of the named files: room:v0, room:v1",
     ]
     report = json.loads(Path("report.json").read_text(encoding="utf-8"))
     assert (report["left_out"], report["complete"], len(report["cases"])) == (NAMES[:2], True, 1)
@@ -228,11 +228,11 @@ def test_changed_runs_only_the_cases_that_depend_on_the_files(tltlc: Run, game: 
 @pytest.mark.parametrize("words", [[], ["README.md", "src/game.py"]])
 def test_changed_may_select_no_case(tltlc: Run, game: Path, words: list[str]) -> None:  # noqa: F811
     result = tltlc("regress", "game.toml", "--junit", "report.xml", *ONE, "--changed", *words)
-    assert (result.status, result.out) == (0, "no case was to be played\n")
+    assert (result.status, result.out) == (0, "there was no case to play\n")
     # The page is replaced; the page of an earlier run could be mistaken for the page of this run.
     why = "it depends on none of the files that --changed names" if words else "--changed names no file"
     assert Path("regression/game/report.html").read_text(encoding="utf-8").count(why) == 2 * len(NAMES)
-    assert f"left out, since none of the named files concerns them: {', '.join(NAMES)}" in result.err
+    assert f"left out, because they depend on none of the named files: {', '.join(NAMES)}" in result.err
     assert ("no case depends on README.md, src/game.py" in result.err) == bool(words)
     (tests,) = ET.parse("report.xml").getroot()
     assert tests.get("tests") == "0"
@@ -240,7 +240,7 @@ def test_changed_may_select_no_case(tltlc: Run, game: Path, words: list[str]) ->
 
 def test_a_similar_file_is_suggested_for_a_name_after_changed(tltlc: Run, game: Path) -> None:  # noqa: F811
     result = tltlc("regress", "game.toml", *ONE, "--changed", "gaurd", "assets/hopeles.toml")
-    assert (result.status, result.out) == (0, "no case was to be played\n")
+    assert (result.status, result.out) == (0, "there was no case to play\n")
     lines = result.err.splitlines()
     assert lines[:2] == [
         "no case depends on gaurd, assets/hopeles.toml",
@@ -260,9 +260,7 @@ def test_a_similar_file_is_suggested_for_a_name_after_changed(tltlc: Run, game: 
 def test_changed_files_that_are_not_named_give_a_warning(tltlc: Run, game: Path) -> None:  # noqa: F811
     edit("room.toml", "8.0, 8.0", "8.0, 8.5")
     result = tltlc("regress", "game.toml", *ONE, "--changed", "soon")
-    warning = (
-        "warning: `room.toml` has changed since the baseline, and is not among the files that are named; left out: "
-    )
+    warning = "warning: `room.toml` has changed since the baseline, but --changed does not name it; left out: "
     assert f"{warning}room:v0, room:v1" in result.err.splitlines()
     result = tltlc("regress", "game.toml", *ONE, "--changed", "README.md")
     assert f"{warning}room:v0, room:v1, hopeless" in result.err.splitlines() and result.status == 0
@@ -456,7 +454,7 @@ def test_a_signal_ends_it_and_keeps_the_judged_cases(tltlc: Run, game: Path, nam
     assert playing.returncode == status
     assert verdicts(out) == ["room:v0 pass", "room:v1 pass"]
     again = "tltlc regress game.toml --out regression/game --json report.json --junit report.xml --workers 1 --github"
-    assert f"stopped: 2 of 3 cases are judged, and kept; to go on: {again}" in err.splitlines()
+    assert f"stopped: 2 of 3 cases are judged and kept; to go on: {again}" in err.splitlines()
     (tests,) = ET.parse("report.xml").getroot()
     assert [test.get("name") for test in tests.iter("testcase") if test.find("error") is not None] == ["hopeless"]
     report = json.loads(Path("report.json").read_text(encoding="utf-8"))

@@ -70,7 +70,7 @@ def test_retraining_reports_that_no_demonstration_was_found(
     again = f"tltlc regress game.toml --out regression/game {reports} --retrain --minutes "
     (longer,) = (line for line in result.out.splitlines() if line.startswith(f"    to train longer: {again}"))
     assert float(longer.removeprefix(f"    to train longer: {again}")) >= 0.02
-    assert f"hopeless: a training begins with its policy, for 0.01 minutes at the most, in {FOLDER}" in result.err
+    assert f"hopeless: a training starts from its policy; it runs for at most 0.01 minutes, in {FOLDER}" in result.err
     assert "hopeless, trained anew: 25 of at most 50 episodes, 0 met the spec" in result.err
     report = json.loads(Path("report.json").read_text(encoding="utf-8"))
     assert report["complete"] is True and report["verdicts"] == {"pass": 2, "review": 0, "fail": 1}
@@ -101,7 +101,7 @@ def test_retraining_reports_that_no_demonstration_was_found(
         patch.setattr("tltl_runtime.cli.support.retraining.train_with_display", lambda *_, **__: _worker_lost())
         third = tltlc(*RETRAIN)
     assert (
-        "begins with its policy, anew, since what is kept is of another level, policy, spec, seed or settings"
+        "starts from its policy again, because the earlier one is of another level, policy, spec, seed or settings"
         in third.err
     )
     assert f"hopeless: the training that was in {FOLDER} is now in {FOLDER}-2" in third.err.splitlines()
@@ -164,7 +164,7 @@ def test_an_error_in_one_training_does_not_stop_the_others(
     result = tltlc(*RETRAIN, "--json", "report.json")
     assert result.status == 1
     lines = result.err.splitlines()
-    first, second = (lines.index(f"{name}: nothing can be said of its training") for name in ("edited", "left"))
+    first, second = (lines.index(f"{name}: its training gave no result") for name in ("edited", "left"))
     assert lines[first + 1] == "error[TLT0905]: `room.toml` changed while `edited` was played"
     assert lines[second + 1] == "error[TLT0806]: level navigation v0, step 3, player: it left"
     assert "told, trained anew: no way found" in result.out.splitlines()
@@ -213,7 +213,7 @@ def test_a_policy_in_the_folder_of_its_training_is_reported_before_any_play(tltl
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        (("--minutes", "5"), "--minutes are those of --retrain"),
+        (("--minutes", "5"), "--minutes works only with --retrain"),
         (("--retrain", "--minutes", "0"), "0 is not in the range"),
     ],
 )
@@ -236,12 +236,12 @@ def test_a_signal_ends_it_and_keeps_the_results(game: Path) -> None:
         _, err = training.communicate(timeout=HANG_S)
     assert training.returncode == 130
     assert (
-        "stopped: all cases are judged, and 1 is still to be trained for; to go on: "
+        "stopped: all cases are judged, but 1 still needs a training; to go on: "
         "tltlc regress game.toml --out regression/game --json report.json --workers 1 --retrain --minutes 60"
     ) in err.splitlines()
     report = json.loads(Path("report.json").read_text(encoding="utf-8"))
     assert (report["complete"], len(report["cases"]), report["cases"][2]["retrained"]) == (False, 3, None)
     # Use another process: this one is patched to few environments, and a training resumes only with its own settings.
     resumed = subprocess.run([*command, *RETRAIN], capture_output=True, text=True, timeout=HANG_S, check=False)
-    assert f"hopeless: a training goes on, for 0.01 minutes at the most, in {FOLDER}" in resumed.stderr
+    assert f"hopeless: a training continues; it runs for at most 0.01 minutes, in {FOLDER}" in resumed.stderr
     assert "hopeless, trained anew: no way found" in resumed.stdout

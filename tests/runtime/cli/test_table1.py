@@ -69,8 +69,8 @@ def test_a_folder_is_used_by_one_run_at_a_time(tltlc: Run, monkeypatch: pytest.M
         result = tltlc("table1", "--out", "mine", *ONE)
     assert (result.status, result.out) == (1, "")
     assert result.err == (
-        "error[TLT0931]: another run of `tltlc table1` is at work in `mine`\n"
-        "  help: wait for its end, or name another folder with --out\n"
+        "error[TLT0931]: another run of `tltlc table1` is using `mine`\n"
+        "  help: wait until it ends, or name another folder with --out\n"
     )
     assert cells(Path("mine")) == {}
 
@@ -88,7 +88,7 @@ def test_a_stopped_run_reports_the_command_that_resumes_it(tltlc: Run, monkeypat
         raise KeyboardInterrupt
 
     monkeypatch.setattr(table1, "_table", stopped)
-    again = "stopped: what is over is kept in `{}`; to go on: tltlc table1 --out {}\n"
+    again = "stopped: what is finished is kept in `{}`; to go on: tltlc table1 --out {}\n"
     result = tltlc("table1")
     assert (result.status, result.out, result.err) == (130, "", again.format("table1", "table1"))
     words = "mine --shipped --minutes 0.5 --workers 1"
@@ -110,7 +110,7 @@ def test_an_unfinished_training_is_reported(tltlc: Run, monkeypatch: pytest.Monk
     assert (method, name, minutes, limit) == ("--method", "imitation", "--minutes", "5")
     assert int(steps) == read_settings().stop.steps
     assert (result.status, result.out) == (1, "")
-    assert result.err == f"error[TLT0930]: the training in `{place}` did not end\n  help: run the command again\n"
+    assert result.err == f"error[TLT0930]: the training in `{place}` did not finish\n  help: run the command again\n"
 
 
 @pytest.mark.slow

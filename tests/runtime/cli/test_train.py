@@ -113,7 +113,7 @@ def test_a_training_ends_at_its_limit_and_resumes(tltlc: TltlcFunction, here: Pa
     assert re.fullmatch(r"ended by the limit of steps after 128 steps, \d+ s: no episode has ended", first)
     assert files == f"{folder}: policy.safetensors, record.json, curve.png"
     assert evaluation == f"to evaluate it: tltlc evaluate {folder}"
-    assert resumed == f"to go on, with a higher limit: tltlc train --resume {folder} --steps N"
+    assert resumed == f"to go on with a higher limit: tltlc train --resume {folder} --steps N"
     assert result.err.splitlines()[-1].startswith("iteration 2: 128 steps in ")
 
     assert [line["steps"] for line in read_metrics(folder / METRICS)] == [64, 128]
@@ -174,7 +174,7 @@ def test_without_a_checkpoint_a_training_starts_again(tltlc: TltlcFunction) -> N
     result = tltlc("train", "--resume", "run", "--steps", "192")
     assert result.err.splitlines()[:2] == [
         "training cover_and_hide on cover_and_hide v0, seed 0, in run",
-        "there is no checkpoint.pt in run: the training begins anew, what was measured is lost, "
+        "there is no checkpoint.pt in run: the training starts again, its measurements are lost, "
         "and so is its record, and policy.safetensors stays until there is a new one",
     ]
     assert [line["steps"] for line in read_metrics(Path("run") / METRICS)] == [64, 128, 192]
@@ -186,10 +186,12 @@ def test_differing_sensors_are_named(tltlc: TltlcFunction, interrupted: TltlcFun
     interrupted(EXAMPLE, "--config", "small.toml", "--out", "second", *options_at_start)
     options = ("--map", "cell=1,types=wall,low", "--entities", "s1", "--variables", "distance(exit)")
     rejected = tltlc("train", "--resume", "second", *options)
-    assert re.findall(r"^error\[TLT0870\]: the training in `second` senses as (.*)$", rejected.err, re.MULTILINE) == [
-        "`--entities s1,exit` says, not as `--entities s1`",
-        "`--variables health` says, not as `--variables 'distance(exit)'`",
-        "`--no-map` says, not as `--map cell=1.0,extent=15,types=wall,low`",
+    assert re.findall(
+        r"^error\[TLT0870\]: the training in `second` has the sensors of (.*)$", rejected.err, re.MULTILINE
+    ) == [
+        "`--entities s1,exit`, not those of `--entities s1`",
+        "`--variables health`, not those of `--variables 'distance(exit)'`",
+        "`--no-map`, not those of `--map cell=1.0,extent=15,types=wall,low`",
     ]
     # Options that are left out agree with the training.
     assert tltlc("train", "--resume", "second", "--no-map", "--steps", "64").status == 1
@@ -201,8 +203,8 @@ def test_a_finished_training_is_not_changed(tltlc: TltlcFunction) -> None:  # no
     result = tltlc("train", "--resume", "run", "--steps", "100")
     assert result == Outcome(
         1,
-        "the training in `run` is over, and stays as it is: it took 128 steps, and its limit is 100; to go on, with a "
-        "higher one: tltlc train --resume run --steps N\n",
+        "the training in `run` is finished, and stays as it is: it took 128 steps, and its limit is 100; to go on with "
+        "a higher limit: tltlc train --resume run --steps N\n",
         "",
     )
     assert {path: path.stat().st_mtime_ns for path in times} == times
@@ -215,7 +217,7 @@ def test_a_level_whose_file_was_moved_can_be_named(tltlc: TltlcFunction, here: P
     (here / "mine").rename(here / "yours")
     missing = tltlc("train", "--resume", "run", "--steps", "128")
     assert missing.status == 3
-    assert f"the level's file `{here / 'mine' / 'vault.toml'}` is not there any more" in missing.err
+    assert f"the file of the level, `{here / 'mine' / 'vault.toml'}`, no longer exists" in missing.err
     assert "`tltlc train --resume run --level FILE.toml`" in missing.err
     assert "`tltlc evaluate run --level FILE.toml`" in tltlc("evaluate", "run").err
     level = ("--level", "yours/vault.toml")
@@ -232,7 +234,7 @@ def test_another_spec_with_the_same_name_is_rejected(tltlc: TltlcFunction) -> No
     Path("soon.tltl").write_text(SOON.replace("8 steps", "9 steps"))
     result = tltlc("train", "soon.tltl", "--resume", "second")
     assert result.err.startswith(
-        "error[TLT0870]: the training in `second` is for another spec `soon` than that of `soon.tltl`: "
+        "error[TLT0870]: the training in `second` is for another spec `soon` than the one in `soon.tltl`: "
         "its limit is 9 steps, and was 8 steps\n"
     )
 
@@ -260,10 +262,10 @@ def test_a_search_is_announced(tltlc: TltlcFunction, here: Path) -> None:  # noq
     assert result.status in (0, 1), result.err
     _, searched, lost, *lines = result.err.splitlines()
     assert searched == (
-        "ways to meet the spec are searched first: by chance. "
+        "searching first for ways to meet the spec, with random actions. "
         "The search ends when 2 ways are found, at the latest after 640 steps."
     )
-    assert lost == "Ctrl-C stops it; a search that is not over then begins anew."
+    assert lost == "Ctrl-C stops it; when you continue, an unfinished search starts again."
     assert "Ctrl-C stops it and keeps what was learned; to go on: tltlc train --resume second" in lines
 
 
@@ -274,8 +276,8 @@ def test_a_folder_holds_one_training(tltlc: TltlcFunction) -> None:  # noqa: F81
         1,
         "",
         "training soon on cover_and_hide v0, seed 0, in second\n"
-        "error[TLT0867]: `second` holds a training already\n"
-        "  help: go on with it by `tltlc train --resume second`, or name another place with --out\n",
+        "error[TLT0867]: `second` already contains a training\n"
+        "  help: continue it with `tltlc train --resume second`, or name another folder with --out\n",
     )
     Path("big.toml").write_text(SMALL.replace("[8]", "[9]").replace("steps = 128", "steps = 999"))
     options = ["--level", "navigation:v1", "--seed", "9", "--no-entities", "--config", "big.toml"]
@@ -286,10 +288,15 @@ def test_a_folder_holds_one_training(tltlc: TltlcFunction) -> None:  # noqa: F81
         "is on the level `cover_and_hide:v0`, not on `navigation:v1`",
         f"is for the spec `soon`, not for `cover_and_hide` of `{EXAMPLE}`",
         "has the seed 0, not 9",
-        "senses as `--entities s1,s2,exit,guard` says, not as `--no-entities`",
-        "has another `network.hidden` than `big.toml`",
+        "has the sensors of `--entities s1,s2,exit,guard`, not those of `--no-entities`",
+        "has another value of `network.hidden` than `big.toml`",
     ]
-    assert rejected.err.count("help: leave it out to go on with `second`, or begin another training with --out") == 5
+    assert (
+        rejected.err.count(
+            "help: leave it out to continue the training in `second`, or start another training with --out"
+        )
+        == 5
+    )
     same = ["--level", "cover_and_hide:v0", "--seed", "0", "--config", "small.toml", "--steps", "999"]
     assert tltlc("train", "soon.tltl", *same, "--resume", "second").status == 0
 
@@ -306,7 +313,7 @@ def test_a_folder_with_other_files_is_rejected(
     assert tltlc("train", *arguments) == Outcome(
         1,
         "",
-        "error[TLT0873]: `mine` is no training, and has other files: `notes.txt`\n"
+        "error[TLT0873]: `mine` is not a training, and contains other files: `notes.txt`\n"
         "  help: name a folder of its own, e.g. `--out mine/training`\n",
     )
     assert {path.name for path in (here / "mine").iterdir()} == {".hidden", "notes.txt"}
@@ -319,7 +326,7 @@ def test_a_folder_with_other_files_is_rejected(
     ("arguments", "status", "message"),
     [
         ([], 2, "say what to train for: a spec, a level, or both"),
-        (["hide.tltl"], 2, "`hide` does not say which level it is about: name one with --level"),
+        (["hide.tltl"], 2, "`hide` does not name a level: name one with --level"),
         (["hide.tltl", "--level", "nowhere"], 2, "there is no level `nowhere`"),
         (["hide.tltl", "--level", "navigation"], 1, "`navigation` has no "),
         (["endless.tltl"], 1, "`endless` has no limit, so an episode may go on for ever"),
@@ -334,18 +341,22 @@ def test_a_folder_with_other_files_is_rejected(
         (["soon.tltl", "--device", "gpu"], 2, '`gpu` is not a device: "cpu", "cuda" or "cuda:0"'),
         (["soon.tltl", "--device", "cuda:31"], 1, "there is no device `cuda:31` here"),
         (["soon.tltl", "--entities", "s9"], 2, "the level `cover_and_hide` has no entity `s9`"),
-        (["soon.tltl", "--config", "large.toml"], 1, "`network` gives a policy of 70 MiB, and a file of one has 64"),
+        (
+            ["soon.tltl", "--config", "large.toml"],
+            1,
+            "`network` gives a policy of 70 MiB, but the file of a policy has at most 64",
+        ),
         (["soon.tltl", "--config", "gone.toml"], 3, "cannot read `gone.toml`"),
         (
             ["small.toml"],
             2,
-            "`small.toml` is no spec; where it holds settings, write `--config small.toml`, where it is a",
+            "`small.toml` is not a spec: if it contains settings, write `--config small.toml`; if it is a",
         ),
-        (["--resume", "gone"], 1, "`gone` cannot be resumed from: there is no training in it"),
-        (["vault.tltl"], 2, "there is no level `vault`: `vault.toml` is not there, and none of that name comes with"),
-        (["--resume", "gone", "--out", "there"], 2, "--resume goes on in its own folder"),
+        (["--resume", "gone"], 1, "cannot resume from `gone`: there is no training in it"),
+        (["vault.tltl"], 2, "there is no level `vault`: `vault.toml` does not exist, and no level of that name comes"),
+        (["--resume", "gone", "--out", "there"], 2, "--resume continues in the folder of the training"),
         (["soon.tltl", "--out", "small.toml/run"], 3, "cannot write into `small.toml/run`"),
-        (["soon.tltl", "--out", "small.toml/run"], 3, "a new training may go elsewhere, with --out"),
+        (["soon.tltl", "--out", "small.toml/run"], 3, "for a new training, you can name another folder with --out"),
     ],
 )
 def test_invalid_options_are_rejected(
@@ -483,7 +494,7 @@ def test_a_killed_worker_is_reported(
     result = tltlc("train", EXAMPLE, "--config", "small.toml", "--out", "run", "--steps", "100000000")
     assert result.status == 1
     assert result.err.splitlines()[2].startswith("iteration 1: ")
-    assert "error[TLT0871]: the training broke off: worker 0 was killed by SIGKILL\n" in result.err
+    assert "error[TLT0871]: the training was interrupted: worker 0 was killed by SIGKILL\n" in result.err
     assert "to go on from the last checkpoint: tltlc train --resume run" in result.err
     assert (here / "run" / "checkpoint.pt").is_file()
 

@@ -47,7 +47,8 @@ def test_the_spec_the_sensors_and_the_network_come_from_the_policy(tltlc: TltlcF
     folder = Path("training/cover_and_hide-v1-soon-0-tuned")
     assert result.err.splitlines()[:2] == [
         f"training soon on cover_and_hide v1, seed 0, in {folder}",
-        "it begins with the weights of old.safetensors; its critic is new, and learns alone in the first 5 iterations",
+        "it begins with the weights of old.safetensors; "
+        "its critic is new: only the critic learns in the first 5 iterations",
     ]
     old, new = read_policy("old.safetensors"), read_policy(folder / "policy.safetensors")
     assert (new.card.sensors, new.card.network, new.card.fspa) == (old.card.sensors, old.card.network, old.card.fspa)
@@ -84,9 +85,9 @@ def test_a_shipped_policy_is_named_by_its_level(tltlc: TltlcFunction, interrupte
     [
         (["other.tltl"], 1, "TLT0843"),
         (["--level", "navigation"], 1, "TLT0843"),
-        (["--method", "imitation"], 2, "--from is for the method `automaton`"),
-        (["--no-map"], 1, "error[TLT0941]: `old.safetensors` senses as `--map"),
-        (["--config", "wide.toml"], 1, "error[TLT0941]: `old.safetensors` has another network than `[network]` in"),
+        (["--method", "imitation"], 2, "--from works only with the method `automaton`"),
+        (["--no-map"], 1, "error[TLT0941]: `old.safetensors` has the sensors of `--map"),
+        (["--config", "wide.toml"], 1, "error[TLT0941]: the network of `old.safetensors` is not the one that"),
         (["--from", "gone.safetensors"], 3, "cannot read `gone.safetensors`"),
         (["--from", "small.toml"], 1, "TLT0840"),
     ],
@@ -125,7 +126,7 @@ def test_on_resume_the_policy_may_have_moved_but_not_changed(
     assert "error" not in resumed.err and "128 steps" in resumed.out, resumed.err
     interrupted("soon.tltl", "--config", "drawn.toml", "--out", "plain")
     rejected = tltlc("train", "--resume", "plain", "--from", "moved.safetensors", "--steps", "128")
-    assert "begins with weights that are drawn, not with the policy `moved.safetensors`" in rejected.err
+    assert "begins with random weights, not with the policy `moved.safetensors`" in rejected.err
 
 
 @pytest.mark.usefixtures("here")

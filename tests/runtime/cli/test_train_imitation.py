@@ -68,9 +68,7 @@ def test_named_demonstrations_are_imitated_and_needed_on_resume(tltlc: TltlcFunc
     (here / "mine").rename(here / "moved")
     missing = tltlc("train", "--resume", "run", "--steps", "192")
     assert (missing.status, missing.out) == (1, "")
-    assert (
-        "error[TLT0922]: the demonstrations are others than those that the training in `run` began with" in missing.err
-    )
+    assert "error[TLT0922]: the demonstrations are not those that the training in `run` began with" in missing.err
     resumed = tltlc("train", "--resume", "run", "--steps", "192", "--demonstrations", "moved")
     assert "TLT" not in resumed.err
     assert [line["steps"] for line in read_metrics(here / "run" / METRICS)] == [64, 128, 192]
@@ -130,7 +128,7 @@ def _check_resumed(tltlc: TltlcFunction, run: Path) -> None:  # noqa: F811
 @pytest.mark.parametrize(
     ("arguments", "status", "message"),
     [
-        (["soon.tltl", "--demonstrations", "mine"], 2, "--demonstrations are for --method imitation"),
+        (["soon.tltl", "--demonstrations", "mine"], 2, "--demonstrations works only with --method imitation"),
         ([*TRAIN_IMITATION[1:], "--demonstrations", "nowhere"], 1, "TLT0921"),
         (["soon.tltl", "--method", "magic"], 2, "--method"),
     ],
@@ -151,7 +149,7 @@ def test_invalid_options_are_rejected(
 def test_a_spec_that_the_expert_does_not_meet_is_rejected(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
     result = tltlc("train", "vain.tltl", "--method", "imitation", "--config", "small.toml", "--out", "run")
     assert result.status == 1
-    assert "recording the expert: 0 of 2 demonstrations, the episode of seed 0 fails, and is not kept" in result.err
+    assert "recording the expert: 0 of 2 demonstrations, the episode of seed 0 fails and is not kept" in result.err
     assert "error[TLT0920]" in result.err
 
 
@@ -167,4 +165,4 @@ def test_the_method_is_stored_in_the_settings(
     write_recordings(here / "mine", recorded_episode(1))
     interrupted(*TRAIN_IMITATION[1:], "--demonstrations", "mine", "--out", "run")
     other = tltlc("train", "--resume", "run", "--method", "automaton", "--steps", "128")
-    assert "error[TLT0870]: the training in `run` is by the method `imitation`, not by `automaton`" in other.err
+    assert "error[TLT0870]: the training in `run` uses the method `imitation`, not `automaton`" in other.err

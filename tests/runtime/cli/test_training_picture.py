@@ -52,7 +52,7 @@ def test_the_display_fits_and_no_figure_is_cut_off(
         "8,192,000 of at most 12,000,000 steps, 2,048 a second (25% learning)",
         "1 h 6 min so far, at most 3",
         "search: 2 ways found in 1 min 20 s, the shortest of 80 steps",
-        "last checkpoint 0 s ago; Ctrl-C writes one to go on from",
+        "last checkpoint 0 s ago; Ctrl-C writes one to continue from",
         "state 0",
     ):
         assert part in text
@@ -79,7 +79,7 @@ def test_before_the_first_iteration_the_search_is_shown(tmp_path: Path) -> None:
 
 def test_before_the_first_checkpoint_ctrl_c_is_explained(tmp_path: Path, report: TrainingReport) -> None:
     text = "\n".join(_lines(tmp_path, 80, 24, replace(report, checkpointed=False)))
-    assert "no checkpoint yet; Ctrl-C writes one to go on from" in text
+    assert "no checkpoint yet; Ctrl-C writes one to continue from" in text
 
 
 def test_a_search_without_demonstrations_is_shown(tmp_path: Path, report: TrainingReport) -> None:

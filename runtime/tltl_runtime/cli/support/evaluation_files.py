@@ -220,7 +220,7 @@ def _check_folder(folder: Path) -> None:
     """Raise TltlError, TLT0722, if the report or a picture would replace a file of the user."""
     existing = [folder / name for name in (_REPORT, *_PICTURES.values()) if fileio.exists(folder / name)]
     if existing and not _is_report(folder / _REPORT):
-        title = f"`{existing[0]}` is there already, and no evaluation wrote it"
+        title = f"`{existing[0]}` already exists, and no evaluation wrote it"
         raise TltlError([Diagnostic("TLT0722", title, help="name another folder with --out")])
 
 

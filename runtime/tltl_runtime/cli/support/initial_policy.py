@@ -69,13 +69,13 @@ def with_policy_network(
         UsageError: the settings are for imitation.
     """
     if settings.imitates:
-        message = "--from is for the method `automaton`: an agent that imitates begins with what it is shown"
+        message = "--from works only with the method `automaton`: an agent that imitates starts from demonstrations"
         raise click.UsageError(message, click.get_current_context())
     network = initial.card.network
     network_settings = {} if config is None else read_values(fileio.read_source(config)).get("network", {})
     if replace(network, **network_settings) != network:
-        title = f"`{initial.path}` has another network than `[network]` in `{config}` asks for"
-        raise TltlError([Diagnostic("TLT0941", title, help=f"leave `[network]` out of `{config}`, or --from")])
+        title = f"the network of `{initial.path}` is not the one that `[network]` in `{config}` describes"
+        raise TltlError([Diagnostic("TLT0941", title, help=f"remove `[network]` from `{config}`, or leave out --from")])
     return replace(settings, network=network)
 
 
@@ -93,7 +93,7 @@ def check_initial_policy(
     check_policy(initial.card, level, fspa)
     titles = list(_sensor_differences(initial, level, sensor_options))
     if titles:
-        help_ = "leave the option out, or train without --from"
+        help_ = "leave out the option, or train without --from"
         raise TltlError([Diagnostic("TLT0941", title, help=help_) for title in titles])
     return initial.card.sensors
 
@@ -102,7 +102,7 @@ def policy_difference(run: TrainingRun, named: Path) -> str | None:
     """Return a sentence if a training did not start with this policy; None if it did."""
     where = f"the training in `{run.folder}` begins with"
     if run.initial is None:
-        return f"{where} weights that are drawn, not with the policy `{named}`"
+        return f"{where} random weights, not with the policy `{named}`"
     same = weights_hash(read_policy(policy_file(named))) == run.initial.weights
     return None if same else f"{where} another policy than `{named}`"
 
@@ -121,4 +121,5 @@ def _sensor_differences(
     sensors = choose_sensors(level, sensor_options) if sensor_options else own
     for key in sensor_options:
         if getattr(sensors, key) != getattr(own, key):
-            yield f"`{initial.path}` senses as `{option_of(key, own)}` says, not as `{option_of(key, sensors)}`"
+            own_option, option = option_of(key, own), option_of(key, sensors)
+            yield f"`{initial.path}` has the sensors of `{own_option}`, not those of `{option}`"

@@ -50,9 +50,9 @@ def check_no_toml(spec: str | None, settings: str = "") -> None:
     """
     path = fileio.split_spec_name(spec)[0] if spec else ""
     if path.endswith(".toml"):
-        suggestions = [f"where it holds settings, write `{settings} {quote(path)}`"] if settings else []
-        suggestions.append(f"where it is a level, `--level {quote(spec or path)}`")
-        raise click.UsageError(f"`{path}` is no spec; {', '.join(suggestions)}", click.get_current_context())
+        suggestions = [f"if it contains settings, write `{settings} {quote(path)}`"] if settings else []
+        suggestions.append(f"if it is a level, write `--level {quote(spec or path)}`")
+        raise click.UsageError(f"`{path}` is not a spec: {'; '.join(suggestions)}", click.get_current_context())
 
 
 def check_level_exists(level: str, variant: str, command: str) -> None:
@@ -62,7 +62,7 @@ def check_level_exists(level: str, variant: str, command: str) -> None:
     """
     if level.endswith(".toml") and not fileio.exists(level):
         suffix = "" if variant == "v0" else f":{variant}"
-        title = f"the level's file `{level}` is not there any more"
+        title = f"the file of the level, `{level}`, no longer exists"
         help_ = f"put it back, or say where it is now: `{command} --level FILE.toml{suffix}`"
         raise TltlError([Diagnostic("TLT0001", title, help=help_)])
 
@@ -78,12 +78,14 @@ def own_level(spec: str, how: str = "with --level") -> str:
     """
     fspa, _ = read_spec(spec)
     if fspa.level is None:
-        message = f"`{fspa.name}` does not say which level it is about: name one {how}"
+        message = f"`{fspa.name}` does not name a level: name one {how}"
         raise click.UsageError(message, click.get_current_context())
     beside = Path(fileio.split_spec_name(spec)[0]).parent / f"{fspa.level}.toml"
     if fileio.is_file(beside):
         return str(beside)
     if fspa.level not in level_names():
-        title = f"there is no level `{fspa.level}`: `{beside}` is not there, and none of that name comes with tltlc"
+        title = (
+            f"there is no level `{fspa.level}`: `{beside}` does not exist, and no level of that name comes with tltlc"
+        )
         raise TltlError([Diagnostic("TLT0800", title, help=f"name its file {how}")])
     return fspa.level

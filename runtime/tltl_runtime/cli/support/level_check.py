@@ -40,7 +40,7 @@ def command(
 ) -> None:
     """Hold levels against compiled specs, or where there are none against the spec that each is made for."""
     if plan is not None and plan.suffix.lower() != ".png":
-        raise click.UsageError(f"--plan writes a .png, not `{plan}`", click.get_current_context())
+        raise click.UsageError(f"--plan writes a .png file, not `{plan}`", click.get_current_context())
     check = _LevelCheck(inputs, settings, report, sensors)
     checked: list[tuple[StealthLevel, Reach]] = []
     for path, variant in map(split_level, levels):
@@ -87,7 +87,7 @@ class _LevelCheck:
         """Compile the spec that a level is made for."""
         if not level.spec:
             advice = 'name one before --level, or in the level: `spec = "FILE.tltl:NAME"`'
-            self._say(f"{level.name}: made for no spec; {advice}")
+            self._say(f"{level.name}: the level does not name a spec; {advice}")
             return []
         opened = cli.open_input(path_text(Path(level.spec)), self._settings)
         self._add(opened.diagnostics)
@@ -107,7 +107,7 @@ class _LevelCheck:
 def _draw(path: Path, checked: list[tuple[StealthLevel, Reach]]) -> None:
     if len(checked) != 1:
         expected = "one level and variant, e.g. `--level navigation:v2`"
-        raise click.UsageError(f"--plan is for {expected}; there are {len(checked)}", click.get_current_context())
+        raise click.UsageError(f"--plan needs {expected}, not {len(checked)}", click.get_current_context())
     from tltl_runtime.stealth.rendering.plan import draw_level
 
     level, reach = checked[0]
@@ -128,7 +128,7 @@ def _supply_text(level: StealthLevel, fspa: Fspa) -> str:
     names = list(used_entities(level, fspa))
     names += [signal.name for signal in fspa.signals if "(" not in signal.name]
     names += [f"{name} = {value:.4g} m" for name, value in params_from_level(level, fspa).items()]
-    return ", ".join(names) or "all that it needs, which is nothing,"
+    return ", ".join(names) or "nothing (nothing is needed)"
 
 
 def _sensor_text(senses: Observer) -> str:

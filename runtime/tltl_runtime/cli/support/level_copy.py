@@ -43,17 +43,17 @@ def files(name: str) -> dict[str, str]:
 _README: Final = """\
 # A level of the stealth game
 
-`{level}` says what stands where, and `{spec}` what a player has to do. `assets/` has what several levels may
-share, and `overlays/` the small changes that make the variants of the level. All of them are texts to be changed;
-`docs/levels.md` of tltlc describes every key.
+`{level}` describes what is in the level and where, and `{spec}` what a player has to do. `assets/` has files that
+several levels may share, and `overlays/` the small changes that make the variants of the level. You can edit all of
+these files; `docs/levels.md` of tltlc describes every key.
 
     tltlc check --level {level}                     is it right, and can anybody do it?
     tltlc check --level {level}:v0 --plan plan.png  what does it look like?
     tltlc play {level}                              play it yourself
     tltlc demonstrate {level}                       watch the scripted expert
-    tltlc train {spec} --out bot                    have an agent learn it (extra `rl`)
-    tltlc evaluate bot                              and see how often it succeeds, and where not
-    tltlc test {spec}                               does the spec mean what we meant?
+    tltlc train {spec} --out bot                    train an agent (extra `rl`)
+    tltlc evaluate bot                              see how often it succeeds, and where it fails
+    tltlc test {spec}                               does the spec mean what you intend?
 
-The file of a level is its name, as in `level NAME` in the spec: who renames one renames both.
+The name of the file is the name of the level, as in `level NAME` in the spec: if you rename one, rename both.
 """

@@ -71,11 +71,13 @@ def policy_path(path: Path) -> Path:
     """
     check_spelling(str(path))
     if path.suffix.lower() == ".onnx" and fileio.is_file(path):
-        title = f"`{path}` is the model for other engines, which `tltlc inspect -o` wrote"
-        raise TltlError([Diagnostic("TLT0840", title, help="name the .safetensors file that it was made of")])
+        title = f"`{path}` is an ONNX model for other engines, not a policy"
+        raise TltlError(
+            [Diagnostic("TLT0840", title, help="name the .safetensors file from which `tltlc inspect -o` made it")]
+        )
     if path.suffix.lower() == ".toml" and fileio.is_file(path):
-        title = f"`{path}` is a TOML file, e.g. a level, and no policy"
-        help_ = "a policy is a .safetensors file, or the folder of a training; a level is named with --level"
+        title = f"`{path}` is a TOML file, e.g. a level, not a policy"
+        help_ = "name a .safetensors file, or the folder of a training; name a level with --level"
         raise TltlError([Diagnostic("TLT0840", title, help=help_)])
     if not fileio.is_dir(path):
         return path
@@ -83,9 +85,9 @@ def policy_path(path: Path) -> Path:
         return path / POLICY
     if fileio.exists(path / RUN):
         title = f"the training in `{path}` has no policy yet: {progress(path)}"
-        help_ = f"`{resume_command(path)}` goes on until it has one; one that is going on has it soon"
+        help_ = f"`{resume_command(path)}` continues it until it has one; if it is running, it will have one soon"
     elif suggestion := named_trainings(path):
-        title, help_ = f"`{path}` holds trainings, and is none itself", suggestion
+        title, help_ = f"`{path}` contains trainings, but is not a training itself", suggestion
     else:
         title = f"there is neither a training nor a policy in `{path}`"
         help_ = "name a .safetensors file, or the folder that `tltlc train` named when it ended"
@@ -99,7 +101,7 @@ def progress(folder: Path) -> str:
     """
     metrics = read_metrics(folder / METRICS)
     if not metrics:
-        return "its first iteration is not over"
+        return "its first iteration is not finished"
     episodes = sum(iteration["episodes"] for iteration in metrics)
     return f"after {metrics[-1]['steps']:,} steps, {episodes or 'no'} episode{'s' * (episodes != 1)} ended"
 
@@ -109,6 +111,6 @@ def _shipped_policy_file(level: str) -> Path:
     path = shipped_policy(level)
     if path is None:
         load_level(level)
-        help_ = f"name one that was trained, e.g. after `tltlc train --level {level}`"
+        help_ = f"name a policy that you trained, e.g. with `tltlc train --level {level}`"
         raise TltlError([Diagnostic("TLT0853", f"no policy comes with the level `{level}`", help=help_)])
     return path

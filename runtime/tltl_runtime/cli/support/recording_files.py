@@ -36,7 +36,8 @@ class RecordingFiles:
         elif out is not None:
             if out.suffix and not out.is_dir():
                 raise click.UsageError(
-                    f"--output is a folder or a name with {SUFFIX}, not `{out}`", click.get_current_context(silent=True)
+                    f"--output must be a folder or a name that ends with {SUFFIX}, not `{out}`",
+                    click.get_current_context(silent=True),
                 )
             self._folder = out
         problem = _write_problem(self._folder, make=self._folder == out)

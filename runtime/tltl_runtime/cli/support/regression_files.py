@@ -32,7 +32,7 @@ PAGE: Final = "report.html"
 _REPORT: Final = "case.json"
 """The name of the report in the folder of a case."""
 
-_NOTE: Final = "Its variants v1 and v2 were changed on purpose: reviews and fails are what they are to show."
+_NOTE: Final = "Its variants v1 and v2 were changed on purpose: they are there to show reviews and fails."
 """The note on the page of the suite that comes with the package."""
 
 _MOST_NAMED: Final = 8
@@ -95,7 +95,9 @@ def _cases_not_run(outcome: SuiteRun) -> Iterator[NotRun]:
         names = short_list([f"`{file}`" for file in outcome.changed], _MOST_NAMED)
         unaffected = f"it depends on none of the files that --changed names: {names}"
     reasons = {
-        **dict.fromkeys(outcome.missing, "the run was stopped before; the same command goes on"),
+        **dict.fromkeys(
+            outcome.missing, "the run was stopped before this case; run the same command again to continue"
+        ),
         **dict.fromkeys(outcome.left_out, unaffected),
     }
     for case in outcome.suite.cases:

@@ -110,7 +110,7 @@ def _select_cases(suite: Suite, options: RegressOptions) -> Selection:
             click.echo(workflow_command("warning", message, {"title": "--changed"}))
     if selection.left_out:
         names = plain_text(", ".join(case.name for case in selection.left_out))
-        click.echo(f"left out, since none of the named files concerns them: {names}", err=True)
+        click.echo(f"left out, because they depend on none of the named files: {names}", err=True)
     return selection
 
 
@@ -133,8 +133,7 @@ def _warn_unnamed(suite: Suite, left_out: Sequence[Case], references: tuple[Refe
     for name, cases in unnamed_changes(suite, left_out, references).items():
         names = plain_text(short_list(cases, _MOST_NAMED))
         message = (
-            f"`{plain_text(name)}` has changed since the baseline, and is not among the files that are named; "
-            f"left out: {names}"
+            f"`{plain_text(name)}` has changed since the baseline, but --changed does not name it; left out: {names}"
         )
         click.echo(f"warning: {message}", err=True)
 
@@ -194,9 +193,9 @@ def _print_stopped(options: RegressOptions, results: list[FinishedCase], cases: 
     words = _resume_words(options)
     if options.minutes is not None:
         words += ["--retrain", "--minutes", f"{options.minutes:g}"]
-    progress = f"{len(results)} of {cases} cases are judged, and kept"
+    progress = f"{len(results)} of {cases} cases are judged and kept"
     if len(results) == cases and (untrained := _untrained_count(options, results)):
-        progress = f"all cases are judged, and {untrained} {'are' if untrained > 1 else 'is'} still to be trained for"
+        progress = f"all cases are judged, but {untrained} still need{'s' * (untrained == 1)} a training"
     click.echo(f"stopped: {progress}; to go on: {join(words)}", err=True)
 
 

@@ -30,7 +30,7 @@ def case_lines(report: CaseReport, width: int, *, is_cached: bool) -> Iterator[s
 def summary_line(reports: Sequence[CaseReport], missing: Sequence[str] = ()) -> str:
     """Return the counts of verdicts and of the outcomes of trainings; ``missing`` cases were not judged."""
     if not reports:
-        return "no case was judged" if missing else "no case was to be played"
+        return "no case was judged" if missing else "there was no case to play"
     text = f"{len(reports)} case{'s' * (len(reports) != 1)}: {_counts([report.verdict for report in reports], _COLORS)}"
     outcomes = [OUTCOMES[report.retrained.outcome] for report in reports if report.retrained]
     return f"{text}; trained anew: {_counts(outcomes, OUTCOMES.values())}" if outcomes else text

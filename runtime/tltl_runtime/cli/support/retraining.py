@@ -59,7 +59,7 @@ def retrain_cases(options: Retraining, results: list[FinishedCase], *, to_stderr
     """
     for case in results:
         if reason := case.training_obstacle:
-            click.echo(plain_text(f"{case.report.name}: its policy is not trained further, since {reason}"), err=True)
+            click.echo(plain_text(f"{case.report.name}: its policy is not trained further, because {reason}"), err=True)
     runs = {
         row: configure_retraining(options.suite, prepared, options.folder, options.minutes, options.pool)
         for row, case in enumerate(results)
@@ -90,7 +90,7 @@ def _case_errors(name: str) -> Iterator[None]:
     except TltlError as error:
         if _FATAL_ERRORS & {diagnostic.code for diagnostic in error.diagnostics}:
             raise
-        click.echo(f"{plain_text(name)}: nothing can be said of its training", err=True)
+        click.echo(f"{plain_text(name)}: its training gave no result", err=True)
         cli.show(error.diagnostics, "text", sys.stderr)
 
 
@@ -100,11 +100,11 @@ def _train(options: Retraining, name: str, run: TrainingRun) -> None:
     kept = exists and is_stored(run)
     if kept and finished_record(run):
         return
-    verb = "goes on" if kept else "begins with its policy"
-    cause = "what is kept is of another level, policy, spec, seed or settings, or cannot be read"
-    reason = f", anew, since {cause}" if exists and not kept else ""
+    verb = "continues" if kept else "starts from its policy"
+    cause = "the earlier one is of another level, policy, spec, seed or settings, or cannot be read"
+    reason = f" again, because {cause}" if exists and not kept else ""
     limit = minutes_text(options.minutes)
-    click.echo(f"{plain_text(name)}: a training {verb}{reason}, for {limit} at the most, in {run.folder}", err=True)
+    click.echo(f"{plain_text(name)}: a training {verb}{reason}; it runs for at most {limit}, in {run.folder}", err=True)
     if exists and not kept:
         _make_room(options, name, run)
     write_record(run, train_with_display(run, resume=kept, again=f"{options.again} --minutes {options.minutes:g}"))
@@ -139,6 +139,7 @@ def _lines(options: Retraining, name: str, result: RetrainingResult) -> Iterator
         yield f"    the new policy: {policy}"
     else:
         then = baseline_command(options.suite)
-        yield f"    where the change was meant: copy {policy} beside the suite, name it there as `policy`, then: {then}"
+        copy = f"copy {policy} next to the suite, name it there as `policy`"
+        yield f"    if you intended the change: {copy}, then: {then}"
     if result.episode:
         yield f"    an episode that met the spec: tltlc replay {quote(str(options.folder / result.episode))}"

@@ -46,7 +46,7 @@ def senses_options(command: Function) -> Function:
             ("map", map_, no_map, None),
         ):
             if none and values is not None:
-                raise click.UsageError(f"--{key} and --no-{key} exclude each other", click.get_current_context())
+                raise click.UsageError(f"--{key} and --no-{key} cannot be used together", click.get_current_context())
             if none or values is not None:
                 sensors[key] = empty if none else values
         return command(*args, sensors=sensors, **rest)
@@ -111,7 +111,7 @@ class _Map(_Type):
             return kind(item)
         except ValueError:
             expected = "a whole number" if kind is int else "a number"
-            self.fail(f"`{key}` is {expected}, not `{','.join(items)}`", param, ctx)
+            self.fail(f"`{key}` must be {expected}, not `{','.join(items)}`", param, ctx)
 
 
 _OPTIONS = (

@@ -88,9 +88,9 @@ class _LineDisplay:
             self._print(SEARCHED_AGAIN, always=True)
         elif not self._has_searched:
             begins = self._run.initial and not (self._run.folder / CHECKPOINT).exists()
-            method = "the policy plays, and then chance" if begins else "by chance"
+            method = "the policy, then with random actions" if begins else "random actions"
             end = search_end(self._run.settings.exploration)
-            self._print(f"ways to meet the spec are searched first: {method}. {end}", always=True)
+            self._print(f"searching first for ways to meet the spec, with {method}. {end}", always=True)
             self._print(SEARCH_IS_LOST, always=True)
             self._next = 0.0
         self._has_searched = True

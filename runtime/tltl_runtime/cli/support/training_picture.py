@@ -101,7 +101,7 @@ class TrainingDisplay:
         required = f"of at least {exploration.ways}"
         table.add_row("ways found", _bar(count / exploration.ways, "green", bar), f"{count:4}", required)
         fraction = min(1.0, searched.steps / exploration.steps)
-        most = f"of {exploration.steps:,} steps at the most"
+        most = f"of at most {exploration.steps:,} steps"
         table.add_row("searched", _bar(fraction, "blue", bar), f"{percent(fraction):>4}", most)
         return Group(table, Text(f"\n{search_line(searched)}\n\n{search_end(exploration)}\n\n{SEARCH_IS_LOST}"))
 
@@ -130,7 +130,7 @@ class TrainingDisplay:
             text = f"last checkpoint {duration(now - self._checkpoint)} ago"
         else:
             text = "resumed from its checkpoint" if self._resumed else "no checkpoint yet"
-        return text if report.stop else f"{text}; Ctrl-C writes one to go on from"
+        return text if report.stop else f"{text}; Ctrl-C writes one to continue from"
 
 
 def _success_table(report: TrainingReport, stop: Stop, bar: int) -> Table:

@@ -33,7 +33,7 @@ def stopped_line(run: TrainingRun, again: str) -> str | None:
     """Describe a training that Ctrl-C has stopped; None if it had not started."""
     if not (run.folder / RUN).exists():
         return None
-    before = "in the search, which then begins anew" if run.settings.searches else "before the first iteration"
+    before = "during the search, which will start again" if run.settings.searches else "before the first iteration"
     return f"stopped{'' if (run.folder / CHECKPOINT).exists() else f' {before}'}; to go on: {again}"
 
 
@@ -45,6 +45,6 @@ def _worker_errors(again: str) -> Iterator[None]:
     except WorkerError as error:
         causes = [str(error.loss), *error.loss.traceback.splitlines()[-1:]]
         played = [f"it played {playing}" for playing in error.playing if playing.busy]
-        title = f"the training broke off: {': '.join(causes)}"
+        title = f"the training was interrupted: {': '.join(causes)}"
         help_ = "; ".join([*played, f"to go on from the last checkpoint: {again}"])
         raise TltlError([Diagnostic("TLT0871", title, help=help_)]) from error

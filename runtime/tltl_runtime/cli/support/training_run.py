@@ -87,7 +87,7 @@ def new_run(options: TrainOptions, folder: Path | None) -> TrainingRun:
     """
     if options.spec is not None and names_level(options.spec):
         if options.level is not None:
-            raise _usage(f"`{options.spec}` is a level, and so is `{options.level}`: name a spec, or one of them alone")
+            raise _usage(f"`{options.spec}` is a level, and so is `{options.level}`: name a spec, or only one of them")
         options = replace(options, level=options.spec, spec=None)
     elif options.spec is not None:
         check_spelling(fileio.split_spec_name(options.spec)[0])
@@ -159,7 +159,7 @@ def resumed_run(options: TrainOptions, folder: Path) -> TrainingRun:
     settings = run.settings if options.config is None else _with_file(run.settings, options.config)
     titles = list(_differences(run, options, settings))
     if titles:
-        help_ = f"leave it out to go on with `{folder}`, or begin another training with --out"
+        help_ = f"leave it out to continue the training in `{folder}`, or start another training with --out"
         raise TltlError([Diagnostic("TLT0870", title, help=help_) for title in titles])
     if options.demonstrations is not None:
         _check_demonstrations(options.demonstrations, settings)
@@ -179,9 +179,9 @@ def check_limits(run: TrainingRun) -> None:
     if stop.steps != before.steps and stop.steps <= checkpoint.steps:
         passed.append((f"done {checkpoint.steps:,} steps", f"{stop.steps:,} steps"))
     if stop.minutes != before.minutes and stop.is_out_of_time(checkpoint.seconds):
-        passed.append((f"gone on for {duration(checkpoint.seconds)}", minutes(stop.minutes)))
+        passed.append((f"run for {duration(checkpoint.seconds)}", minutes(stop.minutes)))
     if passed:
-        help_, where = "give a limit greater than that, or leave it out", f"the training in `{run.folder}`"
+        help_, where = "give a higher limit, or leave it out", f"the training in `{run.folder}`"
         titles = [f"{where} has {done}, and a limit of {limit} would end it at once" for done, limit in passed]
         raise TltlError([Diagnostic("TLT0862", title, help=help_) for title in titles])
 
@@ -228,7 +228,7 @@ def _check_folder(folder: Path) -> None:
     except OSError as error:
         raise fileio.reading_error(str(folder), error) from None
     if names:
-        title = f"`{folder}` is no training, and has other files: `{names[0]}`{' and more' * (len(names) > 1)}"
+        title = f"`{folder}` is not a training, and contains other files: `{names[0]}`{' and more' * (len(names) > 1)}"
         help_ = f"name a folder of its own, e.g. `--out {quote(str(folder / 'training'))}`"
         raise TltlError([Diagnostic("TLT0873", title, help=help_)])
 
@@ -243,7 +243,7 @@ def _check_demonstrations(folder: Path | None, settings: TrainingSettings) -> No
     if folder is None:
         return
     if not settings.imitates:
-        raise _usage("--demonstrations are for --method imitation")
+        raise _usage("--demonstrations works only with --method imitation")
     if not recordings(folder):
         raise nothing_to_imitate(folder, [])
 
@@ -296,21 +296,22 @@ def _differences(run: TrainingRun, options: TrainOptions, settings: TrainingSett
         fspa, _ = read_spec(options.spec)
         if spec_hash(fspa) != spec_hash(run.fspa) and fspa.name == run.fspa.name:
             details = differences(run.fspa, fspa)
-            yield f"{where} is for another spec `{fspa.name}` than that of `{options.spec}`: {details}"
+            yield f"{where} is for another spec `{fspa.name}` than the one in `{options.spec}`: {details}"
         elif spec_hash(fspa) != spec_hash(run.fspa):
             yield f"{where} is for the spec `{run.fspa.name}`, not for `{fspa.name}` of `{options.spec}`"
     if options.seed is not None and options.seed != run.seed:
         yield f"{where} has the seed {run.seed}, not {options.seed}"
     if options.method is not None and options.method != run.settings.method:
-        yield f"{where} is by the method `{run.settings.method}`, not by `{options.method}`"
+        yield f"{where} uses the method `{run.settings.method}`, not `{options.method}`"
     if options.policy is not None and (difference := policy_difference(run, options.policy)):
         yield difference
     sensors = choose_sensors(load_level(run.level, run.variant), options.sensors) if options.sensors else run.sensors
     # Sensors without an option stay as they are in the training, whatever the level's own sensors are.
     for key in options.sensors:
         if getattr(sensors, key) != getattr(run.sensors, key):
-            yield f"{where} senses as `{option_of(key, run.sensors)}` says, not as `{option_of(key, sensors)}`"
+            own_option, option = option_of(key, run.sensors), option_of(key, sensors)
+            yield f"{where} has the sensors of `{own_option}`, not those of `{option}`"
     requested = dict(leaves(to_json(settings)))
     for path, value in leaves(to_json(run.settings)):
         if path not in MAY_CHANGE and value != requested[path]:
-            yield f"{where} has another `{path}` than `{options.config}`"
+            yield f"{where} has another value of `{path}` than `{options.config}`"

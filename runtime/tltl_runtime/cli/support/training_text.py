@@ -11,8 +11,8 @@ from tltl_runtime.training.files.settings import Stop
 from tltl_runtime.training.imitation.demonstrations import Attempt
 from tltl_runtime.training.imitation.imitation_data import ImitationSummary
 
-SEARCH_IS_LOST: Final = "Ctrl-C stops it; a search that is not over then begins anew."
-SEARCHED_AGAIN: Final = "the pass rate rises no more: ways are searched by chance from where episodes failed"
+SEARCH_IS_LOST: Final = "Ctrl-C stops it; when you continue, an unfinished search starts again."
+SEARCHED_AGAIN: Final = "the pass rate no longer rises: a random search for ways starts from where episodes failed"
 
 
 def report_line(report: TrainingReport, stop: Stop) -> str:
@@ -36,7 +36,7 @@ def report_line(report: TrainingReport, stop: Stop) -> str:
 
 def recording_line(attempt: Attempt, requested: int) -> str:
     """Describe the progress of recording the expert's demonstrations in one line."""
-    seed, fate = attempt.episode.seed, "is kept" if attempt.path else "fails, and is not kept"
+    seed, fate = attempt.episode.seed, "is kept" if attempt.path else "fails and is not kept"
     return f"recording the expert: {attempt.kept} of {requested} demonstrations, the episode of seed {seed} {fate}"
 
 
