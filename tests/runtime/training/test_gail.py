@@ -283,7 +283,7 @@ def test_an_algorithm_that_cannot_imitate_is_rejected(tmp_path: Path, mine: Path
     with pytest.raises(TltlError) as caught:
         next(train(run))
     assert "TLT0862" in str(caught.value)
-    assert "no subclass of Gail" in str(caught.value)
+    assert "not a subclass of Gail" in str(caught.value)
 
 
 def test_the_imitation_data_have_the_demonstrated_actions(mine: Path, tmp_path: Path) -> None:
