@@ -206,7 +206,7 @@ def unknown_spec(name: str, known: list[str], file: str) -> Diagnostic:
 
     close = get_close_matches(name, known, n=1)
     listed = ", ".join(f"`{spec}`" for spec in known[:10]) + (", …" if len(known) > 10 else "")
-    suggestion = f"did you mean `{close[0]}`?" if close else f"it holds {listed}" if known else "it holds no spec"
+    suggestion = f"did you mean `{close[0]}`?" if close else f"it contains {listed}" if known else "it contains no spec"
     return Diagnostic("TLT0720", f"`{file}` has no spec `{name}`", help=suggestion)
 
 

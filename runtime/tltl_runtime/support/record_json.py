@@ -25,7 +25,7 @@ _PLAIN = {str: "a text", bool: "true or false", int: "a whole number", float: "a
 
 
 class RecordJsonError(ValueError):
-    """Raised for JSON that does not fit a record; the message says where, and what was expected."""
+    """Raised for JSON that does not fit a record; the message says where, but what was expected."""
 
 
 def to_json(value: object) -> Any:
@@ -174,4 +174,4 @@ def _fields(kind: Any) -> Mapping[str, Any]:
 
 
 def _mismatch_error(where: str, expected: str, data: object) -> RecordJsonError:
-    return RecordJsonError(f"`{where}` is {data!r:.60}, and {expected} was expected")
+    return RecordJsonError(f"`{where}` is {data!r:.60}, but {expected} was expected")

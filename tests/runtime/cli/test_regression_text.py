@@ -27,6 +27,6 @@ def test_verdicts_are_counted() -> None:
 
 def test_outcomes_of_retraining_are_counted() -> None:
     reports = [report("pass"), report("review", "learned"), report("fail", "no_way"), report("fail", "feasible")]
-    counted = "trained anew: 1 learned, 1 feasible, 1 no way found"
+    counted = "retrained: 1 learned, 1 feasible, 1 no way found"
     assert summary_line(reports) == f"4 cases: 1 pass, 1 review, 2 fail; {counted}"
-    assert summary_line(reports[:2]) == "2 cases: 1 pass, 1 review; trained anew: 1 learned"
+    assert summary_line(reports[:2]) == "2 cases: 1 pass, 1 review; retrained: 1 learned"

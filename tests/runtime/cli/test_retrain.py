@@ -63,21 +63,21 @@ def test_retraining_reports_that_no_demonstration_was_found(
 ) -> None:
     result = tltlc(*RETRAIN, "--json", "report.json", "--junit", "report.xml")
     assert result.status == 1
-    (sentence,) = (line for line in result.out.splitlines() if line.startswith("hopeless, trained anew"))
-    assert sentence.startswith("hopeless, trained anew: no way found: neither a search of ")
-    assert result.out.splitlines()[-1] == "3 cases: 2 pass, 1 fail; trained anew: 1 no way found"
+    (sentence,) = (line for line in result.out.splitlines() if line.startswith("hopeless, retrained"))
+    assert sentence.startswith("hopeless, retrained: no way found: neither a search of ")
+    assert result.out.splitlines()[-1] == "3 cases: 2 pass, 1 fail; retrained: 1 no way found"
     reports = "--json report.json --junit report.xml --workers 1"
     again = f"tltlc regress game.toml --out regression/game {reports} --retrain --minutes "
     (longer,) = (line for line in result.out.splitlines() if line.startswith(f"    to train longer: {again}"))
     assert float(longer.removeprefix(f"    to train longer: {again}")) >= 0.02
     assert f"hopeless: a training starts from its policy; it runs for at most 0.01 minutes, in {FOLDER}" in result.err
-    assert "hopeless, trained anew: 25 of at most 50 episodes, 0 met the spec" in result.err
+    assert "hopeless, retrained: 25 of at most 50 episodes, 0 met the spec" in result.err
     report = json.loads(Path("report.json").read_text(encoding="utf-8"))
     assert report["complete"] is True and report["verdicts"] == {"pass": 2, "review": 0, "fail": 1}
     *passing, hopeless = report["cases"]
     assert [case["retrained"] for case in passing] == [None, None]
     assert hopeless["retrained"]["outcome"] == "no_way"
-    assert f"hopeless, trained anew: {hopeless['retrained']['text']}" == sentence
+    assert f"hopeless, retrained: {hopeless['retrained']['text']}" == sentence
     assert hopeless["retrained"]["policy"] == "retrained/hopeless/policy.safetensors"
     (tests,) = ET.parse("report.xml").getroot()
     assert [element.text for element in tests.iter("system-out")][-1] == hopeless["retrained"]["text"]
@@ -167,7 +167,7 @@ def test_an_error_in_one_training_does_not_stop_the_others(
     first, second = (lines.index(f"{name}: its training gave no result") for name in ("edited", "left"))
     assert lines[first + 1] == "error[TLT0905]: `room.toml` changed while `edited` was played"
     assert lines[second + 1] == "error[TLT0806]: level navigation v0, step 3, player: it left"
-    assert "told, trained anew: no way found" in result.out.splitlines()
+    assert "told, retrained: no way found" in result.out.splitlines()
     report = json.loads(Path("report.json").read_text(encoding="utf-8"))
     assert report["complete"] is False
     assert [case["retrained"] and case["retrained"]["outcome"] for case in report["cases"]] == [None, None, "no_way"]
@@ -180,7 +180,7 @@ def test_a_lost_worker_ends_the_run(
 ) -> None:
     _write_failing_cases(monkeypatch, _worker_lost, _no_way)
     result = tltlc(*RETRAIN)
-    assert "error[TLT0850]: a worker was lost" in result.err and "trained anew" not in result.out
+    assert "error[TLT0850]: a worker was lost" in result.err and "retrained" not in result.out
 
 
 def test_fresh_moves_older_trainings_aside(
@@ -244,4 +244,4 @@ def test_a_signal_ends_it_and_keeps_the_results(game: Path) -> None:
     # Use another process: this one is patched to few environments, and a training resumes only with its own settings.
     resumed = subprocess.run([*command, *RETRAIN], capture_output=True, text=True, timeout=HANG_S, check=False)
     assert f"hopeless: a training continues; it runs for at most 0.01 minutes, in {FOLDER}" in resumed.stderr
-    assert "hopeless, trained anew: no way found" in resumed.stdout
+    assert "hopeless, retrained: no way found" in resumed.stdout

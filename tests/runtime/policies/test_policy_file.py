@@ -205,7 +205,7 @@ BIAS = "actor.mlp.0.bias"
         (set_card(version=2), "TLT0841.*version 2.*use a newer tltlc"),
         (set_card(version=0), "TLT0841.*version 0.*train the policy again"),
         (set_card(version=True), "TLT0841.*version True"),
-        (set_card(level=3), "TLT0842.*`card.level` is 3, and a text was expected"),
+        (set_card(level=3), "TLT0842.*`card.level` is 3, but a text was expected"),
         (set_card(more=3), "TLT0842.*`more`"),
         (lambda _, card: card.__delitem__("sensors"), "TLT0842.*lacks one of the keys sensors"),
         (set_card(level_hash="x"), "TLT0842.*`card.level_hash` is not a hash"),

@@ -119,7 +119,7 @@ def _make_room(options: Retraining, name: str, run: TrainingRun) -> None:
 def _result(options: Retraining, case: FinishedCase, run: TrainingRun) -> RetrainingResult:
     """Return the result of the training, and show the progress of its episodes on standard error."""
     assert case.prepared is not None
-    shown_case = replace(case.prepared.case, name=f"{case.report.name}, trained anew")
+    shown_case = replace(case.prepared.case, name=f"{case.report.name}, retrained")
     with RegressionDisplay("at most") as display:
         return retraining_result(
             options.suite, case, run, options.pool, lambda count, last: display(shown_case, count, last)
@@ -128,7 +128,7 @@ def _result(options: Retraining, case: FinishedCase, run: TrainingRun) -> Retrai
 
 def _lines(options: Retraining, name: str, result: RetrainingResult) -> Iterator[str]:
     """Yield the lines that describe the result of a training and the next steps."""
-    yield f"{name}, trained anew: {result.text}"
+    yield f"{name}, retrained: {result.text}"
     policy = quote(str(options.folder / result.policy))
     if result.outcome != "learned":
         if result.trained.end == "minutes":

@@ -44,7 +44,7 @@ _GREATEST: Final = {"pass_rate": 0.999}
 
 No number of episodes can make a pass rate of 1 certain.
 """
-_HELP: Final = 'values are written as in `episodes = 100`, texts as in `level = "navigation"`'
+_HELP: Final = 'write values as in `episodes = 100`, and texts as in `level = "navigation"`'
 
 
 @record

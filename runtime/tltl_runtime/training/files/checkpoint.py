@@ -187,7 +187,7 @@ def _check_figures(checkpoint: Checkpoint) -> None:
     _check_counts({f"it.{name}": getattr(checkpoint, name) for name in names})
     _check_counts({"it.standstill[1]": since}, checkpoint.steps)
     if not 0.0 <= rate <= 1.0:
-        raise RecordJsonError(f"`it.standstill[0]` is {rate!r:.60}, and a number from 0 to 1 was expected")
+        raise RecordJsonError(f"`it.standstill[0]` is {rate!r:.60}, but a number from 0 to 1 was expected")
     for index, (_, _, steps, state, _) in enumerate(checkpoint.window):
         _check_counts({f"it.window[{index}][2]": steps, f"it.window[{index}][3]": state})
     if best:
@@ -201,7 +201,7 @@ def _check_figures(checkpoint: Checkpoint) -> None:
 def _check_counts(counts: Mapping[str, float], greatest: float = _MOST) -> None:
     for where, value in counts.items():
         if not 0 <= value <= greatest:
-            raise RecordJsonError(f"`{where}` is {value!r:.60}, and a number from 0 to {greatest:,} was expected")
+            raise RecordJsonError(f"`{where}` is {value!r:.60}, but a number from 0 to {greatest:,} was expected")
 
 
 def _best_policy(content: Mapping[str, Any]) -> BestPolicy:

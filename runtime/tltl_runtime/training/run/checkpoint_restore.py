@@ -60,7 +60,7 @@ def _check_part(saved: object, expected: object, where: str) -> None:
         if all(isinstance(value, Tensor) for value in expected.values()):
             _check_weights(saved, expected, where)
     elif isinstance(expected, (int, float)) and not (_kind(saved) == _kind(expected) and _is_limit(saved)):
-        raise RecordJsonError(f"`{where}` is {saved!r:.60}, and a number of at least 0 was expected")
+        raise RecordJsonError(f"`{where}` is {saved!r:.60}, but a number of at least 0 was expected")
 
 
 def _is_limit(value: Any) -> bool:

@@ -214,8 +214,8 @@ def test_the_outcome_of_a_retraining_is_in_the_table() -> None:
     suite = samples.suite()
     case = replace(suite.cases[1], report=replace(suite.cases[1].report, retrained=retrained))
     texts = Page(html_report(replace(suite, cases=(suite.cases[0], case)))).texts
-    assert texts.count("trained anew: no way found") == 1
-    assert not any(text.startswith("trained anew") for text in page().texts)
+    assert texts.count("retrained: no way found") == 1
+    assert not any(text.startswith("retrained") for text in page().texts)
 
 
 def test_the_confidence_intervals_are_explained_where_they_are_drawn() -> None:
