@@ -10,7 +10,7 @@ from contextlib import nullcontext
 import pytest
 
 from tests.waiting import HANG_S
-from tltl_runtime.support.child_processes import block_interrupts
+from tltlc.io.child_interrupts import block_interrupts
 
 pytestmark = pytest.mark.skipif(not hasattr(signal, "pthread_sigmask"), reason="needs signals that can be blocked")
 

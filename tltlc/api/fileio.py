@@ -8,6 +8,7 @@ The lock of ``try_lock`` ends with the process, even if it is killed, and a fold
 
 from tltlc.io import limits
 from tltlc.io.archive import Archive, unpack
+from tltlc.io.child_interrupts import block_interrupts
 from tltlc.io.files import (
     MAX_ARTEFACT_BYTES,
     descriptor_of,
@@ -37,6 +38,7 @@ __all__ = [
     "MAX_ARTEFACT_BYTES",
     "PROJECT_FILE",
     "Archive",
+    "block_interrupts",
     "check_not_read",
     "descriptor_of",
     "exists",

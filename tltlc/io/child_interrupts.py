@@ -1,12 +1,14 @@
-"""Treat an interrupt of a child process as an interrupt of this process.
+"""Ctrl-C in a terminal reaches this process and its children.
 
-Ctrl-C in a terminal reaches both processes, and the child may end first. Without this module, the
-exit status of the child would look like a failure.
+Some children should not receive it, so that only this process handles it. If another child ends
+first, its interrupt counts as one of this process: its exit status would look like a failure.
 """
 
 from __future__ import annotations
 
 import signal
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Final
 
 _SIGNALS: Final = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
@@ -35,3 +37,22 @@ def raise_if_interrupted(returncode: int) -> None:
     if callable(signal.getsignal(number)):
         signal.raise_signal(number)
     raise KeyboardInterrupt
+
+
+@contextmanager
+def block_interrupts() -> Iterator[None]:
+    """Block SIGINT within this context, and in all processes that are started there.
+
+    A child process keeps SIGINT blocked, even while it imports its modules. This process receives a
+    pending SIGINT at the end of the context. Windows has no signal masks: there, a child receives
+    Ctrl-C until it ignores SIGINT itself.
+    """
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    # A child process inherits the signal mask of the thread that starts it.
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)

@@ -15,7 +15,8 @@ from typing import Final
 from tltl_runtime.evaluation.player import EpisodePlayer, EpisodeRequest, PlayedEpisode
 from tltl_runtime.evaluation.scheduler import WorkerLostError
 from tltl_runtime.game.registry import registered_game
-from tltl_runtime.support.child_processes import block_interrupts, worker_context
+from tltl_runtime.support.child_processes import worker_context
+from tltlc.api import fileio
 
 
 class WorkerProcess:
@@ -35,7 +36,7 @@ class WorkerProcess:
         """
         future: Future[PlayedEpisode] = Future()
         try:
-            with block_interrupts():
+            with fileio.block_interrupts():
                 playing = self._executor.submit(_play, task)
             playing.add_done_callback(lambda done: _pass_on(done, future))
         except BrokenProcessPool:

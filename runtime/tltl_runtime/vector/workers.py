@@ -13,11 +13,10 @@ from typing import Any, Final
 from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import CloudpickleWrapper
 
-from tltl_runtime.support.child_processes import block_interrupts
 from tltl_runtime.vector.errors import Loss
 from tltl_runtime.vector.shared_memory import Rows
 from tltl_runtime.vector.worker import CLOSE, FAILED, EnvFunction, work
-from tltlc.api import replace
+from tltlc.api import fileio, replace
 
 TO_START_S: Final = 120.0
 """Seconds that a worker has to import its modules and make its environments.
@@ -80,7 +79,7 @@ class Workers:
                 name=f"env worker {worker}",
                 daemon=True,
             )
-            with block_interrupts():
+            with fileio.block_interrupts():
                 process.start()
             theirs.close()
             self._processes[worker], self._connections[worker] = process, ours
