@@ -7,12 +7,15 @@ import stat
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from contextvars import ContextVar
-from typing import BinaryIO, Final, Union
+from typing import TYPE_CHECKING, BinaryIO, Final, Union
 
 from tltlc.core.record import EMPTY
 from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
 from tltlc.io.limits import ARTEFACT, SOURCE
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 MAX_SOURCE_BYTES: Final = SOURCE.size
 MAX_ARTEFACT_BYTES: Final = ARTEFACT.size
@@ -252,6 +255,29 @@ def walk(
         yield current, folders, files
         paths = (os.path.join(current, name) for name in reversed(folders))  # noqa: PTH118
         pending += [path for path in paths if not os.path.islink(path)]  # noqa: PTH114
+
+
+def files_below(folder: Path, endings: tuple[str, ...] = (".tltl",)) -> list[Path]:
+    """Return the files with these endings in and below a folder, relative to it and sorted.
+
+    Hidden files are skipped. Pipes and devices are skipped too, because reading one could block
+    forever. Raises TltlError with TLT0001 for a folder that cannot be read.
+    """
+    from pathlib import Path
+
+    paths: list[Path] = []
+    for place, folders, files in walk(folder, onerror=_raise_unreadable):
+        folders[:] = [name for name in folders if not name.startswith(".")]
+        relative = Path(place).relative_to(folder)
+        names = [name for name in files if name.endswith(endings) and not name.startswith(".")]
+        paths += [relative / name for name in names if may_be_file(os.path.join(place, name))]  # noqa: PTH118
+    return sorted(paths)
+
+
+def _raise_unreadable(error: OSError) -> None:
+    # A folder may be removed while we search.
+    if not isinstance(error, FileNotFoundError):
+        raise reading_error(str(error.filename), error)
 
 
 def _leads_to_folder(entry: os.DirEntry[str]) -> bool:

@@ -139,6 +139,12 @@ same limits.
 MINED_TRACE: Final = Limit(size=1 << 28)
 """A trace that `tltlc mine` keeps in memory."""
 
+JUDGED_TRACE: Final = Limit(size=1 << 26)
+"""One of many traces that `tltlc monitor` judges: each worker keeps one in memory."""
+
+PARQUET: Final = Limit(size=1 << 26, values=10_000_000, unpacked=1 << 28)
+"""A trace in Parquet; ``values`` counts the cells of the columns that are read."""
+
 RECORDING: Final = Limit(size=1 << 28, unpacked=1 << 28)
 """A recorded episode."""
 

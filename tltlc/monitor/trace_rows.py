@@ -16,6 +16,8 @@ from tltlc.io.limits import TRACE_LINE
 JSON_LINES_HELP: Final = 'write one object a line, e.g. `{"health": 1.0, "seen": false}`'
 _BLANKS: Final = " \t"
 _BYTE_ORDER_MARK: Final = b"\xef\xbb\xbf"
+_UTF_16: Final = (b"\xff\xfe", b"\xfe\xff")
+"""The bytes that a file in UTF-16 begins with."""
 _NUMBER: Final = re.compile(
     r"[+-]?(?:(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:e[+-]?[0-9]+)?|inf|infinity|nan)", re.ASCII | re.IGNORECASE
 )
@@ -55,6 +57,8 @@ def read_rows(lines: TraceLines) -> TraceTable | TraceObjects | None:
         return None
     if first.lstrip(_BLANKS).startswith("{"):
         return TraceObjects(_object(line, lines) for line in chain([first], _lines(lines)))
+    if first.lstrip(_BLANKS).startswith("[") and '"' in first:
+        raise lines.error("this is a JSON list, not CSV", help=JSON_LINES_HELP)
     header = _cells(first, lines)
     return TraceTable(tuple(header), _rows(lines, len(header)))
 
@@ -86,6 +90,11 @@ class TraceLines:
         self._read = 0
         self._first = 0
         self._used = 0
+
+    @property
+    def number(self) -> int:
+        """The number of the first line of the current row, from 1."""
+        return self._first
 
     def first_of_row(self) -> str | None:
         """Start a new row with the next line that is not blank, and return the line without its line feed.
@@ -128,6 +137,9 @@ class TraceLines:
         try:
             text = line.decode()
         except UnicodeDecodeError as error:
+            if self._read == 1 and line.startswith(_UTF_16):
+                help_ = "save it as UTF-8; in Excel, as `CSV UTF-8`"
+                raise self._bad_line(b"", "it is UTF-16, not UTF-8", 0, help_) from None
             before = len(line[: error.start].decode())
             raise self._bad_line(line, "it is not UTF-8", before, "save it as UTF-8") from None
         if "\0" in text:

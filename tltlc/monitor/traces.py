@@ -6,8 +6,17 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.monitor.sample_times import SampleTimes, times_name
 from tltlc.monitor.samples import name_list
-from tltlc.monitor.trace_rows import JSON_LINES_HELP, Stream, TraceLines, TraceTable, cell_number, read_rows
+from tltlc.monitor.trace_rows import (
+    JSON_LINES_HELP,
+    Stream,
+    TraceLines,
+    TraceObjects,
+    TraceTable,
+    cell_number,
+    read_rows,
+)
 from tltlc.resolve.spec import Signal
 
 Sample = dict[str, float]
@@ -16,25 +25,27 @@ _NUMBER_HELP: Final = "write a number, `true` or `false`"
 _BOOL_HELP: Final = "write `true`, `false`, 1 or 0"
 
 
-def read_trace(stream: Stream, name: str, signals: Sequence[Signal]) -> Iterator[Sample]:
+def read_trace(stream: Stream, name: str, signals: Sequence[Signal], clock_s: float | None = None) -> Iterator[Sample]:
     """Read a trace line by line, and yield for each sample the values of the given signals.
 
     ``stream`` is binary; ``name`` is the trace's name in messages. The format is described in
-    ``docs/traces.md``. Columns that belong to none of the signals are ignored. A sample from JSON
-    lines may lack values, and numbers may be infinite or NaN: the monitor reports both.
+    ``docs/traces.md``. A column ``time`` is checked against the clock of the spec, whose period is
+    ``clock_s`` seconds; None without a clock. Other columns that belong to none of the signals are
+    ignored. A sample from JSON lines may lack values, and numbers may be infinite or NaN: the
+    monitor reports both.
 
     Raises:
         TltlError: TLT0620 the trace has no sample, TLT0621 it has no column for a signal, TLT0622 a
-            line cannot be read. Raised during the iteration, after the samples before the error.
+            line cannot be read, TLT0623 the time of a sample is wrong. Raised during the iteration,
+            after the samples before the error.
     """
     lines = TraceLines(stream, name)
     trace = read_rows(lines)
     samples: Iterator[Sample] = iter(())
     if isinstance(trace, TraceTable):
-        columns = _columns(trace.header, lines, signals)
-        samples = (_row_sample(row, columns, lines) for row in trace.rows)
+        samples = _table_samples(trace, lines, signals, SampleTimes(clock_s))
     elif trace is not None:
-        samples = (_object_sample(object_, signals, lines) for object_ in trace.rows)
+        samples = _object_samples(trace, lines, signals, SampleTimes(clock_s))
     count = 0
     for count, sample in enumerate(samples, start=1):  # noqa: B007 (counts)
         yield sample
@@ -44,7 +55,34 @@ def read_trace(stream: Stream, name: str, signals: Sequence[Signal]) -> Iterator
         )
 
 
+def _check_time(time: float | None, times: SampleTimes, lines: TraceLines, columns: tuple[int, int] | None) -> None:
+    """Check the time of the next sample; None stands for a cell that is not a number.
+
+    ``columns`` is the part of the line to mark, as in :meth:`TraceLines.error`.
+    """
+    problem = "this is not a number" if time is None else times.problem(time)
+    if problem is not None:
+        title = f"the time in line {lines.number} of the trace is wrong"
+        advice = "write seconds with a decimal point, such as `12.5`" if time is None else times.advice
+        raise TltlError([Diagnostic("TLT0623", title, (lines.label(problem, columns),), advice)])
+
+
 # --- CSV ------------------------------------------------------------------------------------------
+
+
+def _table_samples(
+    trace: TraceTable, lines: TraceLines, signals: Sequence[Signal], times: SampleTimes
+) -> Iterator[Sample]:
+    columns = _columns(trace.header, lines, signals)
+    time = times_name(trace.header, signals)
+    time_column = None if time is None else trace.header.index(time)
+    if time is not None and trace.header.count(time) > 1:
+        raise lines.error(f"two columns are called `{time}`", help="keep one of them")
+    for row in trace.rows:
+        sample = _row_sample(row, columns, lines)
+        if time_column is not None:
+            _check_time(cell_number(row[time_column]), times, lines, _cell_span(lines.text, time_column))
+        yield sample
 
 
 def _columns(header: Sequence[str], lines: TraceLines, signals: Sequence[Signal]) -> list[tuple[Signal, int]]:
@@ -55,7 +93,7 @@ def _columns(header: Sequence[str], lines: TraceLines, signals: Sequence[Signal]
     if missing:
         title = f"the trace has no column for {name_list(missing)}"
         listing = f"its columns are {name_list(header[:10])}" + (", …" if len(header) > 10 else "")
-        advice = _format_advice(lines.text) or _suggestion(missing[0], header) or listing
+        advice = _format_advice(lines.text, header) or _suggestion(missing[0], header) or listing
         raise TltlError([Diagnostic("TLT0621", title, (lines.label(""),), advice)])
     for signal in signals:
         if signal.name in twice:
@@ -63,13 +101,15 @@ def _columns(header: Sequence[str], lines: TraceLines, signals: Sequence[Signal]
     return [(signal, positions[signal.name]) for signal in signals]
 
 
-def _format_advice(line: str) -> str | None:
-    """Return advice if the header begins a JSON list, or separates columns by semicolons or tabs.
+def _format_advice(line: str, header: Sequence[str]) -> str | None:
+    """Return advice if the header begins a JSON list, separates columns by semicolons or tabs, or names no columns.
 
-    Returns None if it does neither.
+    Returns None if it does none of these.
     """
     if line.lstrip().startswith("["):
         return JSON_LINES_HELP
+    if line.startswith(("#", "sep=")) or all(cell_number(cell) is not None for cell in header):
+        return "the first line has to name the columns"
     return "separate the columns by commas" if ";" in line or "\t" in line else None
 
 
@@ -118,6 +158,24 @@ def _cell_span(line: str, column: int) -> tuple[int, int] | None:
 
 
 # --- JSON lines -----------------------------------------------------------------------------------
+
+
+def _object_samples(
+    trace: TraceObjects, lines: TraceLines, signals: Sequence[Signal], times: SampleTimes
+) -> Iterator[Sample]:
+    time_key: str | None = None
+    for number, object_ in enumerate(trace.rows):
+        sample = _object_sample(object_, signals, lines)
+        name = times_name(object_, signals)
+        if number == 0:
+            time_key = name
+        if name != time_key:
+            has = "has no time" if name is None else f"has `{name}`"
+            raise lines.error(f"this row {has}, unlike the rows before it", help="give every row its time, or none")
+        if name is not None:
+            time = object_[name]
+            _check_time(float(time) if isinstance(time, (int, float)) else None, times, lines, None)
+        yield sample
 
 
 def _object_sample(object_: Mapping[str, Any], signals: Sequence[Signal], lines: TraceLines) -> Sample:

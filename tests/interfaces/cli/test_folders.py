@@ -12,7 +12,7 @@ import pytest
 from tests import pipes
 from tests.interfaces.cli.conftest import HIDE, Outcome
 from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.interfaces.cli.folders import files_below
+from tltlc.io.files import files_below
 from tltlc.pipeline import load
 
 Command = Callable[..., Outcome]

@@ -14,18 +14,19 @@ def render(diagnostics: Sequence[Diagnostic], *, color: bool = False) -> str:
 
     Lines and columns count from 1, offsets from 0; columns and offsets are in characters.
     """
-    entries = [
-        {
-            "code": diagnostic.code,
-            "severity": diagnostic.severity,
-            "title": diagnostic.title,
-            "help": diagnostic.help,
-            "labels": [_label(label) for label in diagnostic.labels],
-            "fixes": [_fix(fix, diagnostic.labels[0].source) for fix in diagnostic.fixes],
-        }
-        for diagnostic in diagnostics
-    ]
-    return json.dumps({"diagnostics": entries}, ensure_ascii=False, indent=2) + "\n"
+    return json.dumps({"diagnostics": list(map(entry, diagnostics))}, ensure_ascii=False, indent=2) + "\n"
+
+
+def entry(diagnostic: Diagnostic) -> dict[str, object]:
+    """Return a diagnostic as JSON data."""
+    return {
+        "code": diagnostic.code,
+        "severity": diagnostic.severity,
+        "title": diagnostic.title,
+        "help": diagnostic.help,
+        "labels": [_label(label) for label in diagnostic.labels],
+        "fixes": [_fix(fix, diagnostic.labels[0].source) for fix in diagnostic.fixes],
+    }
 
 
 def _label(label: Label) -> dict[str, object]:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.io.files import may_be_file, reading_error, walk
+from tltlc.io.files import files_below
 
 if TYPE_CHECKING:
     from tltlc.interfaces.cli.report import Report
@@ -47,21 +47,6 @@ def sources(argument: str) -> list[str]:
     return files
 
 
-def files_below(folder: Path, endings: tuple[str, ...] = (".tltl",)) -> list[Path]:
-    """Return the files with these endings in and below a folder, relative to it and sorted.
-
-    Hidden files are skipped. Pipes and devices are skipped too, because reading one could block
-    forever. Raises TltlError with TLT0001 for a folder that cannot be read.
-    """
-    paths: list[Path] = []
-    for place, folders, files in walk(folder, onerror=_raise_unreadable):
-        folders[:] = [name for name in folders if not name.startswith(".")]
-        relative = Path(place).relative_to(folder)
-        names = [name for name in files if name.endswith(endings) and not name.startswith(".")]
-        paths += [relative / name for name in names if may_be_file(os.path.join(place, name))]  # noqa: PTH118
-    return sorted(paths)
-
-
 def is_free(folder: Path) -> bool:
     """Whether nothing is at this path, or only an empty folder."""
     try:
@@ -84,12 +69,6 @@ def links_outside(path: str, arguments: Iterable[str]) -> bool:
     folders = [os.path.realpath(argument) for argument in arguments if _is_folder(argument)]
     place = os.path.realpath(path)
     return path not in arguments and not any(Path(place).is_relative_to(folder) for folder in folders)
-
-
-def _raise_unreadable(error: OSError) -> None:
-    # A folder may be removed while we search.
-    if not isinstance(error, FileNotFoundError):
-        raise reading_error(str(error.filename), error)
 
 
 def _files_inside(folder: str) -> list[str]:

@@ -62,8 +62,8 @@ def check_trace(file: TraceFile) -> None:
         pass
 
 
-def _rows(file: TraceFile, signals: Sequence[Signal]) -> Iterator[Sample]:
-    return read_trace(io.BytesIO(file.data), file.name, signals)
+def _rows(file: TraceFile, signals: Sequence[Signal], clock_s: float | None = None) -> Iterator[Sample]:
+    return read_trace(io.BytesIO(file.data), file.name, signals, clock_s)
 
 
 def _letters(
@@ -72,7 +72,7 @@ def _letters(
     """Yield the letters of a trace. ``cache`` maps samples to letters, because samples often repeat."""
     reader = vocabulary.reader
     names = [signal.name for signal in reader.signals]
-    for number, row in enumerate(_rows(file, reader.signals), start=1):
+    for number, row in enumerate(_rows(file, reader.signals, reader.clock_s), start=1):
         sample = tuple([row.get(name, nan) for name in names])
         letter = cache.get(sample)
         if letter is None:

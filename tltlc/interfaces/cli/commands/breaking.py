@@ -96,7 +96,7 @@ def _files(argument: str, old: EarlierTree) -> list[str]:
 
     Raise TLT0722 if both versions of a folder have none.
     """
-    from tltlc.interfaces.cli.folders import files_below
+    from tltlc.io.files import files_below
     from tltlc.tools.diff.revisions import SOURCE_ENDINGS
 
     folders = [folder for folder in (argument, old.old_path(argument)) if folder is not None and os.path.isdir(folder)]  # noqa: PTH112

@@ -28,8 +28,6 @@ if TYPE_CHECKING:
     from tltlc.tools.mine.trace_letters import TraceFile
     from tltlc.tools.mine.vocabulary import MiningVocabulary
 
-ENDINGS: Final = (".csv", ".jsonl")
-"""File name endings of traces in a folder."""
 _MOST_BYTES: Final = MINED_TRACE.size
 _TELL_EVERY_S: Final = 1.0
 
@@ -106,9 +104,10 @@ def command(
 ) -> int:
     """Propose specs that the recorded TRACES satisfy and the counterexamples violate.
 
-    TRACES are files in the formats of `tltlc monitor` (CSV or JSON lines), or folders with *.csv and *.jsonl files. The
-    proposals are ranked by the share of traces that satisfy them and of counterexamples that violate them. Each one has
-    been compiled, and its automaton has judged all traces. The exit status is 1 if there is no proposal.
+    TRACES are files in the formats of `tltlc monitor` (CSV, JSON lines or Parquet), or folders with *.csv, *.jsonl and
+    *.parquet files. The proposals are ranked by the share of traces that satisfy them and of counterexamples that
+    violate them. Each one has been compiled, and its automaton has judged all traces. The exit status is 1 if there is
+    no proposal.
     """
     import json
 
@@ -178,7 +177,9 @@ def _column_messages(words: MiningVocabulary, predicates: str | None) -> Iterato
 
 def _read_traces(arguments: Sequence[str]) -> list[TraceFile]:
     """Read the files that the arguments name, and all traces in folders, sorted by path."""
-    from tltlc.io.files import is_dir, read_bytes
+    from tltlc.io.files import read_bytes
+    from tltlc.monitor.parquet import as_text
+    from tltlc.tools.judge.trace_files import find_traces
     from tltlc.tools.mine.trace_letters import TraceFile
 
     files = []
@@ -186,26 +187,15 @@ def _read_traces(arguments: Sequence[str]) -> list[TraceFile]:
         if argument == STDIN:
             files.append(TraceFile(STDIN_NAME, read_data(STDIN, _MOST_BYTES)[0]))
         else:
-            paths = _traces_in(argument) if is_dir(argument) else [argument]
-            files += [TraceFile(path, read_bytes(path, path, _MOST_BYTES)) for path in paths]
+            found = find_traces([argument])
+            if found.errors:
+                raise TltlError(found.errors)
+            files += [TraceFile(path, read_bytes(path, path, _MOST_BYTES)) for path in found.traces]
     for file in files:
         if len(file.data) > _MOST_BYTES:
             title = f"`{file.name}` is larger than {_MOST_BYTES >> 20} MiB"
             raise TltlError([Diagnostic("TLT0004", title, help="record fewer steps, or fewer signals")])
-    return files
-
-
-def _traces_in(folder: str) -> list[str]:
-    """Return the traces in and below a folder; raise TLT0001 if there are none."""
-    from tltlc.interfaces.cli.folders import files_below
-
-    paths = files_below(Path(folder), ENDINGS)
-    if not paths:
-        title = f"the folder `{folder}` contains no trace"
-        raise TltlError(
-            [Diagnostic("TLT0001", title, help=f"in a folder, the names of traces end with {' or '.join(ENDINGS)}")]
-        )
-    return [str(Path(folder, path)) for path in paths]
+    return [TraceFile(file.name, as_text(file.data, file.name)) for file in files]
 
 
 def _library(predicates: str) -> SourceFile:

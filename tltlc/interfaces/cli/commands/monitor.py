@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import csv
+import io
 import json
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO
@@ -15,14 +16,16 @@ import click
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.interfaces.cli import exits
 from tltlc.interfaces.cli.inputs import open_input
+from tltlc.interfaces.cli.numbers import WholeRange
 from tltlc.interfaces.cli.report import Report
 from tltlc.interfaces.cli.settings import CompileSettings, source_options
-from tltlc.io.spec_file import STDIN, STDIN_NAME, input_error, split, standard_input
+from tltlc.io.spec_file import ARTEFACT_ENDING, STDIN, STDIN_NAME, input_error, split, standard_input
 
 if TYPE_CHECKING:
     from tltlc.automaton.fspa import Fspa
     from tltlc.monitor.run import RunStep, TraceOutcome
     from tltlc.monitor.trace_rows import Stream
+    from tltlc.resolve.spec import Signal
 
 
 @click.command(
@@ -31,25 +34,66 @@ Examples:
   tltlc monitor cover_and_hide.tltl run.csv
   tltlc monitor levels.tltl:level_1 run.jsonl --json
   my_game --log | tltlc monitor level_1.tltl -       while the game runs
+  tltlc monitor level_1.tltl traces/ more/*.csv      a line for each trace, and a summary
 """
 )
 @click.argument("spec", metavar="SPEC[:NAME]")
-@click.argument("trace", metavar="TRACE")
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON document with `rows`, `accepted` and `verdict`.")
+@click.argument("traces", metavar="TRACE...", nargs=-1, required=True)
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON document.")
+@click.option("--summary", is_flag=True, help="Print a line for each trace and a summary, even for a single trace.")
+@click.option(
+    "--episodes",
+    is_flag=True,
+    help="Judge each trace as an episode, which ends at the goal, at a violation or at the limit. Implies --summary.",
+)
+@click.option(
+    "--workers",
+    metavar="N",
+    type=WholeRange(1, 1000),
+    help="Judge the traces in this many processes (default: one for each core, and one for few traces).",
+)
 @source_options
-def command(spec: str, trace: str, as_json: bool, settings: CompileSettings, format: str) -> int:  # noqa: A002
-    """Judge a recorded trace by a spec. TRACE is CSV with a header of signal names, or JSON lines with objects.
+def command(
+    spec: str,
+    traces: tuple[str, ...],
+    as_json: bool,
+    summary: bool,
+    episodes: bool,
+    workers: int | None,
+    settings: CompileSettings,
+    format: str,  # noqa: A002
+) -> int:
+    """Judge recorded traces by a spec. A TRACE is CSV with a header of signal names, JSON lines, or Parquet.
 
-    The output has one row per step (state, verdict, progress, reward, value of each atom) and the verdict of the whole
-    trace. The exit status is 0 if the trace is accepted, and 1 otherwise. A spec over infinite traces accepts a trace
-    that ends in a goal state.
+    For one file, the output has one row per step (state, verdict, progress, reward, value of each atom) and the verdict
+    of the whole trace. For several files or a folder, it has one line per trace, and a summary that says which clauses
+    the other traces break or leave undone. In a folder, files that end in .csv, .jsonl or .parquet are traces. The exit
+    status is 0 if all traces are accepted, and 1 otherwise. A spec over infinite traces accepts a trace that ends in a
+    goal state.
     """
+    from tltlc.io.files import is_dir
+
+    if split(spec)[0] == STDIN and STDIN in traces:
+        raise click.UsageError("SPEC and TRACE cannot both be standard input", click.get_current_context())
+    for trace in traces:
+        if trace.endswith((".tltl", ARTEFACT_ENDING)):
+            message = f"`{trace}` is a spec, not a trace: `tltlc monitor` takes one spec"
+            raise click.UsageError(message, click.get_current_context())
+    if len(traces) == 1 and not (summary or episodes) and (traces[0] == STDIN or not is_dir(traces[0])):
+        return _judge_steps(spec, traces[0], settings, format, as_json=as_json)
+    if STDIN in traces:
+        raise click.UsageError("a summary needs traces in files, not standard input", click.get_current_context())
+    from tltlc.interfaces.cli.judged_traces import JudgeOptions, judge_traces
+
+    return judge_traces(spec, traces, JudgeOptions(workers, episodes, as_json), settings, format)
+
+
+def _judge_steps(spec: str, trace: str, settings: CompileSettings, format: str, *, as_json: bool) -> int:  # noqa: A002
+    """Judge one trace, and print its steps while it is read."""
     from tltlc.monitor import Monitor
     from tltlc.monitor.run import outcome, run
     from tltlc.monitor.traces import read_trace
 
-    if split(spec)[0] == trace == STDIN:
-        raise click.UsageError("SPEC and TRACE cannot both be standard input", click.get_current_context())
     result: TraceOutcome | None = None
     with Report(format, results=True) as report:
         spec_input = open_input(spec, settings)
@@ -57,7 +101,10 @@ def command(spec: str, trace: str, as_json: bool, settings: CompileSettings, for
         fspa = spec_input.only_automaton()
         monitor = Monitor(fspa)
         with _open_trace(trace) as lines:
-            rows = run(monitor, read_trace(lines, _trace_name(trace), fspa.signals))
+            rows = run(
+                monitor,
+                read_trace(_as_text(lines, trace, fspa.signals), _trace_name(trace), fspa.signals, fspa.clock_s),
+            )
             show = _show_json if as_json else _show_csv
             result = outcome(show(fspa, _with_notices(rows, monitor.notices, report)))
         (_end_json if as_json else _end_csv)(result)
@@ -65,7 +112,7 @@ def command(spec: str, trace: str, as_json: bool, settings: CompileSettings, for
 
 
 @contextmanager
-def _open_trace(trace: str) -> Iterator[Stream]:
+def _open_trace(trace: str) -> Iterator[_OpenTrace]:
     """Open a trace to read it line by line; opening and reading raise TLT0001 if they fail."""
     if trace == STDIN:
         yield _OpenTrace(standard_input(), STDIN_NAME)
@@ -78,11 +125,32 @@ def _open_trace(trace: str) -> Iterator[Stream]:
         yield _OpenTrace(file, trace)
 
 
+def _as_text(lines: _OpenTrace, trace: str, signals: Sequence[Signal]) -> Stream:
+    """Return the lines of a trace; those of a trace in Parquet are JSON lines."""
+    from tltlc.monitor.parquet import is_parquet, json_lines
+
+    return io.BytesIO(json_lines(lines.read(), trace, signals)) if is_parquet(lines.start(), trace) else lines
+
+
 class _OpenTrace:
     """A file that raises TLT0001 if reading fails."""
 
     def __init__(self, file: BinaryIO, name: str) -> None:
         self._file, self._name = file, name
+
+    def start(self) -> bytes:
+        """Return the first bytes of the file; empty for a stream that cannot look ahead."""
+        try:
+            return self._file.peek(5) if isinstance(self._file, io.BufferedReader) else b""
+        except OSError as error:
+            raise input_error(self._name, error) from None
+
+    def read(self) -> bytes:
+        """Return all bytes of the file."""
+        try:
+            return self._file.read()
+        except OSError as error:
+            raise input_error(self._name, error) from None
 
     def readline(self, size: int = -1, /) -> bytes:
         """Return the next line, or its first ``size`` bytes; empty at the end."""

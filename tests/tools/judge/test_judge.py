@@ -1,0 +1,236 @@
+from __future__ import annotations
+
+import io
+from collections.abc import Iterable
+from random import Random
+
+import pytest
+
+from tltlc.automaton.fspa import Fspa
+from tltlc.core.record import replace
+from tltlc.core.source import SourceFile
+from tltlc.logic.text.printer import words_text
+from tltlc.monitor.monitor import Monitor
+from tltlc.monitor.run import TraceOutcome, outcome, run
+from tltlc.monitor.traces import read_trace
+from tltlc.pipeline import Session
+from tltlc.tools.conformance.draw import Draw
+from tltlc.tools.conformance.formulas import formula
+from tltlc.tools.judge.clauses import Clauses, clauses_of
+from tltlc.tools.judge.judge import Judge
+from tltlc.tools.judge.verdict import Cause, TraceVerdict
+
+LAVA = """
+clock 10 Hz
+signal on_lava: bool
+signal key: bool
+signal out: bool
+signal heat: number in [0, 10]
+spec fetch { reach key then out  avoid on_lava  keep heat < 8  limit 60 s }
+"""
+
+
+def _compiled(text: str) -> tuple[Fspa, Clauses]:
+    session = Session(SourceFile("x.tltl", text))
+    compiled = session.compiled()
+    return compiled.automata[0], clauses_of(compiled.automata[0], compiled.program.specs[0])
+
+
+FSPA, CLAUSES = _compiled(LAVA)
+
+
+def _trace(rows: Iterable[str], header: str = "on_lava,key,out,heat") -> bytes:
+    return "\n".join([header, *rows, ""]).encode()
+
+
+def _cause(*rows: str) -> Cause | None:
+    judged = Judge(FSPA, CLAUSES).judge("trace", _trace(rows))
+    assert judged.verdict is not None
+    assert not judged.diagnostics
+    return judged.verdict.cause
+
+
+def _verdict(judge: Judge, data: bytes) -> TraceVerdict:
+    verdict = judge.judge("trace", data).verdict
+    assert verdict is not None
+    return verdict
+
+
+def test_an_accepted_trace_has_no_cause() -> None:
+    assert _cause("0,0,0,1", "0,1,0,1", "0,1,1,1") is None
+
+
+def test_a_broken_clause_is_named_with_the_step_and_the_atoms() -> None:
+    assert _cause("0,0,0,1", "0,1,0,1", "1,1,0,1", "0,1,1,1") == Cause("broken", 3, ("avoid on_lava",), ("on_lava",))
+    assert _cause("0,0,0,9") == Cause("broken", 1, ("keep heat < 8",), ("heat < 8",))
+
+
+def test_all_clauses_that_break_at_the_same_step_are_named() -> None:
+    cause = _cause("0,0,0,1", "1,0,0,9")
+    assert cause is not None
+    assert (cause.step, cause.clauses) == (2, ("avoid on_lava", "keep heat < 8"))
+
+
+def test_an_unfinished_clause_is_named() -> None:
+    assert _cause("0,0,0,1", "0,1,0,1") == Cause("unfinished", 2, ("reach key then out",))
+
+
+def test_a_clause_that_others_make_impossible_is_blocked() -> None:
+    fspa, parts = _compiled(
+        "signal a: bool\nsignal b: bool\nspec s { reach a  require always (b implies always not a) }"
+    )
+    verdict = _verdict(Judge(fspa, parts), b"a,b\n0,0\n0,1\n0,0\n")
+    assert verdict.cause == Cause("blocked", 2, ("reach a",), ("b",))
+
+
+def test_an_artefact_blames_the_conjuncts_of_its_formula() -> None:
+    parts = clauses_of(FSPA, None)
+    assert [part.text for part in parts.parts] == ["F(key & X F out)", "G !on_lava", "G(heat < 8)"]
+    verdict = _verdict(Judge(FSPA, parts), _trace(["1,0,0,1"]))
+    assert verdict.cause == Cause("broken", 1, ("G !on_lava",), ("on_lava",))
+
+
+def test_only_clauses_that_have_become_impossible_are_blocked() -> None:
+    signals = "signal a: bool\nsignal b: bool\nsignal c: bool\n"
+    fspa, parts = _compiled(f"{signals}spec s {{ reach a  reach c  require always (b implies always not a) }}")
+    verdict = _verdict(Judge(fspa, parts), b"a,b,c\n0,0,0\n0,1,0\n")
+    assert verdict.cause == Cause("blocked", 2, ("reach a",), ("b",))
+
+
+def test_no_clause_is_blamed_if_one_of_them_is_too_large_for_an_automaton() -> None:
+    text = "signal a: bool\nsignal b: bool\nspec s { reach a  require always (b implies always not a) }"
+    fspa, parts = _compiled(text)
+    some = replace(parts, parts=parts.parts[:1], are_all=False)
+    assert _verdict(Judge(fspa, some), b"a,b\n0,1\n").cause == Cause("broken", 1, (), ("b",))
+
+
+def test_comments_are_not_part_of_a_clause() -> None:
+    _, parts = _compiled("signal a: bool\nsignal b: bool\nspec s { reach a // first\n then b }")
+    assert [part.text for part in parts.parts] == ["reach a then b"]
+
+
+def test_a_spec_over_infinite_traces_is_judged() -> None:
+    signals = "signal a: bool\nsignal b: bool\n"
+    fspa, parts = _compiled(f"{signals}spec s {{ semantics infinite  require always eventually a  avoid b }}")
+    assert _verdict(Judge(fspa, parts), b"a,b\n0,0\n1,0\n").outcome.accepted
+    assert _verdict(Judge(fspa, parts), b"a,b\n1,0\n0,1\n").cause == Cause("broken", 2, ("avoid b",), ("b",))
+
+
+@pytest.mark.parametrize("formula", ["true", "false"])
+def test_a_spec_without_signals_is_judged(formula: str) -> None:
+    fspa, parts = _compiled(f"spec s = {formula}")
+    assert _verdict(Judge(fspa, parts), b"x\n1\n").outcome.accepted == (formula == "true")
+
+
+def test_a_clamped_value_is_a_warning_with_the_name_of_the_trace() -> None:
+    judge = Judge(FSPA, CLAUSES)
+    judged = judge.judge("run.csv", _trace(["0,1,0,1", "0,1,1,-5"]))
+    assert judged.verdict is not None
+    # Each trace has its own warning.
+    for count in (1, 200):
+        assert judge.judge("run.csv", _trace(["0,1,0,1", *["0,1,1,-5"] * count])).diagnostics == judged.diagnostics
+    assert judged.verdict.outcome.accepted
+    assert [(warning.code, warning.title.startswith("`run.csv`, step 2: ")) for warning in judged.diagnostics] == [
+        ("TLT0615", True)
+    ]
+
+
+@pytest.mark.parametrize(
+    ("data", "code"),
+    [
+        (b"on_lava,key,out\n0,0,0\n", "TLT0621"),
+        (b"on_lava,key,out,heat\n", "TLT0620"),
+        (_trace(["0,0,0,warm"]), "TLT0622"),
+        (_trace(["0,0,0,1e999"]), "TLT0612"),
+        (_trace(["0,0,0,1,0.0", "0,0,0,1,0.3"], "on_lava,key,out,heat,time"), "TLT0623"),
+        (b'{"on_lava": 0}\n', "TLT0611"),
+    ],
+)
+def test_a_trace_that_cannot_be_judged_is_an_error(data: bytes, code: str) -> None:
+    judged = Judge(FSPA, CLAUSES).judge("trace", data)
+    assert judged.verdict is None
+    assert [diagnostic.code for diagnostic in judged.diagnostics] == [code]
+    assert judged.so_far is None
+
+
+def test_an_error_after_the_end_of_an_episode_does_not_count() -> None:
+    fspa, parts = _compiled(EPISODES)
+    for end in ("0", "x,y", "0,nan"):
+        verdict = _verdict(Judge(fspa, parts, episodes=True), f"a,b\n1,0\n0,0\n{end}\n".encode())
+        assert (verdict.outcome.accepted, verdict.outcome.steps) == (True, 1)
+    unread = Judge(fspa, parts, episodes=True).judge("trace", b"a,b\n0,0\n0\n")
+    assert unread.verdict is None
+
+
+@pytest.mark.parametrize("end", ["0,1,0", "0,0,0,warm", "0,0,0,nan"])
+def test_the_cause_is_known_if_the_samples_before_an_error_break_the_spec(end: str) -> None:
+    judged = Judge(FSPA, CLAUSES).judge("trace", _trace(["0,0,0,1", "1,0,0,1", "0,0,0,1", end]))
+    assert judged.verdict is None
+    assert judged.so_far == Cause("broken", 2, ("avoid on_lava",), ("on_lava",))
+
+
+EPISODES = "signal a: bool\nsignal b: bool\nspec s { reach a  avoid b  limit 3 steps }"
+
+
+@pytest.mark.parametrize(
+    ("rows", "accepted", "cause"),
+    [
+        ("00 10 01", True, None),
+        ("00 00 00 10", False, Cause("late", 3, ("reach a",))),
+        ("00 00 10", True, None),
+        ("00 01 10", False, Cause("broken", 2, ("avoid b",), ("b",))),
+        ("00 00", False, Cause("unfinished", 2, ("reach a",))),
+    ],
+)
+def test_an_episode_ends_at_its_goal_at_a_violation_or_at_the_limit(
+    rows: str, accepted: bool, cause: Cause | None
+) -> None:
+    fspa, parts = _compiled(EPISODES)
+    data = "a,b\n" + "".join(f"{row[0]},{row[1]}\n" for row in rows.split())
+    verdict = _verdict(Judge(fspa, parts, episodes=True), data.encode())
+    assert (verdict.outcome.accepted, verdict.cause) == (accepted, cause)
+
+
+@pytest.mark.parametrize(("rows", "accepted"), [("00", False), ("000", True), ("0001", True), ("001", False)])
+def test_an_episode_that_is_judged_at_its_limit_has_to_last_until_then(rows: str, accepted: bool) -> None:
+    fspa, parts = _compiled("signal b: bool\nspec s { avoid b  limit 3 steps }")
+    verdict = _verdict(Judge(fspa, parts, episodes=True), ("b\n" + "\n".join(rows)).encode())
+    assert verdict.outcome.accepted == accepted
+    assert _verdict(Judge(fspa, parts), ("b\n" + "\n".join(rows)).encode()).outcome.accepted == ("1" not in rows)
+
+
+@pytest.mark.parametrize("judged_at", ["goal", "limit"])
+@pytest.mark.parametrize("semantics", ["finite", "infinite"])
+@pytest.mark.parametrize("seed", range(6))
+def test_judging_whole_traces_equals_judging_step_by_step(seed: int, semantics: str, judged_at: str) -> None:
+    """The fast way, in CSV, and the slow way, in JSON lines, give what :class:`Monitor` gives."""
+    random = Random(seed)
+    rule = words_text(formula(Draw(seed), ("a", "b", "d"), 5))
+    text = "signal a: bool\nsignal b: bool\nsignal c: number in [-1, 1]\npredicate d = c\nexclusive a, b\n"
+    options = f"limit 9 steps  semantics {semantics}  judge at {judged_at}"
+    fspa, parts = _compiled(f"{text}spec s {{ require {rule}  {options} }}")
+    judge, episodes = Judge(fspa, parts), Judge(fspa, parts, episodes=True)
+    for _ in range(10):
+        samples = [
+            {"a": holds == 0, "b": holds == 1, "c": random.uniform(-1.0, 1.2)}
+            for holds in random.choices(range(3), k=random.randint(1, 12))
+        ]
+        csv = "a,b,c\n" + "".join(f"{x['a']},{x['b']},{x['c']!r}\n" for x in samples)
+        lines = "".join(
+            f'{{"a": {str(x["a"]).lower()}, "b": {str(x["b"]).lower()}, "c": {x["c"]!r}}}\n' for x in samples
+        )
+        expected = outcome(run(Monitor(fspa), read_trace(io.BytesIO(csv.encode()), "trace", fspa.signals)))
+        for data in (csv, lines):
+            assert _verdict(judge, data.encode()).outcome == expected
+            assert _verdict(episodes, data.encode()).outcome == _episode(fspa, samples)
+
+
+def _episode(fspa: Fspa, samples: list[dict[str, float]]) -> TraceOutcome:
+    """Return the outcome of the samples as an episode, which ends with the last one at the latest."""
+    monitor, total = Monitor(fspa), 0.0
+    for number, sample in enumerate(samples, start=1):
+        step = monitor.step(sample, last=number == len(samples))
+        total += step.reward
+        if step.done:
+            break
+    return TraceOutcome(monitor.success, step.verdict, number, step.progress, total)

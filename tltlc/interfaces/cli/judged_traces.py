@@ -1,0 +1,174 @@
+"""Judge many traces, print a line for each, and a summary: ``tltlc monitor SPEC TRACES…``."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import closing
+from typing import Any, Final
+
+import click
+
+from tltlc.core.record import record
+from tltlc.diagnostics.diagnostic import TltlError
+from tltlc.diagnostics.formats.json import entry
+from tltlc.diagnostics.formats.text import replace_unprintable
+from tltlc.interfaces.cli import exits
+from tltlc.interfaces.cli.inputs import Input, open_input
+from tltlc.interfaces.cli.report import Report
+from tltlc.interfaces.cli.settings import CompileSettings
+from tltlc.pipeline import CompileOptions
+from tltlc.tools.judge.clauses import Clauses, clauses_of
+from tltlc.tools.judge.pool import judge_files
+from tltlc.tools.judge.summary import cause_groups, summary_text, trace_text, unread_codes
+from tltlc.tools.judge.trace_files import find_traces
+from tltlc.tools.judge.verdict import Cause, JudgedTrace
+
+_MOST_NAMED: Final = 3
+"""At most this many files that are not traces are named. Further ones are counted."""
+
+
+@record
+class JudgeOptions:
+    """The options of ``tltlc monitor`` for many traces. ``workers`` is None for the default number of processes."""
+
+    workers: int | None
+    episodes: bool
+    as_json: bool
+
+
+def judge_traces(
+    spec: str,
+    arguments: Sequence[str],
+    options: JudgeOptions,
+    settings: CompileSettings,
+    format: str,  # noqa: A002
+) -> int:
+    """Judge the traces that the arguments name, and return the exit status."""
+    traces: list[JudgedTrace] = []
+    with Report(format, results=True) as report:
+        spec_input = open_input(spec, settings)
+        report.add(spec_input.diagnostics)
+        fspa = spec_input.only_automaton()
+        files = find_traces(arguments)
+        report.add(files.errors)
+        if files.others:
+            report.say(_others_text(files.others))
+        clauses = _clauses(spec_input)
+        judged = judge_files(fspa, clauses, files.traces, options.workers, episodes=options.episodes)
+        show = _show_json if options.as_json else _show_lines
+        try:
+            with closing(judged):
+                # This keeps the traces before an error.
+                traces.extend(show(fspa.name, _with_progress(judged, len(files.traces))))
+        except TltlError as error:
+            report.add(error.diagnostics)
+        # Lines of traces and messages about them would be hard to read in turns.
+        for trace in traces:
+            report.add(trace.diagnostics)
+        if options.as_json:
+            _end_json(traces, len(files.traces), files.others)
+        else:
+            print(summary_text(traces))
+            if not options.episodes and (note := _limit_note(traces, fspa.limit_steps)):
+                report.say(note)
+        accepted = [trace.verdict is not None and trace.verdict.outcome.accepted for trace in traces]
+        return report.status or (exits.CLEAN if all(accepted) else exits.FINDINGS)
+    return report.status
+
+
+def _clauses(spec_input: Input) -> Clauses:
+    fspa = spec_input.only_automaton()
+    program = spec_input.program
+    spec = next((spec for spec in program.specs if spec.name == fspa.name), None) if program else None
+    options = spec_input.session.options if spec_input.session else CompileOptions()
+    return clauses_of(fspa, spec, options.state_budget)
+
+
+def _others_text(others: Sequence[str]) -> str:
+    rest = f" and {len(others) - _MOST_NAMED} more" if len(others) > _MOST_NAMED else ""
+    return replace_unprintable(f"not traces, by their names: {', '.join(others[:_MOST_NAMED])}{rest}")
+
+
+def _limit_note(traces: Iterable[JudgedTrace], limit: int | None) -> str:
+    """Return a note about traces that are longer than the limit of the spec; empty if there are none."""
+    longer = sum(limit is not None and trace.verdict is not None and trace.verdict.samples > limit for trace in traces)
+    if not longer:
+        return ""
+    are = "trace is" if longer == 1 else "traces are"
+    return f"{longer} {are} longer than the limit of {limit} steps and judged as a whole: `--episodes` ends them there"
+
+
+def _with_progress(judged: Iterable[JudgedTrace], total: int) -> Iterator[JudgedTrace]:
+    """Yield the traces unchanged, and show a bar on standard error if it is a terminal and standard output is not."""
+    if sys.stdout.isatty() or not sys.stderr.isatty():
+        yield from judged
+        return
+    with click.progressbar(judged, length=total, label="judging traces", file=sys.stderr) as bar:
+        yield from bar
+
+
+def _show_lines(_: str, judged: Iterable[JudgedTrace]) -> Iterator[JudgedTrace]:
+    for trace in judged:
+        print(replace_unprintable(f"{trace.name}: {trace_text(trace)}"), flush=True)
+        yield trace
+
+
+# --- JSON -----------------------------------------------------------------------------------------
+
+
+def _show_json(spec: str, judged: Iterable[JudgedTrace]) -> Iterator[JudgedTrace]:
+    print(json.dumps({"spec": spec})[:-1] + ', "traces": [', flush=True)
+    between = ""
+    for trace in judged:
+        sys.stdout.write(between + json.dumps(_trace_document(trace)))
+        sys.stdout.flush()
+        between = ",\n"
+        yield trace
+
+
+def _trace_document(trace: JudgedTrace) -> dict[str, Any]:
+    document: dict[str, Any] = {"trace": trace.name, "accepted": None, "verdict": None}
+    cause = trace.so_far
+    if trace.verdict is not None:
+        outcome, cause = trace.verdict.outcome, trace.verdict.cause
+        document |= {
+            "accepted": outcome.accepted,
+            "verdict": outcome.verdict,
+            "samples": trace.verdict.samples,
+            "steps": outcome.steps,
+            "progress": outcome.progress,
+            "reward": outcome.total_reward,
+            "remaining": trace.verdict.remaining,
+        }
+    return {**document, "cause": _cause_document(cause), "diagnostics": list(map(entry, trace.diagnostics))}
+
+
+def _cause_document(cause: Cause | None) -> dict[str, Any] | None:
+    if cause is None:
+        return None
+    return {"kind": cause.kind, "step": cause.step, "clauses": list(cause.clauses), "atoms": list(cause.atoms)}
+
+
+def _end_json(traces: Sequence[JudgedTrace], total: int, others: Sequence[str]) -> None:
+    codes = unread_codes(traces)
+    end = {
+        "complete": len(traces) == total,
+        "total": total,
+        "accepted": sum(trace.verdict is not None and trace.verdict.outcome.accepted for trace in traces),
+        "unread": sum(codes.values()),
+        "unread_codes": codes,
+        "not_traces": list(others),
+        "causes": [
+            {
+                "kind": group.kind,
+                "clauses": list(group.clauses),
+                "count": len(group.traces),
+                "usual_step": group.usual_step,
+                "steps": dict(zip(("least", "median", "greatest"), group.step_range, strict=True)),
+            }
+            for group in cause_groups(traces)
+        ],
+    }
+    print("\n], " + json.dumps(end)[1:])

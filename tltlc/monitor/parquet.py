@@ -1,0 +1,109 @@
+"""Read traces in Apache Parquet, https://parquet.apache.org, as traces in JSON lines."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Collection, Iterable
+from typing import Any, Final
+
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.io.limits import PARQUET
+from tltlc.monitor.sample_times import times_name
+from tltlc.resolve.spec import Signal
+
+_MAGIC: Final = b"PAR1"
+"""A Parquet file begins and ends with these bytes."""
+
+_ENDING: Final = ".parquet"
+
+
+def is_parquet(start: bytes, name: str) -> bool:
+    """Whether a file is in Parquet: by its name, or by the bytes that it begins with.
+
+    In Parquet, a control character follows the magic bytes, which a trace in CSV cannot have there.
+    """
+    return name.lower().endswith(_ENDING) or (start.startswith(_MAGIC) and b"" < start[4:5] < b" ")
+
+
+def as_text(data: bytes, name: str, signals: Collection[Signal] | None = None) -> bytes:
+    """Return a trace as text: one in Parquet as JSON lines, any other unchanged.
+
+    The arguments and errors are those of :func:`json_lines`.
+    """
+    return json_lines(data, name, signals) if is_parquet(data, name) else data
+
+
+def json_lines(data: bytes, name: str, signals: Collection[Signal] | None = None) -> bytes:
+    """Return a trace in Parquet as JSON lines, with an object for each row.
+
+    ``name`` is the trace's name in messages. Columns of numbers and booleans keep their values, and
+    a missing value is ``null``. Only the columns of ``signals`` and the times are read; None for all
+    columns of numbers and booleans.
+
+    Raises:
+        TltlError: TLT0730, pyarrow is not installed; TLT0622, the file is not valid; TLT0004, it is
+            too large.
+    """
+    try:
+        import pyarrow
+        from pyarrow import parquet
+    except ModuleNotFoundError:
+        title = f"reading `{name}` needs `pyarrow`, which is not installed"
+        help_ = "in the clone of tltlc: pip install -c constraints.txt '.[parquet]'"
+        raise TltlError([Diagnostic("TLT0730", title, help=help_)]) from None
+    try:
+        # A reader of bytes starts no threads. A thread that still runs at the end would abort the process.
+        file = parquet.ParquetFile(pyarrow.BufferReader(data))
+        names = _columns(file, signals)
+        if _is_too_large(file, len(names), len(data)):
+            raise TltlError([_size_error(name)])
+        columns = [column.to_pylist() for column in file.read(columns=names, use_threads=False).columns]
+    except (pyarrow.ArrowException, OSError, ValueError, OverflowError) as error:
+        title = f"`{name}` is not a valid Parquet file: {_first_sentence(str(error))}"
+        raise TltlError([Diagnostic("TLT0622", title, help="write it again")]) from None
+    rows: Iterable[tuple[Any, ...]] = zip(*columns, strict=True) if columns else [()] * file.metadata.num_rows
+    return "".join(f"{json.dumps(dict(zip(names, row, strict=True)))}\n" for row in rows).encode()
+
+
+def _columns(file: Any, signals: Collection[Signal] | None) -> list[str]:
+    """Return the names of the columns to read.
+
+    A signal may have a column of text: then the reader of traces says that this is not a number.
+    """
+    kinds = {field.name: field.type for field in file.schema_arrow}
+    if signals is None:
+        return [name for name, kind in kinds.items() if _is_value(kind)]
+    time = times_name(kinds, signals)
+    wanted = {*(signal.name for signal in signals), *([time] if time else [])}
+    return [name for name, kind in kinds.items() if name in wanted and (_is_value(kind) or _is_text(kind))]
+
+
+def _is_value(kind: Any) -> bool:
+    from pyarrow import types
+
+    return any(test(kind) for test in (types.is_boolean, types.is_integer, types.is_floating, types.is_null))
+
+
+def _is_text(kind: Any) -> bool:
+    from pyarrow import types
+
+    return bool(types.is_string(kind) or types.is_large_string(kind))
+
+
+def _is_too_large(file: Any, columns: int, size: int) -> bool:
+    metadata = file.metadata
+    unpacked = sum(metadata.row_group(group).total_byte_size for group in range(metadata.num_row_groups))
+    assert PARQUET.values is not None
+    assert PARQUET.unpacked is not None
+    cells = metadata.num_rows * max(1, columns)
+    return size > PARQUET.size or unpacked > PARQUET.unpacked or cells > PARQUET.values
+
+
+def _size_error(name: str) -> Diagnostic:
+    assert PARQUET.unpacked is not None
+    limits = f"{PARQUET.size >> 20} MiB, {PARQUET.unpacked >> 20} MiB unpacked or {PARQUET.values:,} values"
+    return Diagnostic("TLT0004", f"`{name}` is larger than {limits}", help="record fewer steps, or fewer signals")
+
+
+def _first_sentence(text: str) -> str:
+    return (text.splitlines() or ["it cannot be read"])[0].partition(". ")[0].rstrip(".")

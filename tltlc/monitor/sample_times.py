@@ -1,0 +1,85 @@
+"""Check the times of the samples of a trace against the clock of the spec."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from math import isfinite
+from typing import Final
+
+from tltlc.monitor.samples import number_text
+from tltlc.resolve.spec import Signal
+
+_TIME: Final = "time"
+
+_JITTER: Final = 0.5
+"""A sample may be early or late by this share of the sampling period."""
+
+_CLOCK_ERROR: Final = 0.02
+"""The clock of the game may be fast or slow by this share."""
+
+_ROUNDING_S: Final = 1e-3
+"""Times may be rounded to milliseconds."""
+
+
+def times_name(names: Iterable[str], signals: Iterable[Signal]) -> str | None:
+    """Return the name of the column, or key, with the times of the samples in seconds; None without one.
+
+    It is ``time``, in any capitals, unless the spec has a signal of this name. ``names`` are the
+    names of all columns.
+    """
+    taken = {signal.name for signal in signals}
+    found = [name for name in names if name.lower() == _TIME and name not in taken]
+    return _TIME if _TIME in found else found[0] if found else None
+
+
+class SampleTimes:
+    """Checks the times of the samples of one trace, in order.
+
+    Without a clock, each time must be later than the one before. With a clock of period c, no
+    sample may be missing: the time between two samples is at most 1.5 c. And sample i (from 0) must
+    be within c/2 of i c after the first one, with 2 % of error in the clock.
+    """
+
+    def __init__(self, clock_s: float | None) -> None:
+        self._clock_s = clock_s
+        self._count = 0
+        self._first = self._last = 0.0
+
+    def problem(self, time: float) -> str | None:
+        """Take the time of the next sample, in seconds; return what is wrong with it, or None."""
+        count, last = self._count, self._last
+        self._count, self._last = count + 1, time
+        if not isfinite(time):
+            return f"the time is {time}, not a finite number"
+        if count == 0:
+            self._first = time
+            return None
+        if time <= last:
+            return f"the time is {number_text(time)} s, and the sample before is at {number_text(last)} s"
+        return None if self._clock_s is None else self._clock_problem(count, last, time, self._clock_s)
+
+    def _clock_problem(self, count: int, last: float, time: float, clock_s: float) -> str | None:
+        passed, due, period = time - last, count * clock_s, _seconds(clock_s)
+        if passed > (1.0 + _JITTER) * clock_s + _ROUNDING_S:
+            return f"this is {_seconds(passed)} s after the sample before, and the clock has one every {period} s"
+        if abs(time - self._first - due) > _JITTER * clock_s + _CLOCK_ERROR * due + _ROUNDING_S:
+            mean = _seconds((time - self._first) / count)
+            return f"until here there is a sample every {mean} s, and the clock has one every {period} s"
+        return None
+
+    @property
+    def advice(self) -> str:
+        """How to mend a trace whose times are wrong."""
+        if self._clock_s is None:
+            return "record the samples in the order in which they happen, with times in seconds"
+        return "record every sample at the rate of `clock`, with times in seconds, or change `clock` in the spec"
+
+
+def _seconds(seconds: float) -> str:
+    return number_text(float(f"{seconds:.4g}"))
+
+
+def times_fit(times: Sequence[float], clock_s: float | None) -> bool:
+    """Whether all times of a trace are right, as :class:`SampleTimes` checks them."""
+    check = SampleTimes(clock_s)
+    return all(check.problem(time) is None for time in times)

@@ -1,0 +1,103 @@
+"""The clauses of a spec, each with an automaton of its own, so that a failed trace can be blamed on some of them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from typing import Final
+
+from tltlc.automaton.finite.build import DEFAULT_STATE_BUDGET
+from tltlc.automaton.fspa import Fspa
+from tltlc.core.record import record, replace
+from tltlc.core.source import SourceFile, Span
+from tltlc.logic.formula import TRUE, Formula, and_
+from tltlc.logic.text.printer import ascii_text
+from tltlc.pipeline import CompileOptions, build_spec
+from tltlc.resolve.spec import Spec
+
+_COMMENT: Final = re.compile(r"//[^\n]*")
+
+
+@record
+class Clause:
+    """A clause of a spec, or a conjunct of its formula, with its automaton.
+
+    ``text`` is the clause as it is written, with single blanks: ``avoid on_lava``. For an artefact,
+    which has no source text, it is the conjunct in the ASCII notation: ``G !on_lava``.
+    """
+
+    text: str
+    fspa: Fspa
+
+
+@record
+class Clauses:
+    """The clauses of a spec in order.
+
+    ``parts`` lacks clauses whose automaton would be too large; ``are_all`` says whether it has all.
+    ``whole`` is the spec, and ``state_budget`` that of the compiler.
+    """
+
+    parts: tuple[Clause, ...]
+    are_all: bool
+    whole: Spec
+    state_budget: int
+
+    def together(self, chosen: Sequence[int]) -> Fspa | None:
+        """Return the automaton of the chosen parts, by their indices; None if it would be too large."""
+        formulas = [part.fspa.formula for part in (self.parts[index] for index in chosen)]
+        conjunction = and_(*(formula for formula in formulas if isinstance(formula, Formula)))
+        return _automaton(self.whole, conjunction, self.state_budget)
+
+
+def clauses_of(fspa: Fspa, spec: Spec | None, state_budget: int = DEFAULT_STATE_BUDGET) -> Clauses:
+    """Return the clauses of a spec.
+
+    ``spec`` is what ``fspa`` was built from; None for an artefact. ``state_budget`` is as in
+    :class:`~tltlc.pipeline.CompileOptions`. An automaton of another tool,
+    whose formula is only a text, has no clauses.
+    """
+    conjuncts = list(_conjuncts_of_artefact(fspa) if spec is None else _conjuncts_of_source(spec))
+    whole = replace(_as_spec(fspa) if spec is None else spec, parts=())
+    built = [(text, _automaton(whole, formula, state_budget)) for text, formula in conjuncts]
+    parts = tuple(Clause(text, automaton) for text, automaton in built if automaton is not None)
+    return Clauses(parts, len(parts) == len(conjuncts) > 0, whole, state_budget)
+
+
+def _automaton(whole: Spec, formula: Formula, state_budget: int) -> Fspa | None:
+    """Return the automaton of the spec with another formula; None if it would be too large."""
+    return build_spec(replace(whole, formula=formula), CompileOptions(state_budget=state_budget))[0]
+
+
+def _conjuncts_of_source(spec: Spec) -> Iterator[tuple[str, Formula]]:
+    for part in spec.parts:
+        text = _COMMENT.sub(" ", part.source.text[part.span.start : part.span.end])
+        yield " ".join(text.split()), part.formula
+
+
+def _conjuncts_of_artefact(fspa: Fspa) -> Iterator[tuple[str, Formula]]:
+    if isinstance(fspa.formula, Formula):
+        for conjunct in fspa.formula.args if fspa.formula.op == "and" else (fspa.formula,):
+            yield ascii_text(conjunct), conjunct
+
+
+def _as_spec(fspa: Fspa) -> Spec:
+    """Return a spec with the fields of an automaton; its formula is to be replaced."""
+    return Spec(
+        name=fspa.name,
+        doc=fspa.doc,
+        formula=TRUE,
+        parts=(),
+        atoms=fspa.atoms,
+        signals=fspa.signals,
+        params=fspa.params,
+        exclusive=fspa.exclusive,
+        level=fspa.level,
+        limit_steps=fspa.limit_steps,
+        judge=fspa.judge,
+        semantics=fspa.semantics,
+        tags=fspa.tags,
+        clock_s=fspa.clock_s,
+        source=SourceFile(f"<{fspa.name}>", ""),
+        name_span=Span(0, 0),
+    )

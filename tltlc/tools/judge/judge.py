@@ -1,0 +1,163 @@
+"""Judge one recorded trace: its outcome, and if it is not accepted, the clauses that are to blame."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Sequence
+from contextlib import suppress
+
+from tltlc.automaton.fspa import Fspa
+from tltlc.automaton.text import label_text
+from tltlc.core.record import replace
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.monitor.guards import holds, prime_robustness
+from tltlc.monitor.monitor import Monitor
+from tltlc.monitor.parquet import as_text
+from tltlc.monitor.sample_times import times_fit
+from tltlc.monitor.samples import MonitorError, Samples
+from tltlc.monitor.traces import Sample, read_trace
+from tltlc.tools.judge.clauses import Clauses
+from tltlc.tools.judge.plain_csv import plain_columns
+from tltlc.tools.judge.trace_run import TraceRun, TraceRunner
+from tltlc.tools.judge.verdict import Cause, JudgedTrace, TraceVerdict
+
+
+class Judge:
+    """Judges traces by a spec, one after the other.
+
+    ``fspa`` is the automaton of the spec. ``clauses`` are its clauses: those that a trace breaks, or
+    does not meet, are named as the cause. With ``episodes``, a trace is judged as an episode: what
+    comes after the goal, a violation or the limit does not count.
+    """
+
+    def __init__(self, fspa: Fspa, clauses: Clauses | None = None, *, episodes: bool = False) -> None:
+        self._fspa, self._clauses, self._episodes = fspa, clauses, episodes
+        self._runner = TraceRunner(fspa, episodes=episodes)
+        self._clause_runners = [TraceRunner(part.fspa) for part in clauses.parts] if clauses else []
+        self._joint_runners: dict[tuple[int, ...], TraceRunner | None] = {}
+        self._samples = Samples(fspa, None, [])
+
+    def judge(self, name: str, data: bytes) -> JudgedTrace:
+        """Judge the trace in the bytes of a file; ``name`` is its name in messages.
+
+        A trace that cannot be judged has the errors of :func:`~tltlc.monitor.traces.read_trace` or
+        of :meth:`~tltlc.monitor.monitor.Monitor.step`.
+        """
+        samples: list[Sample] = []
+        try:
+            text = as_text(data, name, self._fspa.signals)
+            plain = self._plain_samples(text)
+            if plain is None:
+                # This keeps the samples before an error.
+                samples.extend(read_trace(io.BytesIO(text), name, self._fspa.signals, self._fspa.clock_s))
+            samples = plain or samples
+            run, warnings = self._runner.run(samples)
+        except TltlError as error:
+            return self._unjudged(name, samples, error)
+        return self._judged(name, samples, run, warnings)
+
+    def _judged(
+        self, name: str, samples: Sequence[Sample], run: TraceRun, warnings: Sequence[Diagnostic]
+    ) -> JudgedTrace:
+        cause = None if run.outcome.accepted else self._cause(samples, run)
+        verdict = TraceVerdict(run.outcome, label_text(self._fspa, run.state), cause, len(samples))
+        return JudgedTrace(name, verdict, _in_trace(name, warnings))
+
+    def _unjudged(self, name: str, samples: Sequence[Sample], error: TltlError) -> JudgedTrace:
+        """Return what is known of a trace with an error, given the samples that could be read.
+
+        The trace is judged all the same if it is an episode that ends before the error.
+        """
+        diagnostics = _in_trace(name, error.diagnostics) if isinstance(error, MonitorError) else error.diagnostics
+        samples = self._faultless(samples)
+        if not samples:
+            return JudgedTrace(name, None, diagnostics)
+        run, warnings = self._runner.run(samples)
+        # A run that only ends with the last sample might have gone on after it.
+        if self._episodes and run.outcome.steps < len(samples):
+            return self._judged(name, samples, run, warnings)
+        return JudgedTrace(name, None, diagnostics, None if run.broken_at is None else self._cause(samples, run))
+
+    def _faultless(self, samples: Sequence[Sample]) -> Sequence[Sample]:
+        """Return the samples before the first that the monitor refuses."""
+        with suppress(MonitorError):
+            if samples:
+                self._runner.run(samples)
+            return samples
+        monitor = Monitor(self._fspa)
+        for count, sample in enumerate(samples):
+            try:
+                monitor.step(sample)
+            except MonitorError:
+                return samples[:count]
+        return samples
+
+    def _plain_samples(self, data: bytes) -> list[Sample] | None:
+        """Return the samples of a trace in plain CSV whose times are right; None for any other trace."""
+        found = plain_columns(data, self._fspa.signals)
+        if found is None:
+            return None
+        columns, times = found
+        if times is not None and not times_fit(times, self._fspa.clock_s):
+            return None
+        names = tuple(signal.name for signal in self._fspa.signals)
+        return [dict(zip(names, values, strict=True)) for values in zip(*columns, strict=True)]
+
+    def _cause(self, samples: Sequence[Sample], run: TraceRun) -> Cause:
+        """Return why a trace is not accepted."""
+        samples = samples[: run.outcome.steps]
+        if run.broken_at is None or run.broken_state is None:
+            limit = self._fspa.limit_steps
+            is_late = self._episodes and limit is not None and len(samples) >= limit
+            return Cause("late" if is_late else "unfinished", len(samples), self._texts(self._unmet(samples)))
+        until = samples[: run.broken_at]
+        atoms = self._breaking_atoms(until[-1], run.broken_state, run.broken_at)
+        broken = [
+            index for index, runner in enumerate(self._clause_runners) if runner.run(until)[0].broken_at is not None
+        ]
+        if not broken and (blocked := self._blocked(until)):
+            return Cause("blocked", run.broken_at, self._texts(blocked), atoms)
+        return Cause("broken", run.broken_at, self._texts(broken), atoms)
+
+    def _unmet(self, samples: Sequence[Sample]) -> list[int]:
+        """Return the indices of the clauses that would not accept the samples as a whole trace."""
+        return [
+            index for index, runner in enumerate(self._clause_runners) if not runner.run(samples)[0].outcome.accepted
+        ]
+
+    def _blocked(self, samples: Sequence[Sample]) -> list[int]:
+        """Return the indices of the unmet clauses that each cannot be met without breaking the met ones.
+
+        If there are none, several unmet clauses exclude each other: return them all. Return none if
+        not all clauses are known.
+        """
+        if self._clauses is None or not self._clauses.are_all:
+            return []
+        unmet = self._unmet(samples)
+        met = [index for index in range(len(self._clause_runners)) if index not in unmet]
+        blocked = [index for index in unmet if self._is_broken(tuple(sorted((*met, index))), samples)]
+        return blocked or unmet
+
+    def _is_broken(self, chosen: tuple[int, ...], samples: Sequence[Sample]) -> bool:
+        """Whether no continuation of the samples can meet the chosen clauses together."""
+        assert self._clauses is not None
+        if chosen not in self._joint_runners:
+            automaton = self._clauses.together(chosen)
+            self._joint_runners[chosen] = None if automaton is None else TraceRunner(automaton)
+        runner = self._joint_runners[chosen]
+        return runner is not None and runner.run(samples)[0].broken_at is not None
+
+    def _texts(self, indices: Sequence[int]) -> tuple[str, ...]:
+        return tuple(self._clauses.parts[index].text for index in indices) if self._clauses else ()
+
+    def _breaking_atoms(self, sample: Sample, state: int, number: int) -> tuple[str, ...]:
+        """Return the atoms of the most robust prime implicant of the guard that the sample makes true."""
+        values = self._samples.atom_values(sample, number)
+        (guard,) = (edge.guard for edge in self._fspa.edges_from(state) if holds(edge.guard, values))
+        prime = max(guard.primes, key=lambda prime: prime_robustness(prime, values))
+        return tuple(self._fspa.atoms[atom].name for atom, _ in prime)
+
+
+def _in_trace(name: str, diagnostics: Sequence[Diagnostic]) -> tuple[Diagnostic, ...]:
+    """Return the diagnostics of a monitor with the name of the trace in their titles."""
+    return tuple(replace(diagnostic, title=f"`{name}`, {diagnostic.title}") for diagnostic in diagnostics)

@@ -1,0 +1,168 @@
+"""Judge many traces at once, in worker processes."""
+
+from __future__ import annotations
+
+import os
+import signal
+import time
+from collections.abc import Generator, Iterator, Sequence
+from multiprocessing import get_context
+from multiprocessing.connection import Connection, wait
+from multiprocessing.context import SpawnProcess
+from threading import Thread
+from typing import Final
+
+from tltlc.automaton.fspa import Fspa
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.io.child_interrupts import block_interrupts
+from tltlc.io.files import read_bytes
+from tltlc.io.limits import JUDGED_TRACE
+from tltlc.tools.judge.clauses import Clauses
+from tltlc.tools.judge.judge import Judge
+from tltlc.tools.judge.verdict import JudgedTrace
+
+_FEW: Final = 40
+"""Fewer traces are judged by this process alone by default, because starting others takes longer."""
+
+_CHUNK: Final = 8
+"""A worker gets at most this many traces at a time."""
+
+_MOST_WORKERS: Final = 60
+"""Windows can wait for 63 processes at once."""
+
+_PARENT_CHECK_S: Final = 0.5
+"""A worker checks in this interval whether its parent still runs."""
+
+
+def judge_files(
+    fspa: Fspa, clauses: Clauses, paths: Sequence[str], workers: int | None = None, *, episodes: bool = False
+) -> Generator[JudgedTrace]:
+    """Judge the traces in these files, and yield the results in order.
+
+    ``workers`` is the number of processes; by default one for each core, or this process alone for
+    few traces. ``episodes`` is as for :class:`~tltlc.tools.judge.judge.Judge`. Closing the iterator
+    ends the processes.
+
+    Raises:
+        TltlError: TLT0007, a process ended before its traces were judged.
+    """
+    if workers is None:
+        workers = _cores() if len(paths) >= _FEW else 1
+    workers = min(workers, len(paths), _MOST_WORKERS)
+    if workers > 1:
+        yield from _judge_in_workers(fspa, clauses, paths, workers, episodes=episodes)
+        return
+    judge = Judge(fspa, clauses, episodes=episodes)
+    for path in paths:
+        yield _judge_file(judge, path)
+
+
+def _cores() -> int:
+    """Return the number of cores that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def _judge_file(judge: Judge, path: str) -> JudgedTrace:
+    try:
+        data = read_bytes(path, path, JUDGED_TRACE.size)
+        if len(data) > JUDGED_TRACE.size:
+            title = f"`{path}` is larger than {JUDGED_TRACE.size >> 20} MiB"
+            help_ = "judge it alone: `tltlc monitor SPEC TRACE` reads a trace of any size, row by row"
+            raise TltlError([Diagnostic("TLT0004", title, help=help_)])
+    except TltlError as error:
+        return JudgedTrace(path, None, error.diagnostics)
+    return judge.judge(path, data)
+
+
+def _judge_in_workers(
+    fspa: Fspa, clauses: Clauses, paths: Sequence[str], workers: int, *, episodes: bool
+) -> Iterator[JudgedTrace]:
+    size = max(1, min(_CHUNK, len(paths) // workers))
+    chunks = iter([(start, paths[start : start + size]) for start in range(0, len(paths), size)])
+    started: list[_Worker] = []
+    judged: dict[int, JudgedTrace] = {}
+    following = 0
+    try:
+        with block_interrupts():
+            # This keeps the workers that have started before an error.
+            started.extend(_Worker(fspa, clauses, episodes=episodes) for _ in range(workers))
+        for worker in started:
+            worker.give(next(chunks, None))
+        while following < len(paths):
+            for connection in wait([worker.connection for worker in started if worker.is_busy]):
+                worker = next(worker for worker in started if worker.connection is connection)
+                judged.update(enumerate(worker.take(), worker.start))
+                worker.give(next(chunks, None))
+            while following in judged:
+                yield judged.pop(following)
+                following += 1
+    finally:
+        for worker in started:
+            worker.end()
+
+
+class _Worker:
+    """A process that judges traces, chunk by chunk. ``start`` is the index of the first trace of its chunk."""
+
+    def __init__(self, fspa: Fspa, clauses: Clauses, *, episodes: bool) -> None:
+        # A forked worker would inherit the locks of threads that other code of this process has started.
+        context = get_context("spawn")
+        self.connection, child = context.Pipe()
+        arguments = (child, os.getpid(), fspa, clauses, episodes)
+        self._process: SpawnProcess = context.Process(target=_work, args=arguments, daemon=True)
+        self._process.start()
+        child.close()
+        self.start = 0
+        self.is_busy = False
+
+    def give(self, chunk: tuple[int, Sequence[str]] | None) -> None:
+        """Give the worker the next chunk; None if there are no more."""
+        self.is_busy = chunk is not None
+        if chunk is not None:
+            self.start = chunk[0]
+            try:
+                self.connection.send(chunk[1])
+            except OSError:
+                raise _lost_error() from None
+
+    def take(self) -> Sequence[JudgedTrace]:
+        """Return the results of the worker's chunk, which it has sent."""
+        try:
+            results: Sequence[JudgedTrace] = self.connection.recv()
+        except (EOFError, OSError):
+            raise _lost_error() from None
+        return results
+
+    def end(self) -> None:
+        """End the process at once, even if it still reads a file."""
+        self._process.kill()
+        self._process.join()
+        self.connection.close()
+
+
+def _lost_error() -> TltlError:
+    title = "a process that judged traces ended unexpectedly"
+    return TltlError([Diagnostic("TLT0007", title, help="judge them one after the other: `--workers 1`")])
+
+
+# --- in a worker ----------------------------------------------------------------------------------
+
+
+def _work(connection: Connection, parent: int, fspa: Fspa, clauses: Clauses, episodes: bool) -> None:
+    """Judge the chunks of traces that come through the connection, until it is closed."""
+    # Only the parent handles Ctrl-C, and a worker must not outlive it.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    Thread(target=_exit_with_parent, args=(parent,), daemon=True).start()
+    judge = Judge(fspa, clauses, episodes=episodes)
+    while True:
+        try:
+            paths: Sequence[str] = connection.recv()
+        except (EOFError, OSError):
+            return
+        connection.send([_judge_file(judge, path) for path in paths])
+
+
+def _exit_with_parent(parent: int) -> None:
+    while os.getppid() == parent:
+        time.sleep(_PARENT_CHECK_S)
+    os._exit(1)

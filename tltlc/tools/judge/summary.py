@@ -1,0 +1,128 @@
+"""Count why traces are not accepted."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from statistics import median_low
+from typing import Final
+
+from tltlc.core.record import record
+from tltlc.tools.judge.verdict import Cause, JudgedTrace, Kind, TraceVerdict
+
+_ORDER: Final[tuple[Kind, ...]] = ("broken", "blocked", "late", "unfinished")
+
+
+@record
+class CauseGroup:
+    """Traces that are not accepted for the same reason.
+
+    ``kind`` and ``clauses`` are those of :class:`~tltlc.tools.judge.verdict.Cause`. ``traces`` are the
+    names of the traces, and ``steps`` their steps, in the same order.
+    """
+
+    kind: Kind
+    clauses: tuple[str, ...]
+    traces: tuple[str, ...]
+    steps: tuple[int, ...]
+
+    @property
+    def usual_step(self) -> int | None:
+        """The step of more than half of the traces; None if there is no such step."""
+        step, count = Counter(self.steps).most_common(1)[0]
+        return step if 2 * count > len(self.steps) else None
+
+    @property
+    def step_range(self) -> tuple[int, int, int]:
+        """The least step, the (lower) median and the greatest step."""
+        return min(self.steps), median_low(self.steps), max(self.steps)
+
+
+def cause_groups(traces: Iterable[JudgedTrace]) -> tuple[CauseGroup, ...]:
+    """Return the groups of traces that are not accepted: broken ones first, unfinished ones last, larger ones first."""
+    groups: dict[tuple[Kind, tuple[str, ...]], list[tuple[str, int]]] = {}
+    for trace in traces:
+        if trace.verdict is not None and (cause := trace.verdict.cause) is not None:
+            groups.setdefault((cause.kind, cause.clauses), []).append((trace.name, cause.step))
+    ordered = sorted(groups.items(), key=lambda group: (_ORDER.index(group[0][0]), -len(group[1])))
+    return tuple(
+        CauseGroup(kind, clauses, tuple(name for name, _ in members), tuple(step for _, step in members))
+        for (kind, clauses), members in ordered
+    )
+
+
+def unread_codes(traces: Iterable[JudgedTrace]) -> dict[str, int]:
+    """Return the codes of the errors because of which traces cannot be judged, each with the number of traces."""
+    return dict(Counter(trace.diagnostics[0].code for trace in traces if trace.verdict is None).most_common())
+
+
+def summary_text(traces: Sequence[JudgedTrace]) -> str:
+    """Return one line: ``62 of 100 accepted; 30 break `avoid on_lava`, mostly at step 3``."""
+    accepted = sum(trace.verdict is not None and trace.verdict.outcome.accepted for trace in traces)
+    parts = [f"{accepted} of {len(traces)} accepted", *map(group_text, cause_groups(traces))]
+    if codes := unread_codes(traces):
+        listed = ", ".join(f"{count} {code}" for code, count in codes.items())
+        parts.append(f"{sum(codes.values())} cannot be judged ({listed})")
+    return "; ".join(parts)
+
+
+def group_text(group: CauseGroup) -> str:
+    """Describe a group in words: ``30 break `avoid on_lava`, mostly at step 3``."""
+    count, clauses = len(group.traces), _list_text(group.clauses)
+    one = count == 1
+    if group.kind == "late":
+        unmet = f"{clauses or 'the spec'} {_are(group.clauses)} met"
+        return f"{count} {'reaches' if one else 'reach'} the limit before {unmet}"
+    if group.kind == "unfinished":
+        left = f"before {clauses} {_are(group.clauses)} met" if clauses else "too early"
+        return f"{count} {'ends' if one else 'end'} {left}"
+    if group.kind == "blocked":
+        return f"{count} {'makes' if one else 'make'} {clauses} impossible, {_steps_text(group)}"
+    return f"{count} {'breaks' if one else 'break'} {clauses or 'the spec'}, {_steps_text(group)}"
+
+
+def _are(clauses: Sequence[str]) -> str:
+    return "are" if len(clauses) > 1 else "is"
+
+
+def _list_text(clauses: Sequence[str]) -> str:
+    return " and ".join(f"`{clause}`" for clause in clauses)
+
+
+def _steps_text(group: CauseGroup) -> str:
+    least, middle, most = group.step_range
+    if least == most:
+        return f"at step {least}"
+    if group.usual_step is not None:
+        return f"mostly at step {group.usual_step}"
+    return f"at steps {least} to {most}, half of them by step {middle}"
+
+
+def trace_text(trace: JudgedTrace) -> str:
+    """Describe what is known of a trace in words: ``not accepted: breaks `avoid on_lava` at step 3 of 50``."""
+    if trace.verdict is None:
+        so_far = f"; before that, it {_breaking_text(trace.so_far)}" if trace.so_far else ""
+        return f"cannot be judged: {trace.diagnostics[0].title}{so_far}"
+    return _verdict_text(trace.verdict)
+
+
+def _verdict_text(verdict: TraceVerdict) -> str:
+    outcome, cause = verdict.outcome, verdict.cause
+    steps = f"{outcome.steps} step{'' if outcome.steps == 1 else 's'}"
+    if outcome.steps < verdict.samples:
+        steps = f"{outcome.steps} of {verdict.samples} steps"
+    if cause is None:
+        return f"accepted: {outcome.verdict} after {steps}"
+    if cause.kind in ("broken", "blocked"):
+        return f"not accepted: {_breaking_text(cause)} of {verdict.samples}"
+    clauses = _list_text(cause.clauses)
+    if cause.kind == "late":
+        return f"not accepted: {clauses or 'the spec'} {_are(cause.clauses)} not met at the limit, after {steps}"
+    left = f"{clauses} {_are(cause.clauses)} not met" if clauses else "it is too short"
+    return f"not accepted: {left} after {steps}"
+
+
+def _breaking_text(cause: Cause) -> str:
+    clauses = _list_text(cause.clauses)
+    what = f"makes {clauses} impossible" if cause.kind == "blocked" else f"breaks {clauses or 'the spec'}"
+    return f"{what} at step {cause.step}"

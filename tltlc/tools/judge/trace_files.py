@@ -1,0 +1,55 @@
+"""Find the traces that arguments of a command name: files, and folders with files."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from os.path import normpath
+from pathlib import Path
+from typing import Final
+
+from tltlc.core.record import record
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.io.files import files_below, is_dir
+
+ENDINGS: Final = (".csv", ".jsonl", ".parquet")
+"""The endings of the names of traces in a folder."""
+
+
+@record
+class TraceFiles:
+    """The ``traces`` that arguments name, in order and each once; ``others`` are other files in their folders.
+
+    ``errors`` are about folders: TLT0001 for one that cannot be read, or contains no trace.
+    """
+
+    traces: tuple[str, ...]
+    others: tuple[str, ...]
+    errors: tuple[Diagnostic, ...]
+
+
+def find_traces(arguments: Iterable[str]) -> TraceFiles:
+    """Return the files that the arguments name, and for a folder the files in and below it, sorted.
+
+    Hidden files and folders do not count. A file that an argument names is a trace, whatever its
+    name.
+    """
+    traces: dict[str, str] = {}
+    others: dict[str, str] = {}
+    errors: list[Diagnostic] = []
+    for argument in arguments:
+        if not is_dir(argument):
+            traces.setdefault(normpath(argument), argument)
+            continue
+        try:
+            files = [str(Path(argument, path)) for path in files_below(Path(argument), ("",))]
+        except TltlError as error:
+            errors += error.diagnostics
+            continue
+        found = [file for file in files if file.lower().endswith(ENDINGS)]
+        if not found:
+            title = f"the folder `{argument}` contains no trace"
+            errors.append(Diagnostic("TLT0001", title, help=f"the names of traces end in {', '.join(ENDINGS)}"))
+        for file in files:
+            (traces if file.lower().endswith(ENDINGS) else others).setdefault(normpath(file), file)
+    not_traces = tuple(file for key, file in others.items() if key not in traces)
+    return TraceFiles(tuple(traces.values()), not_traces, tuple(errors))

@@ -1,0 +1,62 @@
+"""The verdict of a recorded trace, and why a trace is not accepted."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from tltlc.core.record import record
+from tltlc.diagnostics.diagnostic import Diagnostic
+from tltlc.monitor.run import TraceOutcome
+
+Kind = Literal["broken", "blocked", "late", "unfinished"]
+
+
+@record
+class Cause:
+    """Why a trace is not accepted. ``step`` counts samples from 1.
+
+    - ``broken``: from ``step`` on, no continuation can meet the ``clauses``.
+    - ``blocked``: from ``step`` on, no continuation can meet the ``clauses`` without breaking others.
+    - ``late``: the episode reaches its limit, ``step``, before the ``clauses`` are met. Only for
+      traces that are judged as episodes.
+    - ``unfinished``: the trace ends, after ``step`` samples, before the ``clauses`` are met.
+
+    ``clauses`` are texts, as in :class:`~tltlc.tools.judge.clauses.Clause`. There are none if only
+    several clauses together can be blamed, or if the clauses are not known. ``atoms`` are the atoms
+    on which the step that broke the spec depends; empty for ``late`` and ``unfinished``.
+    """
+
+    kind: Kind
+    step: int
+    clauses: tuple[str, ...]
+    atoms: tuple[str, ...] = ()
+
+
+@record
+class TraceVerdict:
+    """The verdict of a trace.
+
+    ``remaining`` is the label of the last state: what remains to be satisfied. ``cause`` is None if
+    the trace is accepted. ``samples`` is the number of samples in the trace; ``outcome.steps`` is
+    less if the episode ends earlier.
+    """
+
+    outcome: TraceOutcome
+    remaining: str
+    cause: Cause | None
+    samples: int
+
+
+@record
+class JudgedTrace:
+    """A trace with its ``verdict``; the verdict is None if the trace cannot be judged.
+
+    ``name`` is the name of the trace in messages. ``diagnostics`` are warnings, or begin with the
+    error because of which the trace cannot be judged. ``so_far`` is the cause if the samples before
+    the error already break the spec; else None.
+    """
+
+    name: str
+    verdict: TraceVerdict | None
+    diagnostics: tuple[Diagnostic, ...] = ()
+    so_far: Cause | None = None
