@@ -17,6 +17,7 @@ from benchmarks import (
     game,
     game_report,
     infinite,
+    judge,
     mine,
     monitors,
     process,
@@ -76,6 +77,7 @@ def render(store: Store) -> str:
         table1.section(store.section(table1.SECTION)),
         infinite.section(store.section(infinite.SECTION)),
         mine.section(store.section(mine.SECTION)),
+        judge.section(store.section(judge.SECTION)),
         tools.section(store.section(tools.SECTION)),
     ]
     return "\n\n".join(part.strip() for part in parts if part) + "\n"
@@ -170,6 +172,7 @@ def _goals(store: Store, rows: Sequence[summary.Family]) -> Iterable[Sequence[st
     yield from table1.goals(store.section(table1.SECTION))
     yield from infinite.goals(store.section(infinite.SECTION))
     yield from mine.goals(store.section(mine.SECTION))
+    yield from judge.goals(store.section(judge.SECTION))
     yield from tools.goals(store.section(tools.SECTION))
 
 
