@@ -28,8 +28,8 @@ def times_name(names: Iterable[str], signals: Iterable[Signal]) -> str | None:
     names of all columns.
     """
     taken = {signal.name for signal in signals}
-    found = [name for name in names if name.lower() == _TIME and name not in taken]
-    return _TIME if _TIME in found else found[0] if found else None
+    candidates = [name for name in names if name.lower() == _TIME and name not in taken]
+    return _TIME if _TIME in candidates else candidates[0] if candidates else None
 
 
 class SampleTimes:

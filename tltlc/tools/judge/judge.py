@@ -94,10 +94,10 @@ class Judge:
 
     def _plain_samples(self, data: bytes) -> list[Sample] | None:
         """Return the samples of a trace in plain CSV whose times are right; None for any other trace."""
-        found = plain_columns(data, self._fspa.signals)
-        if found is None:
+        plain = plain_columns(data, self._fspa.signals)
+        if plain is None:
             return None
-        columns, times = found
+        columns, times = plain
         if times is not None and not times_fit(times, self._fspa.clock_s):
             return None
         names = tuple(signal.name for signal in self._fspa.signals)

@@ -45,8 +45,7 @@ def find_traces(arguments: Iterable[str]) -> TraceFiles:
         except TltlError as error:
             errors += error.diagnostics
             continue
-        found = [file for file in files if file.lower().endswith(ENDINGS)]
-        if not found:
+        if not any(file.lower().endswith(ENDINGS) for file in files):
             title = f"the folder `{argument}` contains no trace"
             errors.append(Diagnostic("TLT0001", title, help=f"the names of traces end in {', '.join(ENDINGS)}"))
         for file in files:

@@ -187,10 +187,10 @@ def _read_traces(arguments: Sequence[str]) -> list[TraceFile]:
         if argument == STDIN:
             files.append(TraceFile(STDIN_NAME, read_data(STDIN, _MOST_BYTES)[0]))
         else:
-            found = find_traces([argument])
-            if found.errors:
-                raise TltlError(found.errors)
-            files += [TraceFile(path, read_bytes(path, path, _MOST_BYTES)) for path in found.traces]
+            trace_files = find_traces([argument])
+            if trace_files.errors:
+                raise TltlError(trace_files.errors)
+            files += [TraceFile(path, read_bytes(path, path, _MOST_BYTES)) for path in trace_files.traces]
     for file in files:
         if len(file.data) > _MOST_BYTES:
             title = f"`{file.name}` is larger than {_MOST_BYTES >> 20} MiB"
