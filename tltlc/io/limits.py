@@ -139,7 +139,7 @@ same limits.
 MINED_TRACE: Final = Limit(size=1 << 28)
 """A trace that `tltlc mine` keeps in memory."""
 
-JUDGED_TRACE: Final = Limit(size=1 << 26)
+JUDGED_TRACE: Final = Limit(size=1 << 25)
 """One of many traces that `tltlc monitor` judges: each worker keeps one in memory."""
 
 PARQUET: Final = Limit(size=1 << 26, values=10_000_000, unpacked=1 << 28)

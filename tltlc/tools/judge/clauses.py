@@ -10,6 +10,7 @@ from tltlc.automaton.finite.build import DEFAULT_STATE_BUDGET
 from tltlc.automaton.fspa import Fspa
 from tltlc.core.record import record, replace
 from tltlc.core.source import SourceFile, Span
+from tltlc.expression.tree import SignalValue, nodes
 from tltlc.logic.formula import TRUE, Formula, and_
 from tltlc.logic.text.printer import ascii_text
 from tltlc.pipeline import CompileOptions, build_spec
@@ -66,7 +67,24 @@ def clauses_of(fspa: Fspa, spec: Spec | None, state_budget: int = DEFAULT_STATE_
 
 def _automaton(whole: Spec, formula: Formula, state_budget: int) -> Fspa | None:
     """Return the automaton of the spec with another formula; None if it would be too large."""
-    return build_spec(replace(whole, formula=formula), CompileOptions(state_budget=state_budget))[0]
+    return build_spec(_with_formula(whole, formula), CompileOptions(state_budget=state_budget))[0]
+
+
+def _with_formula(whole: Spec, formula: Formula) -> Spec:
+    """Return the spec with another formula, and only the atoms and signals that this formula needs."""
+    used = set(formula.atoms())
+    groups = [{whole.atoms[index].name for index in group} for group in whole.exclusive]
+    groups = [group for group in groups if len(group & used) > 1]
+    atoms = tuple(atom for atom in whole.atoms if atom.name in used.union(*groups))
+    index_of = {atom.name: index for index, atom in enumerate(atoms)}
+    read = {node.name for atom in atoms for node in nodes(atom.expression) if isinstance(node, SignalValue)}
+    return replace(
+        whole,
+        formula=formula,
+        atoms=atoms,
+        signals=tuple(signal for signal in whole.signals if signal.name in read),
+        exclusive=tuple(tuple(sorted(index_of[name] for name in group)) for group in groups),
+    )
 
 
 def _conjuncts_of_source(spec: Spec) -> Iterator[tuple[str, Formula]]:

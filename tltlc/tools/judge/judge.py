@@ -113,7 +113,9 @@ class Judge:
         until = samples[: run.broken_at]
         atoms = self._breaking_atoms(until[-1], run.broken_state, run.broken_at)
         broken = [
-            index for index, runner in enumerate(self._clause_runners) if runner.run(until)[0].broken_at is not None
+            index
+            for index, runner in enumerate(self._clause_runners)
+            if runner.can_break and runner.run(until)[0].broken_at is not None
         ]
         if not broken and (blocked := self._blocked(until)):
             return Cause("blocked", run.broken_at, self._texts(blocked), atoms)

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Sequence
 from contextlib import suppress
+from itertools import accumulate
+from operator import attrgetter
 from typing import Any, Final
 
 from tltlc.automaton.fspa import Fspa
@@ -50,6 +53,8 @@ class TraceRunner:
 
     def __init__(self, fspa: Fspa, *, episodes: bool = False) -> None:
         self._fspa, self._episodes = fspa, episodes
+        self.can_break = any(state.verdict == "violated" for state in fspa.states)
+        """Whether a trace can violate the automaton."""
         self._generated: Any = None
         self._samples = 0
 
@@ -66,22 +71,34 @@ class TraceRunner:
             generated = self._generated()
             # The error of a faulty sample is a ValueError.
             with suppress(ValueError):
-                result = self._steps(generated, samples)
+                result = self._fast_run(list(map(generated.step, samples)))
                 if not generated.notices and (result.done or not self._episodes):
                     return result, ()
         monitor = Monitor(self._fspa)
-        return self._steps(monitor, samples), tuple(monitor.notices)
+        return self._slow_run(monitor, samples), tuple(monitor.notices)
 
-    def _steps(self, monitor: Any, samples: Sequence[Sample]) -> TraceRun:
-        """Run a monitor of either kind over the samples.
+    def _fast_run(self, steps: Sequence[Any]) -> TraceRun:
+        """Return the result of all steps of a generated monitor.
 
-        If an episode does not end, the result is right only for :class:`~tltlc.monitor.monitor.Monitor`.
+        Once the verdict is ``violated``, it stays so, and an episode that has ended stays ended. So
+        both are found by bisection, in less time than the steps take.
         """
+        if self._episodes:
+            steps = steps[: bisect_left(steps, True, key=attrgetter("done")) + 1]
+        last = steps[-1]
+        *_, total = accumulate(map(attrgetter("reward"), steps))
+        outcome = TraceOutcome(last.accepting, last.verdict, len(steps), last.progress, total)
+        if last.verdict != "violated":
+            return TraceRun(outcome, last.state, last.done)
+        broken = bisect_left(steps, True, key=lambda step: step.verdict == "violated")
+        return TraceRun(outcome, last.state, last.done, broken + 1, steps[broken - 1].state if broken else 0)
+
+    def _slow_run(self, monitor: Monitor, samples: Sequence[Sample]) -> TraceRun:
+        """Run a monitor over the samples."""
         total, number, state = 0.0, 0, 0
         broken_at = broken_state = step = None
         for number, sample in enumerate(samples, start=1):
-            is_last = self._episodes and number == len(samples) and isinstance(monitor, Monitor)
-            step = monitor.step(sample, last=True) if is_last else monitor.step(sample)
+            step = monitor.step(sample, last=self._episodes and number == len(samples))
             total += step.reward
             if broken_at is None and step.verdict == "violated":
                 broken_at, broken_state = number, state
@@ -89,7 +106,7 @@ class TraceRunner:
             if self._episodes and step.done:
                 break
         assert step is not None, "a trace has at least one sample"
-        accepted = monitor.success if self._episodes and isinstance(monitor, Monitor) else step.accepting
+        accepted = monitor.success if self._episodes else step.accepting
         outcome = TraceOutcome(accepted, step.verdict, number, step.progress, total)
         return TraceRun(outcome, state, step.done, broken_at, broken_state)
 
