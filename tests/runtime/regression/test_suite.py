@@ -153,7 +153,7 @@ def test_a_missing_spec_is_an_error_in_the_suite(tmp_path: Path, monkeypatch: py
     case = 'level = "navigation"\nspec = "plans.tltl'
     assert refused(Path(), f'{case}:clam"') == [("TLT0720", "`plans.tltl` has no spec `clam`", "did you mean `calm`?")]
     ((code, title, _),) = refused(Path(), f'{case}"')
-    assert (code, title.partition(",")[0]) == ("TLT0721", "`plans.tltl` holds 2 specs")
+    assert (code, title.partition(",")[0]) == ("TLT0721", "`plans.tltl` contains 2 specs")
     # A broken spec is a result of the run, not an error in the suite.
     Path("plans.tltl").write_text("spec calm = ((\n", encoding="utf-8")
     assert len(read(Path(), f'[[case]]\n{case}:calm"')) == 1

@@ -70,7 +70,7 @@ def test_an_entry_above_the_folder_is_rejected(inside: Path, tltlc: Run, levels:
     assert (outcome.status, outcome.out) == (3, "")
     path = "../" * levels + "mine.tltl"
     assert outcome.err == (
-        f"error[TLT0009]: the revision `bad` holds the path `{path}`, which leads out of its folder\n"
+        f"error[TLT0009]: the revision `bad` contains the path `{path}`, which leads out of its folder\n"
         "  help: use another revision: `git fsck` names the damaged tree (`git add` never makes such a tree)\n"
     )
     assert files(inside) == before
