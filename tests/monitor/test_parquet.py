@@ -19,10 +19,14 @@ SIGNALS = (Signal("x", "number", None, None), Signal("seen", "bool", 0.0, 1.0))
 
 
 def _parquet(columns: dict[str, Any]) -> bytes:
+    return _written(pyarrow.table(columns))
+
+
+def _written(table: Any) -> bytes:
     from pyarrow import parquet
 
     file = io.BytesIO()
-    parquet.write_table(pyarrow.table(columns), file)
+    parquet.write_table(table, file)
     return file.getvalue()
 
 
@@ -49,8 +53,22 @@ def test_columns_of_other_types_are_not_read() -> None:
     assert _rows(data, None) == [{"nothing": None, "x": 1, "seen": 0}, {"nothing": None, "x": 2, "seen": 1}]
 
 
-def test_text_stays_text_so_that_the_reader_of_traces_refuses_it() -> None:
-    assert _rows(_parquet({"x": ["a"], "seen": [None]})) == [{"x": "a", "seen": None}]
+def test_a_signal_with_text_is_refused() -> None:
+    with pytest.raises(TltlError, match=r"TLT0622.*the column `x` has values of the type string"):
+        _rows(_parquet({"x": ["a"], "seen": [True]}))
+
+
+@pytest.mark.parametrize("signals", [SIGNALS, None])
+def test_two_columns_of_the_same_name_are_refused(signals: tuple[Signal, ...] | None) -> None:
+    table = pyarrow.table([pyarrow.array([1]), pyarrow.array([2]), pyarrow.array([True])], names=["x", "x", "seen"])
+    with pytest.raises(TltlError, match=r"TLT0622.*two columns are called `x`"):
+        _rows(_written(table), signals)
+
+
+def test_other_columns_may_have_the_same_name() -> None:
+    names = ["x", "seen", "text", "text"]
+    table = pyarrow.table([pyarrow.array([1]), pyarrow.array([True]), *[pyarrow.array(["a"])] * 2], names=names)
+    assert _rows(_written(table)) == [{"x": 1, "seen": True}]
 
 
 @pytest.mark.parametrize("limit", [{"size": 100}, {"unpacked": 100}, {"values": 30}])
@@ -89,6 +107,8 @@ def test_mutated_files_are_read_or_refused(seed: int) -> None:
         (b"PAR1,x\n", "a.csv", False),
         (b"PAR1", "-", False),
         (b"PAR10\n", "a.csv", False),
+        (b"PAR1\n", "a.csv", False),
+        (b"PAR1\t", "a.csv", False),
     ],
 )
 def test_parquet_is_known_by_its_name_or_its_first_bytes(start: bytes, name: str, expected: bool) -> None:

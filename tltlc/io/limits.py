@@ -139,11 +139,11 @@ same limits.
 MINED_TRACE: Final = Limit(size=1 << 28)
 """A trace that `tltlc mine` keeps in memory."""
 
-JUDGED_TRACE: Final = Limit(size=1 << 25)
-"""One of many traces that `tltlc monitor` judges: each worker keeps one in memory."""
+JUDGED_TRACE: Final = Limit(size=1 << 25, values=500_000)
+"""One of many traces that `tltlc monitor` judges; ``values`` counts lines. Each worker keeps one trace in memory."""
 
-PARQUET: Final = Limit(size=1 << 26, values=10_000_000, unpacked=1 << 28)
-"""A trace in Parquet; ``values`` counts the cells of the columns that are read."""
+PARQUET: Final = Limit(size=1 << 26, values=3_000_000, unpacked=1 << 28)
+"""A trace in Parquet; ``values`` counts the cells of the columns that are read, and the rows."""
 
 RECORDING: Final = Limit(size=1 << 28, unpacked=1 << 28)
 """A recorded episode."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Collection, Iterable
+from collections.abc import Collection
 from typing import Any, Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
@@ -17,12 +17,19 @@ _MAGIC: Final = b"PAR1"
 _ENDING: Final = ".parquet"
 
 
+class _ColumnError(Exception):
+    """Raised for columns that a trace cannot have; the message says why."""
+
+
 def is_parquet(start: bytes, name: str) -> bool:
     """Whether a file is in Parquet: by its name, or by the bytes that it begins with.
 
-    In Parquet, a control character follows the magic bytes, which a trace in CSV cannot have there.
+    In Parquet, a control character follows the magic bytes, which a trace in CSV cannot have there,
+    except for blanks and line ends.
     """
-    return name.lower().endswith(_ENDING) or (start.startswith(_MAGIC) and b"" < start[4:5] < b" ")
+    following = start[4:5]
+    is_control = b"" < following < b" " and following not in (b"\t", b"\n", b"\r")
+    return name.lower().endswith(_ENDING) or (start.startswith(_MAGIC) and is_control)
 
 
 def as_text(data: bytes, name: str, signals: Collection[Signal] | None = None) -> bytes:
@@ -57,37 +64,46 @@ def json_lines(data: bytes, name: str, signals: Collection[Signal] | None = None
         names = _columns(file, signals)
         if _is_too_large(file, len(names), len(data)):
             raise TltlError([_size_error(name)])
-        columns = [column.to_pylist() for column in file.read(columns=names, use_threads=False).columns]
-    except (pyarrow.ArrowException, OSError, ValueError, OverflowError) as error:
+        table = file.read(columns=names, use_threads=False)
+        columns = [table.column(name).to_pylist() for name in names]
+        rows = list(zip(*columns, strict=True)) if columns else [()] * file.metadata.num_rows
+    except _ColumnError as error:
+        title = f"`{name}` cannot be read as a trace: {error}"
+        raise TltlError(
+            [Diagnostic("TLT0622", title, help="give each signal one column of numbers or booleans")]
+        ) from None
+    except (pyarrow.ArrowException, OSError, ValueError, OverflowError, KeyError) as error:
         title = f"`{name}` is not a valid Parquet file: {_first_sentence(str(error))}"
         raise TltlError([Diagnostic("TLT0622", title, help="write it again")]) from None
-    rows: Iterable[tuple[Any, ...]] = zip(*columns, strict=True) if columns else [()] * file.metadata.num_rows
     return "".join(f"{json.dumps(dict(zip(names, row, strict=True)))}\n" for row in rows).encode()
 
 
 def _columns(file: Any, signals: Collection[Signal] | None) -> list[str]:
     """Return the names of the columns to read.
 
-    A signal may have a column of text: then the reader of traces says that this is not a number.
+    Raises:
+        _ColumnError: two of them have the same name, or the column of a signal has other values than
+            numbers and booleans.
     """
-    kinds = {field.name: field.type for field in file.schema_arrow}
+    kinds = [(field.name, field.type) for field in file.schema_arrow]
     if signals is None:
-        return [name for name, kind in kinds.items() if _is_value(kind)]
-    time = times_name(kinds, signals)
-    wanted = {*(signal.name for signal in signals), *([time] if time else [])}
-    return [name for name, kind in kinds.items() if name in wanted and (_is_value(kind) or _is_text(kind))]
+        wanted = {name for name, kind in kinds if _is_value(kind)}
+    else:
+        time = times_name([name for name, _ in kinds], signals)
+        wanted = {*(signal.name for signal in signals), *([time] if time else [])}
+    names = [name for name, _ in kinds if name in wanted]
+    for name, kind in kinds:
+        if name in wanted and names.count(name) > 1:
+            raise _ColumnError(f"two columns are called `{name}`")
+        if name in wanted and not _is_value(kind):
+            raise _ColumnError(f"the column `{name}` has values of the type {kind}")
+    return names
 
 
 def _is_value(kind: Any) -> bool:
     from pyarrow import types
 
     return any(test(kind) for test in (types.is_boolean, types.is_integer, types.is_floating, types.is_null))
-
-
-def _is_text(kind: Any) -> bool:
-    from pyarrow import types
-
-    return bool(types.is_string(kind) or types.is_large_string(kind))
 
 
 def _is_too_large(file: Any, columns: int, size: int) -> bool:

@@ -193,7 +193,7 @@ def test_the_json_document_is_complete_although_a_worker_dies(  # type: ignore[n
     assert "error[TLT0007]: a process ended" in judged.err
     assert (
         tltlc("monitor", "fetch.tltl", "traces").out.splitlines()[-1]
-        == "0 of 1 accepted; 1 cannot be judged (1 TLT0622)"
+        == "0 of 1 accepted; 1 cannot be judged (1 TLT0622); 3 not judged"
     )
 
 

@@ -104,6 +104,13 @@ def test_no_clause_is_blamed_if_one_of_them_is_too_large_for_an_automaton() -> N
     assert _verdict(Judge(fspa, some), b"a,b\n0,1\n").cause == Cause("broken", 1, (), ("b",))
 
 
+def test_clauses_that_only_together_have_become_impossible_are_not_named() -> None:
+    signals = "signal a: bool\nsignal b: bool\nsignal c: bool\nsignal d: bool\n"
+    rule = "require always (b implies ((always not a) or (always not c)))"
+    fspa, parts = _compiled(f"{signals}spec s {{ reach a  reach c  reach d  {rule} }}")
+    assert _verdict(Judge(fspa, parts), b"a,b,c,d\n0,0,0,0\n0,1,0,0\n").cause == Cause("broken", 2, (), ("b",))
+
+
 def test_comments_are_not_part_of_a_clause() -> None:
     _, parts = _compiled("signal a: bool\nsignal b: bool\nspec s { reach a // first\n then b }")
     assert [part.text for part in parts.parts] == ["reach a then b"]
@@ -156,8 +163,9 @@ def test_a_trace_that_cannot_be_judged_is_an_error(data: bytes, code: str) -> No
 def test_an_error_after_the_end_of_an_episode_does_not_count() -> None:
     fspa, parts = _compiled(EPISODES)
     for end in ("0", "x,y", "0,nan"):
-        verdict = _verdict(Judge(fspa, parts, episodes=True), f"a,b\n1,0\n0,0\n{end}\n".encode())
-        assert (verdict.outcome.accepted, verdict.outcome.steps) == (True, 1)
+        for before in ("", "0,0\n"):
+            verdict = _verdict(Judge(fspa, parts, episodes=True), f"a,b\n1,0\n{before}{end}\n".encode())
+            assert (verdict.outcome.accepted, verdict.outcome.steps) == (True, 1)
     unread = Judge(fspa, parts, episodes=True).judge("trace", b"a,b\n0,0\n0\n")
     assert unread.verdict is None
 

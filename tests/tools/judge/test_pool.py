@@ -46,7 +46,7 @@ def test_a_trace_that_cannot_be_judged_keeps_no_other_from_being_judged(traces: 
 
 
 def test_a_trace_that_does_not_fit_into_memory_is_refused(traces: list[str], monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(pool, "JUDGED_TRACE", Limit(size=20))
+    monkeypatch.setattr(pool, "JUDGED_TRACE", Limit(size=20, values=100))
     (judged,) = judge_files(HIDE, CLAUSES, traces[30:31], 1)
     assert [diagnostic.code for diagnostic in judged.diagnostics] == ["TLT0004"]
 

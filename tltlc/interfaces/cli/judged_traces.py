@@ -70,7 +70,8 @@ def judge_traces(
         if options.as_json:
             _end_json(traces, len(files.traces), files.others)
         else:
-            print(summary_text(traces))
+            missing = len(files.traces) - len(traces)
+            print(summary_text(traces) + (f"; {missing} not judged" if missing else ""))
             if not options.episodes and (note := _limit_note(traces, fspa.limit_steps)):
                 report.say(note)
         accepted = [trace.verdict is not None and trace.verdict.outcome.accepted for trace in traces]

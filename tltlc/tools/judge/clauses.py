@@ -94,7 +94,8 @@ def _conjuncts_of_source(spec: Spec) -> Iterator[tuple[str, Formula]]:
 
 
 def _conjuncts_of_artefact(fspa: Fspa) -> Iterator[tuple[str, Formula]]:
-    if isinstance(fspa.formula, Formula):
+    # In an automaton of another tool, the formula may be only a name that reads like a formula.
+    if isinstance(fspa.formula, Formula) and all(isinstance(state.label, Formula) for state in fspa.states):
         for conjunct in fspa.formula.args if fspa.formula.op == "and" else (fspa.formula,):
             yield ascii_text(conjunct), conjunct
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 from collections.abc import Sequence
 from contextlib import suppress
+from typing import Final
 
 from tltlc.automaton.fspa import Fspa
 from tltlc.automaton.text import label_text
@@ -20,6 +21,9 @@ from tltlc.tools.judge.clauses import Clauses
 from tltlc.tools.judge.plain_csv import plain_columns
 from tltlc.tools.judge.trace_run import TraceRun, TraceRunner
 from tltlc.tools.judge.verdict import Cause, JudgedTrace, TraceVerdict
+
+_MOST_JOINT: Final = 50
+"""At most this many automata of several clauses are kept."""
 
 
 class Judge:
@@ -72,9 +76,8 @@ class Judge:
         samples = self._faultless(samples)
         if not samples:
             return JudgedTrace(name, None, diagnostics)
-        run, warnings = self._runner.run(samples)
-        # A run that only ends with the last sample might have gone on after it.
-        if self._episodes and run.outcome.steps < len(samples):
+        run, warnings = self._runner.run(samples, cut_off=True)
+        if self._episodes and run.done:
             return self._judged(name, samples, run, warnings)
         return JudgedTrace(name, None, diagnostics, None if run.broken_at is None else self._cause(samples, run))
 
@@ -130,20 +133,21 @@ class Judge:
     def _blocked(self, samples: Sequence[Sample]) -> list[int]:
         """Return the indices of the unmet clauses that each cannot be met without breaking the met ones.
 
-        If there are none, several unmet clauses exclude each other: return them all. Return none if
-        not all clauses are known.
+        There are none if only several unmet clauses together exclude each other, or if not all
+        clauses are known.
         """
         if self._clauses is None or not self._clauses.are_all:
             return []
         unmet = self._unmet(samples)
         met = [index for index in range(len(self._clause_runners)) if index not in unmet]
-        blocked = [index for index in unmet if self._is_broken(tuple(sorted((*met, index))), samples)]
-        return blocked or unmet
+        return [index for index in unmet if self._is_broken(tuple(sorted((*met, index))), samples)]
 
     def _is_broken(self, chosen: tuple[int, ...], samples: Sequence[Sample]) -> bool:
         """Whether no continuation of the samples can meet the chosen clauses together."""
         assert self._clauses is not None
         if chosen not in self._joint_runners:
+            if len(self._joint_runners) == _MOST_JOINT:
+                self._joint_runners.clear()
             automaton = self._clauses.together(chosen)
             self._joint_runners[chosen] = None if automaton is None else TraceRunner(automaton)
         runner = self._joint_runners[chosen]

@@ -6,7 +6,8 @@ import os
 import signal
 import time
 from collections.abc import Generator, Iterator, Sequence
-from multiprocessing import get_context
+from contextlib import suppress
+from multiprocessing import get_context, resource_tracker
 from multiprocessing.connection import Connection, wait
 from multiprocessing.context import SpawnProcess
 from threading import Thread
@@ -65,8 +66,9 @@ def _cores() -> int:
 def _judge_file(judge: Judge, path: str) -> JudgedTrace:
     try:
         data = read_bytes(path, path, JUDGED_TRACE.size)
-        if len(data) > JUDGED_TRACE.size:
-            title = f"`{path}` is larger than {JUDGED_TRACE.size >> 20} MiB"
+        assert JUDGED_TRACE.values is not None
+        if len(data) > JUDGED_TRACE.size or data.count(b"\n") > JUDGED_TRACE.values:
+            title = f"`{path}` is larger than {JUDGED_TRACE.size >> 20} MiB or {JUDGED_TRACE.values:,} samples"
             help_ = "judge it alone: `tltlc monitor SPEC TRACE` reads a trace of any size, row by row"
             raise TltlError([Diagnostic("TLT0004", title, help=help_)])
     except TltlError as error:
@@ -83,6 +85,8 @@ def _judge_in_workers(
     judged: dict[int, JudgedTrace] = {}
     following = 0
     try:
+        # Python's resource tracker, which the first worker would start, would allow interrupts again.
+        resource_tracker.ensure_running()
         with block_interrupts():
             # This keeps the workers that have started before an error.
             started.extend(_Worker(fspa, clauses, episodes=episodes) for _ in range(workers))
@@ -108,22 +112,26 @@ class _Worker:
         # A forked worker would inherit the locks of threads that other code of this process has started.
         context = get_context("spawn")
         self.connection, child = context.Pipe()
-        arguments = (child, os.getpid(), fspa, clauses, episodes)
-        self._process: SpawnProcess = context.Process(target=_work, args=arguments, daemon=True)
+        self._process: SpawnProcess = context.Process(target=_work, args=(child, os.getpid()), daemon=True)
         self._process.start()
         child.close()
         self.start = 0
         self.is_busy = False
+        # A large spec among the arguments would block the start for ever if the process is killed meanwhile.
+        self._send((fspa, clauses, episodes))
 
     def give(self, chunk: tuple[int, Sequence[str]] | None) -> None:
         """Give the worker the next chunk; None if there are no more."""
         self.is_busy = chunk is not None
         if chunk is not None:
             self.start = chunk[0]
-            try:
-                self.connection.send(chunk[1])
-            except OSError:
-                raise _lost_error() from None
+            self._send(chunk[1])
+
+    def _send(self, message: object) -> None:
+        try:
+            self.connection.send(message)
+        except OSError:
+            raise _lost_error() from None
 
     def take(self) -> Sequence[JudgedTrace]:
         """Return the results of the worker's chunk, which it has sent."""
@@ -148,18 +156,17 @@ def _lost_error() -> TltlError:
 # --- in a worker ----------------------------------------------------------------------------------
 
 
-def _work(connection: Connection, parent: int, fspa: Fspa, clauses: Clauses, episodes: bool) -> None:
-    """Judge the chunks of traces that come through the connection, until it is closed."""
+def _work(connection: Connection, parent: int) -> None:
+    """Judge the chunks of traces that come through the connection, after the spec, until it is closed."""
     # Only the parent handles Ctrl-C, and a worker must not outlive it.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     Thread(target=_exit_with_parent, args=(parent,), daemon=True).start()
-    judge = Judge(fspa, clauses, episodes=episodes)
-    while True:
-        try:
+    with suppress(EOFError, OSError):
+        fspa, clauses, episodes = connection.recv()
+        judge = Judge(fspa, clauses, episodes=episodes)
+        while True:
             paths: Sequence[str] = connection.recv()
-        except (EOFError, OSError):
-            return
-        connection.send([_judge_file(judge, path) for path in paths])
+            connection.send([_judge_file(judge, path) for path in paths])
 
 
 def _exit_with_parent(parent: int) -> None:

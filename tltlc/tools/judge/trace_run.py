@@ -58,8 +58,10 @@ class TraceRunner:
         self._generated: Any = None
         self._samples = 0
 
-    def run(self, samples: Sequence[Sample]) -> tuple[TraceRun, tuple[Diagnostic, ...]]:
+    def run(self, samples: Sequence[Sample], *, cut_off: bool = False) -> tuple[TraceRun, tuple[Diagnostic, ...]]:
         """Run the automaton over the samples, one at least; return the result, and warnings about clamped values.
+
+        If the samples are ``cut_off``, more follow them, so an episode does not end with the last one.
 
         Raises:
             MonitorError: the errors of :meth:`~tltlc.monitor.monitor.Monitor.step`.
@@ -75,7 +77,7 @@ class TraceRunner:
                 if not generated.notices and (result.done or not self._episodes):
                     return result, ()
         monitor = Monitor(self._fspa)
-        return self._slow_run(monitor, samples), tuple(monitor.notices)
+        return self._slow_run(monitor, samples, cut_off=cut_off), tuple(monitor.notices)
 
     def _fast_run(self, steps: Sequence[Any]) -> TraceRun:
         """Return the result of all steps of a generated monitor.
@@ -93,12 +95,13 @@ class TraceRunner:
         broken = bisect_left(steps, True, key=lambda step: step.verdict == "violated")
         return TraceRun(outcome, last.state, last.done, broken + 1, steps[broken - 1].state if broken else 0)
 
-    def _slow_run(self, monitor: Monitor, samples: Sequence[Sample]) -> TraceRun:
+    def _slow_run(self, monitor: Monitor, samples: Sequence[Sample], *, cut_off: bool) -> TraceRun:
         """Run a monitor over the samples."""
         total, number, state = 0.0, 0, 0
         broken_at = broken_state = step = None
+        last_number = len(samples) if self._episodes and not cut_off else None
         for number, sample in enumerate(samples, start=1):
-            step = monitor.step(sample, last=self._episodes and number == len(samples))
+            step = monitor.step(sample, last=number == last_number)
             total += step.reward
             if broken_at is None and step.verdict == "violated":
                 broken_at, broken_state = number, state
