@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, Final
 
+from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.monitor.sample_times import SampleTimes, times_name
 from tltlc.monitor.samples import name_list
@@ -53,6 +54,11 @@ def read_trace(stream: Stream, name: str, signals: Sequence[Signal], clock_s: fl
         raise TltlError(
             [Diagnostic("TLT0620", f"the trace `{name}` contains no sample", help="record at least one step")]
         )
+
+
+def in_trace(name: str, diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
+    """Return the diagnostics of a monitor with the name of the trace in their titles."""
+    return tuple(replace(diagnostic, title=f"`{name}`, {diagnostic.title}") for diagnostic in diagnostics)
 
 
 def _check_time(time: float | None, times: SampleTimes, lines: TraceLines, columns: tuple[int, int] | None) -> None:

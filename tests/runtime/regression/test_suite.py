@@ -262,4 +262,4 @@ def test_reading_stops_after_many_errors(tmp_path: Path) -> None:
         read(tmp_path, "".join(f'[[case]]\nlevel = "x{number}"\n' for number in range(2000)))
     diagnostics = caught.value.diagnostics
     assert len(diagnostics) == 101
-    assert diagnostics[-1].title == "there are so many errors that the last 1,900 cases were not read"
+    assert diagnostics[-1].title == "the last 1,900 cases were not read, because there are too many errors before them"

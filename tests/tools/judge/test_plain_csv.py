@@ -31,12 +31,12 @@ def _strict(data: bytes) -> list[dict[str, float]] | None:
 
 def _check(data: bytes) -> bool:
     """Check that both readers agree, and return whether the fast one takes the trace."""
-    found = plain_columns(data, SIGNALS)
-    if found is None:
+    plain = plain_columns(data, SIGNALS)
+    if plain is None:
         return False
-    assert found[1] is None
+    assert plain[1] is None
     names = [signal.name for signal in SIGNALS]
-    assert [dict(zip(names, row, strict=True)) for row in zip(*found[0], strict=True)] == _strict(data)
+    assert [dict(zip(names, row, strict=True)) for row in zip(*plain[0], strict=True)] == _strict(data)
     return True
 
 

@@ -9,14 +9,13 @@ from typing import Final
 
 from tltlc.automaton.fspa import Fspa
 from tltlc.automaton.text import label_text
-from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.monitor.guards import holds, prime_robustness
 from tltlc.monitor.monitor import Monitor
 from tltlc.monitor.parquet import as_text
 from tltlc.monitor.sample_times import times_fit
 from tltlc.monitor.samples import MonitorError, Samples
-from tltlc.monitor.traces import Sample, read_trace
+from tltlc.monitor.traces import Sample, in_trace, read_trace
 from tltlc.tools.judge.clauses import Clauses
 from tltlc.tools.judge.plain_csv import plain_columns
 from tltlc.tools.judge.trace_run import TraceRun, TraceRunner
@@ -65,14 +64,14 @@ class Judge:
     ) -> JudgedTrace:
         cause = None if run.outcome.accepted else self._cause(samples, run)
         verdict = TraceVerdict(run.outcome, label_text(self._fspa, run.state), cause, len(samples))
-        return JudgedTrace(name, verdict, _in_trace(name, warnings))
+        return JudgedTrace(name, verdict, in_trace(name, warnings))
 
     def _unjudged(self, name: str, samples: Sequence[Sample], error: TltlError) -> JudgedTrace:
         """Return what is known of a trace with an error, given the samples that could be read.
 
         The trace is judged all the same if it is an episode that ends before the error.
         """
-        diagnostics = _in_trace(name, error.diagnostics) if isinstance(error, MonitorError) else error.diagnostics
+        diagnostics = in_trace(name, error.diagnostics) if isinstance(error, MonitorError) else error.diagnostics
         samples = self._faultless(samples)
         if not samples:
             return JudgedTrace(name, None, diagnostics)
@@ -162,8 +161,3 @@ class Judge:
         (guard,) = (edge.guard for edge in self._fspa.edges_from(state) if holds(edge.guard, values))
         prime = max(guard.primes, key=lambda prime: prime_robustness(prime, values))
         return tuple(self._fspa.atoms[atom].name for atom, _ in prime)
-
-
-def _in_trace(name: str, diagnostics: Sequence[Diagnostic]) -> tuple[Diagnostic, ...]:
-    """Return the diagnostics of a monitor with the name of the trace in their titles."""
-    return tuple(replace(diagnostic, title=f"`{name}`, {diagnostic.title}") for diagnostic in diagnostics)

@@ -20,7 +20,7 @@ from tltlc.monitor.traces import Sample
 _SAMPLES_PER_STATE: Final = 20
 """The generated monitor is loaded after this many samples for each state of the automaton.
 
-Loading it takes longer than running so many samples without it.
+It takes time to load, which only pays for long or many traces.
 """
 
 

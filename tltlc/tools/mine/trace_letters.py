@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from math import nan
 
 from tltlc.automaton.compare import Letter
-from tltlc.core.record import record, replace
+from tltlc.core.record import record
 from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.monitor.samples import MonitorError, Samples, check_exclusive
-from tltlc.monitor.traces import Sample, read_trace
+from tltlc.monitor.traces import Sample, in_trace, read_trace
 from tltlc.resolve.spec import Signal
 from tltlc.tools.mine.evidence import LabelledTrace
 from tltlc.tools.mine.vocabulary import MiningVocabulary
@@ -50,8 +50,8 @@ def read_traces(
         try:
             traces.append(LabelledTrace(file.name, tuple(_letters(file, samples, vocabulary, cache))))
         except MonitorError as error:
-            raise MonitorError(_in_trace(file, error.diagnostics)) from None
-        warnings += _in_trace(file, notices)
+            raise MonitorError(in_trace(file.name, error.diagnostics)) from None
+        warnings += in_trace(file.name, notices)
         notices.clear()
     return tuple(traces), tuple(warnings)
 
@@ -81,8 +81,3 @@ def _letters(
             letter = frozenset(atom.name for atom, value in zip(reader.atoms, values, strict=True) if value > 0.0)
             cache[sample] = letter
         yield letter
-
-
-def _in_trace(file: TraceFile, diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
-    """Return the diagnostics of a monitor with the name of the trace in their titles."""
-    return [replace(diagnostic, title=f"`{file.name}`, {diagnostic.title}") for diagnostic in diagnostics]

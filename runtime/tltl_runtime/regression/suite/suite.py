@@ -170,7 +170,7 @@ def _other_kind_of_file(table: CheckedTable) -> str | None:
 
 
 def _unread_cases_error(count: int, label: Label) -> Diagnostic:
-    title = f"there are so many errors that the last {count:,} cases were not read"
+    title = f"the last {count:,} cases were not read, because there are too many errors before them"
     return Diagnostic("TLT0803", title, (label,), "correct the errors above, and try again")
 
 
