@@ -24,8 +24,12 @@ def verdict_warnings(spec: Spec, fspa: Fspa) -> tuple[Diagnostic, ...]:
         return (_unsatisfiable_warning(spec),)
     if verdict == "satisfied":
         title, label = f"every trace satisfies `{spec.name}`", Label(spec.source, spec.name_span)
-        suggestion = "it asks nothing of the game: did you mean `and` instead of an `or` or `implies`?"
-        suggestion = suggestion if spec.formula.atoms() else _NO_ATOM
+        if not spec.formula.atoms():
+            suggestion = _NO_ATOM
+        elif any(node.op in ("or", "implies") for node in spec.formula.walk()):
+            suggestion = "it asks nothing of the game: did you mean `and` instead of an `or` or `implies`?"
+        else:
+            suggestion = "it asks nothing of the game: write a condition that can fail"
         return (Diagnostic("TLT0411", title, (label,), suggestion, severity="warning"),)
     return ()
 
