@@ -45,6 +45,14 @@ def test_parts_that_are_large_only_together_are_named_together() -> None:
     assert [label.message for label in diagnostic.labels] == ["2 states alone; the parts multiply"] * 3
 
 
+def test_a_part_with_one_state_is_named_in_the_singular() -> None:
+    diagnostic = error(with_parts(read_formula("true"), read_formula("F(a & X F b)")), 1).diagnostics[0]
+    assert [label.message for label in diagnostic.labels] == [
+        "3 states alone; the parts multiply",
+        "1 state alone; the parts multiply",
+    ]
+
+
 def test_measuring_stops_at_the_first_part_that_is_too_large_alone(monkeypatch: pytest.MonkeyPatch) -> None:
     large = read_formula("G(a -> X X X X X X X X X X X X b)")
     measured = record_measured_parts(monkeypatch)

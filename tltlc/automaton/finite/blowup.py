@@ -152,4 +152,4 @@ def _size(part: Conjunct, spec: Spec) -> Size | None:
         states = len(machine(successors, successors.obligation(normal), _PART_BUDGET).transitions)
     except (OutOfStates, OutOfSteps, RecursionError):
         return None
-    return Size(states, f"{states} states") if states < _PART_BUDGET else None
+    return Size(states, f"{states} state{'s' * (states != 1)}") if states < _PART_BUDGET else None
