@@ -49,9 +49,10 @@ def test_compiled_automata_are_consistent(fspa: Fspa) -> None:
         (changed("atoms", 3, expression=SignalValue("mana")), "there is no signal `mana`"),
         (changed("atoms", 3, expression=ParamValue("mana")), "there is no param `mana`"),
         (changed("signals", 3, low=2.0), "the range of `health` is empty"),
-        (changed("params", 0, value=1.0), "the value of `level_size` is outside its range"),
+        (changed("params", 0, value=1.0), "the value of `level_size` lies outside its range"),
         (changed("states", 1, id=0), "state 1 has the id 0"),
         (replace(cover_and_hide(), exclusive=((0, 4),)), "there are only 4 atoms"),
+        (replace(cover_and_hide(), atoms=cover_and_hide().atoms[:1], exclusive=((1,),)), "there is only 1 atom"),
         (changed("edges", 3, target=9), "there is no state 9"),
         (changed("edges", 0, source=9), "there is no state 9"),
         (changed("edges", 1, target=0), "two edges lead from state 0 to state 0"),
@@ -118,11 +119,11 @@ def with_state(index: int, **values: Any) -> Fspa:
         (again_and_again(acceptance=(Pair((9,), (3,)),)), ["there are only 4 edges"]),
         (
             again_and_again(acceptance=()),
-            ["two edges that are in the same sets of the pairs lead from state 1 to state 1"],
+            ["two edges that are in the same `fin` and `inf` sets lead from state 1 to state 1"],
         ),
         (
             again_and_again(acceptance=(Pair((), (2, 3)),)),
-            ["two edges that are in the same sets of the pairs lead from state 1 to state 1"],
+            ["two edges that are in the same `fin` and `inf` sets lead from state 1 to state 1"],
         ),
         (
             again_and_again(acceptance=(Pair((3,), (3,)),)),

@@ -74,7 +74,7 @@ def _values(fspa: Fspa) -> Iterator[Problem]:
         low = param.value if param.low is None else param.low
         high = param.value if param.high is None else param.high
         if not low <= param.value <= high:
-            yield Problem(("params", index, "value"), f"the value of `{param.name}` is outside its range")
+            yield Problem(("params", index, "value"), f"the value of `{param.name}` lies outside its range")
 
 
 def _indices(fspa: Fspa) -> Iterator[Problem]:
@@ -85,7 +85,7 @@ def _indices(fspa: Fspa) -> Iterator[Problem]:
             yield Problem(("states", index, "id"), f"state {index} has the id {state.id}")
     for index, group in enumerate(fspa.exclusive):
         if any(atom >= atoms for atom in group):
-            yield Problem(("exclusive", index), f"there are only {atoms} atoms")
+            yield Problem(("exclusive", index), _only(atoms, "atom"))
     previous = (-1, -1)
     for index, edge in enumerate(fspa.edges):
         for end, state_index in (("source", edge.source), ("target", edge.target)):
@@ -96,11 +96,15 @@ def _indices(fspa: Fspa) -> Iterator[Problem]:
         previous = (edge.source, edge.target)
         for prime in edge.guard.primes:
             if any(atom >= atoms for atom, _ in prime):
-                yield Problem(("edges", index, "guard", "primes"), f"there are only {atoms} atoms")
+                yield Problem(("edges", index, "guard", "primes"), _only(atoms, "atom"))
     for index, pair in enumerate(fspa.acceptance):
         for kind, edges in (("fin", pair.fin), ("inf", pair.inf)):
             if any(edge >= len(fspa.edges) for edge in edges):
-                yield Problem(("acceptance", "pairs", index, kind), f"there are only {len(fspa.edges)} edges")
+                yield Problem(("acceptance", "pairs", index, kind), _only(len(fspa.edges), "edge"))
+
+
+def _only(count: int, noun: str) -> str:
+    return f"there {'is' if count == 1 else 'are'} only {count} {noun}{'s' * (count != 1)}"
 
 
 def _parallel_edges(fspa: Fspa) -> Iterator[Problem]:
@@ -114,7 +118,7 @@ def _parallel_edges(fspa: Fspa) -> Iterator[Problem]:
     for index, edge in enumerate(fspa.edges):
         key = (edge.source, edge.target, marks[index])
         if key in seen:
-            alike = " that are in the same sets of the pairs" if fspa.semantics == "infinite" else ""
+            alike = " that are in the same `fin` and `inf` sets" if fspa.semantics == "infinite" else ""
             message = f"two edges{alike} lead from state {edge.source} to state {edge.target}"
             yield Problem(("edges", index), message)
         seen.add(key)
