@@ -1,7 +1,7 @@
 """Hash-consed decision diagrams: functions of Boolean variables, from which all automata are built.
 
-A function maps each assignment of the variables to a value.  Its diagram is a directed acyclic
-graph: an inner node tests a variable, a leaf holds a value.  A node is an int.  Equal functions are
+A function maps each assignment of the variables to a value. Its diagram is a directed acyclic
+graph: an inner node tests a variable, a leaf holds a value. A node is an int. Equal functions are
 the same node, so ``==`` compares functions.
 
 The constructions over finite and over infinite traces store these functions as diagrams:
@@ -14,7 +14,7 @@ The constructions over finite and over infinite traces store these functions as 
 - *steps* of automata over infinite traces: functions from a letter to any hashable value, such as
   the next state and the marks of the edge.
 
-No operation enumerates letters, of which there are 2^n for n atoms.  All operations cache their
+No operation enumerates letters, of which there are 2^n for n atoms. All operations cache their
 results.
 """
 
@@ -74,7 +74,7 @@ class Diagrams(Generic[Leaf]):
     """A table of nodes and the operations on them.
 
     Inner node ``n`` tests ``variable[n]``: it is the function ``high[n]`` where the variable is
-    true, and ``low[n]`` where it is false.  Variables are ints and are tested in ascending order.
+    true, and ``low[n]`` where it is false. Variables are ints and are tested in ascending order.
     Leaf ``n`` has the value ``value[n]``, and its ``variable`` is :data:`LEAF`.
 
     If a budget ``work`` is given, each new inner node and each step of :meth:`apply` takes one step
@@ -200,8 +200,8 @@ class Diagrams(Generic[Leaf]):
     def apply(self, combine: Callable[[Any, Any], Leaf], x: int, y: int, memo: dict[tuple[int, int], int]) -> int:
         """Return the function whose value is ``combine`` applied to the values of ``x`` and ``y``.
 
-        ``combine`` may be any function of two values.  ``memo`` caches results; pass the same dict
-        only to calls with the same ``combine``.  Raises :class:`~tltlc.automaton.work.OutOfWork`.
+        ``combine`` may be any function of two values. ``memo`` caches results; pass the same dict
+        only to calls with the same ``combine``. Raises :class:`~tltlc.automaton.work.OutOfWork`.
         """
         result = memo.get((x, y))
         if result is not None:
@@ -224,7 +224,7 @@ class Diagrams(Generic[Leaf]):
         """Return the function with ``change`` applied to every value.
 
         ``memo`` maps nodes to their results; pass the same dict only to calls with the same
-        ``change``.  To give a leaf another result, put it into ``memo`` before the first call.
+        ``change``. To give a leaf another result, put it into ``memo`` before the first call.
         """
         variable, low, high, value, node, leaf = self.variable, self.low, self.high, self.value, self.node, self.leaf
 

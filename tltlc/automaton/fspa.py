@@ -43,10 +43,10 @@ class Text:
 class State:
     """A state of the automaton.
 
-    ``label`` is the formula that remains to be satisfied; ``str(label)`` is its ASCII notation.  In
-    an automaton of another tool, the label may be a name.  ``accepting`` is true if a trace that
+    ``label`` is the formula that remains to be satisfied; ``str(label)`` is its ASCII notation. In
+    an automaton of another tool, the label may be a name. ``accepting`` is true if a trace that
     ends here is accepted (over infinite traces: if the state lies on an accepted cycle).
-    ``verdict`` is the verdict of a trace that ends here.  ``distance`` is the least number of
+    ``verdict`` is the verdict of a trace that ends here. ``distance`` is the least number of
     transitions to an accepting state, None for traps.
     """
 
@@ -106,11 +106,11 @@ class Pair:
 class Fspa:
     """A deterministic, complete automaton; over finite traces minimal, with acceptance on states.
 
-    ``states[i].id == i``; states are numbered breadth-first, and state 0 is initial.  ``edges`` are
-    sorted by (source, target).  ``spec_size`` is the greatest finite distance, at least 0.
+    ``states[i].id == i``; states are numbered breadth-first, and state 0 is initial. ``edges`` are
+    sorted by (source, target). ``spec_size`` is the greatest finite distance, at least 0.
 
     Over infinite traces, a run is accepted if it meets one of the pairs of ``acceptance``, and a
-    state is accepting if it lies on an accepted cycle.  Edges with the same source and target then
+    state is accepting if it lies on an accepted cycle. Edges with the same source and target then
     differ in their :meth:`marks` (semantics, section 5).
     """
 
@@ -172,7 +172,7 @@ def _unpickle(
     """Return the automaton that :meth:`Fspa.__reduce__` took apart.
 
     ``table`` has the formula of the spec, then the labels of the states and the formulas of the
-    guards, each as a text or as an index into ``nodes``.  ``primes`` has the prime implicants of
+    guards, each as a text or as an index into ``nodes``. ``primes`` has the prime implicants of
     each guard.
     """
     subformulas = unflatten(nodes)

@@ -131,8 +131,8 @@ class Guards:
         """Return a short formula of the guard.
 
         The formula is a disjunction of conjunctions without redundant parts, or a conjunction of
-        disjunctions if that is shorter.  On letters that ``exclusive`` rules out it may have any
-        value.  Raises :class:`TooManyPrimes`.
+        disjunctions if that is shorter. On letters that ``exclusive`` rules out it may have any
+        value. Raises :class:`TooManyPrimes`.
         """
         if (
             len(self._covers) + len(self._primes) > _MOST_REMEMBERED

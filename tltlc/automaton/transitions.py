@@ -1,10 +1,10 @@
 """Obligations and transitions: the decision diagrams that an automaton is built from.
 
 An *obligation* is what remains to be done, as a Boolean function over temporal subformulas and
-atoms.  Two formulas with the same function are one obligation, and so one state of the automaton.
+atoms. Two formulas with the same function are one obligation, and so one state of the automaton.
 
 A *transition* is a function from a letter (the atoms that hold at a sample) to two values: the
-obligation that remains, and 1 if a trace that ends with this sample is accepted, 0 otherwise.  A
+obligation that remains, and 1 if a trace that ends with this sample is accepted, 0 otherwise. A
 guard is a transition whose leaves are :data:`ACCEPT` and :data:`REJECT`.
 """
 
@@ -31,7 +31,7 @@ _NO_OBLIGATION: Final = -1
 
 
 class ObligationDiagrams(Diagrams[bool]):
-    """A table of obligations.  Each variable is the number of an atom or of a temporal subformula.
+    """A table of obligations. Each variable is the number of an atom or of a temporal subformula.
 
     ``both`` returns the conjunction of two obligations, ``either`` the disjunction. Each of these
     two operations raises :class:`~tltlc.automaton.diagrams.OutOfSteps` after ``limit.steps`` steps
@@ -56,8 +56,8 @@ class ObligationDiagrams(Diagrams[bool]):
 class TransitionDiagrams(Diagrams[tuple[int, int]]):
     """A table of transitions, and the table of the obligations that they lead to.
 
-    Each variable is an atom's index.  ``conjoin`` returns the conjunction of two transitions,
-    ``disjoin`` the disjunction.  Both have the same step limit as the operations on obligations.
+    Each variable is an atom's index. ``conjoin`` returns the conjunction of two transitions,
+    ``disjoin`` the disjunction. Both have the same step limit as the operations on obligations.
     """
 
     __slots__ = ("conjoin", "disjoin", "limit", "obligations")

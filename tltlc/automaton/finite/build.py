@@ -214,7 +214,7 @@ def verdicts(
     """Return the verdict of each state.
 
     It is ``satisfied`` if no rejecting state can be reached, and ``violated`` if no accepting state
-    can be reached.  Otherwise it is ``holding`` for accepting states, ``pending`` for rejecting
+    can be reached. Otherwise it is ``holding`` for accepting states, ``pending`` for rejecting
     ones.
     """
     to_rejection = distances(targets, lambda state: not accepting(state))

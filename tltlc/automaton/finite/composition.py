@@ -1,10 +1,10 @@
 """Build the machines of large conjunctions and disjunctions part by part.
 
-Each operand gets its own minimal machine.  Then the two smallest machines are replaced by the
+Each operand gets its own minimal machine. Then the two smallest machines are replaced by the
 minimal machine of their product, again and again, until one machine is left.
 
-The alternative is to explore the formula as a whole.  That visits every combination of obligations
-of the operands, even combinations that are merged in the end.  It is faster for small formulas, as
+The alternative is to explore the formula as a whole. That visits every combination of obligations
+of the operands, even combinations that are merged in the end. It is faster for small formulas, as
 most rules of games are, but too slow for conjunctions of dozens of clauses.
 """
 

@@ -1,12 +1,12 @@
 """Prove early that a large conjunction or disjunction needs more states than its budget.
 
-The machines of the parts are known; their product is the machine of the whole.  Take a fixed list
-of words.  The *answer* of a state is the set of these words that are accepted from it.  States with
+The machines of the parts are known; their product is the machine of the whole. Take a fixed list
+of words. The *answer* of a state is the set of these words that are accepted from it. States with
 different answers have different languages, so the minimal machine has at least as many states as
-there are answers.  The answer of a state of the product follows from the answers of its parts:
+there are answers. The answer of a state of the product follows from the answers of its parts:
 their intersection for a conjunction, their union for a disjunction.
 
-The words use only letters in which at most one atom holds.  Other letters could only add states, so
+The words use only letters in which at most one atom holds. Other letters could only add states, so
 a count over the budget is a proof.
 """
 

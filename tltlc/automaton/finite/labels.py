@@ -1,9 +1,9 @@
 """Label each state with a short formula that says what remains to be done there.
 
 First, each temporal subformula is removed from the state's obligation if the language stays the
-same without it.  What is left is written as a formula, and the rules of :mod:`tltlc.logic.rewrite`
-simplify it.  Then each operand of an ``and`` or ``or`` is removed if the language stays the same
-without it.  A comparison with the machine, called a proof here, decides whether the language stays
+same without it. What is left is written as a formula, and the rules of :mod:`tltlc.logic.rewrite`
+simplify it. Then each operand of an ``and`` or ``or`` is removed if the language stays the same
+without it. A comparison with the machine, called a proof here, decides whether the language stays
 the same.
 """
 
@@ -48,8 +48,8 @@ class LabelsTooLong(Exception):
 class Labels:
     """Computes the labels of the states of a machine.
 
-    ``work`` is the most proofs for all labels together.  When it is used up, the remaining labels
-    are not shortened.  It is a count and not a time, so that the same spec always gets the same
+    ``work`` is the most proofs for all labels together. When it is used up, the remaining labels
+    are not shortened. It is a count and not a time, so that the same spec always gets the same
     labels.
     """
 
@@ -102,7 +102,7 @@ class Labels:
     def _drop_needless_variables(self, obligation: int, state: int) -> int:
         """Return the obligation without the variables that make no difference to its language.
 
-        The variables with the largest formulas are tried first.  ``state`` is the state with the
+        The variables with the largest formulas are tried first. ``state`` is the state with the
         language of the obligation.
         """
         if obligation in (FALSE, TRUE):

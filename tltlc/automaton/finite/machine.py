@@ -2,8 +2,8 @@
 
 Obligations are equal if they have the same language.
 
-A machine is a deterministic automaton whose transitions, not states, decide acceptance.  Its states
-are obligations (what remains after the samples so far).  A letter leads to a leaf, which has the
+A machine is a deterministic automaton whose transitions, not states, decide acceptance. Its states
+are obligations (what remains after the samples so far). A letter leads to a leaf, which has the
 next obligation and says whether a trace that ends with this letter is accepted.
 :mod:`tltlc.automaton.finite.build` then makes an automaton with accepting states from the machine.
 """
@@ -40,7 +40,7 @@ class Machine:
 def machine(successors: Successors, obligation: int, state_budget: int, allowed: int = ACCEPT) -> Machine:
     """Return the minimal machine of an obligation.
 
-    ``allowed`` is a guard: only letters on which it is true can occur.  Raises
+    ``allowed`` is a guard: only letters on which it is true can occur. Raises
     :class:`OutOfStates` if there are more than ``state_budget`` reachable obligations, and
     :class:`OutOfSteps` if their transitions take too many steps.
     """
@@ -87,9 +87,9 @@ def explore(successors: Successors, initial: int, state_budget: int, allowed: in
 def minimise(successors: Successors, transitions: dict[int, int]) -> Machine:
     """Merge the obligations with the same language.
 
-    ``transitions`` is the result of :func:`explore`.  The method is partition refinement: start
+    ``transitions`` is the result of :func:`explore`. The method is partition refinement: start
     with all obligations in one block, and split a block while its members have transitions to
-    different blocks.  After a split, the largest part keeps the block's number.  So only nodes that
+    different blocks. After a split, the largest part keeps the block's number. So only nodes that
     lead to the smaller parts are visited again, as in Hopcroft's algorithm.
     """
     diagrams = successors.diagrams

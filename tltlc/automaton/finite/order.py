@@ -1,8 +1,8 @@
 """Find an order of the atoms that keeps diagrams small: atoms of the same subformula are next to each other.
 
 The heuristic is FORCE (Aloul, Markov and Sakallah, "FORCE: a fast and easy-to-implement
-variable-ordering heuristic", GLSVLSI 2003).  A group is the set of atoms of a subformula; its width
-is the distance between its first and its last atom.  Each atom moves to the middle of its groups,
+variable-ordering heuristic", GLSVLSI 2003). A group is the set of atoms of a subformula; its width
+is the distance between its first and its last atom. Each atom moves to the middle of its groups,
 again and again, until the groups get no narrower.
 """
 

@@ -165,7 +165,7 @@ class ObligationWriter:
         """Return the common factors of the obligation, and the obligation without them.
 
         If ``absorbing`` is FALSE, the factors are the literals whose negation makes the obligation
-        false.  If it is TRUE, they are the literals that make the obligation true.
+        false. If it is TRUE, they are the literals that make the obligation true.
         """
         factors: list[tuple[int, bool]] = []
         wanted = absorbing == FALSE

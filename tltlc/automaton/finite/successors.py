@@ -104,7 +104,7 @@ class Successors:
     def new_state(self, stands_for: int) -> int:
         """Return a new obligation for a state of a machine that was built for a part of the formula.
 
-        ``stands_for`` is the obligation that remains in this state.  Call :meth:`define_state`
+        ``stands_for`` is the obligation that remains in this state. Call :meth:`define_state`
         next.
         """
         variable = len(self.formulas)
@@ -209,9 +209,9 @@ class Successors:
         raise ValueError(f"not in negation normal form: {op}")
 
 
-# The obligation of a temporal formula includes the subformulas that imply it or that it implies.  So `p U q | q` and
-# `p U q` are one obligation, and so are `F(p & X F q) | F q` and `F q`.  For n nested untils, or n goals in sequence,
-# this gives n obligations instead of 2^n.  `G(a -> F[0,n] b)` counts down many bounds at once: only the shortest stays.
+# The obligation of a temporal formula includes the subformulas that imply it or that it implies. So `p U q | q` and
+# `p U q` are one obligation, and so are `F(p & X F q) | F q` and `F q`. For n nested untils, or n goals in sequence,
+# this gives n obligations instead of 2^n. `G(a -> F[0,n] b)` counts down many bounds at once: only the shortest stays.
 
 
 def _weaker_subformulas(formula: Formula) -> list[Formula]:

@@ -1,7 +1,7 @@
 """The after-automaton: its states are obligations, that is, what remains of the formula after the letters so far.
 
 An *obligation* is a Boolean function of literals, of formulas with the outermost operator ``X``,
-``U`` or ``W``, and of rigid formulas (:mod:`tltlc.automaton.infinite.normal_form`).  It is stored
+``U`` or ``W``, and of rigid formulas (:mod:`tltlc.automaton.infinite.normal_form`). It is stored
 as a binary decision diagram (:class:`~tltlc.automaton.transitions.ObligationDiagrams`), so formulas
 with the same function are one state.
 """
@@ -196,7 +196,7 @@ class ObligationAutomaton:
     def formula(self, obligation: int) -> Formula:
         """Return a formula for an obligation.
 
-        It is the smallest formula that :meth:`obligation` converted to this obligation so far.  If
+        It is the smallest formula that :meth:`obligation` converted to this obligation so far. If
         there is none, the formula is made from the diagram.
         """
         known = self._sources.get(obligation)

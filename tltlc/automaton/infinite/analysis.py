@@ -40,9 +40,9 @@ def analysis_of_fspa(fspa: Fspa, work: Work) -> Analysis:
 class Analysis:
     """Goals, traps and verdicts of an automaton, from its cycles (semantics, section 5).
 
-    ``targets`` maps each state to its successors.  ``goals`` is the set of the states on an
-    accepted cycle.  State 0 is initial. The marks of ``edges`` are numbered as by
-    :func:`~tltlc.automaton.infinite.mark_conditions.pair_marks`.  The constructor and every method
+    ``targets`` maps each state to its successors. ``goals`` is the set of the states on an
+    accepted cycle. State 0 is initial. The marks of ``edges`` are numbered as by
+    :func:`~tltlc.automaton.infinite.mark_conditions.pair_marks`. The constructor and every method
     may raise :class:`~tltlc.automaton.work.OutOfWork`.
     """
 
@@ -75,7 +75,7 @@ class Analysis:
         """Return when a spec without a ``judge`` clause is judged.
 
         Returns ``goal`` if the initial state is not a goal, and every run from a goal that avoids
-        traps is accepted.  Otherwise returns ``limit``.
+        traps is accepted. Otherwise returns ``limit``.
         """
         if 0 in self.goals:
             return "limit"

@@ -79,8 +79,8 @@ def _number_states(
 ) -> dict[Place, int]:
     """Number the states from 0 in the order of ``reached``.
 
-    States that are merged get the same number.  States are merged if they have the same value in
-    ``apart`` and, on each letter, the same marks and merged targets.  The method is partition
+    States that are merged get the same number. States are merged if they have the same value in
+    ``apart`` and, on each letter, the same marks and merged targets. The method is partition
     refinement: a block of states is split while its states have different steps, and only states
     that lead to a state of a new block are examined again.
     """

@@ -17,13 +17,13 @@ NO_MARKS: Final[PairMarks] = frozenset()
 
 @record
 class Rabin:
-    """A deterministic, complete Rabin automaton.  Its states are ints, and state 0 is initial.
+    """A deterministic, complete Rabin automaton. Its states are ints, and state 0 is initial.
 
     ``steps[q]`` is a function in the table ``letters``: it maps the letter read in state ``q`` to
     the next state and the marks of the edge, or to None if ``exclusive`` rules the letter out.
     ``labels[q]`` is the formula that remains in state ``q``, or other data that identifies ``q``.
 
-    There are ``pairs`` Rabin pairs.  A run is accepted if, for at least one pair, it takes edges
+    There are ``pairs`` Rabin pairs. A run is accepted if, for at least one pair, it takes edges
     with the mark ``(pair, "inf")`` infinitely often and edges with ``(pair, "fin")`` only finitely
     often.
     """

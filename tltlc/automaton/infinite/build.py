@@ -21,7 +21,7 @@ def build_infinite(spec: Spec, *, state_budget: int = DEFAULT_STATE_BUDGET) -> F
     """Return the deterministic, complete Rabin automaton of a spec over infinite traces.
 
     A state is ``accepting`` if it lies on an accepted cycle; it is a trap if no accepting state can
-    be reached from it.  Raises :class:`~tltlc.diagnostics.diagnostic.TltlError`: TLT0501 if the
+    be reached from it. Raises :class:`~tltlc.diagnostics.diagnostic.TltlError`: TLT0501 if the
     construction takes more than ``state_budget`` times
     :data:`~tltlc.automaton.work.STEPS_PER_STATE` steps, or if formulas become too large; TLT0502 if
     there are too many edges or prime implicants.

@@ -22,7 +22,7 @@ IMPOSSIBLE: Final = -1
 """Takes the place of a label where a letter has no successor because ``exclusive`` rules it out."""
 
 State = tuple[Any, ...]
-"""A label, then the memory of each part.  A target outside the component is ``("exit", label)``."""
+"""A label, then the memory of each part. A target outside the component is ``("exit", label)``."""
 
 Leaf = tuple[State, Marks]
 """The state after a letter, and the marks of the edge: the indices of the parts that mark the letter."""
@@ -35,7 +35,7 @@ class ComponentAutomaton:
     """A strongly connected component of the after-automaton, with an acceptance condition.
 
     ``labels`` maps each state to its label, ``steps`` each state to a function from the letter to a
-    :data:`Leaf`.  A run that stays in the component is accepted if it meets a clause of
+    :data:`Leaf`. A run that stays in the component is accepted if it meets a clause of
     ``accepts``.
     """
 

@@ -1,10 +1,10 @@
 """Build the deterministic Rabin automaton of a formula.
 
-The construction starts from the after-automaton.  Its states, called labels, are what remains of
-the formula; it has no acceptance yet.  Each of its strongly connected components is converted to an
+The construction starts from the after-automaton. Its states, called labels, are what remains of
+the formula; it has no acceptance yet. Each of its strongly connected components is converted to an
 automaton with acceptance (:mod:`tltlc.automaton.infinite.component`): the simplest formula in the
 component is normalised, a small automaton observes each part of the formula, and their acceptance
-conditions become Rabin pairs.  Then the components are joined.  If some states have the same
+conditions become Rabin pairs. Then the components are joined. If some states have the same
 language, the whole construction runs again with their labels merged.
 """
 
@@ -69,8 +69,8 @@ def rabin(
     """Return the automaton of a formula over infinite traces.
 
     ``atoms`` are the names of the atoms of a letter, in order; by default the atoms of the
-    formula.  ``exclusive`` has groups of indices of atoms; at most one atom of a group holds in a
-    letter.  Raises :class:`OutOfWork` after ``work`` steps,
+    formula. ``exclusive`` has groups of indices of atoms; at most one atom of a group holds in a
+    letter. Raises :class:`OutOfWork` after ``work`` steps,
     :class:`~tltlc.automaton.diagrams.OutOfSteps` if an obligation becomes too large, and
     :class:`~tltlc.automaton.guards.TooManyPrimes` if there are too many edges.
     """
@@ -122,7 +122,7 @@ class _Construction:
         """Build the automaton, with labels replaced by their representatives.
 
         Returns the automaton, the state of each label, and the position of each label's component.
-        A component has a higher position than all components that can be reached from it.  Raises
+        A component has a higher position than all components that can be reached from it. Raises
         :class:`TooManyPrimes` if there are more edges between labels than the row "edges" of
         ``WORK`` allows.
         """

@@ -1,9 +1,9 @@
 """The alternating cycle decomposition: a tree of sets of edges, each accepted or rejected.
 
 A. Casares, T. Colcombet, N. Fijalkow, "Optimal Transformations of Games and Automata Using Muller
-Conditions" (ICALP 2021).  A node is a strongly connected set of edges.  The children of an accepted
+Conditions" (ICALP 2021). A node is a strongly connected set of edges. The children of an accepted
 node are its maximal rejected subsets; the children of a rejected node are its maximal accepted
-subsets.  Take the lowest node that contains all edges that a run takes infinitely often: the run is
+subsets. Take the lowest node that contains all edges that a run takes infinitely often: the run is
 accepted if this node is accepted.
 """
 
@@ -30,7 +30,7 @@ LOOKS_PER_STEP: Final = 16
 class Node:
     """A node of the tree.
 
-    ``index`` numbers the nodes of a tree from 0.  ``states`` are the sources and targets of
+    ``index`` numbers the nodes of a tree from 0. ``states`` are the sources and targets of
     ``edges``.
     """
 
@@ -44,8 +44,8 @@ class Node:
 def decomposition(edges: Iterable[Edge], clauses: Sequence[MarkClause], work: Work) -> Node:
     """Return the tree of a strongly connected set of edges.
 
-    A set is accepted if one of ``clauses`` accepts its marks.  Children have the order of their
-    first edges in ``edges``.  Like all functions of this module, this one takes steps of ``work``
+    A set is accepted if one of ``clauses`` accepts its marks. Children have the order of their
+    first edges in ``edges``. Like all functions of this module, this one takes steps of ``work``
     for the edges that it visits, and raises :class:`~tltlc.automaton.work.OutOfWork`.
     """
     order = {edge: place for place, edge in enumerate(edges)}

@@ -4,7 +4,7 @@ The four kinds are Sigma-2 formulas (no ``U`` inside a ``W``), Pi-2 formulas (no
 ``U``), ``G F p`` with p in Sigma-1 (no ``W``), and ``F G p`` with p in Pi-1 (no ``U``).
 The rewrites are from S. Sickert, J. Esparza, "An Efficient Normalisation Procedure for
 Linear Temporal Logic and Very Weak Alternating Automata" (LICS 2020), and from their rewrite system
-(TACAS 2023).  Formulas that are already Sigma-2 or Pi-2 are not changed.
+(TACAS 2023). Formulas that are already Sigma-2 or Pi-2 are not changed.
 """
 
 from __future__ import annotations

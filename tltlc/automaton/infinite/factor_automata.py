@@ -1,7 +1,7 @@
 """Find smaller automata for a component, by merging states.
 
-A state of a component is a label and the memories of the formula's parts.  A *factor* of the
-component merges all states with the same key, such as the label and one of the memories.  So an
+A state of a component is a label and the memories of the formula's parts. A *factor* of the
+component merges all states with the same key, such as the label and one of the memories. So an
 edge of the factor replaces several edges of the component.
 
 The factor must accept the same runs as the component. For this, its edges get ranks, in rounds:
@@ -41,8 +41,8 @@ def factor(
 ) -> RabinComponent | None:
     """Return the component with all states merged that have the same key.
 
-    The key after a letter must depend only on the key before it and on the letter.  Returns None if
-    some edge gets no rank, or if more than :data:`_MOST_TOGETHER` states have the same key.  Raises
+    The key after a letter must depend only on the key before it and on the letter. Returns None if
+    some edge gets no rank, or if more than :data:`_MOST_TOGETHER` states have the same key. Raises
     OutOfWork.
     """
     groups: dict[State, list[State]] = {}

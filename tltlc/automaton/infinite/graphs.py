@@ -59,7 +59,7 @@ def components(roots: Iterable[Node], successors: Callable[[Node], Iterable[Node
 def smallest_bottom(targets: Mapping[Node, Sequence[Node]], root: Node) -> list[Node]:
     """Return the smallest strongly connected component that no edge leaves and ``root`` can reach.
 
-    ``targets`` maps each node to its successors.  Of several smallest components, returns the first
+    ``targets`` maps each node to its successors. Of several smallest components, returns the first
     one in the order of :func:`components`.
     """
     bottoms = []

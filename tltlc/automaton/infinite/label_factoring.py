@@ -26,7 +26,7 @@ _MOST_STEPS: Final = 20_000
 """The most steps of the diagrams for one form of a formula. A form that takes more is left out."""
 
 _Term = frozenset[int]
-"""A set of literals.  The literal of variable ``v`` is ``2 * v``, its negation ``2 * v + 1``."""
+"""A set of literals. The literal of variable ``v`` is ``2 * v``, its negation ``2 * v + 1``."""
 
 _Op = Literal["or", "and"]
 """The operator that joins terms: ``or`` for implicants (conjunctions), ``and`` for implicates
@@ -58,7 +58,7 @@ class Factoring:
     def forms(self, formula: Formula) -> Iterator[Formula]:
         """Yield the formula as a disjunction of prime implicants and as a conjunction of prime implicates.
 
-        Both have their common factors in front.  A form with too many terms is left out.
+        Both have their common factors in front. A form with too many terms is left out.
         """
         operators: tuple[_Op, ...] = ("or", "and")
         for op in operators:

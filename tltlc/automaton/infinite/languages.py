@@ -17,8 +17,8 @@ _WORDS: Final = 48
 def equal_states(automaton: Rabin, atoms: int, exclusive: Sequence[Sequence[int]], work: Work) -> list[int]:
     """Return, for each state, the first state that has the same language.
 
-    ``atoms`` is the number of atoms of a letter.  ``exclusive`` has groups of indices of atoms; at
-    most one atom of a group holds in a letter.  Raises OutOfWork.
+    ``atoms`` is the number of atoms of a letter. ``exclusive`` has groups of indices of atoms; at
+    most one atom of a group holds in a letter. Raises OutOfWork.
     """
     representatives: list[int] = []
     signatures = _signatures(automaton, atoms, exclusive, work)
@@ -33,7 +33,7 @@ def equal_states(automaton: Rabin, atoms: int, exclusive: Sequence[Sequence[int]
 
 
 def _equal(automaton: Rabin, one: int, other: int, work: Work) -> bool:
-    """Whether two states have the same language.  Raises OutOfWork."""
+    """Whether two states have the same language. Raises OutOfWork."""
     steps, pairs = automaton.steps, automaton.pairs
     together = product_leaves(automaton.letters, pairs, lambda leaf: leaf is None)
 
@@ -48,7 +48,7 @@ def _equal(automaton: Rabin, one: int, other: int, work: Work) -> bool:
 
 
 def _signatures(automaton: Rabin, atoms: int, exclusive: Sequence[Sequence[int]], work: Work) -> list[tuple[bool, ...]]:
-    """Return, for each state, which of the random cycles it accepts.  Raises OutOfWork."""
+    """Return, for each state, which of the random cycles it accepts. Raises OutOfWork."""
     # A fixed seed, so that the same formula gives the same automaton.
     rng = Random(1)
 

@@ -1,6 +1,6 @@
 """Evaluate formulas on infinite traces that repeat a cycle, directly from the definitions of the operators.
 
-This is slow.  Tests compare the automata of this package with it.
+This is slow. Tests compare the automata of this package with it.
 """
 
 from __future__ import annotations
@@ -13,8 +13,8 @@ from tltlc.logic.formula import Formula
 def holds_on_lasso(formula: Formula, prefix: Sequence[Collection[str]], cycle: Sequence[Collection[str]]) -> bool:
     """Whether a formula holds on ``prefix`` followed by infinitely many repetitions of ``cycle``.
 
-    A sample is the collection of the names of the atoms that hold at it.  ``N`` means the same as
-    ``X``, since every sample has a next one.  Raises ValueError if the cycle is empty.
+    A sample is the collection of the names of the atoms that hold at it. ``N`` means the same as
+    ``X``, since every sample has a next one. Raises ValueError if the cycle is empty.
     """
     if not cycle:
         raise ValueError("the cycle is empty")

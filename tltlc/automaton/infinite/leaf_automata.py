@@ -1,6 +1,6 @@
 """Small deterministic automata for the parts of a normalised formula.
 
-Each automaton marks some of the letters that it reads.  Whether it accepts depends on whether it
+Each automaton marks some of the letters that it reads. Whether it accepts depends on whether it
 marks infinitely many.
 """
 
@@ -112,9 +112,9 @@ class Recurrence:
     """An automaton for ``G F p`` if p has no ``W`` (``inf``), or for ``F G p`` if p has no ``U``
     (``fin``).
 
-    At each letter, an attempt to satisfy p starts.  The memory has what remains of p for each
-    attempt that has not succeeded or failed yet.  A letter is marked if an attempt succeeds (for
-    ``F G p``: fails).  The other attempts are then dropped, unless ``keep`` is true.
+    At each letter, an attempt to satisfy p starts. The memory has what remains of p for each
+    attempt that has not succeeded or failed yet. A letter is marked if an attempt succeeds (for
+    ``F G p``: fails). The other attempts are then dropped, unless ``keep`` is true.
     """
 
     def __init__(self, after: ObligationAutomaton, formula: Formula, kind: Kind, *, keep: bool) -> None:

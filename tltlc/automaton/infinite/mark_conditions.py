@@ -60,8 +60,8 @@ def clauses(
 ) -> list[MarkClause] | bool:
     """Return the clauses of a skeleton: its formula holds on a run if the run meets one of them.
 
-    The mark of each part is its index in ``kinds``.  ``values`` has True or False for a part whose
-    value is known, None for the others.  Returns True or False if the formula is constant.  Raises
+    The mark of each part is its index in ``kinds``. ``values`` has True or False for a part whose
+    value is known, None for the others. Returns True or False if the formula is constant. Raises
     OutOfWork if there are too many clauses.
     """
     result = _clauses(skeleton, kinds, values, work)

@@ -2,7 +2,7 @@
 
 The operators of the normal form are ``true false atom not and or X U W``, with ``not`` only before
 atoms, and the *rigid* formulas ``G F p`` and ``F G p``, whose truth does not change with time.
-``F p`` is ``true U p`` and ``G p`` is ``p W false``.  On infinite traces ``N`` is ``X``, ``a R b``
+``F p`` is ``true U p`` and ``G p`` is ``p W false``. On infinite traces ``N`` is ``X``, ``a R b``
 is ``b W (a & b)`` and ``a M b`` is ``b U (a & b)``.
 """
 
@@ -84,7 +84,7 @@ def negation(formula: Formula) -> Formula:
                 inner = done[node.args[0].args[0]]
                 done[node] = always_eventually(inner) if node.op == "F" else eventually_always(inner)
             case _:
-                # The inner operator of a rigid formula.  The case above negates it together with the outer one.
+                # The inner operator of a rigid formula. The case above negates it together with the outer one.
                 done[node] = node
     return done[formula]
 
@@ -288,7 +288,7 @@ def substitute_operands(formula: Formula, values: dict[Formula, Formula]) -> For
 def _pull_rigid(make: Callable[..., Formula], *args: Formula) -> Formula | None:
     """Return the formula f = ``make(*args)`` with a rigid subformula g moved out of its outermost operator.
 
-    The result is ``g & f[g := true] | f[g := false]``.  Returns None if f has no rigid subformula,
+    The result is ``g & f[g := true] | f[g := false]``. Returns None if f has no rigid subformula,
     or more than :data:`_MOST_PULLED`.
     """
     rigid = tuple(dict.fromkeys(chain.from_iterable(map(rigid_parts, args))))

@@ -30,7 +30,7 @@ The decomposition may need fewer pairs than there are clauses.
 Walk = tuple[Any, ...]
 """The position of a run below a node of the tree.
 
-If the position is in one child: the child's index and the position below the child.  If it is in
+If the position is in one child: the child's index and the position below the child. If it is in
 several children at once: the positions below all children that contain the run's state.
 """
 
@@ -52,7 +52,7 @@ def with_pairs(letters: Diagrams[Any], component: ComponentAutomaton, work: Work
     """Return the component with Rabin pairs instead of clauses.
 
     Of the automata that this module can build, it is the one with the fewest states, and then the
-    fewest pairs.  Raises OutOfWork.
+    fewest pairs. Raises OutOfWork.
     """
     candidates: list[RabinComponent] = []
     direct = clauses_as_pairs(letters, component)
@@ -94,7 +94,7 @@ def clauses_as_pairs(letters: Diagrams[Any], component: ComponentAutomaton) -> R
 def _wait_in_turn(letters: Diagrams[Any], component: ComponentAutomaton, work: Work) -> RabinComponent:
     """Return the component with a Rabin pair for each clause.
 
-    A new state also stores, for each clause, which of its ``infs`` the run must take next.  The
+    A new state also stores, for each clause, which of its ``infs`` the run must take next. The
     edge on which the run has taken all of them gets the ``inf`` mark of the pair.
     """
     orders = [sorted(clause.infs) for clause in component.accepts]

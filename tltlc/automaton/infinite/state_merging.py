@@ -1,7 +1,7 @@
 """Remove states of a component by redirecting their edges to another state with the same label.
 
-States with the same label have the same language.  But a run that is redirected infinitely often
-may be accepted or rejected wrongly, because the memories of the two states differ.  So each removal
+States with the same label have the same language. But a run that is redirected infinitely often
+may be accepted or rejected wrongly, because the memories of the two states differ. So each removal
 is checked: a state is removed only if the automaton without it accepts the same cycles as the
 original one (docs/adr/0021).
 """
@@ -73,7 +73,7 @@ def _redirect(letters: Diagrams[Any], component: RabinComponent, state: Any, oth
 def _is_equal(letters: Diagrams[Any], one: RabinComponent, other: RabinComponent, work: Work) -> bool:
     """Whether each state of ``one`` accepts the same traces in ``one`` as in ``other``.
 
-    Only traces whose runs stay in the component for ever are compared.  Raises OutOfWork.
+    Only traces whose runs stay in the component for ever are compared. Raises OutOfWork.
     """
     together = product_leaves(letters, one.pairs, lambda leaf: leaf[0][0] == "exit")
 
