@@ -1,4 +1,4 @@
-"""The automaton agrees with the oracle, and with brute force on every claim of section 3 of the semantics."""
+"""The automaton agrees with the oracle, and with brute force on every claim of its section in ``docs/semantics.md``."""
 
 from __future__ import annotations
 

@@ -35,7 +35,7 @@ def guard_of(formula: Formula) -> Guard | None:
 
 
 def robustness(guard: Guard | None, values: Sequence[float]) -> float:
-    """The max over primes of the min over literals; true is 1 and false -1 (semantics, section 3)."""
+    """The max over primes of the min over literals; true is 1 and false -1 (``docs/semantics.md``)."""
     if guard is None:
         return -1.0
     return max(

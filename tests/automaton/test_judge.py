@@ -1,4 +1,4 @@
-"""The default judge of a spec without a ``judge`` clause (semantics, section 4)."""
+"""The default judge of a spec without a ``judge`` clause (``docs/semantics.md``, "When a spec is judged")."""
 
 from __future__ import annotations
 

@@ -5,7 +5,7 @@ state must be true.
 
 A cube is a conjunction of literals. It is stored as two bit sets: the atoms that must be true, and
 the atoms that must be false. ``D`` is the set of samples on which no two atoms of an exclusive
-group hold together (``docs/semantics.md``, section 3).
+group hold together (``docs/semantics.md``, "Guards and their robustness").
 """
 
 from __future__ import annotations

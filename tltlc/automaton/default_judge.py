@@ -1,6 +1,6 @@
 """Decide whether a spec without a ``judge`` clause is judged at its goal or at its limit.
 
-The rule is in docs/semantics.md, section 4; the reasons are in docs/adr/0009.
+The rule is in ``docs/semantics.md``, "When a spec is judged"; the reasons are in ``docs/adr/0009``.
 """
 
 from __future__ import annotations

@@ -65,7 +65,7 @@ class Guard:
     ``formula`` may be a :class:`Text`. ``primes`` are all prime implicants of the guard; a guard
     that is always true has ``((),)``. If atoms are declared ``exclusive``, let D be the condition
     that no two of these atoms hold together. Then ``primes`` are the prime implicants of ``guard or
-    not D``, without those that contradict D (semantics, section 3).
+    not D``, without those that contradict D (``docs/semantics.md``, "Guards and their robustness").
     """
 
     formula: Formula | Text
@@ -111,7 +111,7 @@ class Fspa:
 
     Over infinite traces, a run is accepted if it meets one of the pairs of ``acceptance``, and a
     state is accepting if it lies on an accepted cycle. Edges with the same source and target then
-    differ in their :meth:`marks` (semantics, section 5).
+    differ in their :meth:`marks` (``docs/semantics.md``, "Infinite traces").
     """
 
     name: str

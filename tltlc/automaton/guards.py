@@ -109,8 +109,9 @@ class Guards:
         return guards
 
     def primes(self, guard: int) -> tuple[Implicant, ...]:
-        """Return all prime implicants of a guard, sorted by length, then by atom (semantics, section 3).
+        """Return all prime implicants of a guard, sorted by length, then by atom.
 
+        ``docs/semantics.md``, "Guards and their robustness", says why an automaton has all of them.
         If ``exclusive`` declarations allow only the letters D, returns the prime implicants of
         ``guard or not D``, without those that no letter in D satisfies. Raises
         :class:`TooManyPrimes`.

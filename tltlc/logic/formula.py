@@ -209,7 +209,7 @@ def strong_release(left: Formula, right: Formula) -> Formula:
 
 
 def then(left: Formula, right: Formula) -> Formula:
-    """Return ``left then right`` = ``F(left & X F right)`` (semantics, section 2).
+    """Return ``left then right`` = ``F(left & X F right)`` (``docs/semantics.md``, "Traces").
 
     If ``right`` already begins with ``F``, as another ``then`` does, no second ``F`` is added.
     """

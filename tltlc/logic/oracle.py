@@ -1,7 +1,7 @@
 """The meaning of formulas, computed slowly from the definitions.
 
-The definitions are in ``docs/semantics.md``, sections 1 and 2. Tests compare all faster code with
-this module.
+The definitions are in ``docs/semantics.md``, "Truth and robustness of atoms" and "Traces". Tests
+compare all faster code with this module.
 """
 
 from __future__ import annotations
@@ -31,9 +31,9 @@ def robustness_of_state(formula: Formula, values: Mapping[str, float]) -> float:
     """Return the robustness, in [-1, 1], of a formula without temporal operators at one sample.
 
     ``values`` maps each atom to a value in [-1, 1]. ``true`` is 1, ``false`` is -1, an atom is its
-    value, ``not`` is the negative, ``and`` the minimum, and ``or`` the maximum (paper, section
-    III). ``a -> b`` is read as ``!a | b``, and ``a <-> b`` as ``(!a | b) & (a | !b)``. Raises
-    ValueError at a temporal operator.
+    value, ``not`` is the negative, ``and`` the minimum, and ``or`` the maximum
+    (Gutiérrez-Sánchez et al., IEEE Trans. Games 2024, section III). ``a -> b`` is read as
+    ``!a | b``, and ``a <-> b`` as ``(!a | b) & (a | !b)``. Raises ValueError at a temporal operator.
     """
     results: dict[Formula, float] = {}
     for node in formula.bottom_up():

@@ -1,4 +1,4 @@
-"""The automata of specifications over infinite traces agree with the definitions in section 5 of the semantics."""
+"""The automata of specifications over infinite traces agree with the definitions in ``docs/semantics.md``."""
 
 from __future__ import annotations
 

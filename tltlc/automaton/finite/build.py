@@ -32,7 +32,7 @@ DEFAULT_STATE_BUDGET = 50_000
 
 
 def build(spec: Spec, *, state_budget: int = DEFAULT_STATE_BUDGET) -> Fspa:
-    """Return the minimal complete automaton of a spec over finite traces (semantics, section 3).
+    """Return the minimal complete automaton of a spec over finite traces (``docs/semantics.md``, "The automaton").
 
     Raises :class:`~tltlc.diagnostics.diagnostic.TltlError`: TLT0502 if there are too many edges or
     prime implicants, and TLT0501 if anything else becomes too large, such as the number of states

@@ -1,6 +1,6 @@
 """Compute the transition of a formula or an obligation: what remains to be done after one letter.
 
-Each temporal operator has an expansion law on finite traces (semantics, section 2):
+Each temporal operator has an expansion law on finite traces:
 ``F p = p | X F p``, ``G p = p & N G p``, ``p U q = q | p & X(p U q)``,
 ``p W q = q | p & N(p W q)``, ``p R q = q & (p | N(p R q))``, ``p M q = q & (p | X(p M q))``.
 ``X p`` and ``N p`` leave the obligation p; if the trace ends, ``X p`` rejects and ``N p`` accepts.

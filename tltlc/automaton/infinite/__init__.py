@@ -1,1 +1,1 @@
-"""Deterministic Rabin automata of formulas over infinite traces (semantics, section 5)."""
+"""Deterministic Rabin automata of formulas over infinite traces (``docs/semantics.md``, "Infinite traces")."""

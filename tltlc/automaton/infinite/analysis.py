@@ -38,7 +38,7 @@ def analysis_of_fspa(fspa: Fspa, work: Work) -> Analysis:
 
 
 class Analysis:
-    """Goals, traps and verdicts of an automaton, from its cycles (semantics, section 5).
+    """Goals, traps and verdicts of an automaton, from its cycles (``docs/semantics.md``, "Infinite traces").
 
     ``targets`` maps each state to its successors. ``goals`` is the set of the states on an
     accepted cycle. State 0 is initial. The marks of ``edges`` are numbered as by

@@ -1,4 +1,4 @@
-"""Build the automaton of a resolved spec over infinite traces (semantics, section 5)."""
+"""Build the automaton of a resolved spec over infinite traces (``docs/semantics.md``, "Infinite traces")."""
 
 from __future__ import annotations
 
