@@ -100,7 +100,8 @@ def _repeats_operands(body: Formula, last: Formula) -> bool:
 def operands_with_bounds(node: Formula) -> list[Formula]:
     """Return the operands of an ``or`` or ``and``.
 
-    Operands that together expand a bound of at least :data:`LEAST` steps are joined to one.
+    Operands that together are the expansion of a bounded operator of at least :data:`LEAST` steps
+    become one operand.
     """
     operands: list[Formula] = []
     for operand in node.args:

@@ -166,12 +166,12 @@ def iff(left: Formula, right: Formula) -> Formula:
 
 
 def next_(operand: Formula) -> Formula:
-    """Return the strong next ``X``: there is a next sample, and the operand holds from it on."""
+    """Return the strong next ``X``: there is a next sample, and the operand holds there."""
     return _intern("X", (operand,))
 
 
 def weak_next(operand: Formula) -> Formula:
-    """Return the weak next ``N``: if there is a next sample, the operand holds from it on."""
+    """Return the weak next ``N``: if there is a next sample, the operand holds there."""
     return _intern("N", (operand,))
 
 
@@ -186,24 +186,24 @@ def always(operand: Formula) -> Formula:
 
 
 def until(left: Formula, right: Formula) -> Formula:
-    """Return ``left U right``: right holds at some sample, and left at all samples before it."""
+    """Return ``left U right``: ``right`` holds now or at a later sample, and ``left`` at all samples before that."""
     return _intern("U", (left, right))
 
 
 def weak_until(left: Formula, right: Formula) -> Formula:
-    """Return ``left W right``: ``left U right``, or left always holds."""
+    """Return ``left W right``: ``left U right``, or ``left`` holds throughout."""
     return _intern("W", (left, right))
 
 
 def release(left: Formula, right: Formula) -> Formula:
-    """Return ``left R right``: right holds up to and including the first sample with left, or always."""
+    """Return ``left R right``: ``right`` holds up to and including the first sample with ``left``, or throughout."""
     return _intern("R", (left, right))
 
 
 def strong_release(left: Formula, right: Formula) -> Formula:
-    """Return ``left M right``: right holds up to and including the first sample with left.
+    """Return ``left M right``: ``right`` holds up to and including the first sample with ``left``.
 
-    A sample with left must exist.
+    A sample with ``left`` must exist.
     """
     return _intern("M", (left, right))
 

@@ -14,7 +14,7 @@ from tltlc.logic.formula import FALSE, TRUE, Formula, Op
 from tltlc.logic.signature import signature
 
 DUAL: Final[dict[Op, Op]] = {"X": "N", "N": "X", "F": "G", "G": "F", "U": "R", "R": "U", "W": "M", "M": "W"}
-"""The dual of each operator, which replaces it as negation moves inwards: ``!X a`` is ``N !a``."""
+"""The dual of each operator. When negation moves inwards, the dual replaces the operator: ``!X a`` is ``N !a``."""
 
 _MOST_PAIRS: Final = 400
 _DEEPEST: Final = 40
@@ -171,7 +171,7 @@ def _strengthen_conclusion(p: Formula, q: Formula, shows: _Prover) -> bool:
 
 
 def _compare_operands(p: Formula, q: Formula, shows: _Prover) -> bool:
-    """Whether the operator of ``p`` implies that of ``q``, and each operand of ``p`` that of ``q``.
+    """Whether ``q`` has the operator of ``p`` or a weaker one, and each operand of ``p`` implies that of ``q``.
 
     ``F G`` and ``G F`` count as one operator: ``F G a`` and ``G F a`` both mean ``a`` at the last sample.
     """

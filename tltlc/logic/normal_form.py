@@ -76,7 +76,7 @@ def _expand(signed: _Signed) -> tuple[Op, tuple[_Signed, ...]]:
 
 
 def _gather(op: Op, operands: tuple[_Signed, ...]) -> tuple[_Signed, ...]:
-    """Replace each operand whose own operator is also ``op`` by its operands; return each once, in order."""
+    """Return the operands in order and each once, with every operand that has the operator ``op`` flattened."""
     gathered: list[_Signed] = []
     seen: set[_Signed] = set()
     stack = list(reversed(operands))

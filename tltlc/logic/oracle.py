@@ -13,7 +13,7 @@ from tltlc.logic.formula import Formula
 
 
 def holds(formula: Formula, trace: Sequence[Collection[str]], position: int = 0) -> bool:
-    """Whether the formula holds on a finite trace from ``position`` on.
+    """Whether the formula holds at ``position`` of a finite trace.
 
     A sample of the trace is the collection of the names of the atoms that hold at it. Raises
     ValueError if the trace is empty or has no such position.

@@ -1,4 +1,4 @@
-"""The truth of a formula on a few fixed traces, to prove quickly that one does not imply another.
+"""The truth of a formula on a few fixed traces, to prove quickly that one formula does not imply another.
 
 The traces are 64 pseudo-random traces of three samples, and their suffixes of two samples and of one.
 """

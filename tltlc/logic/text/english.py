@@ -68,13 +68,13 @@ def clause_text(formula: Formula, *, endless: bool = False) -> str:
 
 
 def invariant_text(invariant: Formula, *, endless: bool = False) -> str:
-    """Return a ``G`` as an item of a list of what must hold: ``keep alive`` for ``G alive``."""
+    """Return a formula ``G p`` as an item of a list of what must hold: ``keep alive`` for ``G alive``."""
     (body,) = invariant.args
     return imperative(body, "keep", "avoid") if _is_condition(body) else clause_text(invariant, endless=endless)
 
 
 def recurring_text(recurring: Formula) -> str:
-    """Return a ``G F`` as an item of a list of recurring goals: ``reach a`` for ``G F a``."""
+    """Return a formula ``G F p`` as an item of a list of recurring goals: ``reach a`` for ``G F a``."""
     (body,) = recurring.args
     reach = _without_negation(body)
     if reach.op != "F":
@@ -84,7 +84,7 @@ def recurring_text(recurring: Formula) -> str:
 
 
 def goal_texts(reach: Formula, *, endless: bool = False) -> tuple[tuple[str, str], ...]:
-    """Return the goals of an ``F`` in order, as pairs of a link to the previous goal and a text.
+    """Return the goals of a formula ``F p`` in order, as pairs of a link to the previous goal and a text.
 
     A link is ``then`` or ``then or at the same time``; the link of the first goal is empty.
     """
@@ -165,7 +165,7 @@ def _join_clauses(clauses: Sequence[_Clause]) -> _Clause:
 
 
 def _reach_clause(node: Formula, when: str, context: _SentenceContext) -> _Clause:
-    """Return the clause of ``F``: a goal, or a sequence of goals."""
+    """Return the clause of a formula ``F p``: a goal, or a sequence of goals."""
     (body,) = node.args
     if _without_negation(body).op == "G":
         return f"from some step on {_inner_clause(body, context)}", _LIST
@@ -195,9 +195,9 @@ def _linked_goals(body: Formula, context: _SentenceContext) -> Iterator[tuple[st
 
 
 def _next_goal(body: Formula) -> tuple[str, Formula | None]:
-    """Return the link to the next goal and its ``F``, for a body ``p & X F q`` or ``p & F q``.
+    """Return the link to the next goal and the formula ``F q`` of that goal, for a body ``p & X F q`` or ``p & F q``.
 
-    The ``F`` is None if no goal follows.
+    The formula is None if no goal follows.
     """
     if body.op != "and":
         return "", None
@@ -232,7 +232,7 @@ def _goal(body: Formula, context: _SentenceContext) -> str:
 
 
 def _throughout_clause(body: Formula, context: _SentenceContext) -> _Clause:
-    """Return the clause of ``G``: what to keep, what to avoid, or what to do whenever something holds."""
+    """Return the clause of ``G body``: what to keep, what to avoid, or what to do whenever something holds."""
     if _has_parts(body):
         return _join_clauses([_throughout_clause(part, context) for part in _parts_throughout(body)])
     if body.op == "implies" and is_state(body):
@@ -287,7 +287,7 @@ def _implication(body: Formula) -> tuple[Formula | None, Formula | None]:
 
 
 def _until_clause(node: Formula, context: _SentenceContext) -> _Clause:
-    """Return the clause of ``U``, ``W``, ``R`` or ``M``."""
+    """Return the clause of a formula with the outermost operator ``U``, ``W``, ``R`` or ``M``."""
     left, right = node.args
     if node.op in ("U", "M"):
         goal, held = (right, left) if node.op == "U" else (left, right)
