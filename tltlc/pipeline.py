@@ -213,8 +213,8 @@ def unknown_spec(name: str, known: list[str], file: str) -> Diagnostic:
 def compile_text(text: str, name: str = "<text>", options: CompileOptions | None = None) -> tuple[Fspa, ...]:
     """Return the automata of the specs of a text, in order.
 
-    ``name`` is the name of the text in messages. If it is a path, imported files are searched in
-    its folder, too. Errors: :class:`TltlError`.
+    ``name`` is the name of the text in messages. If it is a path, imported files are searched for
+    in its folder, too. Errors: :class:`TltlError`.
 
     >>> import tltlc
     >>> fspa, = tltlc.compile_text("signal seen: bool  spec hide = G !seen")

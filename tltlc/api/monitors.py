@@ -1,7 +1,7 @@
 """What are the values of the atoms, the progress and the reward of a step?
 
 ``Samples`` checks samples of signals and computes the values of the atoms. ``robustness`` computes
-the robustness of a guard, and ``tables`` what is needed to compute progress. ``MODES`` has the
+the robustness of a guard, and ``tables`` returns the lookup tables for progress. ``MODES`` has the
 names of the reward modes; ``mode_function`` returns the function of a mode, which rewards a
 ``Transition``. ``tltlc.api.Monitor`` does all of this for one automaton, step by step.
 """

@@ -1,1 +1,1 @@
-"""What all other packages use: records, names with arguments, and source texts with spans."""
+"""Records, names with arguments, and source texts with spans: the code that all other packages use."""

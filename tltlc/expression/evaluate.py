@@ -18,7 +18,7 @@ from typing import Final
 from tltlc.expression.tree import Condition, Const, Expression, ParamValue, SignalValue, When
 
 MULTIPLIED_EXPONENTS: Final = {2.0: 2, 3.0: 3}
-"""The constant exponents whose powers are computed as products, and the numbers of factors."""
+"""Maps each constant exponent whose power is computed as a product to the number of factors."""
 
 
 def evaluate(expression: Expression, signals: Mapping[str, float], params: Mapping[str, float]) -> float:

@@ -16,10 +16,11 @@ ArithmeticOp = Literal["+", "-", "*", "/", "^", "neg", "min", "max", "abs", "cla
 ConditionOp = Literal["<", "<=", ">", ">=", "and", "or", "not"]
 
 LEAST: Final = 1e-30
-"""The least robustness of a true comparison whose margin is at least this, where the scaled margin may round to 0.
+"""The least robustness of a true comparison whose scaled margin might round to 0.
 
-:mod:`tltlc.resolve.margins` explains it. It is tiny, but does not become 0 when it is converted to
-a 32-bit float.
+If the margin itself is smaller than this, the margin is the least robustness
+(:mod:`tltlc.resolve.margins`). The number is tiny, but does not become 0 when it is converted to a
+32-bit float.
 """
 
 
@@ -95,7 +96,7 @@ def nodes(expression: Expression | Condition) -> Iterator[Expression | Condition
 
 
 def depth(expression: Expression | Condition) -> int:
-    """Return how deep operators are nested: 0 for a number or a signal."""
+    """Return how deep operators are nested: 0 for a number, a signal or a param."""
     height, level = -1, {id(expression): expression}
     while level:
         height += 1
@@ -104,12 +105,12 @@ def depth(expression: Expression | Condition) -> int:
 
 
 def most_parts(expression: Expression | Condition) -> int:
-    """Return the most cases of one ``when`` in an expression, or the most arguments of one operator."""
+    """Return the most cases of any ``when``, or arguments of any operator, in an expression, whichever is more."""
     return max(len(node.cases) if isinstance(node, When) else len(parts(node)) for node in nodes(expression))
 
 
 def parts(node: Expression | Condition) -> tuple[Expression | Condition, ...]:
-    """Return the operands of a node, or the conditions and values of a ``when``."""
+    """Return the operands of a node, or the conditions and values of a ``when``; nothing for other nodes."""
     if isinstance(node, When):
         return (*(part for case in node.cases for part in case), node.otherwise)
     return node.args if isinstance(node, (Op, Condition)) else ()

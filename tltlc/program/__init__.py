@@ -1,1 +1,1 @@
-"""Monitors as programs in no language: declarations, assignments and branches, which the backends print."""
+"""Monitors as programs in no particular language: declarations, assignments and branches, which backends print."""

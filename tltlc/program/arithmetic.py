@@ -3,7 +3,7 @@
 Three kinds of subexpressions get temporary variables:
 
 - a ``when``: an ``if`` before the expression assigns its value;
-- what is nested too deep for the parsers of some languages;
+- an expression that is nested too deep for the parsers of some languages;
 - the base of a power that is written as a product.
 
 As in Python, later operands of ``and`` and ``or`` are computed only if they are needed. If a later
@@ -52,8 +52,8 @@ C# and GDScript compilers allow hundreds of levels, Lua 200.
 _MOST_BRANCHES: Final = 20
 """The greatest depth of ``if`` statements.
 
-Nested ``when`` expressions are counted apart from the later cases of one ``when``: either may be
-this deep.
+Two kinds of nesting are counted separately, and each may be this deep: ``when`` expressions inside
+each other, and the ``else`` parts that hold later cases of one ``when``.
 """
 
 _Node = Union[source.Expression, source.Condition]

@@ -271,7 +271,7 @@ class _Facts:
     def _at_most(self, left: Expression, right: Expression) -> bool:
         """Whether ``left <= right`` is known.
 
-        It is known if they are ``a - b`` and ``a - c``, and ``c <= b`` is known.
+        It is known if ``left`` is ``a - b``, ``right`` is ``a - c``, and ``c <= b`` is known.
         """
         match left, right:
             case BinaryNumber("-", minuend, b), BinaryNumber("-", other_minuend, c) if minuend == other_minuend:

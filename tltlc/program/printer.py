@@ -44,7 +44,7 @@ _SHORT = 12
 
 
 class Printer:
-    """Prints statements and expressions as C would write them.
+    """Prints statements and expressions as C code.
 
     Each other language has a subclass that overrides what it writes differently.
     """

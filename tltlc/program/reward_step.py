@@ -39,7 +39,7 @@ BEFORE = "before"
 
 
 def statements(fspa: Fspa) -> tuple[Statement, ...]:
-    """Return the statements of a spec's automaton that run after each transition."""
+    """Return the statements that run after each transition of an automaton."""
     limit = fspa.limit_steps
     steps, zero = Variable(STEPS), Real(0.0)
     lines: list[Statement] = [] if fspa.judge == "goal" else _survived(limit)

@@ -79,7 +79,7 @@ def boolean_literal(value: bool) -> str:
 
 
 def paragraphs(*parts: Sequence[str]) -> list[str]:
-    """Return the lines of all parts that have any, with an empty line between two parts."""
+    """Return the lines of all parts that are not empty, with an empty line between two parts."""
     return "\n\n".join("\n".join(part) for part in parts if part).split("\n")
 
 

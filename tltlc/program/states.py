@@ -1,4 +1,4 @@
-"""The statements of each state: they find the edge to take from the values of the atoms, and compute its results.
+"""The statements of each state: they find the edge to take, and compute its robustness and the progress.
 
 Begin with `state_statements`.
 """
@@ -108,8 +108,8 @@ class _StateCode:
     def _robustness(self, primes: Sequence[Implicant]) -> Expression:
         """Return the robustness of a guard: the maximum of the robustness of its prime implicants.
 
-        The robustness of a prime implicant is its least literal. If it saves literals, the
-        expression is a minimum of maxima instead, which may change the sign of a 0.
+        The robustness of a prime implicant is its least literal. If a minimum of maxima has fewer
+        literals, returns that instead; only the sign of a 0 may differ.
         """
         shared = _shared(primes)
         rest = [[literal for literal in prime if literal not in shared] for prime in primes]
@@ -141,9 +141,10 @@ class _StateCode:
         return lines if self._at_goal or NEAREST in variables_read(lines) else lines[1:]
 
     def _limiting_statements(self, prime: Sequence[tuple[int, bool]], value: str) -> list[Statement]:
-        """Return statements that assign the first atom of ``prime`` whose literal has a given value.
+        """Return statements that find the first literal of ``prime`` that has a given value.
 
-        They assign it to ``LIMITING``. ``value`` is the variable with the value.
+        They assign the index of its atom to ``LIMITING``. ``value`` is the name of the variable with
+        the given value.
         """
         *before, (last, _) = prime
         otherwise = Assign(LIMITING, Int(last))

@@ -57,7 +57,7 @@ class Variable:
 
 @record
 class Negate:
-    """``-operand``."""
+    """The number ``-operand``."""
 
     operand: Expression
 
