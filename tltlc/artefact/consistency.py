@@ -15,9 +15,9 @@ from tltlc.resolve import spec
 Declared = Union[spec.Signal, spec.Param, spec.Atom]
 
 CYCLES_WORK: Final = 1_000_000
-"""The most steps of work for the check of goals and verdicts over infinite traces.
+"""The most steps of work for the check of accepting states and verdicts over infinite traces.
 
-Large automata with many cycles need more. Their goals and verdicts are not checked.
+Large automata with many cycles need more. Their accepting states and verdicts are not checked.
 """
 
 
@@ -36,7 +36,7 @@ def problems(fspa: Fspa) -> Iterator[Problem]:
     checks have a limit on their work, so large automata are checked only in part:
 
     - the check of guards (:data:`tltlc.artefact.guards.WORK_LIMIT`);
-    - over infinite traces, the check of goals and verdicts (:data:`CYCLES_WORK`).
+    - over infinite traces, the check of accepting states and verdicts (:data:`CYCLES_WORK`).
     """
     for check in (_names, _values, _indices, _parallel_edges, _numbering, _distances, _guards):
         failed = False
@@ -144,7 +144,10 @@ def _numbering(fspa: Fspa) -> Iterator[Problem]:
 
 
 def _distances(fspa: Fspa) -> Iterator[Problem]:
-    """Check that goals, distances, verdicts and ``spec_size`` are those that follow from the edges."""
+    """Check that distances, verdicts and ``spec_size`` follow from the accepting states and the edges.
+
+    Over infinite traces, also checks that the accepting states are those on accepted cycles.
+    """
     goals, verdicts = _by_cycles(fspa) if fspa.semantics == "infinite" else _by_states(fspa)
     to_goal = _steps_to(fspa, goals)
     for state in fspa.states:

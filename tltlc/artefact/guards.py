@@ -25,7 +25,7 @@ A check that needs more stops without a result.
 """
 
 _BITS_OF_A_STEP = 512
-"""With more atoms than this, an operation on cubes may count as several."""
+"""With more atoms than this, one operation on cubes may count as several operations."""
 
 
 class _TooManyCubesError(Exception):
@@ -97,9 +97,10 @@ def _guard_problem(
 ) -> str | None:
     """Return in words why ``cubes`` are not all prime implicants of a guard, or None if they are.
 
-    ``pairs`` has a cube for each pair of exclusive atoms, which is true if both hold. A set of
-    cubes has all prime implicants of its disjunction if and only if no cube implies another one,
-    and the consensus of every two cubes implies a cube of the set (Quine 1955).
+    ``cubes`` are the implicants ``primes`` as bit sets. ``pairs`` has a cube for each pair of
+    exclusive atoms, which is true if both hold. A set of cubes has all prime implicants of its
+    disjunction if and only if no cube implies another one, and the consensus of every two cubes
+    implies a cube of the set (Quine 1955).
     """
     for prime, cube in zip(primes, cubes, strict=True):
         if len({atom for atom, _ in prime}) < len(prime):

@@ -9,7 +9,7 @@ from typing import Any, Final
 
 WIDTH: Final = 120
 _PIECES: Final = 10_000
-"""How many small pieces of text :func:`layout` joins to a piece that it yields."""
+"""How many small pieces of text :func:`layout` joins before it yields them as one piece."""
 
 Encode = Callable[[Any], str]
 
