@@ -1,6 +1,6 @@
 """Compare the languages of two automata: equivalence, inclusion, and a trace that only one of them accepts.
 
-Atoms are matched by name; a letter has the atoms of both automata. If one of the automata declares
+Atoms are matched by name; a letter says which atoms of the two automata hold. If one of the automata declares
 atoms ``exclusive``, traces on which two of these atoms hold together are ignored.
 """
 

@@ -14,16 +14,17 @@ from tltlc.resolve.spec import Conjunct, Judge
 
 
 def judge_of(parts: Iterable[Conjunct]) -> Judge:
-    """Return the judge of a spec over finite traces with these clauses and no ``judge`` clause."""
+    """Return the judge (``goal`` or ``limit``) of a spec over finite traces that has these clauses and no ``judge``."""
     return default_judge(and_(*(part.unbounded or part.formula for part in parts)))
 
 
 def default_judge(formula: Formula) -> Judge:
     """Return how a spec without a ``judge`` clause is judged: at its ``limit`` or at its ``goal``.
 
-    It is judged at its limit if its formula holds of the empty trace. By convention, in negation
-    normal form, literals (``p`` and ``!p`` alike) and formulas with the outermost operator ``G``,
-    ``R``, ``W`` or ``N`` hold of the empty trace; those with ``F``, ``U``, ``M`` or ``X`` do not.
+    It is judged at its limit if its formula is true on the empty trace. The formula is taken in
+    negation normal form. By convention, literals (``p`` and ``!p`` alike) and formulas with the
+    outermost operator ``G``, ``R``, ``W`` or ``N`` are true on the empty trace; formulas with ``F``,
+    ``U``, ``M`` or ``X`` are false.
     """
     normal = negation_normal_form(formula)
     value: dict[Formula, bool] = {}

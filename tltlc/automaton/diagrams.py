@@ -61,7 +61,10 @@ class StepLimit:
 
     @contextmanager
     def at_most(self, steps: int) -> Iterator[None]:
-        """Allow each operation at most ``steps`` further steps inside the ``with`` block."""
+        """Inside the ``with`` block, limit each operation to ``steps`` more steps than the busiest one has taken.
+
+        If the limit is lower already, it does not change.
+        """
         before = self.steps
         self.steps = min(before, max(map(len, self._memos)) + steps)
         try:

@@ -104,7 +104,7 @@ class Pair:
 
 @record
 class Fspa:
-    """A deterministic, complete automaton; over finite traces minimal, with acceptance on states.
+    """A deterministic, complete automaton. Over finite traces it is minimal, and its states decide acceptance.
 
     ``states[i].id == i``; states are numbered breadth-first, and state 0 is initial. ``edges`` are
     sorted by (source, target). ``spec_size`` is the greatest finite distance, at least 0.

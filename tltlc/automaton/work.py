@@ -14,7 +14,7 @@ STEPS_PER_STATE: Final = 400
 """How many steps of work a construction may take for each state that its state budget allows."""
 
 DEFAULT_WORK: Final = 20_000_000
-"""Steps that building, reading or comparing automata may take; a step takes one to three microseconds."""
+"""The default limit of steps for building, reading or comparing automata; a step takes one to three microseconds."""
 
 
 class OutOfWork(Exception):

@@ -139,7 +139,7 @@ def _build_in_order(spec: Spec, state_budget: int, steps: int | None = None) -> 
 
 
 def state_leaves(minimal: Machine, diagrams: TransitionDiagrams) -> list[int]:
-    """Return the states of the automaton, the initial one first.
+    """Return the states of the automaton, as leaves of ``diagrams``, the initial one first.
 
     No trace is empty, so it does not matter whether the initial state accepts. It accepts if some
     transition leads back to its obligation and all transitions that do so accept: then these

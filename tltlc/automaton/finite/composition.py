@@ -88,9 +88,9 @@ class _Composition:
 def _embed(successors: Successors, minimal: Machine) -> int:
     """Return an obligation with the language of a machine.
 
-    Each state of the machine becomes a new variable of obligations, and gets the state's
-    transition. A state that accepts whatever follows becomes TRUE instead, one that rejects
-    whatever follows FALSE.
+    Each state of the machine becomes a new variable of obligations with the transition of the
+    state. Instead, a state that accepts whatever follows becomes TRUE, and a state that rejects
+    whatever follows becomes FALSE.
     """
     diagrams = successors.diagrams
     obligations: dict[int, int] = {}

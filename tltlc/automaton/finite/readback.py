@@ -45,8 +45,7 @@ class ObligationWriter:
         return self._with_position(obligation)[1]
 
     def long_bound(self, obligation: int) -> Formula | None:
-        """Return the operator with a long bound in the source that has this obligation, None if no
-        such operator has it.
+        """Return the operator with a long bound that has this obligation; None if the source has no such operator.
 
         A bound of more than :data:`_MOST_FACTORED` samples is long. Callers use this operator as it
         is: no shorter formula has its obligation, and a search for one takes n² steps for n

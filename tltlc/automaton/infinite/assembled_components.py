@@ -48,7 +48,11 @@ def join_components(
 def _steps(
     letters: Diagrams[Any], components: Sequence[RabinComponent], entry: Mapping[int, Place]
 ) -> dict[Place, int]:
-    """Return the steps of all components, with each exit replaced by the state in ``entry``."""
+    """Return the steps of all components, with each exit replaced by the state in ``entry``.
+
+    A step is a function from the letter to the next state and the marks of the edge, or to None if
+    ``exclusive`` rules the letter out.
+    """
     steps: dict[Place, int] = {}
     for number, component in enumerate(components):
 

@@ -1,10 +1,10 @@
 """The alternating cycle decomposition: a tree of sets of edges, each accepted or rejected.
 
-A. Casares, T. Colcombet, N. Fijalkow, "Optimal Transformations of Games and Automata Using Muller
-Conditions" (ICALP 2021). A node is a strongly connected set of edges. The children of an accepted
-node are its maximal rejected subsets; the children of a rejected node are its maximal accepted
-subsets. Take the lowest node that contains all edges that a run takes infinitely often: the run is
-accepted if this node is accepted.
+It is from A. Casares, T. Colcombet, N. Fijalkow, "Optimal Transformations of Games and Automata
+Using Muller Conditions" (ICALP 2021). A node is a strongly connected set of edges. The children of
+an accepted node are its maximal rejected subsets; the children of a rejected node are its maximal
+accepted subsets. Take the lowest node that contains all edges that a run takes infinitely often:
+the run is accepted if this node is accepted.
 """
 
 from __future__ import annotations

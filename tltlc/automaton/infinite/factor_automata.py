@@ -39,7 +39,7 @@ _Edge = tuple[State, State, Marks, int]
 def factor(
     letters: Diagrams[Any], component: ComponentAutomaton, key: Callable[[State], State], work: Work
 ) -> RabinComponent | None:
-    """Return the component with all states merged that have the same key.
+    """Return the component with the states that have the same key merged into one.
 
     The key after a letter must depend only on the key before it and on the letter. Returns None if
     some edge gets no rank, or if more than :data:`_MOST_TOGETHER` states have the same key. Raises

@@ -13,7 +13,8 @@ def components(roots: Iterable[Node], successors: Callable[[Node], Iterable[Node
 
     A component comes after all components that can be reached from it.
 
-    R. Tarjan, "Depth-First Search and Linear Graph Algorithms", SIAM J. Comput. 1972.
+    The algorithm is from R. Tarjan, "Depth-First Search and Linear Graph Algorithms", SIAM J.
+    Comput. 1972.
     """
     index: dict[Node, int] = {}
     low: dict[Node, int] = {}

@@ -45,7 +45,7 @@ class Breakpoint:
     """A breakpoint automaton for a Pi-2 formula (``inf``) or a Sigma-2 formula (``fin``).
 
     :mod:`tltlc.automaton.infinite.delta2` explains these two kinds of formulas. The memory is two
-    obligations: what remains of the formula, and a second one. They have these rules:
+    obligations: what remains of the formula, and a second one, which has these rules:
 
     - Pi-2: the second obligation starts as what remains, with each outermost ``W`` replaced by
       true. When it becomes true, the letter is marked, and the second obligation starts again from
@@ -147,7 +147,7 @@ class Recurrence:
         undecided = {attempt for attempt in attempts if attempt not in (over, out)}
         combine: Callable[[int, int], int]
         combine = self._after.obligations.either if self.kind == "inf" else self._after.obligations.both
-        # Drop an attempt that succeeds (for F G p: fails) only if another attempt does.
+        # Drop an attempt that can succeed (for F G p: fail) only if another attempt does, too.
         needed = [
             attempt
             for attempt in undecided

@@ -153,7 +153,7 @@ class _Walks:
         self.pairs = len(set(self.pair.values()))
 
     def _assign_pairs(self, tree: Node) -> None:
-        """Give each accepted node the number of a Rabin pair in ``pair``, by the node's index."""
+        """Choose a Rabin pair for each accepted node; ``pair`` then maps the node's index to the number of the pair."""
         taken: list[list[Node]] = []
         stack = [tree]
         while stack:

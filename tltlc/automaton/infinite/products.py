@@ -23,7 +23,8 @@ The second automaton's marks have the higher numbers.
 Alternatives = Sequence[tuple[Sequence[MarkClause], Sequence[MarkClause]]]
 """Pairs of lists of clauses.
 
-A cycle meets a pair if a clause of its first list accepts it, and none of its second.
+A cycle meets a pair if a clause of the first list accepts the cycle, and no clause of the second
+list does.
 """
 
 

@@ -22,7 +22,7 @@ def without_constants(formula: Formula) -> Formula:
 
 
 class NormalFormWriter:
-    """Writes formulas in normal form as ``source`` writes them: ``a -> F b`` instead of ``!a | F b``."""
+    """Rewrites formulas from normal form to the style of ``source``: ``a -> F b`` instead of ``!a | F b``."""
 
     def __init__(self, source: Formula) -> None:
         self._place: dict[Formula, int] = {}
@@ -78,5 +78,5 @@ class NormalFormWriter:
 
 
 def _has_constants(formula: Formula) -> bool:
-    """Whether a formula contains ``true`` or ``false``; over infinite traces no formula needs them."""
+    """Whether a formula contains ``true`` or ``false``; over infinite traces, only constant formulas need them."""
     return not {TRUE, FALSE}.isdisjoint(formula.walk())
