@@ -182,9 +182,9 @@ def _words(settling: Sequence[Word | None]) -> list[Word]:
     """Return words that distinguish the states of one machine at a time.
 
     ``settling`` has one word for each machine: for a conjunction one that it accepts, for a
-    disjunction one that it rejects. For each machine and each suffix of its own word, the result
-    has a word: the words of all other machines, then the suffix. If a machine has no word (None),
-    the result is empty.
+    disjunction one that it rejects. For each machine and each suffix of its own word, except the
+    whole word, the result has a word: the words of all other machines, then the suffix. If a
+    machine has no word (None), the result is empty.
     """
     if None in settling:
         return []
