@@ -92,5 +92,5 @@ def _declarations(source: SourceFile, lexed: Tokens) -> tuple[tuple[Declaration,
 
 
 def _too_large_error(source: SourceFile) -> Diagnostic:
-    title = f"`{source.name}` is larger than 1 MiB or has more than {MAX_TOKENS} words and signs"
+    title = f"`{source.name}` is larger than 1 MiB or has more than {MAX_TOKENS:,} words and signs"
     return Diagnostic("TLT0004", title, (Label(source, Span(0, 0)),), "split it into several files, and use `import`")

@@ -18,6 +18,12 @@ from tltlc.grammar.walk import children, operands
 _TEMPORAL: Final = "FGXN"
 _COMPARISONS: Final = ("<", "<=", ">", ">=")
 _SHORT: Final = 60
+_NEXT_STEP: Final = {
+    "G": ("next always", "from the next step on"),
+    "X": ("next", "at the next step"),
+    "N": ("weak_next", "at the next step, if there is one"),
+}
+"""Maps a temporal operator after ``then`` to the operator that begins at the next step, and to its meaning."""
 
 
 def check_then(source: SourceFile, formula: Expr, *, in_reach: bool) -> Iterator[Diagnostic]:
@@ -58,14 +64,14 @@ def _check_operand(source: SourceFile, sequence: list[Expr], position: int, leni
             if len(first) + len(second) <= _SHORT:
                 help_ = f"`reach {first} then {second}` means: {second} after {first}\n{help_}"
         elif leading is operand and leading.op != "F" and leading.bound is None and last:
-            first, second = _text(source, neighbour), _text(source, leading.operand)
-            operator, when = (
-                ("next always", "from the next step on") if leading.op == "G" else ("next", "at the next step")
-            )
-            if len(first) + len(second) <= _SHORT:
-                help_ += (
-                    f", which begins at some later step; for `{second}` {when}, write `{first} and {operator} {second}`"
-                )
+            second = _text(source, leading.operand)
+            if len(_text(source, neighbour)) + len(second) <= _SHORT:
+                operator, when = _NEXT_STEP[leading.op]
+                text = f"{_conjunct_text(source, neighbour)} and {operator} {second}"
+                if not lenient:
+                    # `then` looks for its operands at later steps, too. Without it, only `eventually` does.
+                    text = f"eventually ({text})" if len(sequence) == 2 else f"({text})"
+                help_ += f", which begins at some later step; for `{second}` {when}, write `{text}`"
     yield Diagnostic("TLT0102", title, (Label(source, span),), help_, fixes=_fixes(source, sequence, position, lenient))
 
 
@@ -168,6 +174,12 @@ def _operand_beside_then(operand: Expr, last: bool) -> Expr | None:
     if isinstance(operand, tree.BinaryExpr):
         return operand.left if last else operand.right
     return operand.operand if isinstance(operand, tree.Unary) and not last else None
+
+
+def _conjunct_text(source: SourceFile, part: Expr) -> str:
+    """Return the source text of a part, in brackets if it binds more loosely than ``and``."""
+    is_loose = isinstance(part, tree.BinaryExpr) and part.op in ("or", "implies", "iff")
+    return f"({_text(source, part)})" if is_loose else _text(source, part)
 
 
 def _text(source: SourceFile, part: Expr) -> str:

@@ -205,7 +205,8 @@ def joined_clauses(failure: ParseFailure) -> Diagnostic | None:
     title, span = f"clauses cannot be joined by {quote_token(before)}", span_of([before, failure.token])
     # `always a and reach b` may mean `always (a and eventually b)`, and a quantifier extends over the `and`.
     if has_token(failure, 1, failure.stop.index, UNCLEAR | BEFORE_ONE | QUANTIFIERS | {"OR"}):
-        return failure.error("TLT0101", title, f"begin a new line with `{word}`: all clauses count", span=span)
+        help_ = f"leave out {quote_token(before)}, and begin a new line with `{word}`: all clauses count"
+        return failure.error("TLT0101", title, help_, span=span)
     return failure.error("TLT0101", title, f"write `{word}` alone: all clauses count", span=span, write=word)
 
 

@@ -100,7 +100,7 @@ def _wrong_bound(failure: ParseFailure) -> Diagnostic | None:
         write = None if declares_clock(failure.source) else f"{before.text} steps"
         return failure.error("TLT0111", title, help_, span=before.span, write=write)
     if failure.token.type == "RSQB" and before and "COMMA" in failure.allowed_terminals and _is_bound(failure):
-        return _bound_with_one_end(failure, before.text)
+        return _bound_with_one_end(failure)
     if failure.token.type == "LSQB" and before and before.type in UNTILS:
         return failure.error(
             "TLT0111",
@@ -124,13 +124,15 @@ def _bound_without_number(failure: ParseFailure) -> Diagnostic:
     )
 
 
-def _bound_with_one_end(failure: ParseFailure, number: str) -> Diagnostic:
+def _bound_with_one_end(failure: ParseFailure) -> Diagnostic:
     """Report a bound in brackets with one number: ``F[20] p``, ``next[20] p``."""
-    operator = failure.tokens[_opening_index(failure) - 1]
+    opening = _opening_index(failure)
+    operator, number = failure.tokens[opening - 1], text_of(failure, opening + 1, failure.stop.index)
     if operator.type in _NEXTS:
         word = "next" if operator.type == "NEXT" else "weak_next"
+        time = f"{number} steps" if number.isdecimal() else number
         return failure.error(
-            "TLT0111", f"`{operator.text}` takes no bound in brackets", f"write `{word} after {number} steps p`"
+            "TLT0111", f"`{operator.text}` takes no bound in brackets", f"write `{word} after {time} p`"
         )
     return failure.error(
         "TLT0111",

@@ -66,7 +66,8 @@ def _comma_before_clause(failure: ParseFailure) -> Diagnostic:
     # After a goal, `keep` or `avoid` may apply from there on; and what follows `or` may be an alternative.
     is_clear = first != "reach" and not has_token(failure, 1, at, UNCLEAR | BEFORE_ONE | QUANTIFIERS | {"OR"})
     if not is_clear:
-        return failure.error("TLT0104", title, f"begin a new line with `{word}`: all clauses count", span=span)
+        help_ = f"leave out the comma, and begin a new line with `{word}`: all clauses count"
+        return failure.error("TLT0104", title, help_, span=span)
     return failure.error("TLT0104", title, f"write `{word}` alone: all clauses count", span=span, write=word)
 
 
@@ -108,12 +109,12 @@ def _comma_in_number(failure: ParseFailure) -> Diagnostic:
     ):
         stop += 2
     text = failure.source.slice(span_of(failure.tokens[at - 1 : stop]))
-    span, title = span_of(failure.tokens[at - 1 : stop]), "a number is written with a point, not with a comma"
+    span, title = span_of(failure.tokens[at - 1 : stop]), "a number cannot contain a comma"
     thousands, fraction = text.replace(",", ""), text.replace(",", ".")
     is_fraction, in_thousands = _NUMBER.fullmatch(fraction), _IN_THOUSANDS.fullmatch(text)
     if in_thousands:
         help_ = f"write `{thousands}` if a comma separates thousands"
-        help_ += f", or `{fraction}` if it is a decimal point" if is_fraction else ""
+        help_ += f", or `{fraction}` if it stands for a decimal point" if is_fraction else ""
         return failure.error("TLT0104", title, help_, span=span)
     if is_fraction:
         return failure.error("TLT0104", title, f"write `{fraction}`", span=span, write=fraction)
