@@ -34,8 +34,12 @@ def test_a_path_through_a_link_is_rejected(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("names", [("a", "a"), ("a", "a/b"), ("a/b", "a")])
 def test_two_entries_for_one_path_are_rejected(names: tuple[str, str], tmp_path: Path) -> None:
-    with pytest.raises(TltlError, match="TLT0009"):
+    with pytest.raises(TltlError, match="TLT0009") as caught:
         unpack(tmp_path, [(name, b"") for name in names], ARCHIVE)
+    (diagnostic,) = caught.value.diagnostics
+    first, second = names
+    problem = f"two entries for `{first}`" if first == second else f"`{first}` and `{second}`, which cannot both exist"
+    assert (diagnostic.title, diagnostic.help) == (f"the archive contains {problem}", ARCHIVE.damaged_help)
 
 
 @pytest.mark.parametrize(
@@ -48,7 +52,7 @@ def test_a_clash_of_names_on_this_file_system_suggests_another_folder(
     with pytest.raises(TltlError) as caught:
         unpack(tmp_path, [("other", b""), *((name, b"") for name in names)], ARCHIVE)
     (diagnostic,) = caught.value.diagnostics
-    title = f"the archive contains `{names[0]}` and `{names[1]}`, which are the same path in this file system"
+    title = f"the archive contains `{names[0]}` and `{names[1]}`, which cannot both exist in this file system"
     assert (diagnostic.code, diagnostic.title, diagnostic.help) == ("TLT0009", title, ARCHIVE.elsewhere_help)
 
 

@@ -41,7 +41,7 @@ def test_a_command_stops_at_its_limit_of_processor_time(tmp_path: Path) -> None:
     result = _run("--max-cpu", "1", "compile", str(tmp_path / "goals.tltl"), "-o", str(tmp_path / "out"))
     assert result.returncode == 1
     assert result.stderr == (
-        "error[TLT0007]: the command did not finish within 1 seconds of processor time\n"
+        "error[TLT0007]: the command did not finish within 1 second of processor time\n"
         "  help: make its input smaller, or allow more: `tltlc --max-cpu SECONDS COMMAND …`\n"
     )
     assert not (tmp_path / "out").exists()

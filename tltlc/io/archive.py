@@ -118,10 +118,12 @@ def _is_invalid_on_windows(part: str) -> bool:
 def _clash_error(name: str, written: Sequence[str], archive: Archive) -> TltlError:
     """Return the error TLT0009 for a path that cannot exist together with one of the ``written`` paths."""
     earlier = next((earlier for earlier in written if _clash(_fold_case(name), _fold_case(earlier))), name)
-    if _clash(name, earlier):
+    if name == earlier:
         return _archive_error(f"{archive.name} contains two entries for `{name}`", archive.damaged_help)
-    title = f"{archive.name} contains `{earlier}` and `{name}`, which are the same path in this file system"
-    return _archive_error(title, archive.elsewhere_help)
+    title = f"{archive.name} contains `{earlier}` and `{name}`, which cannot both exist"
+    if _clash(name, earlier):
+        return _archive_error(title, archive.damaged_help)
+    return _archive_error(f"{title} in this file system", archive.elsewhere_help)
 
 
 def _clash(first: str, second: str) -> bool:

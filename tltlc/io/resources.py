@@ -151,7 +151,8 @@ def exhaustion_error(error: BaseException) -> TltlError | None:
     """Return the error TLT0007 for OutOfTimeError, MemoryError and RecursionError, None for other exceptions."""
     permitted = _command_limits[0] if _command_limits else ProcessLimit(memory=0, work_s=0)
     if isinstance(error, OutOfTimeError):
-        title = f"the command did not finish within {permitted.work_s} seconds of processor time"
+        seconds = "1 second" if permitted.work_s == 1 else f"{permitted.work_s} seconds"
+        title = f"the command did not finish within {seconds} of processor time"
         help_ = "make its input smaller, or allow more: `tltlc --max-cpu SECONDS COMMAND …`"
     elif isinstance(error, MemoryError):
         title, help_ = "the command ran out of memory", "make its input smaller"
