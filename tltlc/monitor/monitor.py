@@ -104,7 +104,9 @@ class Monitor:
                 atoms. The state stays unchanged.
         """
         if len(values) != len(self._names) or not all(-1.0 <= value <= 1.0 for value in values):
-            raise ValueError(f"{len(self._names)} values in [-1, 1] are needed, not {tuple(values)}")
+            one = len(self._names) == 1
+            needed = "one value in [-1, 1] is" if one else f"{len(self._names)} values in [-1, 1] are"
+            raise ValueError(f"{needed} needed, not {tuple(values)}")
         return self._take(values, last)
 
     def _take(self, values: Sequence[float], last: bool) -> Step:

@@ -177,7 +177,7 @@ def _object_samples(
             time_key = name
         if name != time_key:
             has = "has no time" if name is None else f"has `{name}`"
-            raise lines.error(f"this row {has}, unlike the rows before it", help="give every row its time, or none")
+            raise lines.error(f"this row {has}, unlike the first row", help="give every row its time, or none")
         if name is not None:
             time = object_[name]
             _check_time(float(time) if isinstance(time, (int, float)) else None, times, lines, None)
