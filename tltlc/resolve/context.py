@@ -224,6 +224,7 @@ class Context:
 
 _SMALLER_BOUND: Final = "choose a smaller bound or a slower clock, or let a signal count the time"
 _FEWER_USES: Final = "its size multiplies with each use inside another: nest fewer of them"
+_FEWER_EXPANSIONS: Final = "each one inside another multiplies their number: nest fewer of them"
 
 
 def expansion_error(subject: str, source: SourceFile, span: Span, *, is_bound: bool = False) -> ResolutionError:
@@ -238,4 +239,15 @@ def expansion_error(subject: str, source: SourceFile, span: Span, *, is_bound: b
         source,
         span,
         advice=_SMALLER_BOUND if is_bound else _FEWER_USES,
+    )
+
+
+def too_many_expansions_error(source: SourceFile, span: Span) -> ResolutionError:
+    """Return the error for a program with more than MOST_EXPANSIONS uses of lets and quantifiers."""
+    return problem(
+        "TLT0315",
+        f"the uses of `let`, `all` and `any` expand more than {MOST_EXPANSIONS:,} times",
+        source,
+        span,
+        advice=_FEWER_EXPANSIONS,
     )

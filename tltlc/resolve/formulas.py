@@ -29,7 +29,7 @@ from tltlc.logic.formula import Formula
 from tltlc.resolve.arguments import match
 from tltlc.resolve.bounds import expand_bound
 from tltlc.resolve.comparisons import comparison
-from tltlc.resolve.context import LARGEST_EXPANSION, MOST_EXPANSIONS, expansion_error
+from tltlc.resolve.context import LARGEST_EXPANSION, MOST_EXPANSIONS, expansion_error, too_many_expansions_error
 from tltlc.resolve.declared_values import signal
 from tltlc.resolve.kinds import entity, kind_of, lookup, not_a_formula_error
 from tltlc.resolve.predicates import argument_value, predicate
@@ -193,7 +193,7 @@ def _expand_let(declaration: LetDecl, binding: Binding, inside: Env, span: Span,
         raise context.recursion_error(key, binding.scope.source, declaration.name_span)
     memo = (key, inside.symbolic, inside.unbounded, tuple(inside.local.values()))
     if memo not in context.values:
-        _count_expansion(f"the let `{declaration.name}`", span, user)
+        _count_expansion(span, user)
         context.expanding[key] = declaration.name
         try:
             body = yield _formula(declaration.body, inside)
@@ -216,7 +216,7 @@ def _expand_quantifier(expr: Quantified, env: Env) -> FormulaGenerator:
     parts: list[Formula] = []
     size = 0
     for name in expr.entities:
-        _count_expansion(subject, expr.span, env)
+        _count_expansion(expr.span, env)
         part = yield _formula(expr.body, env.with_local(expr.variable, entity(name, env)))
         parts.append(part)
         size += env.context.tree_size(part)
@@ -225,11 +225,11 @@ def _expand_quantifier(expr: Quantified, env: Env) -> FormulaGenerator:
     return logic.and_(*parts) if expr.all else logic.or_(*parts)
 
 
-def _count_expansion(subject: str, span: Span, env: Env) -> None:
+def _count_expansion(span: Span, env: Env) -> None:
     if env.unbounded:
         return
     env.context.expansions += 1
     if env.context.expansions > MOST_EXPANSIONS:
         env.context.broken.update(env.context.expanding)
         first = env.context.expansions == MOST_EXPANSIONS + 1
-        raise expansion_error(subject, env.scope.source, span) if first else ResolutionError(None)
+        raise too_many_expansions_error(env.scope.source, span) if first else ResolutionError(None)
