@@ -24,6 +24,28 @@ def test_a_wrong_range_is_an_error_with_a_witness() -> None:
     assert diagnostic.labels[0].source.slice(diagnostic.labels[0].span) == "in [0, 1]"
 
 
+@pytest.mark.parametrize(
+    ("declared", "body", "bounds", "advice"),
+    [
+        ("", "2 * x", "[-1, 1]", "scale the value, or limit it with `clamp(…, -1, 1)`"),
+        ("in [-1, 1]", "2 * x", "[-1, 1]", "scale the value, or limit it with `clamp(…, -1, 1)`"),
+        (
+            "in [0, 0.5]",
+            "x",
+            "[0, 0.5]",
+            "declare the range that it really has, or limit the value with `clamp(…, 0, 0.5)`",
+        ),
+    ],
+)
+def test_the_help_for_a_wrong_range_keeps_the_value_in_it(declared: str, body: str, bounds: str, advice: str) -> None:
+    signal = "signal x in [0, 1]"
+    _, (diagnostic,) = resolve_text(f"{signal} predicate p {declared} = {body} spec s = F p")
+    assert (diagnostic.code, diagnostic.help) == ("TLT0306", advice)
+    assert diagnostic.title == f"the predicate `p` leaves its range {bounds}"
+    limited = advice.split("`")[-2].replace("…", body)
+    assert codes(f"{signal} predicate p {declared} = {limited} spec s = F p") == []
+
+
 def test_a_range_that_only_fails_below_zero_is_a_warning() -> None:
     text = "predicate p(e: entity) in [-1, 1] = clamp(1 - sqrt(d(e) / 3 m), -1, 1) entity a spec s = F p(a)"
     _, (diagnostic,) = resolve_text("signal d(e: entity): length " + text)

@@ -13,6 +13,7 @@ from tltlc.expression.tree import nodes
 from tltlc.io.limits import WORK
 from tltlc.resolve.context import Context, Instance
 from tltlc.resolve.spec import Signal
+from tltlc.resolve.values import number_text
 
 if TYPE_CHECKING:
     from tltlc.resolve.range_proof import RangeProblem
@@ -98,7 +99,7 @@ def _variables_read(instance: Instance, kind: type[N]) -> list[N]:
 def _unchecked_warning(unchecked: Sequence[Instance]) -> Diagnostic:
     """Return the warning for predicates that were not checked because the step limit ran out."""
     first, remaining = unchecked[0], len(unchecked) - 1
-    rest = f" and {remaining} more {'predicate was' if remaining == 1 else 'predicates were'}" if remaining else " was"
+    rest = f" and {remaining} more predicate{'' if remaining == 1 else 's'} were" if remaining else " was"
     why = f"the checks of all predicates may take {WORK['checks of all predicates']:,} steps, but too few are left"
     advice = "let the game compute parts of the predicates before this one and supply them as signals"
     label = Label(first.source, first.span, why)
@@ -111,26 +112,30 @@ def _diagnostic(instance: Instance, finding: RangeProblem, negative: bool = Fals
         code, severity, title, advice = "TLT0401", "warning", *_NEGATIVE
     if not negative and finding.is_undefined:
         title, advice = _UNDEFINED
+    elif finding.kind == "range_wrong" and not negative and (instance.low, instance.high) == (-1.0, 1.0):
+        advice = _SCALE
+    low, high = number_text(instance.low), number_text(instance.high)
+    title, advice = title.format(name=instance.name, low=low, high=high), advice.format(low=low, high=high)
     labels: tuple[Label, ...] = (Label(instance.source, instance.span, finding.message),)
     if instance.use and instance.use.source is not instance.source:
         # The predicate of a library is correct. The numbers passed to it here are the problem.
         labels = (replace(instance.use, message=finding.message), replace(labels[0], message="declared here"))
         advice = f"choose other numbers here, or {advice}"
-    return Diagnostic(code, title.format(name=instance.name), labels, advice, severity)
+    return Diagnostic(code, title, labels, advice, severity)
 
 
 _CASES: dict[str, tuple[str, Severity, str, str]] = {
     "range_wrong": (
         "TLT0306",
         "error",
-        "the predicate `{name}` leaves its declared range",
-        "declare the range that it really has, or limit the value with `clamp(…, -1, 1)`",
+        "the predicate `{name}` leaves its range [{low}, {high}]",
+        "declare the range that it really has, or limit the value with `clamp(…, {low}, {high})`",
     ),
     "range_unproved": (
         "TLT0401",
         "warning",
         "the range of the predicate `{name}` could not be proved",
-        "declare ranges for the signals and params that it uses, or limit the value with `clamp(…, -1, 1)`",
+        "declare ranges for the signals and params that it uses, or limit the value with `clamp(…, {low}, {high})`",
     ),
     "range_unchecked": (
         "TLT0503",
@@ -157,11 +162,13 @@ _CASES: dict[str, tuple[str, Severity, str, str]] = {
         "let the game compute a part of it and supply it as a signal",
     ),
 }
+_SCALE = "scale the value, or limit it with `clamp(…, {low}, {high})`"
+"""The advice for a range that cannot be wider, because a predicate must lie in [-1, 1]."""
 _UNDEFINED = (
     "the predicate `{name}` is not defined everywhere",
     "keep what it divides by, or takes the root of, above 0 with `max(…, 0.1)`",
 )
 _NEGATIVE = (
-    "the predicate `{name}` leaves its declared range where a signal is negative",
+    "the predicate `{name}` leaves its range [{low}, {high}] where a signal is negative",
     "declare the range of that signal, e.g. `in [0 m, inf]`",
 )
