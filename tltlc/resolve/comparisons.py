@@ -131,5 +131,5 @@ def _missing_range_error(x: Quantity, missing_ends: list[bool], expr: BinaryExpr
         f"`{x.text}` has no {ends} bound to scale this comparison by",
         env.scope.source,
         expr.span,
-        advice=f"add a range to the declaration, e.g. `in [0{unit}, 100{unit}]`, or use a predicate",
+        advice=f"declare a range with two ends, e.g. `in [0{unit}, 100{unit}]`, or use a predicate",
     )

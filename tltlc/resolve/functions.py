@@ -27,7 +27,7 @@ def check_arguments(call: CallExpr, env: Env) -> None:
     arity = _ARGUMENTS[name]
     if count < 2 if arity is None else count != arity:
         text, example = _FORMS[arity]
-        raise problem("TLT0210", f"`{name}` takes {text}", source, call.span, advice=f"`{name}{example}`")
+        raise problem("TLT0210", f"`{name}` takes {text}", source, call.span, advice=f"write e.g. `{name}{example}`")
 
 
 def dimension(call: CallExpr, values: tuple[Quantity, ...], env: Env) -> Dimension | None:

@@ -133,6 +133,8 @@ def _entities_help(env: Env) -> str:
     """Return a help text that lists the visible entities."""
     known = [f"`{name}`" for name, binding in env.scope.names.items() if binding.kind == "entity"]
     listed = ", ".join(known[:_MOST_NAMES]) + (", …" if len(known) > _MOST_NAMES else "")
+    if len(known) == 1:
+        return f"the only entity is {listed}"
     return f"the entities are {listed}" if known else "declare one with `entity NAME`"
 
 

@@ -230,7 +230,7 @@ def declared_range(declaration: PredicateDecl, scope: Scope, env: Env) -> tuple[
             "the range of a predicate must lie in [-1, 1]",
             scope.source,
             declaration.interval.span,
-            advice="scale the value, or use clamp(…, -1, 1), and declare `in [-1, 1]`",
+            advice="scale the value, or use `clamp(…, -1, 1)`, and declare `in [-1, 1]`",
         )
     return low, high
 

@@ -118,7 +118,7 @@ class _NameBudget:
             if self._names >= 0:
                 title = f"the names that all files import with `as` have more than {IMPORTED.size:,} letters in total"
                 advice = "choose a shorter name after `as`"
-            brings = f"this one brings {len(chosen):,} names"
+            brings = f"this one brings {len(chosen):,} name{'' if len(chosen) == 1 else 's'}"
             log.add(problem("TLT0012", title, source, declaration.span, brings, advice=advice).diagnostic)
         return not self._is_over
 

@@ -25,8 +25,9 @@ def resolve_test(declaration: TestDecl, specs: dict[str, Spec | None], env: Env)
     if name not in specs:
         suggestion = likely_name(name, specs)
         hint = f"did you mean `{suggestion}`?" if suggestion else ""
-        listed = ", ".join(f"`{known}`" for known in specs)
-        advice = None if suggestion else f"the specs are {listed}" if specs else f"declare it: `spec {name} {{ … }}`"
+        listed = ", ".join(f"`{spec_name}`" for spec_name in specs)
+        known = f"the {'specs are' if len(specs) > 1 else 'only spec is'} {listed}"
+        advice = None if suggestion else known if specs else f"declare it: `spec {name} {{ … }}`"
         title, place = f"no spec `{name}` here", declaration.spec.span
         fixes = (replacement_fix(source, place, suggestion),) if suggestion else ()
         context.log.add(problem("TLT0208", title, source, place, hint, advice=advice, fixes=fixes).diagnostic)
@@ -57,9 +58,10 @@ def _step(item: TestStep, spec: Spec, env: Env) -> RepeatedSample:
     for literal_expr in (part for atom in item.atoms for part in conjuncts(atom)):
         name, holds = _literal(literal_expr, names, env)
         if _without_spaces(name) not in names:
-            known = ", ".join(f"`{atom.name}`" for atom in spec.atoms)
+            known = ", ".join(f"`{atom.name}`" for atom in spec.atoms) or "no atoms"
+            verb = "has" if not names else "has the atoms" if len(names) > 1 else "has only the atom"
             title = f"`{name}` is not an atom of the spec `{spec.name}`"
-            raise problem("TLT0209", title, source, literal_expr.span, advice=f"its atoms are {known}")
+            raise problem("TLT0209", title, source, literal_expr.span, advice=f"the spec {verb} {known}")
         if values.setdefault(name, holds) != holds:
             raise problem(
                 "TLT0217",
