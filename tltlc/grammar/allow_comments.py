@@ -64,8 +64,8 @@ def commented_spans(module: Module) -> list[tuple[Comment, tuple[Span, ...] | No
     """Return the comments that allow codes, each with the spans of the statements it applies to.
 
     Statements are clauses and declarations. None in place of the spans means the whole file.
-    Comments that apply to the same line share one tuple object. So callers can group them by its
-    identity.
+    Comments that apply to the same line share one tuple object, so callers can group the comments
+    by the identity of their tuples.
     """
     comments = [comment for comment in module.comments if is_allowing(comment)]
     if not comments:

@@ -1,4 +1,4 @@
-"""Find out which diagnostics comments silence, and which comments have silenced a diagnostic.
+"""Find the diagnostics that comments silence, and the comments that have silenced a diagnostic.
 
 :mod:`tltlc.grammar.allow_comments` describes the comments.
 """
@@ -15,7 +15,7 @@ from tltlc.grammar.tree import Module
 
 
 def drop_silenced(modules: Iterable[Module], reported: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
-    """Return the diagnostics without the warnings and notes that a comment in their file allows."""
+    """Return the diagnostics, without the warnings and notes that a comment in the same file silences."""
     diagnostics = tuple(reported)
     if not diagnostics:
         return diagnostics
@@ -26,7 +26,7 @@ def drop_silenced(modules: Iterable[Module], reported: Iterable[Diagnostic]) -> 
 
 
 class AllowIndex:
-    """The codes that comments in some modules allow, and which of them have silenced a diagnostic.
+    """The codes that comments in some modules allow. It remembers which of them have silenced a diagnostic.
 
     The comments are indexed by the clauses and declarations that they apply to, so that a lookup
     does not search all comments.
@@ -45,9 +45,7 @@ class AllowIndex:
         return file.allowances if file else ()
 
     def silences(self, diagnostic: Diagnostic) -> bool:
-        """Return whether a comment silences a diagnostic; mark all comments that silence it as
-        used.
-        """
+        """Return whether a comment silences a diagnostic; mark each comment that silences it as used."""
         label = diagnostic.labels[0] if diagnostic.labels else None
         file = self._files.get(label.source) if label else None
         return label is not None and file is not None and file.silences(diagnostic.code, label.span.start)
@@ -77,9 +75,7 @@ class _FileAllowances:
         self._statements = _StatementSpans(statement for statement in self._by_statement if statement is not None)
 
     def silences(self, code: str, offset: int) -> bool:
-        """Return whether comments allow a code at an offset; mark all comments that allow it as
-        used.
-        """
+        """Return whether a comment allows a code at an offset; mark each comment that allows it as used."""
         # The end of a statement is inclusive: an offset right after its last character belongs to it, too.
         statements = {None, *self._statements.spans_at(offset), *self._statements.spans_at(offset - 1)}
         # A list, not a generator: `any` must not stop before all comments are marked.
@@ -87,7 +83,7 @@ class _FileAllowances:
         return any(is_allowed)
 
     def _allow(self, code: str, statement: Span | None) -> bool:
-        """Return whether comments allow a code in a statement; mark those that allow it as used.
+        """Return whether a comment allows a code in a statement; mark each comment that allows it as used.
 
         The statement None means the whole file.
         """

@@ -11,9 +11,9 @@ from tltlc.grammar.tables import ParserTables
 
 
 class UnexpectedTokenError(Exception):
-    """The token at ``index`` does not fit the grammar.
+    """Raised when a token does not fit the grammar.
 
-    ``states`` is the parser's stack of states before the token.
+    ``index`` is the index of the token, and ``states`` the parser's stack of states before it.
     """
 
     def __init__(self, index: int, states: list[int]) -> None:

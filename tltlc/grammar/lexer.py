@@ -11,7 +11,7 @@ from tltlc.grammar.tables import ParserTables, load
 from tltlc.grammar.tree import Comment
 
 MAX_TOKENS: Final = 1 << 17
-"""The most tokens of a file. The parser refuses larger files, so that its time is bounded."""
+"""The most tokens of a file, with ``$END``. The parser refuses larger files, so that its time is bounded."""
 
 END: Final = "$END"
 BAD: Final = "BAD"

@@ -1,8 +1,8 @@
 """The LALR(1) tables of the grammar: built with lark, shipped with the package, loaded without lark.
 
 Importing lark takes as long as four bare Python starts. So the package ships the tables as
-``tables.json``, in its own format, and parsing does not need lark. A checksum detects that the grammar
-has changed since; then the tables are built in memory. ``python -m tltlc.grammar.tables`` rewrites
+``tables.json``, in its own format, and parsing does not need lark. If a checksum shows that the grammar
+has changed since, the tables are built in memory. ``python -m tltlc.grammar.tables`` rewrites
 the file.
 """
 
@@ -25,13 +25,13 @@ STARTS = ("module", "declaration", "clause", "test_item", "expression")
 
 @record
 class GrammarRule:
-    """A rule of the grammar: how the parser reduces ``size`` values to one value of ``origin``.
+    """A rule of the grammar, which says how the parser makes one value for the nonterminal ``origin``.
 
-    It pops ``size`` values and passes those in ``keep`` to the builder's method ``make_`` +
-    ``action``. An entry of ``keep`` is the position of a popped value, ``-1`` for an absent
-    optional part, or ``-2 - i`` for a list at position i, whose items are passed one by one.
-    ``action`` is empty if the rule returns its only kept value, and ``*`` if it returns the list of
-    its kept values.
+    The parser pops ``size`` values from its stack. It passes those in ``keep`` to the builder's
+    method ``make_ACTION``, where ACTION is the text in ``action``. An entry of ``keep`` is the
+    position of a popped value, ``-1`` for an absent optional part, or ``-2 - i`` for a list at
+    position i, whose items are passed one by one. If ``action`` is empty, the rule returns its only
+    kept value instead. If it is ``*``, the rule returns the list of its kept values.
     """
 
     origin: str

@@ -99,7 +99,8 @@ def _is_plain(operand: Expr) -> bool:
 def _readings_help(source: SourceFile, operand: Expr, neighbour: Expr, last: bool) -> str:
     """Return a help text that shows where brackets can be put.
 
-    They go around the operand, or around ``then`` and what stands beside it.
+    They go around the operand, or around ``then`` and the two formulas beside it. ``neighbour`` is
+    the operand on the other side of ``then``. ``last`` says whether ``operand`` comes after ``then``.
     """
     text, neighbour_text = _text(source, operand), _text(source, neighbour)
     inner: Expr
@@ -170,7 +171,11 @@ def _lacks_brackets(operand: Expr, lenient: bool) -> bool:
 
 
 def _operand_beside_then(operand: Expr, last: bool) -> Expr | None:
-    """Return the part of an operand that stands beside `then`, as ``a`` in ``F a then b``."""
+    """Return the part of an operand that stands directly beside `then`, as ``a`` in ``F a then b``.
+
+    ``last`` says whether the operand comes after `then`. Returns None if no such part can be split
+    off.
+    """
     if isinstance(operand, tree.BinaryExpr):
         return operand.left if last else operand.right
     return operand.operand if isinstance(operand, tree.Unary) and not last else None

@@ -65,11 +65,11 @@ _MARKS: Final = frozenset("-–—*+•·.:)")
 """Bullets that people write before the lines of a list. `!` is not among them: it means `not`."""
 _LONGEST_LIMIT: Final = 7
 _FEW: Final = 4
-"""A line with a time and at most this many tokens is most likely only a time."""
+"""A line that has a time and at most this many tokens probably says nothing but the time."""
 _TIMES: Final = frozenset(("step", "steps", "ms", "s", "min", "h"))
 """The units of a limit."""
 _OF_OPERATOR: Final = {"EVENTUALLY": "reach", "ALWAYS": "keep", "NOT": "avoid"}
-"""For an operator at the beginning of a line, the clause keyword that means the same."""
+"""Maps an operator at the beginning of a line to the clause keyword that means the same."""
 
 
 def unknown_keyword(failure: ParseFailure) -> Diagnostic | None:

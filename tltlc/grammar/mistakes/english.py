@@ -193,9 +193,10 @@ def filler_word(failure: ParseFailure) -> Diagnostic | None:
 
 
 def _is_clear_filler(failure: ParseFailure, at: int) -> bool:
-    """Whether a word can be left out.
+    """Whether a filler word can be left out.
 
-    It can if it has no other meaning, or if it begins the formula and fits all operators of the formula.
+    A filler can be left out if it has no other meaning, or if it begins the formula and fits all
+    operators of the formula.
     """
     word, kind = failure.tokens[at].text, _clause_keyword(failure)
     if word not in _JOINED:
@@ -356,10 +357,10 @@ class _Time:
 
 @record
 class _Parts:
-    """The parts of an English phrase, as texts: `c then a WORD b`.
+    """The parts of an English phrase `a WORD b` or `c then a WORD b`, as texts.
 
-    ``a`` is a formula, ``b`` a formula or a time, and ``c`` the goal before ``a``, or empty.
-    ``time`` is given if ``b`` is a time.
+    ``a`` is a formula, and ``b`` is a formula or a time. ``c`` is the goal before ``a``, and empty
+    without one. ``time`` is None if ``b`` is a formula.
     """
 
     a: str
@@ -484,7 +485,7 @@ def _goal_starts(failure: ParseFailure, at: int) -> list[int]:
 
 
 def _is_of_every_step(failure: ParseFailure, at: int) -> bool:
-    """Whether the condition at token ``at`` is certainly about every step; if False, it may be about one."""
+    """Whether the condition at index ``at`` is certainly about every step; if False, it may be about one step."""
     is_kept = failure.tokens[0].text == "keep" and failure.start == "clause"
     return at == 0 or ((is_kept or has_always_before(failure)) and is_clear_here(failure, failure.tokens[at].text))
 
@@ -517,9 +518,10 @@ _SEPARATORS: Final = ("then", ",", ":")
 
 
 def _condition_end(failure: ParseFailure, start: int, stop: int) -> int:
-    """Return the index where a condition ends.
+    """Return the index where a condition that begins at index ``start`` ends.
 
-    It ends at `then`, a comma or a colon, else after a name and its arguments.
+    The condition ends at `then`, a comma or a colon. Without one of these, it ends after a name and
+    its arguments.
     """
     for index in outer_indices(failure.tokens, start, stop):
         if failure.tokens[index].text in _SEPARATORS:

@@ -39,7 +39,7 @@ _BOUNDED_UNTILS: Final = {
     "RELEASE": "G[0,20] b | (b U (a & b)) & F[0,20] (a & b)",
     "STRONG_RELEASE": "(b U (a & b)) & F[0,20] (a & b)",
 }
-"""For each operator of two operands, what ``a U[0,20] b`` and the like would mean."""
+"""Maps the terminal of an operator of two operands to what the operator would mean with a bound, ``a U[0,20] b``."""
 
 
 def unexpected_token(

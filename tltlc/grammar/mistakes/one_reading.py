@@ -44,10 +44,7 @@ def has_token(failure: ParseFailure, start: int, stop: int, kinds: Collection[st
 
 
 def is_of_one_step(failure: ParseFailure, start: int, stop: int) -> bool:
-    """Whether the tokens from index ``start`` up to ``stop`` have no temporal operator.
-
-    Then the formula that they form is about one step.
-    """
+    """Whether the formula from index ``start`` up to ``stop`` is about one step: it has no temporal operator."""
     return not any(token.type in TEMPORAL | UNTILS | {"THEN"} for token in failure.tokens[start:stop])
 
 
@@ -86,7 +83,7 @@ def is_clear_word(failure: ParseFailure, word: str, left: tuple[int, int], right
 def is_clear_here(failure: ParseFailure, word: str) -> bool:
     """Whether a word has only one meaning here, judged by what stands around it.
 
-    The clause, and the tokens around the brackets that are open at the failure, decide.
+    The keyword of the clause and the tokens around the open brackets decide this.
     """
     clause = failure.tokens[0].text if failure.start == "clause" else ""
     if word in _STATES:
@@ -113,8 +110,8 @@ def is_clear_here(failure: ParseFailure, word: str) -> bool:
 def is_clear_time_here(failure: ParseFailure, *, may_be_negated: bool, may_be_kept: bool) -> bool:
     """Whether a time can apply to the formula in the innermost open brackets.
 
-    The tokens around all open brackets decide. ``may_be_negated`` allows `not` before a bracket,
-    ``may_be_kept`` allows `always`.
+    The tokens around all open brackets decide this. ``may_be_negated`` allows `not` before a
+    bracket, and ``may_be_kept`` allows `always`.
     """
     if failure.tokens[0].type == "LET" or _is_in_call(failure):
         return False

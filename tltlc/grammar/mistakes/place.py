@@ -17,7 +17,7 @@ from tltlc.grammar.tables import load
 
 KEYWORDS: Final = {"declaration": DECLARATIONS, "clause": CLAUSES, "test_item": TEST_ITEMS}
 NOUNS: Final = {"declaration": "declaration", "clause": "clause", "test_item": "line of a test"}
-"""What messages call a piece of text, by its nonterminal. Any other piece is a formula."""
+"""Maps a nonterminal to the word by which messages call such a piece of text. Any other piece is a formula."""
 
 OPENING: Final = {"LPAR": "RPAR", "LSQB": "RSQB", "LBRACE": "RBRACE"}
 CLOSING: Final = frozenset(OPENING.values())
@@ -90,10 +90,7 @@ class ParseFailure:
         return stack
 
     def form(self) -> str | None:
-        """Return a help text with the syntax of the piece.
-
-        None if the first token of the piece is no keyword of its kind.
-        """
+        """Return a help text with the syntax of the piece; None if no keyword for such a piece begins it."""
         form = KEYWORDS.get(self.start, {}).get(self.tokens[0].text)
         return f"the form is {form}" if form else None
 

@@ -16,7 +16,7 @@ from tltlc.grammar.mistakes.fragments import block_kind, declarations, is_first_
 from tltlc.grammar.tables import load
 
 MAX_ERRORS: Final = 200
-"""After this many errors, the rest of the text is not read: it is hardly a specification."""
+"""After this many errors, the rest of the text is not read, because it is hardly a specification."""
 
 
 def recover(source: SourceFile, lexed: Tokens) -> tuple[tuple[tree.Declaration, ...], tuple[Diagnostic, ...]]:
