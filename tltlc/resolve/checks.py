@@ -32,8 +32,8 @@ def check_predicates(context: Context) -> None:
     current values of the params: ``near(exit, close = 3 m)`` jumps in a level of 2 m, which does
     not matter if the level has 20 m.
 
-    All checks together have a limited number of steps. If it is used up, one warning (TLT0503)
-    names the first predicate that was not checked and counts the others.
+    All checks together may take a limited number of steps. If no steps are left, one warning
+    (TLT0503) names the first predicate that was not checked and counts the others.
     """
     from tltlc.resolve.range_proof.work import step_limit
 
@@ -61,9 +61,9 @@ def _check(instance: Instance, context: Context) -> None:
 
 
 def _holds_without_negatives(instance: Instance, context: Context) -> bool:
-    """Whether the range is wrong only because a signal may be negative.
+    """Whether the range is wrong only because a signal may be negative that never should be.
 
-    Such a signal is a length, a time or a speed without a declared lower end.
+    Such signals are lengths, times and speeds without a declared lower end.
     """
     from tltlc.resolve.range_proof import check_predicate
 

@@ -26,9 +26,9 @@ def comparison(expr: BinaryExpr, env: Env) -> Formula:
 
     ``x >= c`` is ``not (x < c)``, and ``x <= c`` is ``not (x > c)``.
 
-    With x in [low, high], the robustness of ``x > c`` is x - c, divided by high - c where it is
-    positive, and by c - low where it is negative: so it is 1 at high and -1 at low. The robustness
-    of ``x < c`` is that of ``-x > -c``. If both sides vary, their difference is compared with 0.
+    For x in [low, high], the robustness of ``x > c`` is (x - c) / (high - c) where x is above c,
+    and (x - c) / (c - low) where x is below c. So it is 1 at high and -1 at low. The robustness of
+    ``x < c`` is that of ``-x > -c``. If both sides vary, their difference is compared with 0.
     The robustness is above 0 exactly where the comparison is true.
 
     Raises ResolutionError if the comparison is constant over the range (TLT0310), if a side that is

@@ -65,16 +65,18 @@ class Instance:
 class Context:
     """The tables that fill up while a program is resolved.
 
+    - ``signal_infos`` and ``params`` have the declared signals and params, by name.
     - ``signals`` has the signals in use, by full name.
     - ``instances`` has the predicates to be checked.
     - ``values`` has the values found so far of signals, predicates, lets, calls and comparisons.
-    - ``expanding`` has the name of each let or predicate that is being expanded, outermost first,
-      by the identity of its declaration.
+    - ``expanding`` maps the identity of a declaration to its name, for each let or predicate that is
+      being expanded, outermost first.
     - ``broken`` has the identities of the declarations whose error has been reported.
     - ``bounds`` has the bounds expanded so far.
+    - ``expansions`` counts the expansions of lets and quantifiers so far.
 
-    A key of ``instances`` or ``values`` has the identity of a declaration or expression, and the
-    values of its parameters or local names.
+    The identity of an object is its ``id``. A key of ``instances`` or ``values`` contains the
+    identity of a declaration or expression, and the values of its parameters or local names.
     """
 
     __slots__ = (
@@ -195,7 +197,7 @@ class Context:
         return names
 
     def tree_size(self, formula: Formula) -> int:
-        """Return the number of nodes of the formula written out as a tree."""
+        """Return the number of nodes of the formula written out as a tree, where shared parts count each time."""
         if formula in self._sizes:
             return self._sizes[formula]
         stack = [formula]

@@ -76,7 +76,7 @@ def standard_library() -> Path:
 
 
 def library_with(name: str) -> str | None:
-    """Return the library of the standard library that declares ``name``; None if no library declares it.
+    """Return the name of the library in the standard library that declares ``name``; None if none does.
 
     Messages suggest to import this library.
     """
@@ -85,9 +85,10 @@ def library_with(name: str) -> str | None:
 
 @lru_cache(maxsize=1)
 def _names_of_libraries() -> Mapping[str, str]:
-    """Map each name to the first library of the standard library that declares it, in alphabetical order.
+    """Map each name to the library in the standard library that declares it.
 
-    Reads the library files, so it is used only for messages.
+    If several libraries declare a name, the first one in alphabetical order counts. Reads the library
+    files, so it is used only for messages.
     """
     import re
 
@@ -131,9 +132,9 @@ def _path_of(source: SourceFile) -> Path:
 
 
 def _folder(source: SourceFile) -> Path:
-    """Return the folder that imports are relative to, as the user wrote it.
+    """Return the folder to which the imports of a source text are relative, as the user wrote it.
 
-    A text without a file uses the current folder.
+    For a text without a file, it is the current folder.
     """
     if source.name.startswith(STANDARD_LIBRARY_NAME):
         return standard_library()

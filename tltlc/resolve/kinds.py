@@ -39,8 +39,8 @@ def lookup(use: NameExpr | CallExpr, env: Env, kinds: tuple[Kind, ...], noun: st
     """Return the binding of a name: its declaration and scope.
 
     Raises ResolutionError (TLT0201) if the name is unknown. The error suggests a name of one of
-    ``kinds``, and calls what is missing ``noun``. It has no diagnostic if a failed import may have
-    declared the name.
+    ``kinds``; ``noun`` says in its message what is missing. If a failed import may have declared
+    the name, the error has no diagnostic.
     """
     binding = env.scope.names.get(use.name)
     if binding is not None:

@@ -1,4 +1,4 @@
-"""Param values given on the command line or when an artefact is loaded."""
+"""Set params to the values that are given on the command line or when an artefact is loaded."""
 
 from __future__ import annotations
 

@@ -77,9 +77,9 @@ def predicate(use: NameExpr | CallExpr, binding: Binding, env: Env, depth: int =
 
 
 def check_unused(binding: Binding, env: Env) -> None:
-    """Instantiate a predicate with symbolic arguments, so that its body is checked even if unused.
+    """Instantiate a predicate with symbolic arguments, so that its body is checked even if nothing uses it.
 
-    Its range is checked only if the predicate needs no numbers, because the range depends on them.
+    The range is checked only if no parameter needs a number, because the range depends on the numbers.
     """
     declaration = binding.declaration
     assert isinstance(declaration, PredicateDecl)
@@ -154,7 +154,7 @@ _TYPES_ELSEWHERE: Final = {
     "duration": "time",
     "velocity": "speed",
 }
-"""Names of types in other languages, each with the type of this language."""
+"""Maps names of types in other languages to the types of this language."""
 
 
 def unknown_type_error(name: str, at: Parameter | tree.SignalDecl | tree.ParamDecl, scope: Scope) -> ResolutionError:

@@ -23,9 +23,10 @@ class ResolutionError(Exception):
         super().__init__(diagnostic.title if diagnostic else "reported before")
 
     def add_use(self, use: Label, source: SourceFile, body: Span) -> None:
-        """Add the place where a definition is used to a problem in the body of the definition.
+        """Add the label ``use``, the place where a definition is used, to a problem inside the definition.
 
-        Do nothing if the arguments of the use cannot have caused the problem.
+        ``body`` is the span of the definition's body in ``source``. Does nothing if the problem is
+        not in the body, or if the arguments of the use cannot have caused it.
         """
         diagnostic = self.diagnostic
         if diagnostic is None or diagnostic.code not in _OF_ARGUMENTS or len(diagnostic.labels) >= _MOST_PLACES:
@@ -39,7 +40,7 @@ class ResolutionError(Exception):
 
 
 _OF_ARGUMENTS: Final = {"TLT0301", "TLT0302", "TLT0305", "TLT0307", "TLT0309", "TLT0310", "TLT0311"}
-"""The codes of problems that a definition may have with some arguments and not with others."""
+"""The codes of problems that a definition may have with some arguments but not with others."""
 
 _MOST_PLACES: Final = 4
 """The most places that one problem shows, including its own."""
@@ -56,7 +57,7 @@ def problem(
     related: tuple[Label, ...] = (),
     fixes: tuple[Fix, ...] = (),
 ) -> ResolutionError:
-    """Return an error at ``span``, with a short message under the caret.
+    """Return an error at ``span``, with ``message`` under the caret.
 
     ``advice`` becomes the help of the diagnostic, and ``related`` its further labels.
     """

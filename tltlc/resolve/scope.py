@@ -46,7 +46,7 @@ class Binding:
 
 @record
 class Scope:
-    """A module and the names visible in it."""
+    """A module and the names visible in it; ``title`` is the name of the module in messages."""
 
     module: Module
     title: str

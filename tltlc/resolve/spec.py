@@ -70,7 +70,7 @@ class Atom:
 
 @record
 class Bound:
-    """A bound of a temporal operator: its greatest number of samples, and its place in the text."""
+    """A bound of a temporal operator: its upper end, in samples, and its place in the text."""
 
     samples: int
     source: SourceFile
@@ -138,7 +138,10 @@ class Vocabulary:
 
 @record
 class RepeatedSample:
-    """One line of a test: the atoms that hold (the others are false), repeated ``times``."""
+    """A ``step`` of a test: the names of the atoms that hold at a sample, which is repeated ``times`` times.
+
+    All other atoms are false.
+    """
 
     times: int
     holds: frozenset[str]

@@ -1,4 +1,4 @@
-"""Resolve specs: their clauses, the conjunction of the clauses, and their metadata."""
+"""Resolve specs: their clauses, the conjunction of the clauses, and settings such as ``limit``."""
 
 from __future__ import annotations
 
@@ -28,8 +28,8 @@ def resolve_spec(declaration: SpecDecl, groups: tuple[tuple[str, ...], ...], env
 
     Every clause in error is reported to the log.
 
-    ``groups`` holds the atom names of each ``exclusive`` declaration. The groups that share at
-    least two atoms with the formula become part of the spec.
+    ``groups`` has the names of the atoms of each ``exclusive`` declaration. The groups that share
+    at least two atoms with the formula become part of the spec.
     """
     log, source = env.context.log, env.scope.source
     parts: list[Conjunct] = []
@@ -151,7 +151,10 @@ def _conjunct(conjunct: Formula, clause: Clause, env: Env) -> Conjunct:
 
 
 def _store_metadata(clause: Clause, metadata: dict[str, Clause], env: Env) -> None:
-    """Store a metadata clause; raise ResolutionError (TLT0214) if it is repeated."""
+    """Store a clause that sets an option of the spec, such as ``limit``.
+
+    Raises ResolutionError (TLT0214) if the spec already has a clause with this keyword.
+    """
     source = env.scope.source
     if clause.kind in metadata:
         raise problem(

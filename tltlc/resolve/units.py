@@ -61,7 +61,7 @@ def value_type(name: str) -> ValueType | None:
 
 
 def type_of_unit(unit: str) -> str | None:
-    """Return the type that is measured in a unit, or None if no type is."""
+    """Return the type whose values have this unit, or None if there is no such type."""
     if unit == "%":
         return "ratio"
     dimension = _UNITS[unit][2] if unit in _UNITS else None

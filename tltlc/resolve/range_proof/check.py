@@ -1,7 +1,7 @@
-"""Check a predicate: does its value stay in the declared range, and do its ``when`` cases join
-continuously?
+"""Check whether a predicate stays in its declared range, and whether its ``when`` cases join
+continuously.
 
-There are four answers: proved (no finding), wrong at a concrete point, unproved, and unchecked (the
+There are four results: proved (no finding), wrong at a concrete point, unproved, and unchecked (the
 check would exceed its step limit). These methods are tried in turn:
 
 - proofs by interval arithmetic and by exact signs of polynomials;

@@ -2,10 +2,10 @@
 another.
 
 On a closed region, for fixed other variables, the minimum of a continuous ``f`` over one variable
-lies where the derivative is 0, at a root of a constraint, at an end of its range, or in the limit
-at an open end. Substituting each of these candidates gives functions of the other variables, which
-must not be negative either. Steps are counted: an answer comes within a bounded number of steps on
-terms of bounded size.
+lies where the derivative is 0, at a root of a constraint, at an end of the variable's range, or in
+the limit at an open end. Substituting each of these candidates gives functions of the other
+variables, which must not be negative either. Steps are counted: an answer comes within a bounded
+number of steps on terms of bounded size.
 """
 
 from __future__ import annotations
@@ -42,7 +42,10 @@ class GiveUpError(Exception):
 
 
 class Prover:
-    """Proves that terms are never negative. Raises GiveUpError when its steps are used up."""
+    """Proves that terms are never negative.
+
+    The methods raise GiveUpError if a proof needs another method, or if the steps are used up.
+    """
 
     def __init__(self) -> None:
         self.steps = 0
@@ -50,7 +53,7 @@ class Prover:
     def proves_nonnegative(self, f: Term, limits: Sequence[Term], ranges: Ranges, *, strict: bool) -> bool:
         """Whether f is provably >= 0 (> 0 if strict) at the points of the ranges where each limit is >= 0.
 
-        Limits are terms, and every symbol has a range. False means that it could not be proved.
+        Limits are terms, and every symbol has a range. If the result is False, f may still be >= 0.
         """
         self.steps += 1
         if self.steps > _MOST_STEPS:
@@ -181,7 +184,10 @@ def _is_solvable(limit: Term, x: Term) -> bool:
 
 
 def _border_roots(limit: Term, x: Term) -> list[Term]:
-    """Return the points where a solvable constraint on x starts or stops to hold."""
+    """Return the values of x at which a constraint on x begins or ceases to hold.
+
+    The constraint must be solvable for x (:func:`_is_solvable`).
+    """
     return list(sympy.roots(sympy.Poly(sympy.fraction(limit)[0], x), multiple=True))
 
 

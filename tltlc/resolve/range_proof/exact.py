@@ -1,7 +1,7 @@
 """Prove bounds with sympy, by turning expressions into quotients of polynomials.
 
-A term with a function that is no polynomial, such as ``sqrt``, becomes a variable of its own. Its
-range is the one that interval arithmetic finds for the term.
+A term with a function that is not a polynomial, such as ``sqrt``, becomes a variable of its own.
+The range of this variable is the range that interval arithmetic finds for the term.
 """
 
 from __future__ import annotations
@@ -72,7 +72,7 @@ def proves_within_exactly(
 class _Translation:
     """Translates expressions to sympy terms.
 
-    Each variable gets a symbol, and so does each term that is no quotient of polynomials.
+    Each variable gets a symbol, and so does each term that is not a quotient of polynomials.
     """
 
     def __init__(self, region: ConstrainedBox) -> None:

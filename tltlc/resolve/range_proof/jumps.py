@@ -89,7 +89,10 @@ def _points_along(start: Point, variable: Variable, box: Box, expression: Expres
 def _jump_between(
     all_cases: Sequence[ConstrainedValue], expression: Expression, start: Point, end: Point, variable: Variable
 ) -> Jump | None:
-    """Bisect between points of two cases down to the border; return the jump there, None if there is no clear one."""
+    """Find the border between points of two cases by bisection, and return the jump there.
+
+    Returns None if the value does not clearly jump there.
+    """
     low, high = start[variable], end[variable]
     left, right = _case_at(all_cases, start), _case_at(all_cases, end)
     while abs(high - low) > _BORDER_WIDTH * max(1.0, abs(low)):

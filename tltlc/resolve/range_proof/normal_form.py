@@ -38,7 +38,7 @@ class Quotient:
 
 
 def quotient(expression: Expression) -> Quotient:
-    """Return the normal form of an expression without ``when``.
+    """Return an expression without ``when`` as a quotient of polynomials, its normal form.
 
     The result is cached for the duration of a check. Raises TooLargeError.
     """
@@ -184,10 +184,7 @@ def _arithmetic(op: str, args: list[Quotient]) -> Quotient:
 
 
 def _reduced_product(a: Polynomial, b: Polynomial, c: Polynomial, d: Polynomial) -> Quotient:
-    """Return ``a/b * c/d``.
-
-    Cancels a numerator that is a multiple of the other denominator.
-    """
+    """Return ``a/b * c/d``; cancel a numerator if it is a multiple of the other denominator."""
     scale = _multiple(a, d)
     if scale is not None:
         return Quotient(add({}, c, scale), b)

@@ -30,9 +30,9 @@ _MOST_STEPS = WORK["check of a predicate"]
 
 @record
 class Answer:
-    """Whether a question is proved, and the steps of its proof.
+    """Whether the claim of a question is proved, and how many steps the proof took.
 
-    The steps are counted again each time that the cached answer is used.
+    The steps count again each time that the cached answer is used.
     """
 
     proved: bool

@@ -85,9 +85,9 @@ class ConstrainedBox:
 
 
 def _with_chains(constraints: Iterable[Constraint]) -> list[Constraint]:
-    """Return the constraints, plus a constraint on ``a - c`` where ``a - b`` and ``b - c`` have one.
+    """Return the constraints, and for each two on ``a - b`` and ``b - c`` also one on ``a - c``.
 
-    Interval arithmetic does not find the third constraint from the other two.
+    Interval arithmetic does not derive the third constraint from the other two.
     """
     chained = list(constraints)
     differences = [c for c in chained if isinstance(c.difference, Op) and c.difference.op == "-"]
@@ -268,7 +268,10 @@ def _require_defined(bounds: Interval | None) -> Interval:
 
 
 def _length(side: Interval) -> float:
-    """Return the length of a side on a logarithmic scale, which tells how much a cut across the side may help."""
+    """Return the length of a side on a logarithmic scale.
+
+    It says how much a cut across the side may help.
+    """
     return sum(copysign(log1p(min(abs(end), _FAR_AWAY)), end) * sign for end, sign in zip(side, (-1, 1), strict=True))
 
 

@@ -64,9 +64,10 @@ def find_wrong_point(
 ) -> SamplePoint | None:
     """Return a point of the box where the value is undefined or clearly outside ``[low, high]``.
 
-    Returns None if there is no such point among those tried. Simple points come first; a later
-    point replaces an earlier one only if it is much worse. ``bools`` are the variables that are
-    only 0 or 1. Raises OutOfWorkError if no point is found within the step limit.
+    Returns None if there is no such point among those tried. Simple points are tried first. A later
+    point replaces an earlier one only if it is much worse: undefined, or much farther outside.
+    ``bools`` are the variables that are only 0 or 1. Raises OutOfWorkError if no point is found
+    within the step limit.
     """
 
     def excess(witness: SamplePoint) -> float:
@@ -146,7 +147,10 @@ def _constants(expression: Expression) -> Iterator[float]:
 
 
 def _fraction(number: int, position: int) -> float:
-    """Return a number in (0, 1): term ``number`` of an additive sequence that depends on ``position``."""
+    """Return the term ``number`` of a sequence of numbers spread over (0, 1).
+
+    It is an additive recurrence modulo 1, whose step depends on ``position``.
+    """
     stride: float = 0.6180339887498949 ** (1 + position / 3)
     return (0.5 + number * stride) % 1.0
 
