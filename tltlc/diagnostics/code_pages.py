@@ -32,8 +32,8 @@ def codes_with_prefix(prefix: str) -> tuple[str, ...]:
 def nearest_codes(code: str, most: int = 3) -> tuple[str, ...]:
     """Return at most ``most`` codes that resemble an unknown code, sorted.
 
-    They are codes that a typo may have turned into ``code``. If there are none, they are the codes
-    with the nearest numbers.
+    These are codes that a typo may have turned into ``code``. If no code is so similar, they are the
+    codes with the nearest numbers.
     """
     from difflib import get_close_matches
 

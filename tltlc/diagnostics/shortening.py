@@ -16,7 +16,10 @@ LONGEST_TEXT: Final = 4000
 
 
 def shorten(diagnostic: Diagnostic) -> Diagnostic:
-    """Return the diagnostic with texts of at most :data:`LONGEST_TEXT`, and quotes of at most :data:`LONGEST_QUOTE`."""
+    """Return the diagnostic without the middle of each text or quote that is too long.
+
+    The limits are :data:`LONGEST_TEXT` and :data:`LONGEST_QUOTE`.
+    """
     labels = tuple(
         label if len(label.message) <= LONGEST_QUOTE else replace(label, message=short_text(label.message))
         for label in diagnostic.labels

@@ -1,7 +1,9 @@
-"""Ctrl-C in a terminal reaches this process and its children.
+"""Handle Ctrl-C, which a terminal sends to this process and to its children.
 
-Some children should not receive it, so that only this process handles it. If another child ends
-first, its interrupt counts as one of this process: its exit status would look like a failure.
+Some children should not receive it, so that only this process handles it
+(:func:`block_interrupts`). Other children receive it, and may end before this process handles it.
+The exit status of such a child must not count as a failure, but as an interrupt of this process
+(:func:`raise_if_interrupted`).
 """
 
 from __future__ import annotations
@@ -20,8 +22,8 @@ _BY_STATUS: Final = {
 }
 """Maps exit statuses to signals.
 
-The negative statuses are those of :mod:`subprocess`, 130 and 143 those of shells, and the last one
-that of Windows. 129, a shell's status for SIGHUP, is left out, because git uses 129 for errors.
+The negative statuses are those of :mod:`subprocess`, 130 and 143 are those of shells, and the last
+one is that of Windows. 129, a shell's status for SIGHUP, is left out, because git uses 129 for errors.
 """
 
 

@@ -25,7 +25,7 @@ _BYTE_ORDER_MARK: Final = b"\xef\xbb\xbf"
 Stamp = Union[tuple[int, ...], None]
 """The state of a path, to see later whether it has changed: the file's time of change, size and inode number.
 
-For a folder, a device or a pipe, only its kind. None if nothing is at the path.
+For a folder, a device or a pipe, it is only the kind. It is None if nothing is at the path.
 """
 
 
@@ -112,7 +112,7 @@ def _unsaved_text(path: str | os.PathLike[str]) -> str | None:
 
 @contextmanager
 def access_log() -> Iterator[AccessLog]:
-    """Record every path that this module looks up or reads inside the ``with`` block, with its stamp before that.
+    """Record every path that this module looks up or reads inside the ``with`` block, with its earlier stamp.
 
     What was computed inside the block stays valid as long as :func:`stamp` returns the same for
     each of these paths.
@@ -215,8 +215,8 @@ def is_file(path: str | os.PathLike[str]) -> bool:
 def may_be_file(path: str | os.PathLike[str]) -> bool:
     """Whether a path is not a pipe, device, socket or folder, so that a command may try to read it.
 
-    Links are followed. The result is True for a broken link, so that reading it reports the
-    problem.
+    Links are followed. The result is True if nothing is there, as for a broken link, so that
+    reading it reports the problem.
     """
     try:
         return stat.S_ISREG(os.stat(path).st_mode)  # noqa: PTH116
@@ -346,7 +346,7 @@ def decode(data: bytes, name: str, *, max_bytes: int = MAX_SOURCE_BYTES) -> Sour
 
 
 def reading_error(name: str, error: OSError | ValueError) -> TltlError:
-    """Return the error TLT0001 for a file that the system cannot read."""
+    """Return the error TLT0001 for a file that the system cannot read; ``name`` is its name in the message."""
     suggestion: str | None = "check its name and its permissions"
     if isinstance(error, FileNotFoundError):
         suggestion = _missing_file_help(name) or "check its spelling, and the folder that you are in"
@@ -356,7 +356,7 @@ def reading_error(name: str, error: OSError | ValueError) -> TltlError:
 
 
 def reason(error: OSError | ValueError) -> str:
-    """Return in words why the system refused to open a file."""
+    """Return in words why the system refused to open, create or write a file."""
     if isinstance(error, FileNotFoundError):
         return "there is no such file"
     if isinstance(error, IsADirectoryError):

@@ -74,7 +74,7 @@ class ArithmeticLimit:
 ARITHMETIC: Final = ArithmeticLimit(depth=100, compared=110, parts=500)
 """The expression of an atom.
 
-Python's compiler, and recursive functions over expressions, can handle this depth.
+Python's compiler can handle this depth, and so can recursive functions over expressions.
 """
 
 SOURCE: Final = Limit(size=1 << 20)
@@ -213,7 +213,7 @@ WORK: Final[Mapping[str, int]] = {
     "mined sequences": 800_000,
     "mined candidates": 50_000,
 }
-"""For each computation that could take very long, the most of what it counts: steps, states, edges, pairs, …."""
+"""Maps each computation that could take very long to the most that it may count: steps, states, edges and so on."""
 
 
 def too_deep_error(source: SourceFile, limit: Limit, span: Span | None = None) -> TltlError:

@@ -159,10 +159,7 @@ def _unknown_keys(table: dict[str, Any], keys: tuple[str, ...], source: SourceFi
 
 
 def _lint_levels(table: object, source: SourceFile, errors: list[Diagnostic]) -> dict[str, str]:
-    """Map each code in the table ``lint`` to its level.
-
-    Appends the errors in the table to ``errors``.
-    """
+    """Map each code in the table ``lint`` to its level; append the errors in the table to ``errors``."""
     if not isinstance(table, dict):
         errors.append(_wrong_value(source, "lint", "a table, e.g. `[lint]`", table))
         return {}
@@ -223,7 +220,7 @@ def _key_labels(source: SourceFile, key: str) -> tuple[Label, ...]:
 
 @lru_cache(maxsize=1)
 def _first_words(text: str) -> Mapping[str, Span]:
-    """Map each word or quoted text that begins a line, perhaps after a bracket, to its first span."""
+    """Map each word or quoted text that begins a line, perhaps after a bracket, to the span of its first place."""
     import re
 
     spans: dict[str, Span] = {}

@@ -1,9 +1,10 @@
 """Limit the processor time and the memory of a command.
 
-This stops commands whose input exceeds none of the limits in :mod:`tltlc.io.limits`. The limits
-there count bytes and steps, so they give the same result on every machine. The limits of this
-module depend on the machine, so they are far above what any ordinary file needs. They apply only to
-the commands of tltlc: a program that imports tltlc keeps its own signal handlers and limits.
+This stops a command that takes too much time or memory although its input exceeds none of the
+limits in :mod:`tltlc.io.limits`. The limits there count bytes and steps, so they give the same
+result on every machine. The limits of this module depend on the machine, so they are far above what
+any ordinary file needs. They apply only to the commands of tltlc: a program that imports tltlc keeps
+its own signal handlers and limits.
 """
 
 from __future__ import annotations
@@ -90,7 +91,7 @@ def limit(name: str, most: int) -> None:
 def _quiet_destructors() -> Iterator[None]:
     """Suppress Python's messages about destructors that ran out of memory or time.
 
-    The command itself runs out of them soon after, and reports this. Python still prints a line if
+    The command itself runs out of memory or time soon after, and reports this. Python still prints a line if
     there is no memory left to call the hook.
     """
     previous = sys.unraisablehook

@@ -38,7 +38,7 @@ def split(argument: str) -> tuple[str, str | None]:
     """Return the path and the name of an argument ``PATH:NAME``, or the argument and None if it has no name.
 
     If a file has the whole argument as its path, the argument has no name. On Windows, a single
-    letter before the colon is a drive, and no path.
+    letter before the colon is a drive, not a path.
     """
     path, colon, name = argument.rpartition(":")
     if not colon or not path or not is_plain_name(name) or os.path.exists(argument):  # noqa: PTH110

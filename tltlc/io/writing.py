@@ -38,11 +38,11 @@ def write_files(
     already renamed get their old content back, and new folders are removed. Text is written as
     UTF-8 with line feeds.
 
-    Errors: TLT0005 if the system refuses; TLT0700 if a file would change that the command has read,
+    Errors: TLT0005 if the system refuses; TLT0700 if a file that the command has read would change,
     unless ``over_inputs`` is true. ``advice`` is the help of both errors: where else to write.
 
-    With ``durable``, each file is complete even after a loss of power, and on the disk once this
-    function has returned.
+    With ``durable``, each file is complete even after a loss of power, and it is on the disk as soon
+    as this function has returned.
 
     If the process is killed, temporary files may remain, until the next process that writes into
     the same folder removes them. Some files may then be new and some old, but none is half written.

@@ -63,7 +63,7 @@ def _label_lines(label: Label, gutter: int, colour: str, color: bool) -> list[st
 
 
 def _window(line: str, start: int, length: int) -> tuple[str, int, int]:
-    """Return the part of a line to show, the column of the first caret, and the number of carets.
+    """Return the part of a line to show, the column of the first caret (from 0), and the number of carets.
 
     ``start`` and ``length`` say which characters of the line to mark; ``start`` counts from 0.
     """
