@@ -12,7 +12,7 @@ from tltlc.automaton.fspa import Guard, Implicant
 
 
 def holds(guard: Guard, values: Sequence[float]) -> bool:
-    """Whether a guard is true: whether at least one of its prime implicants is.
+    """Whether a guard is true, that is, whether at least one of its prime implicants is true.
 
     An atom is true if its value is above 0.
     """
@@ -30,7 +30,7 @@ def robustness(guard: Guard, values: Sequence[float]) -> float:
     """Return the robustness of a guard, in [-1, 1]: the greatest robustness of a prime implicant.
 
     ▲ The paper computes it from the guard's formula, so equivalent formulas may have different
-    robustness. They have the same prime implicants.
+    robustness. Here they have the same, because they have the same prime implicants.
     """
     return max([prime_robustness(prime, values) for prime in guard.primes])
 

@@ -42,11 +42,11 @@ class Step(NamedTuple):
 class Monitor:
     """Runs an automaton over one trace after another.
 
-    ``params`` maps names of params to values that replace the default ones, in SI units. ``reward``
-    says how steps are rewarded and when episodes end. ``notices`` collects warnings about clamped
-    values, one for each signal or atom. After :meth:`step`, ``values`` has the values of the atoms
-    at this sample, in the order of ``fspa.atoms``, and ``success`` is true if the episode has ended
-    in success.
+    ``fspa`` is the automaton (finite state predicate automaton). ``params`` maps names of params to
+    values that replace the default ones, in SI units. ``reward`` says how steps are rewarded and
+    when episodes end. ``notices`` collects warnings about clamped values, one for each signal or
+    atom. After :meth:`step`, ``values`` has the values of the atoms at this sample, in the order of
+    ``fspa.atoms``, and ``success`` is true if the episode has ended in success.
 
     Raises:
         MonitorError: TLT0307 a value of ``params`` is outside its range, TLT0308 there is no such

@@ -22,10 +22,10 @@ class _ColumnError(Exception):
 
 
 def is_parquet(start: bytes, name: str) -> bool:
-    """Whether a file is in Parquet: by its name, or by the bytes that it begins with.
+    """Whether a file is in Parquet, judged by the ending of its name, or by ``start``, its first bytes.
 
-    In Parquet, a control character follows the magic bytes, which a trace in CSV cannot have there,
-    except for blanks and line ends.
+    A trace in CSV may begin with the same four characters. But in Parquet, a control character other
+    than a tab or a line end follows them, which CSV cannot have there.
     """
     following = start[4:5]
     is_control = b"" < following < b" " and following not in (b"\t", b"\n", b"\r")
@@ -44,8 +44,8 @@ def json_lines(data: bytes, name: str, signals: Collection[Signal] | None = None
     """Return a trace in Parquet as JSON lines, with an object for each row.
 
     ``name`` is the trace's name in messages. Columns of numbers and booleans keep their values, and
-    a missing value is ``null``. Only the columns of ``signals`` and the times are read; None for all
-    columns of numbers and booleans.
+    a missing value is ``null``. Only the columns of ``signals`` and the times are read. If
+    ``signals`` is None, all columns of numbers and booleans are read.
 
     Raises:
         TltlError: TLT0730, pyarrow is not installed; TLT0622, the file is not valid; TLT0004, it is

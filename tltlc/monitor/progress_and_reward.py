@@ -38,8 +38,8 @@ class RewardOptions:
       or an accepting state; if the spec is judged at its limit, only as soon as the verdict is
       final. With ``paper``, it ends one step later, as in the printed algorithm, and every spec is
       judged at its goal.
-    - ``terminal_penalty``: a violation costs at once the penalties of all remaining steps, either
-      their sum (``undiscounted``) or their sum discounted by ``gamma`` (``discounted``).
+    - ``terminal_penalty`` says what a violation costs: the sum of the penalties of all remaining
+      steps (``undiscounted``), or this sum discounted by ``gamma`` (``discounted``).
     - ``gamma`` in (0, 1] is the discount of mode ``potential`` and of the ``discounted`` terminal
       penalty.
 
@@ -90,8 +90,8 @@ def reward_step(
 
     ``values`` are the atoms' values at the sample of this step (line 8). ``best`` is the best
     progress before this sample (``episode progress``). ``step`` is the number of this sample in the
-    episode, from 1. ``last`` ends the episode here whatever the spec says, for example because the
-    game is over early. With ``T`` the spec's limit in steps, the reward is computed in this order::
+    episode, from 1. If ``last``, the episode ends here whatever the spec says, for example because
+    the game is over early. With ``T`` the spec's limit in steps, the reward is computed in this order::
 
         reward = max(0, progress - best)          lines 25 to 28
         reward = reward - 1 / T                   line 29, if there is a limit
@@ -177,8 +177,9 @@ def ends_episode(tables: MonitorTables, state: int, target: int, options: Reward
 def _succeeds_early(tables: MonitorTables, target: int, options: RewardOptions) -> bool:
     """Whether an episode that is cut off in the state ``target`` is a success.
 
-    It is a success if the state is accepting. But a spec that is judged at its limit, and has a
-    limit, counts no episode as a success that is cut off earlier.
+    It is a success if the state is accepting, with one exception: if the spec has a limit and is
+    judged at it, an episode that is cut off before the limit is a failure. With
+    ``termination="paper"``, every spec is judged at its goal.
     """
     at_goal = tables.fspa.judge == "goal" or options.termination == "paper"
     return tables.fspa.states[target].accepting and (at_goal or tables.fspa.limit_steps is None)

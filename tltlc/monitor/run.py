@@ -1,4 +1,4 @@
-"""Run a monitor over a whole trace, and write its steps as the rows of a table."""
+"""Run a monitor over a whole trace, and return its steps as the rows of a table."""
 
 from __future__ import annotations
 
@@ -12,7 +12,10 @@ from tltlc.monitor.monitor import Monitor, Step
 
 @record
 class RunStep:
-    """One step of a run: its number (from 1), the monitor's result, and the values of the atoms in order."""
+    """One step of a run: its number (from 1), the monitor's result, and the values of the atoms.
+
+    The values are in the order of the automaton's atoms.
+    """
 
     number: int
     step: Step
@@ -23,8 +26,9 @@ class RunStep:
 class TraceOutcome:
     """The judgement of a whole trace.
 
-    ``accepted`` says whether the trace is accepted. ``verdict`` is the verdict of the last state,
-    ``steps`` the number of samples, and ``progress`` the best progress, in [0, 1].
+    ``accepted`` says whether the spec accepts the trace. ``verdict`` is the verdict of the last
+    state, ``steps`` the number of samples, ``progress`` the best progress, in [0, 1], and
+    ``total_reward`` the sum of the rewards of all steps.
     """
 
     accepted: bool

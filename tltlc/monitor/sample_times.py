@@ -22,10 +22,10 @@ _ROUNDING_S: Final = 1e-3
 
 
 def times_name(names: Iterable[str], signals: Iterable[Signal]) -> str | None:
-    """Return the name of the column, or key, with the times of the samples in seconds; None without one.
+    """Return the name of the column, or key, with the times of the samples in seconds; None if there is none.
 
-    It is ``time``, in any capitals, unless the spec has a signal of this name. ``names`` are the
-    names of all columns.
+    Its name is ``time``, whatever its capital letters, unless the spec has a signal of this name.
+    ``names`` are the names of all columns.
     """
     taken = {signal.name for signal in signals}
     candidates = [name for name in names if name.lower() == _TIME and name not in taken]
@@ -35,9 +35,12 @@ def times_name(names: Iterable[str], signals: Iterable[Signal]) -> str | None:
 class SampleTimes:
     """Checks the times of the samples of one trace, in order.
 
-    Without a clock, each time must be later than the one before. With a clock of period c, no
-    sample may be missing: the time between two samples is at most 1.5 c. And sample i (from 0) must
-    be within c/2 of i c after the first one, with 2 % of error in the clock.
+    Each time must be later than the one before. With a clock, whose period is c, two more conditions
+    hold. The time between two samples is at most 1.5 * c, so that no sample is missing. And the time
+    from the first sample to sample i (from 0) differs from i * c by at most c / 2, plus 2 % of i * c
+    because the clock of the game may be fast or slow. Both allow 1 ms more for rounding.
+
+    ``clock_s`` is the period of the clock in seconds, None without a clock.
     """
 
     def __init__(self, clock_s: float | None) -> None:
@@ -69,7 +72,7 @@ class SampleTimes:
 
     @property
     def advice(self) -> str:
-        """How to mend a trace whose times are wrong."""
+        """The help of a message about a wrong time: how to mend the trace."""
         if self._clock_s is None:
             return "record the samples in the order in which they happen, with times in seconds"
         return "record every sample at the rate of `clock`, with times in seconds, or change `clock` in the spec"

@@ -158,7 +158,7 @@ def range_text(low: float | None, high: float | None) -> str:
 
 
 def name_list(names: Sequence[str]) -> str:
-    """Return the names in backquotes, with ``and`` before the last one."""
+    """Return one or more names in backticks, with ``and`` before the last one."""
     quoted = [f"`{name}`" for name in names]
     return quoted[0] if len(quoted) == 1 else f"{', '.join(quoted[:-1])} and {quoted[-1]}"
 

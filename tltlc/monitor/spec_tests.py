@@ -40,7 +40,7 @@ class TestResult:
 def run_tests(program: ResolvedFile, automata: Iterable[Fspa]) -> tuple[TestResult, ...]:
     """Return the results of the tests of a source text, in order.
 
-    Tests of specs without an automaton are left out.
+    A test is left out if ``automata`` has no automaton of its spec.
     """
     by_name = {fspa.name: fspa for fspa in automata}
     return tuple(run_test(test, by_name[test.spec]) for test in program.tests if test.spec in by_name)

@@ -32,7 +32,7 @@ class Stream(Protocol):
 
 @record
 class TraceTable:
-    """A trace in CSV: the names of its columns, and an iterator over its rows, which have a cell for each column."""
+    """A trace in CSV: the names of its columns, and an iterator over its rows, each with a cell for each column."""
 
     header: tuple[str, ...]
     rows: Iterator[list[str]]
@@ -152,7 +152,7 @@ class TraceLines:
         return self.error(remark, (column, column + 1), help)
 
     def error(self, remark: str, columns: tuple[int, int] | None = None, help: str | None = None) -> TltlError:  # noqa: A002
-        """Return TLT0622: the current row cannot be read. Its label marks the first line of the row.
+        """Return the error TLT0622 about the current row, with a label on the first line of the row.
 
         ``remark`` is the message of the label. ``columns`` are the start and the end of the part of
         the line to mark, in characters from 0; by default the whole line.
@@ -245,8 +245,9 @@ def _quoted_cell(line: str, start: int, lines: TraceLines) -> tuple[str, str, in
 
 
 def _closing_quote(line: str, start: int) -> int:
-    """Return the position of the closing quote of a cell that goes on at ``start``; -1 if the cell
-    goes on in the next line.
+    """Return the position of the closing quote of a cell, or -1 if it is not in this line.
+
+    ``start`` is the position where the text of the cell begins or continues.
     """
     end = line.find('"', start)
     while end >= 0 and line.startswith('""', end):

@@ -57,7 +57,7 @@ def read_trace(stream: Stream, name: str, signals: Sequence[Signal], clock_s: fl
 
 
 def in_trace(name: str, diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
-    """Return the diagnostics of a monitor with the name of the trace in their titles."""
+    """Return the diagnostics of a monitor, with the name of the trace added to their titles."""
     return tuple(replace(diagnostic, title=f"`{name}`, {diagnostic.title}") for diagnostic in diagnostics)
 
 

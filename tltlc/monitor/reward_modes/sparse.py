@@ -22,8 +22,8 @@ def reward(
     """Return 0, and at the end of the episode the robustness of its trace, in [-1, 1].
 
     The robustness of a trace is positive if and only if the trace is accepted. Its absolute value
-    is the distance to the nearest trace with the opposite acceptance: the least size of changes of
-    the atoms' values, at any samples, that lead to such a trace. The distance follows from the
+    is the distance to the nearest trace with the opposite acceptance. A trace has the distance d if
+    no value of an atom, at any sample, differs by more than d. The distance follows from the
     widest run to a state with the opposite acceptance, since the width of a run tells how much the
     values must change for the trace to take it. If no run reaches a state with the opposite
     acceptance, the robustness is 1 or -1.
@@ -41,7 +41,7 @@ def reward(
 
 
 def _widen(tables: MonitorTables, widths: Widths, transition: Transition) -> Widths:
-    """Return the widths after one more sample, the one of ``transition``."""
+    """Return the widths after one more sample, which is the sample of ``transition``."""
     widened: Widths = {}
     for state, width in widths.items():
         for edge in tables.edges[state]:
