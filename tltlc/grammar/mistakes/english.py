@@ -138,8 +138,9 @@ def plain_english(failure: ParseFailure) -> Diagnostic | None:
     if not failure.wants_operator or failure.previous_token is None:
         return None
     for at, untimed_forms in ((failure.stop.index - 1, _PREFIXES), (failure.stop.index, _FORMS)):
-        word, is_timed = failure.tokens[at], at + 1 < len(failure.tokens) and failure.tokens[at + 1].type == "NUMBER"
-        forms = _TIMES.get(word.text) if is_timed else untimed_forms.get(word.text)
+        word, following = failure.tokens[at], failure.tokens[at + 1 : at + 2]
+        is_timed = word.text in _TIMES and bool(following) and following[0].type == "NUMBER"
+        forms = (_TIMES if is_timed else untimed_forms).get(word.text)
         if forms is None or word.type not in ("NAME", "WHEN"):
             continue
         if failure.tokens[0].type == "PREDICATE":
