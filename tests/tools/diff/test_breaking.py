@@ -252,7 +252,7 @@ def test_a_repository_of_another_user_suggests_safe_directory(
     monkeypatch.setenv("GIT_CONFIG_NOSYSTEM", "1")
     outcome = tltlc("breaking", "specs", "--against", "v1")
     assert outcome.status == 3
-    assert outcome.err.endswith("help: allow it: `git config --global --add safe.directory FOLDER`\n")
+    assert outcome.err.endswith("`git config --global --add safe.directory FOLDER`, where FOLDER is its top folder\n")
 
 
 @needs_git

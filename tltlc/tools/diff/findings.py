@@ -26,6 +26,7 @@ COMPATIBLE: Final[Severity] = "note"
 _MOST_LINES: Final = 8
 """The most lines that a trace takes in a message."""
 _ANEW: Final = "if you want this change, record the baselines again"
+_VALUES_IN_RANGE: Final = "set it only to values in this range: other values are an error now"
 
 
 def spec_removed(name: str, place: Label) -> Diagnostic:
@@ -127,12 +128,13 @@ def param_changed(difference: Difference, new_name: str | None, place: Label) ->
         if not _is_within(old, new):
             title += f", and its range is now {ends_text(new)} (it was {ends_text(old)})"
         help_ = f"if you need the old value, set it: `{name}={before}`"
+        if not _is_in_range(old.value, new):
+            help_ = _VALUES_IN_RANGE
         return Diagnostic("TLT0756", title, (place,), help_, CHANGED if _is_within(old, new) else BREAKING)
     title = f"the range of the param `{name}` is now {ends_text(new)} (it was {ends_text(old)})"
     if _is_within(old, new):
         return Diagnostic("TLT0756", title, (place,), "nothing needs to be done", COMPATIBLE)
-    help_ = "set it only to values in this range: other values are an error now"
-    return Diagnostic("TLT0756", title, (place,), help_, BREAKING)
+    return Diagnostic("TLT0756", title, (place,), _VALUES_IN_RANGE, BREAKING)
 
 
 def atom_changed(difference: Difference, others: Sequence[str], pair: SpecPair, place: Label) -> Diagnostic:
@@ -167,10 +169,13 @@ def values_changed(
     if others:
         title += f", and so {'is' if len(others) == 1 else 'are'} {name_list(others)}"
     before, now = values_text(difference)
-    where = sample_text(difference.sample, types)
-    help_ = f"{where}, it is now {now} and was {before}; {_ANEW}"
-    if not difference.differs_in_truth:
-        help_ = f"{where}, it is now {now} and was {before}: progress and rewards differ, but verdicts do not"
+    was = "had" if difference.values[0] is None else "was"
+    is_now = "now has" if difference.values[1] is None else "is now"
+    help_ = f"{sample_text(difference.sample, types)}, it {is_now} {now} and {was} {before}"
+    if difference.differs_in_truth:
+        help_ += f"; {_ANEW}"
+    else:
+        help_ += ": progress and rewards differ, but verdicts do not"
     return Diagnostic("TLT0757", title, (place,), help_, BREAKING if difference.differs_in_truth else CHANGED)
 
 
@@ -236,6 +241,8 @@ def declaration_removed(kind: str, name: str, place: Label) -> Diagnostic:
 def parameters_changed(kind: str, name: str, place: Label, why: str) -> Diagnostic:
     """Return TLT0759: uses of a library declaration are no longer valid; ``why`` is the reason."""
     help_ = "add new parameters after the others, with a default, and leave the others as they are"
+    if kind == "signal":
+        help_ = "leave its parameters as they are, and declare another signal for the new ones"
     return Diagnostic("TLT0759", f"the {kind} `{name}` takes other parameters: {why}", (place,), help_, BREAKING)
 
 
@@ -273,6 +280,10 @@ def _is_within(old: Union[Signal, Param], new: Union[Signal, Param]) -> bool:
     """Whether the new range contains the old one."""
     low = new.low is None or (old.low is not None and new.low <= old.low)
     return low and (new.high is None or (old.high is not None and old.high <= new.high))
+
+
+def _is_in_range(value: float, new: Param) -> bool:
+    return (new.low is None or new.low <= value) and (new.high is None or value <= new.high)
 
 
 def _with_article(type_: str) -> str:

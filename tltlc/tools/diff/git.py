@@ -63,7 +63,8 @@ def repository(folder: Path) -> Path | None:
         return Path(os.fsdecode(completed.stdout.removesuffix(b"\n")))
     if b"safe.directory" in completed.stderr:
         title = f"git refuses to read the repository of `{folder}`, because it belongs to another user"
-        raise no_version(title, "allow it: `git config --global --add safe.directory FOLDER`")
+        help_ = "allow it: `git config --global --add safe.directory FOLDER`, where FOLDER is its top folder"
+        raise no_version(title, help_)
     if b"work tree" in completed.stderr:
         title = f"`{folder}` belongs to git itself, and contains no checked-out files"
         raise no_version(title, "use a clone that has checked-out files")
@@ -71,7 +72,8 @@ def repository(folder: Path) -> Path | None:
     if git_folder is not None:
         title = f"git cannot use the repository of `{git_folder}`"
         raise no_version(
-            title, f"check that you may read `{git_folder / '.git'}`: `git status` there says what is wrong"
+            title,
+            f"check that you may read `{git_folder / '.git'}`; `git -C {git_folder} status` says what is wrong",
         )
     return None
 

@@ -105,9 +105,9 @@ def _exclusive(groups: Sequence[ExclusiveGroup]) -> str:
 def _split(names: tuple[str, ...]) -> str:
     first = names[0]
     are, atoms, they_are = ("is", "atom", "it is") if len(names) == 1 else ("are", "atoms", "they are")
+    called = f"`{first} of A` and `{first} of B`" if len(names) == 1 else f"`{first} of A`, `{first} of B` and so on"
     return (
-        f"  {name_list(names)} {are} not the same {atoms} in B as in A, so {they_are} called `{first} of A` and "
-        f"`{first} of B`\n"
+        f"  {name_list(names)} {are} not the same {atoms} in B as in A, so {they_are} called {called}\n"
         "  (--by-name treats atoms with the same name as one atom)"
     )
 
