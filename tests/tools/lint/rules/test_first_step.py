@@ -37,8 +37,9 @@ def test_operands_outside_a_temporal_operator_are_reported(formula: str, expecte
         for finding in findings_in(f"{SIGNALS}spec s = {formula}")
         if finding.diagnostic.code == "TLT0429"
     ]
+    together = "all of them" if any(" & " in text for text in expected) else "both"
     assert [diagnostic.help for diagnostic in diagnostics] == [
-        f"for both together, write `{correction}`" for _ in expected
+        f"for {together} together, write `{correction}`" for _ in expected
     ]
     for diagnostic in diagnostics:
         # The suggestion compiles, and is a different formula.

@@ -48,7 +48,9 @@ def _remark(temporal: Expression, tree: Unary, following: list[Expression]) -> R
     inside = " and ".join(map(operand_text, (temporal.with_tree(tree.operand), *following)))
     span = following[0].tree.span.to(following[-1].tree.span)
     label = Label(source, span, f"required at the first step: `{word}` ends before it")
-    return Remark("this is only about the first step", (label,), f"for both together, write `{word} ({inside})`")
+    together = "both" if len(following) == 1 else "all of them"
+    help_ = f"for {together} together, write `{word} ({inside})`"
+    return Remark("this is only about the first step", (label,), help_)
 
 
 RULE = LintRule("TLT0429", "note", check)

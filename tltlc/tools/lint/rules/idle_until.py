@@ -25,7 +25,8 @@ def check(view: View) -> Iterator[Remark]:
             if not isinstance(part.tree, BinaryExpr) or part.tree.op != "U":
                 continue
             before, goal = value.with_tree(part.tree.left), value.with_tree(part.tree.right)
-            label = Label(value.source, part.tree.span, f"this means only `{clause.kind} {goal.text}`")
+            rest = goal.text if earlier else f"{clause.kind} {goal.text}"
+            label = Label(value.source, part.tree.span, f"this means only `{rest}`")
             help_ = f"write `require {operand_text(before)} until {operand_text(goal)}`"
             if clause.kind == "avoid":
                 # `avoid` does not require its second formula to occur, hence `weak_until`.

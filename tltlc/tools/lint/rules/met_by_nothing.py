@@ -120,11 +120,8 @@ def _remark_on_implications(implications: list[tuple[Expression, Expression]]) -
         span = condition.tree.span.to(result.tree.span)
         labels.append(Label(condition.source, span, f"true while {condition.text} is false"))
         alternatives.append(f"{operand_text(condition)} and {operand_text(result)}")
-    return Remark(
-        _TITLE,
-        tuple(labels),
-        f"`{alternatives[0]}`" if len(alternatives) == 1 else f"`({') or ('.join(alternatives)})`",
-    )
+    wanted = alternatives[0] if len(alternatives) == 1 else f"({') or ('.join(alternatives)})"
+    return Remark(_TITLE, tuple(labels), f"write `{wanted}`")
 
 
 _TITLE: Final = "this goal can be met without doing anything"

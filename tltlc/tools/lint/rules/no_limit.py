@@ -20,7 +20,7 @@ def check(view: View) -> Iterator[Remark]:
 
 def _remark(spec: SpecView) -> Remark:
     if spec.fspa.judge == "limit":
-        message = "it is judged at its limit, so without a limit no episode succeeds"
+        message = "it is judged at its limit, so without one an episode makes no progress by lasting"
     else:
         message = "an episode that never gets there never ends, and a fast player gets no more than a slow one"
     clause = "limit 400 steps" if spec.spec.clock_s is None else "limit 30 s"
