@@ -19,6 +19,7 @@ from tltlc.tools.mine.bits import Bits
 from tltlc.tools.mine.clause import Conjunction, accepted_traces, count_atoms
 from tltlc.tools.mine.confirm import Proposal, confirm, judge
 from tltlc.tools.mine.evidence import Evidence, LabelledTrace
+from tltlc.tools.mine.reasons import reasons
 from tltlc.tools.mine.score import figures
 from tltlc.tools.mine.search import MiningOptions, SpecSearch
 from tltlc.tools.mine.sequences import sequences
@@ -166,3 +167,17 @@ def test_a_later_proposal_never_has_more_atoms() -> None:
     sizes = [count_atoms(conjunction) for conjunction in proposed]
     assert sizes == sorted(sizes, reverse=True)
     assert len(proposed) > 1
+
+
+def test_a_trace_that_breaks_a_clause_does_not_count_as_vacuous() -> None:
+    a, b, neither = frozenset("a"), frozenset("b"), frozenset[str]()
+    given_evidence = Evidence(
+        (LabelledTrace("met", (a, b)), LabelledTrace("vacuous", (b,)), LabelledTrace("broken", (neither, b))),
+        (LabelledTrace("counterexample", (neither, neither)),),
+    )
+    forwards, backwards = Bits(given_evidence), Bits(given_evidence, backwards=True)
+    mined_clauses = chain.from_iterable(clauses(forwards, backwards, ["a", "b"], 1))
+    clause = next(clause for clause in mined_clauses if clause.text == "require a until b")
+    (proposal,) = confirm([(clause,)], given_evidence, vocabulary(("a", "b")), CompileOptions(), 1)
+    *_, last = reasons(proposal, given_evidence, forwards)
+    assert last == "`require a until b`: in 1 of 3 traces nothing triggers it"

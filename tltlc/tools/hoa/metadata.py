@@ -55,6 +55,7 @@ def _choice(hoa: Hoa, header: Header, values: tuple[str, ...]) -> str:
 def _steps(hoa: Hoa, header: Header) -> int:
     value = header.values[0] if len(header.values) == 1 else ""
     if not value.isdecimal() or not 0 < int(value[:12]) <= _LARGEST:
-        title, help_ = "this header must be a number of steps, at least 1", "write such a number, or leave it out"
+        title = f"this header must be a number of steps from 1 to {_LARGEST:,}"
+        help_ = "write such a number, or leave it out"
         raise unsupported_error(hoa.source, header.span, title, help_)
     return int(value)

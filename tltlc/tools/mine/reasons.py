@@ -74,5 +74,5 @@ def _additions(clauses: Conjunction, bits: Bits) -> list[str]:
 def _vacuous_clauses(clauses: Conjunction, bits: Bits) -> list[str]:
     """Return a sentence for each clause that is vacuously satisfied in some traces."""
     total = count(bits.traces)
-    vacuous = [(clause.text, total - count(clause.not_vacuous & bits.traces)) for clause in clauses]
+    vacuous = [(clause.text, count(bits.traces & clause.accepts & ~clause.not_vacuous)) for clause in clauses]
     return [f"`{text}`: in {number} of {total} traces nothing triggers it" for text, number in vacuous if number]

@@ -20,7 +20,6 @@ from tltlc.grammar.parser import parse
 from tltlc.grammar.tree import Module, Parameter, SpecDecl, TestDecl
 from tltlc.io.limits import WORK
 from tltlc.logic.formula import TRUE
-from tltlc.monitor.samples import name_list
 from tltlc.pipeline import CompileOptions, Session
 from tltlc.resolve.imports import load
 from tltlc.resolve.options import ResolveOptions
@@ -96,7 +95,7 @@ def _no_readable_atom(library: SourceFile, vocabulary: Vocabulary | None, column
     title = f"no predicate of `{library.name.strip('<>')}` can be computed from the columns of the traces"
     missing = [signal.name for signal in vocabulary.signals if signal.name not in columns] if vocabulary else []
     help_ = (
-        f"record the signals that its predicates use: {name_list(missing[:3])}"
+        f"record the signals that its predicates use: {first_names(missing)}"
         if missing
         else "declare a predicate in it"
     )
@@ -141,7 +140,7 @@ def _no_columns(truths: Sequence[str]) -> TltlError:
         columns, contain, their = "column", "contains", "its name"
         if len(truths) > 1:
             columns, contain, their = "columns", "contain", "their names"
-        title = f"the {columns} {first_names(truths)} {contain} only `true` and `false`, but no atom can have {their}"
+        title = f"the {columns} {first_names(truths)} {contain} only truth values, but no atom can have {their}"
         help_ = "write a name that an atom can have, e.g. `seen` or `at(key)`: letters, digits and `_`, but "
         help_ += "no word of the language"
     return TltlError([Diagnostic("TLT0760", title, help=help_)])
