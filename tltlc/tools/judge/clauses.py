@@ -1,4 +1,7 @@
-"""The clauses of a spec, each with an automaton of its own, so that a failed trace can be blamed on some of them."""
+"""Split a spec into its clauses and build an automaton for each.
+
+These automata show which clauses are to blame if a trace is not accepted.
+"""
 
 from __future__ import annotations
 
@@ -21,10 +24,10 @@ _COMMENT: Final = re.compile(r"//[^\n]*")
 
 @record
 class Clause:
-    """A clause of a spec, or a conjunct of its formula, with its automaton.
+    """A clause of a spec, or a conjunct of its formula, with an automaton for this part alone.
 
-    ``text`` is the clause as it is written, with single blanks: ``avoid on_lava``. For an artefact,
-    which has no source text, it is the conjunct in the ASCII notation: ``G !on_lava``.
+    ``text`` is the clause as it is written, on one line with single blanks: ``avoid on_lava``. For
+    an artefact, which has no source text, it is the conjunct in the ASCII notation: ``G !on_lava``.
     """
 
     text: str
@@ -33,10 +36,11 @@ class Clause:
 
 @record
 class Clauses:
-    """The clauses of a spec in order.
+    """The clauses of a spec.
 
-    ``parts`` lacks clauses whose automaton would be too large; ``are_all`` says whether it has all.
-    ``whole`` is the spec, and ``state_budget`` that of the compiler.
+    ``parts`` has the clauses in order, without those whose automaton would be too large. ``are_all``
+    is true if no clause is missing and there is at least one. ``whole`` is the spec. An automaton
+    may have at most ``state_budget`` states.
     """
 
     parts: tuple[Clause, ...]
@@ -45,7 +49,10 @@ class Clauses:
     state_budget: int
 
     def together(self, chosen: Sequence[int]) -> Fspa | None:
-        """Return the automaton of the chosen parts, by their indices; None if it would be too large."""
+        """Return the automaton of the conjunction of some parts; None if it would be too large.
+
+        ``chosen`` has their indices in ``parts``.
+        """
         formulas = [part.fspa.formula for part in (self.parts[index] for index in chosen)]
         conjunction = and_(*(formula for formula in formulas if isinstance(formula, Formula)))
         return _automaton(self.whole, conjunction, self.state_budget)
@@ -54,9 +61,9 @@ class Clauses:
 def clauses_of(fspa: Fspa, spec: Spec | None, state_budget: int = DEFAULT_STATE_BUDGET) -> Clauses:
     """Return the clauses of a spec.
 
-    ``spec`` is what ``fspa`` was built from; None for an artefact. ``state_budget`` is as in
-    :class:`~tltlc.pipeline.CompileOptions`. An automaton of another tool,
-    whose formula is only a text, has no clauses.
+    ``spec`` is what ``fspa`` was built from; None for an artefact. The automaton of a clause may have
+    at most ``state_budget`` states. An automaton of another tool, whose formula is only a text, has
+    no clauses.
     """
     conjuncts = list(_conjuncts_of_artefact(fspa) if spec is None else _conjuncts_of_source(spec))
     whole = replace(_as_spec(fspa) if spec is None else spec, parts=())
@@ -71,7 +78,10 @@ def _automaton(whole: Spec, formula: Formula, state_budget: int) -> Fspa | None:
 
 
 def _with_formula(whole: Spec, formula: Formula) -> Spec:
-    """Return the spec with another formula, and only the atoms and signals that this formula needs."""
+    """Return the spec with another formula, and only the atoms and signals that this formula needs.
+
+    It needs its own atoms, and all atoms of each ``exclusive`` group that has two of them.
+    """
     used = set(formula.atoms())
     groups = [{whole.atoms[index].name for index in group} for group in whole.exclusive]
     groups = [group for group in groups if len(group & used) > 1]
@@ -101,7 +111,7 @@ def _conjuncts_of_artefact(fspa: Fspa) -> Iterator[tuple[str, Formula]]:
 
 
 def _as_spec(fspa: Fspa) -> Spec:
-    """Return a spec with the fields of an automaton; its formula is to be replaced."""
+    """Return a spec with the fields of an automaton. Its formula is ``true``; the caller replaces it."""
     return Spec(
         name=fspa.name,
         doc=fspa.doc,

@@ -1,4 +1,4 @@
-"""Judge one recorded trace: its outcome, and if it is not accepted, the clauses that are to blame."""
+"""Judge one recorded trace: whether it is accepted, and if not, which clauses are to blame."""
 
 from __future__ import annotations
 
@@ -28,9 +28,10 @@ _MOST_JOINT: Final = 50
 class Judge:
     """Judges traces by a spec, one after the other.
 
-    ``fspa`` is the automaton of the spec. ``clauses`` are its clauses: those that a trace breaks, or
-    does not meet, are named as the cause. With ``episodes``, a trace is judged as an episode: what
-    comes after the goal, a violation or the limit does not count.
+    ``fspa`` is the automaton of the spec. If a trace is not accepted, its cause names those of
+    ``clauses`` that the trace breaks or does not meet. Without ``clauses``, it names none. With
+    ``episodes``, a trace is judged as an episode: the samples after the goal, a violation or the
+    limit do not count.
     """
 
     def __init__(self, fspa: Fspa, clauses: Clauses | None = None, *, episodes: bool = False) -> None:
@@ -41,10 +42,10 @@ class Judge:
         self._samples = Samples(fspa, None, [])
 
     def judge(self, name: str, data: bytes) -> JudgedTrace:
-        """Judge the trace in the bytes of a file; ``name`` is its name in messages.
+        """Judge the trace in the bytes ``data`` of a file; ``name`` is its name in messages.
 
-        A trace that cannot be judged has the errors of :func:`~tltlc.monitor.traces.read_trace` or
-        of :meth:`~tltlc.monitor.monitor.Monitor.step`.
+        If the trace cannot be judged, the result has the errors of
+        :func:`~tltlc.monitor.traces.read_trace` or of :meth:`~tltlc.monitor.monitor.Monitor.step`.
         """
         samples: list[Sample] = []
         try:
@@ -69,7 +70,8 @@ class Judge:
     def _unjudged(self, name: str, samples: Sequence[Sample], error: TltlError) -> JudgedTrace:
         """Return what is known of a trace with an error, given the samples that could be read.
 
-        The trace is judged all the same if it is an episode that ends before the error.
+        If traces are judged as episodes, and the episode ends before the error, the trace is judged
+        as if it had no error.
         """
         diagnostics = in_trace(name, error.diagnostics) if isinstance(error, MonitorError) else error.diagnostics
         samples = self._faultless(samples)
@@ -81,7 +83,7 @@ class Judge:
         return JudgedTrace(name, None, diagnostics, None if run.broken_at is None else self._cause(samples, run))
 
     def _faultless(self, samples: Sequence[Sample]) -> Sequence[Sample]:
-        """Return the samples before the first that the monitor refuses."""
+        """Return the samples before the first one that the monitor refuses; all if it refuses none."""
         with suppress(MonitorError):
             if samples:
                 self._runner.run(samples)
@@ -95,7 +97,11 @@ class Judge:
         return samples
 
     def _plain_samples(self, data: bytes) -> list[Sample] | None:
-        """Return the samples of a trace in plain CSV whose times are right; None for any other trace."""
+        """Return the samples of a trace in plain CSV; None for any other trace.
+
+        The result is also None if the trace has times that
+        :class:`~tltlc.monitor.sample_times.SampleTimes` rejects.
+        """
         plain = plain_columns(data, self._fspa.signals)
         if plain is None:
             return None
@@ -130,10 +136,11 @@ class Judge:
         ]
 
     def _blocked(self, samples: Sequence[Sample]) -> list[int]:
-        """Return the indices of the unmet clauses that each cannot be met without breaking the met ones.
+        """Return the indices of the unmet clauses that can no longer be met together with the met ones.
 
-        There are none if only several unmet clauses together exclude each other, or if not all
-        clauses are known.
+        The samples meet some clauses and not others. Each unmet clause is tested by itself: the
+        result has those that no continuation of the samples can meet without breaking a met clause.
+        It is empty if every unmet clause passes by itself, or if not all clauses are known.
         """
         if self._clauses is None or not self._clauses.are_all:
             return []
@@ -156,7 +163,11 @@ class Judge:
         return tuple(self._clauses.parts[index].text for index in indices) if self._clauses else ()
 
     def _breaking_atoms(self, sample: Sample, state: int, number: int) -> tuple[str, ...]:
-        """Return the atoms of the most robust prime implicant of the guard that the sample makes true."""
+        """Return the atoms that decide the guard which the sample makes true in ``state``.
+
+        They are the atoms of the guard's most robust prime implicant. ``number`` is the number of the
+        sample, from 1.
+        """
         values = self._samples.atom_values(sample, number)
         (guard,) = (edge.guard for edge in self._fspa.edges_from(state) if holds(edge.guard, values))
         prime = max(guard.primes, key=lambda prime: prime_robustness(prime, values))

@@ -1,7 +1,7 @@
 """Read CSV whose cells need no special care, column by column.
 
-This takes a tenth of the time of :func:`tltlc.monitor.traces.read_trace`, which reads everything
-else and makes all error messages.
+This takes a tenth of the time of :func:`tltlc.monitor.traces.read_trace`, which reads all other
+traces and makes all error messages.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from tltlc.resolve.spec import Signal
 Column = list[float]
 
 _DECIMAL: Final = re.compile(r"[0-9.,eE+-]*")
-"""All characters of numbers, without those of ``inf``, ``nan`` and ``1_000``, which ``float`` also accepts."""
+"""Matches numbers and commas. It does not match ``inf``, ``nan`` and ``1_000``, which ``float`` accepts."""
 
 _TRUTHS: Final[Mapping[str, float]] = {
     **dict.fromkeys(("0", "0.0", "false", "False", "FALSE"), 0.0),
@@ -30,7 +30,7 @@ def plain_columns(data: bytes, signals: Sequence[Signal]) -> tuple[list[Column],
     """Return the values of the signals, and the times of the samples, if the trace is plain CSV.
 
     The times are None if no column has them (:func:`~tltlc.monitor.sample_times.times_name`). The
-    whole result is None if the trace is not plain: if it has quotes, blanks, odd numbers or an error.
+    whole result is None if the trace is not plain: if it has quotes, blanks, unusual numbers or an error.
     Otherwise the values are those of :func:`~tltlc.monitor.traces.read_trace`, and all are finite.
     """
     if not signals:

@@ -23,16 +23,16 @@ from tltlc.tools.judge.judge import Judge
 from tltlc.tools.judge.verdict import JudgedTrace
 
 _FEW: Final = 40
-"""Fewer traces are judged by this process alone by default, because starting others takes longer."""
+"""By default, this process judges fewer traces than this itself, because starting others takes longer."""
 
 _CHUNK: Final = 8
 """A worker gets at most this many traces at a time."""
 
 _MOST_WORKERS: Final = 60
-"""Windows can wait for 63 processes at once."""
+"""The most worker processes. Windows can wait for at most 63 processes at once."""
 
 _PARENT_CHECK_S: Final = 0.5
-"""A worker checks in this interval whether its parent still runs."""
+"""How many seconds a worker waits before it checks again whether its parent still runs."""
 
 
 def judge_files(
@@ -40,9 +40,9 @@ def judge_files(
 ) -> Generator[JudgedTrace]:
     """Judge the traces in these files, and yield the results in order.
 
-    ``workers`` is the number of processes; by default one for each core, or this process alone for
-    few traces. ``episodes`` is as for :class:`~tltlc.tools.judge.judge.Judge`. Closing the iterator
-    ends the processes.
+    ``workers`` is the number of processes. By default, it is one for each core, or only this process
+    for few traces. With ``episodes``, traces are judged as episodes: the samples after the goal, a
+    violation or the limit do not count. Closing the iterator ends the processes.
 
     Raises:
         TltlError: TLT0007, a process ended before its traces were judged.
@@ -106,7 +106,10 @@ def _judge_in_workers(
 
 
 class _Worker:
-    """A process that judges traces, chunk by chunk. ``start`` is the index of the first trace of its chunk."""
+    """A process that judges traces, chunk by chunk.
+
+    ``start`` is the index of the first trace of its chunk. ``is_busy`` is true while it has a chunk.
+    """
 
     def __init__(self, fspa: Fspa, clauses: Clauses, *, episodes: bool) -> None:
         # A forked worker would inherit the locks of threads that other code of this process has started.
@@ -134,7 +137,7 @@ class _Worker:
             raise _lost_error() from None
 
     def take(self) -> Sequence[JudgedTrace]:
-        """Return the results of the worker's chunk, which it has sent."""
+        """Return the results that the worker has sent for its chunk."""
         try:
             results: Sequence[JudgedTrace] = self.connection.recv()
         except (EOFError, OSError):
@@ -157,7 +160,11 @@ def _lost_error() -> TltlError:
 
 
 def _work(connection: Connection, parent: int) -> None:
-    """Judge the chunks of traces that come through the connection, after the spec, until it is closed."""
+    """Judge traces in a worker process until the connection is closed.
+
+    First the arguments of a :class:`~tltlc.tools.judge.judge.Judge` come through the connection, and
+    then the chunks of traces.
+    """
     # Only the parent handles Ctrl-C, and a worker must not outlive it.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     Thread(target=_exit_with_parent, args=(parent,), daemon=True).start()

@@ -1,4 +1,4 @@
-"""Count why traces are not accepted."""
+"""Count the reasons why traces are not accepted, and say them in words."""
 
 from __future__ import annotations
 
@@ -28,18 +28,22 @@ class CauseGroup:
 
     @property
     def usual_step(self) -> int | None:
-        """The step of more than half of the traces; None if there is no such step."""
+        """The step that more than half of the traces have in common; None if there is none."""
         step, count = Counter(self.steps).most_common(1)[0]
         return step if 2 * count > len(self.steps) else None
 
     @property
     def step_range(self) -> tuple[int, int, int]:
-        """The least step, the (lower) median and the greatest step."""
+        """The least step, the median (the lower one of two), and the greatest step."""
         return min(self.steps), median_low(self.steps), max(self.steps)
 
 
 def cause_groups(traces: Iterable[JudgedTrace]) -> tuple[CauseGroup, ...]:
-    """Return the groups of traces that are not accepted: broken ones first, unfinished ones last, larger ones first."""
+    """Return the traces that are not accepted, in groups with the same cause.
+
+    The groups are sorted by the kind of their cause, from ``broken`` to ``unfinished``; of one kind,
+    the largest group comes first.
+    """
     groups: dict[tuple[Kind, tuple[str, ...]], list[tuple[str, int]]] = {}
     for trace in traces:
         if trace.verdict is not None and (cause := trace.verdict.cause) is not None:
@@ -52,7 +56,10 @@ def cause_groups(traces: Iterable[JudgedTrace]) -> tuple[CauseGroup, ...]:
 
 
 def unread_codes(traces: Iterable[JudgedTrace]) -> dict[str, int]:
-    """Return the codes of the errors because of which traces cannot be judged, each with the number of traces."""
+    """Return the number of traces that cannot be judged, by the code of the first error of each.
+
+    The most frequent code comes first.
+    """
     return dict(Counter(trace.diagnostics[0].code for trace in traces if trace.verdict is None).most_common())
 
 

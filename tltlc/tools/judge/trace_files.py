@@ -1,4 +1,4 @@
-"""Find the traces that arguments of a command name: files, and folders with files."""
+"""Find the traces that the arguments of a command name: files, and folders with files."""
 
 from __future__ import annotations
 
@@ -17,9 +17,10 @@ ENDINGS: Final = (".csv", ".jsonl", ".parquet")
 
 @record
 class TraceFiles:
-    """The ``traces`` that arguments name, in order and each once; ``others`` are other files in their folders.
+    """The files that the arguments of a command name.
 
-    ``errors`` are about folders: TLT0001 for one that cannot be read, or contains no trace.
+    ``traces`` are in order, and each is there only once. ``others`` are the other files in the named
+    folders. ``errors`` has an error TLT0001 for each folder that cannot be read or contains no trace.
     """
 
     traces: tuple[str, ...]
@@ -28,7 +29,7 @@ class TraceFiles:
 
 
 def find_traces(arguments: Iterable[str]) -> TraceFiles:
-    """Return the files that the arguments name, and for a folder the files in and below it, sorted.
+    """Return the files that the arguments name; for a folder, the files in it and below it, sorted.
 
     Hidden files and folders do not count. A file that an argument names is a trace, whatever its
     name.

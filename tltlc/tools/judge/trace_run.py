@@ -20,17 +20,18 @@ from tltlc.monitor.traces import Sample
 _SAMPLES_PER_STATE: Final = 20
 """The generated monitor is loaded after this many samples for each state of the automaton.
 
-It takes time to load, which only pays for long or many traces.
+Loading takes time, and is worth it only for long or many traces.
 """
 
 
 @record
 class TraceRun:
-    """The result of a run: its ``outcome``, the state in which it ends, and where it became violated.
+    """The result of a run of an automaton over a trace.
 
-    ``done`` says whether the episode has ended. ``broken_at`` is the first sample, from 1, after
-    which the verdict is ``violated``, and ``broken_state`` the state before that sample. Both are
-    None if the verdict never is.
+    ``state`` is the state in which the run ends, and ``done`` says whether the episode has ended.
+    ``broken_at`` is the number, from 1, of the first sample after which the verdict is ``violated``,
+    and ``broken_state`` is the state before that sample. Both are None if the verdict is never
+    ``violated``.
     """
 
     outcome: TraceOutcome
@@ -47,8 +48,8 @@ class TraceRunner:
     in a tenth of the time, but has other messages. So a trace with faulty samples is run again, with
     :class:`~tltlc.monitor.monitor.Monitor`.
 
-    With ``episodes``, a run ends with its episode, at the last sample at the latest, and is accepted
-    if the episode is a success.
+    With ``episodes``, a run ends when the episode ends, at the latest with the last sample. It is
+    accepted if the episode is a success.
     """
 
     def __init__(self, fspa: Fspa, *, episodes: bool = False) -> None:
@@ -59,9 +60,10 @@ class TraceRunner:
         self._samples = 0
 
     def run(self, samples: Sequence[Sample], *, cut_off: bool = False) -> tuple[TraceRun, tuple[Diagnostic, ...]]:
-        """Run the automaton over the samples, one at least; return the result, and warnings about clamped values.
+        """Run the automaton over at least one sample.
 
-        If the samples are ``cut_off``, more follow them, so an episode does not end with the last one.
+        Return the result, and warnings about clamped values. With ``cut_off``, the trace has more
+        samples than these, so an episode does not end with the last of them.
 
         Raises:
             MonitorError: the errors of :meth:`~tltlc.monitor.monitor.Monitor.step`.
@@ -80,10 +82,10 @@ class TraceRunner:
         return self._slow_run(monitor, samples, cut_off=cut_off), tuple(monitor.notices)
 
     def _fast_run(self, steps: Sequence[Any]) -> TraceRun:
-        """Return the result of all steps of a generated monitor.
+        """Return the result of a run, given all steps of the generated monitor.
 
-        Once the verdict is ``violated``, it stays so, and an episode that has ended stays ended. So
-        both are found by bisection, in less time than the steps take.
+        A verdict ``violated`` never changes again, and an episode that has ended stays ended. So the
+        search for the first such step is a bisection.
         """
         if self._episodes:
             steps = steps[: bisect_left(steps, True, key=attrgetter("done")) + 1]
@@ -96,7 +98,7 @@ class TraceRunner:
         return TraceRun(outcome, last.state, last.done, broken + 1, steps[broken - 1].state if broken else 0)
 
     def _slow_run(self, monitor: Monitor, samples: Sequence[Sample], *, cut_off: bool) -> TraceRun:
-        """Run a monitor over the samples."""
+        """Run a monitor over the samples, step by step, and return the result."""
         total, number, state = 0.0, 0, 0
         broken_at = broken_state = step = None
         last_number = len(samples) if self._episodes and not cut_off else None
@@ -115,7 +117,7 @@ class TraceRunner:
 
 
 def _generated_monitor(fspa: Fspa) -> Any:
-    """Return the class ``Monitor`` that the target ``python`` writes for an automaton."""
+    """Return the class ``Monitor`` from the Python code that ``tltlc compile -t python`` writes."""
     (text,) = emit("python", fspa).values()
     namespace: dict[str, Any] = {"__name__": f"<monitor of {fspa.name}>"}
     exec(compile(text, namespace["__name__"], "exec"), namespace)

@@ -21,9 +21,9 @@ class Cause:
       traces that are judged as episodes.
     - ``unfinished``: the trace ends, after ``step`` samples, before the ``clauses`` are met.
 
-    ``clauses`` are texts, as in :class:`~tltlc.tools.judge.clauses.Clause`. There are none if only
-    several clauses together can be blamed, or if the clauses are not known. ``atoms`` are the atoms
-    on which the step that broke the spec depends; empty for ``late`` and ``unfinished``.
+    ``clauses`` are texts, as in :class:`~tltlc.tools.judge.clauses.Clause`. They are empty if no
+    single clause is to blame, but only several together, or if the clauses are not known. ``atoms``
+    are the atoms that decided the step that broke the spec; empty for ``late`` and ``unfinished``.
     """
 
     kind: Kind
@@ -37,8 +37,8 @@ class TraceVerdict:
     """The verdict of a trace.
 
     ``remaining`` is the label of the last state: what remains to be satisfied. ``cause`` is None if
-    the trace is accepted. ``samples`` is the number of samples in the trace; ``outcome.steps`` is
-    less if the episode ends earlier.
+    the trace is accepted. ``samples`` is the number of samples in the trace. If the trace is judged
+    as an episode and the episode ends earlier, ``outcome.steps`` is less than ``samples``.
     """
 
     outcome: TraceOutcome
@@ -51,9 +51,9 @@ class TraceVerdict:
 class JudgedTrace:
     """A trace with its ``verdict``; the verdict is None if the trace cannot be judged.
 
-    ``name`` is the name of the trace in messages. ``diagnostics`` are warnings, or begin with the
-    error because of which the trace cannot be judged. ``so_far`` is the cause if the samples before
-    the error already break the spec; else None.
+    ``name`` is the name of the trace in messages. If the trace cannot be judged, the first of
+    ``diagnostics`` is the error that says why; otherwise they are warnings. ``so_far`` is set if the
+    samples before the error already break the spec: then it says how.
     """
 
     name: str
