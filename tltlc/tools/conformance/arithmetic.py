@@ -172,7 +172,7 @@ _REFUSED: Final[dict[str, tuple[Expression, Expression, tuple[tuple[float, float
         ((10, 2), (1, 100), (1, -1e200)),
     ),
 }
-"""Cases by name: two predicates, and pairs of x and y at which one predicate has no value."""
+"""Cases by name: two predicates, and pairs of x and y at which a predicate has no value."""
 
 
 def _refused_case(name: str) -> ConformanceCase:

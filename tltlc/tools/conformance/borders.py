@@ -22,7 +22,7 @@ from tltlc.tools.conformance.traces import table
 class Border:
     """A comparison ``x OP threshold`` for an x in [low, high].
 
-    If the threshold is None, it is another signal of the same range.
+    If ``threshold`` is None, the threshold is not a number but another signal with the same range.
     """
 
     op: str
@@ -92,7 +92,10 @@ def random_borders(draw: Draw, count: int) -> tuple[Border, ...]:
 
 
 def _random_number(draw: Draw) -> float:
-    """Return a random float, but no subnormal one: Mono, which runs C#, misreads those by a bit."""
+    """Return a random normal float.
+
+    Subnormal floats are left out: Mono, which runs the monitors in C#, misreads them by one bit.
+    """
     sign = -1.0 if draw.chance(0.5) else 1.0
     return sign * ldexp(1 + draw.below(1 << 20) / (1 << 20), draw.below(2046) - 1022)
 

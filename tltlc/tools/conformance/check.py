@@ -79,9 +79,9 @@ def _checked(command: Sequence[str], only: Sequence[str] | None, folder: Path, i
 def trace_problems(
     command: Sequence[str], folder: Path, name: str, trace: Mapping[str, Any], tolerance: float
 ) -> Iterator[str]:
-    """Yield the differences of a monitor on one trace of the index.
+    """Run a monitor on one trace of the index, and yield the differences from the expected results.
 
-    Raises OSError if the monitor cannot be started.
+    Numbers may differ by at most ``tolerance``. Raises OSError if the monitor cannot be started.
     """
     words = [word.replace("{name}", name) for word in command]
     try:
@@ -106,7 +106,8 @@ def differences(
 ) -> Iterator[str]:
     """Yield the differences from the expected exit status, standard output and standard error.
 
-    ``rows`` begin with the header. ``error`` has a kind, a step and names, as in the index.
+    ``rows`` are the expected rows, and begin with the header. ``warnings`` is the expected number
+    of warnings. ``error`` is the expected error as the index has it; None if there must be none.
     """
     expected_status = 1 if error else 0
     if status != expected_status:
@@ -116,7 +117,10 @@ def differences(
 
 
 def _row_differences(out: str, rows: Sequence[Sequence[str]], tolerance: float) -> Iterator[str]:
-    """Compare the rows cell by cell. The header may be missing if the first sample is rejected."""
+    """Yield the differences between the printed and the expected rows, cell by cell.
+
+    The header may be missing if the monitor rejects the first sample.
+    """
     columns, *expected = rows
     # Game engines print lines of their own first.
     header = re.search(rf"^{re.escape(','.join(columns))}\r?$", out, re.MULTILINE)
@@ -144,7 +148,10 @@ def _is_near(cell: str, expected: str, tolerance: float) -> bool:
 
 
 def _message_differences(err: str, warnings: int, error: Mapping[str, Any] | None) -> Iterator[str]:
-    """Compare standard error: one line for an error, with the names at fault, or one per warning."""
+    """Yield the differences of standard error from what is expected.
+
+    For an error, it must have one line with the names at fault, and else one line for each warning.
+    """
     lines = err.splitlines()
     errors = [line for line in lines if line.startswith("error: ")]
     if error is None:

@@ -55,7 +55,7 @@ def files() -> backends.Files:
 
 
 def is_corpus(folder: Path) -> bool:
-    """Whether a folder holds a corpus of any version, recognised by its index."""
+    """Whether a folder contains a corpus, of any version: whether it has the index of one."""
     try:
         document = json.loads(read_source(folder / "index.json", max_bytes=MAX_ARTEFACT_BYTES).text)
     except (TltlError, ValueError, RecursionError):

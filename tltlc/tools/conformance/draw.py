@@ -19,11 +19,11 @@ class Draw:
         self._random = Random(seed).random
 
     def below(self, count: int) -> int:
-        """Return a number from 0 to ``count`` - 1."""
+        """Return a random whole number from 0 to ``count`` - 1."""
         return int(self._random() * count)
 
     def choice(self, items: Sequence[T]) -> T:
-        """Return one of the items."""
+        """Return one of the items, chosen at random."""
         return items[self.below(len(items))]
 
     def chance(self, share: float) -> bool:
@@ -31,5 +31,5 @@ class Draw:
         return self._random() < share
 
     def between(self, low: float, high: float) -> float:
-        """Draw a number from [low, high) and round it to three decimals."""
+        """Return a random number from [low, high), rounded to three decimals."""
         return round(low + (high - low) * self._random(), 3)

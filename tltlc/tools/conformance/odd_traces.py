@@ -59,12 +59,12 @@ def _seen_cell(cell: bytes, value: float | None) -> OddTrace:
 
 
 def _note(cell: bytes) -> OddTrace:
-    """Return a trace with this cell in a column that is no signal. The cell is ignored."""
+    """Return a trace with this cell in a column that is not a signal. Monitors ignore the cell."""
     return OddTrace(b"note,x,seen\n" + cell + b",0.5,1\n-,-0.25,0\n", _TWO)
 
 
 def _bad_note(cell: bytes, line: int = 3) -> OddTrace:
-    """Return a trace that must be refused at ``line``, for a cell in a column that is no signal."""
+    """Return a trace that must be refused at ``line``, for a cell in a column that is not a signal."""
     return OddTrace(b"note,x,seen\n-,0.5,1\n" + cell + b",0.5,1\n-,0.5,1\n", _ONE, line)
 
 

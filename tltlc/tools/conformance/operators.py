@@ -1,4 +1,4 @@
-"""A case for each temporal operator and each judge, with and without a limit."""
+"""Cases that together contain each temporal operator, both judges, and specs with and without a limit."""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""Automata and traces of unusual shapes: exclusive atoms, verdicts decided at the start, names, files."""
+"""Cases with unusual automata or traces.
+
+They have exclusive atoms, verdicts that are final at the start, names that are hard to quote, or
+files in unusual notation.
+"""
 
 from __future__ import annotations
 
@@ -91,7 +95,10 @@ def _many_states_case() -> ConformanceCase:
 
 
 def _names_case(name: str, names: tuple[str, str, str]) -> ConformanceCase:
-    """Return a case with names that are hard to quote, wherever a monitor prints or reads a name."""
+    """Return a case with three names of atoms that are hard to quote.
+
+    A monitor has these names in its code, reads them from traces, and prints them.
+    """
     first, second, third = names
     formula = f.and_(f.eventually(f.and_(f.atom(first), f.next_(f.atom(second)))), f.always(f.atom(third)))
     fspa = replace(automaton(name, formula, limit=20), doc=f"{first} */ {second}\n\\ {third}")
