@@ -12,8 +12,9 @@ from tltlc.tools.mine.bits import Bits, Verdicts
 class MinedClause:
     """A clause: its ``text``, its number of ``atoms``, and the traces that it ``accepts``.
 
-    ``not_vacuous`` has the traces that test the clause, for example those in which the trigger of a
-    response occurs. ``kind`` is the name of its template, and ``rank`` the index of the template in
+    A bound counts as one atom, and so does each `and` or `or` in a step of `reach`. ``not_vacuous``
+    has the traces that test the clause, for example those in which the trigger of a response
+    occurs. ``kind`` is the name of its template, and ``rank`` the index of the template in
     :data:`~tltlc.tools.mine.templates.KINDS`, which breaks ties.
     """
 

@@ -20,7 +20,7 @@ _MOST_NAMED: Final = 4
 class Columns:
     """The columns of a trace. ``trace`` is its name.
 
-    ``columns`` maps the name of each column to True if all its values are `true` or `false`.
+    ``columns`` maps the name of each column to True if all its values are `true`, `false`, 1 or 0.
     """
 
     trace: str

@@ -11,7 +11,7 @@ Row = Sequence[tuple[str, bool]]
 
 
 def columns(data: bytes, name: str) -> dict[str, bool]:
-    """Return the columns of a trace in order, each with whether all its values are 0, 1, true or false.
+    """Map each column of a trace, in order, to whether all its values are 0, 1, true or false.
 
     ``name`` is the name of the trace in messages. A column that is missing in some sample is left
     out.
@@ -36,7 +36,7 @@ def columns(data: bytes, name: str) -> dict[str, bool]:
 def common_columns(all_columns: Iterable[Mapping[str, bool]]) -> dict[str, bool]:
     """Return the columns that all traces have, in the order of the first trace.
 
-    Each comes with whether all its values in all traces are true or false.
+    Each is mapped to whether all its values in all traces are 0, 1, true or false.
     """
     first, *rest = all_columns
     return {

@@ -3,9 +3,10 @@
     score = support + separation - 1 - PRICE * atoms
 
 ``support`` is the share of the traces that satisfy the proposal. ``separation`` is the share of the
-counterexamples that violate it. ``atoms`` is its number of atoms, plus one for a bound. Without the
-last term, the score is Youden's index (Cancer 3, 1950): 1 for a spec that separates all traces from
-all counterexamples, 0 for a spec that is no better than chance.
+counterexamples that violate it. ``atoms`` is its number of atoms, as
+:class:`~tltlc.tools.mine.clause.MinedClause` counts them. Without the last term, the score is
+Youden's index (Cancer 3, 1950): 1 for a spec that separates all traces from all counterexamples, 0
+for a spec that is no better than chance.
 """
 
 from __future__ import annotations

@@ -27,7 +27,8 @@ class MiningOptions:
     """Options of a search.
 
     ``min_support`` is the least share of the traces that must satisfy a proposal, in (0, 1].
-    ``max_length`` is the most atoms that a proposal may have; a bound counts as one.
+    ``max_length`` is the most atoms that a proposal may have. A bound counts as one atom, and so does
+    each `and` or `or` in a step of `reach`.
     """
 
     min_support: float = 1.0

@@ -43,7 +43,7 @@ class MiningVocabulary:
     traces that the user's library does not declare. ``reader`` is an automaton that accepts every
     trace and has all atoms, so that their values can be computed with it. ``left_out`` lists the
     columns that are not atoms. Those in ``misnamed`` are true or false, but have names that no atom
-    can have. ``unread_count`` is the number of possible atoms beyond the limits on work.
+    can have. ``unread_count`` is the number of possible atoms that the limits on work left out.
     """
 
     library: SourceFile
