@@ -42,7 +42,10 @@ class OfferedName:
 
 
 def offers(env: Env) -> Mapping[str, OfferedName]:
-    """Return the names that a module offers to importers. It must have resolved without errors."""
+    """Return the names that a module offers to importers.
+
+    ``env`` is the environment of the module, which must have resolved without errors.
+    """
     return {name: _offer(name, binding, env) for name, binding in env.scope.names.items()}
 
 

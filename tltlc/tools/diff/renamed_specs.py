@@ -68,7 +68,7 @@ def _specs_in_one_version(
 
 
 def _candidates(old: _SpecInChange, added: Iterable[_SpecInChange]) -> list[_SpecInChange]:
-    """Return the new specs that an old one may have become, the most likely first."""
+    """Return at most ``_MOST_RENAMED`` new specs that an old one may have become, the most likely first."""
     return sorted(added, key=lambda side: (side.fspa.name != old.fspa.name, side.number != old.number))[:_MOST_RENAMED]
 
 

@@ -15,12 +15,12 @@ if TYPE_CHECKING:
 
 
 def version_of_specs(program: ResolvedFile, automata: tuple[Fspa, ...]) -> Version:
-    """Return the version of a compiled source."""
+    """Return the specs of a compiled source as a :class:`Version`."""
     return Version(automata, {spec.name: Label(spec.source, spec.name_span) for spec in program.specs})
 
 
 def version_of_artefact(path: str, automata: tuple[Fspa, ...]) -> Version:
-    """Return the version of an artefact. Labels are on the name of its spec."""
+    """Return the spec of an artefact as a :class:`Version`. Its label is on the name of the spec."""
     from tltlc.artefact.locations import span_of
 
     source = read_source(path, max_bytes=MAX_ARTEFACT_BYTES)
@@ -29,7 +29,10 @@ def version_of_artefact(path: str, automata: tuple[Fspa, ...]) -> Version:
 
 
 def version_of_library(session: Session) -> Version:
-    """Return the version of a source without specs. It must compile without errors."""
+    """Return a library, that is, a source without specs, as a :class:`Version`.
+
+    The library must compile without errors.
+    """
     from tltlc.tools.diff.library import offers
     from tltlc.tools.diff.library_settings import rules
 
