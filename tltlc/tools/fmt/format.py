@@ -52,9 +52,9 @@ _END: Final = 1 << 62
 
 
 def _format_module(module: tree.Module, style: Style) -> str:
-    """Return a layout in which ``allow`` comments apply to the same statements as before.
+    """Return a layout of the module in which ``allow`` comments apply to the same statements as before.
 
-    It copies as much from the source as this requires.
+    Declarations are copied from the source where no new layout achieves this.
     """
     constraints = NO_CONSTRAINTS
     while True:

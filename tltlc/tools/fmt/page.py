@@ -21,9 +21,9 @@ _GAP: Final = 2
 """The number of blanks between a line and the comment after it."""
 
 _OPENERS: Final = ("{", "(", ":", "=")
-"""Ends of lines. A comment after such a line is not aligned with the comments below it.
+"""If a line ends with one of these, the comment after it is not aligned with the comments below.
 
-It is about the lines that follow, not about one line.
+Such a comment is about the lines that follow, not about its own line.
 """
 
 

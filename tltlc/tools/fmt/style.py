@@ -18,6 +18,9 @@ class Style:
     """The spellings of operators, with their spaces.
 
     ``prefix`` has operators before an operand, and ``infix`` operators between two operands.
+    ``constants`` has the spellings of ``true`` and ``false``. ``space_before_bracket`` says whether
+    a space separates a prefix operator from an operand in brackets.
+
     ``letters`` has the prefixes for bounds that words cannot express. It is None for styles that do
     not write bounds in words.
     """

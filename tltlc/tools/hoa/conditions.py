@@ -12,9 +12,9 @@ from tltlc.tools.hoa.tree import Hoa, HoaExpression
 class Acceptance:
     """An acceptance condition in disjunctive normal form, as ``clauses`` over marks.
 
-    Each different ``Fin`` or ``Inf`` of the condition has a number, its mark. An edge carries the
-    mark of ``Fin(0)`` or ``Inf(0)`` if the edge is in set 0. It carries the mark of ``Fin(!0)`` or
-    ``Inf(!0)`` if it is not in set 0.
+    Each distinct ``Fin`` or ``Inf`` term of the condition has a number, called its mark. An edge
+    carries the mark of ``Fin(0)`` or ``Inf(0)`` if the edge is in set 0. It carries the mark of
+    ``Fin(!0)`` or ``Inf(!0)`` if it is not in set 0.
 
     Raises :class:`~tltlc.automaton.work.OutOfWork` if the clauses take more work than is left.
     """

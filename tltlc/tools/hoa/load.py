@@ -46,9 +46,9 @@ class ImportOptions:
     ``atoms`` maps the names of atomic propositions to predicates. A proposition that is not in
     ``atoms`` must itself have the name of a predicate. ``name`` is the name of the spec. Without
     it, the header ``name:`` gives the name if a spec can have it, else the name of the file does.
-    ``level``, ``limit_steps`` and ``judge`` are those of the spec. For None, the file may give
-    them in its headers. ``resolve`` has the options for the library. The automaton may have at most
-    ``state_budget`` states, and its computation may take at most ``work`` steps.
+    ``level``, ``limit_steps`` and ``judge`` are those of the spec; if one of them is None, a header
+    of the file may give it. ``resolve`` has the options for the library. The automaton may have at
+    most ``state_budget`` states, and its computation may take at most ``work`` steps.
     """
 
     atoms: Mapping[str, str] = EMPTY
@@ -186,7 +186,7 @@ def load_hoa(
     Its propositions are predicates of the file ``predicates``.
 
     Raises :class:`TltlError` if one of the files cannot be read, the automaton is not deterministic
-    or not complete, or a proposition is no predicate.
+    or not complete, or a proposition is not a predicate.
 
     >>> import tltlc, tempfile, pathlib
     >>> from tltlc.backends import emit

@@ -176,7 +176,7 @@ class _Tree(Transformer_NonRecursive[Token, Hoa]):
         self._source = source
         self._labels: dict[str, HoaExpression] = {}
         self._start = 0
-        """The offset in the file at which the parsed text begins: not 0 for a label."""
+        """The offset in the file at which the parsed text begins: 0, except while a label is parsed."""
 
     def automaton(self, version: Token, *items: Any) -> Hoa:
         """Build the whole automaton. Raises TltlError, TLT0651, if the header is wrong."""

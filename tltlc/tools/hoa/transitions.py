@@ -21,7 +21,7 @@ Move = tuple[int, frozenset[int]]
 """Where a letter leads: the target state, and the acceptance sets of the edge and its source."""
 
 NOT_ALLOWED: Final = None
-"""The value of a function from letters, at each letter that ``exclusive`` declarations rule out."""
+"""What takes the place of a ``Move`` for each letter that ``exclusive`` declarations rule out."""
 
 
 class HoaTransitions:

@@ -10,7 +10,7 @@ from tltlc.tools.lint.file_view import Expression, SpecView, without_brackets
 
 
 def goals(spec: SpecView) -> Iterator[Expression]:
-    """Yield each step of ``reach`` and ``then``, and each operand of ``eventually``.
+    """Yield each step of a ``reach`` clause or ``then`` chain, and each operand of ``eventually``.
 
     Expressions inside a negation, and the conditions of implications, are left out.
     """

@@ -33,8 +33,8 @@ _LONGEST_LABEL = 300
 class BlockWriter:
     """Writes ``test`` blocks of one spec.
 
-    If a trace begins like the trace before it, the monitor runs only on the rest of it. So traces
-    with long common beginnings are cheap. ``monitor_steps`` counts the steps of the monitor.
+    If a trace begins like the previous one, the monitor runs only on the part that differs. So
+    traces with long common beginnings are cheap. ``monitor_steps`` counts the steps of the monitor.
     """
 
     def __init__(self, spec: Fspa) -> None:

@@ -13,10 +13,11 @@ from tltlc.tools.witness.traces import Witness
 
 
 def as_test(fspa: Fspa, witness: Witness, title: str, blocks: BlockWriter | None = None) -> str:
-    """Return a ``test`` block that passes.
+    """Return a trace as a ``test`` block that passes.
 
-    It expects what the monitor reports at the end. For a trace of a cover, it also expects what the
-    monitor reports after each step that changes the state and takes an edge for the first time.
+    The block expects what the monitor reports at the end. For a trace of a cover, it also expects
+    what the monitor reports after each step that changes the state and takes an edge for the first
+    time.
     Give ``blocks`` to share work between several blocks of one automaton.
 
     Raises:
