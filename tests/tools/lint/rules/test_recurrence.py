@@ -116,6 +116,36 @@ def test_the_suggestion_is_no_goal_that_a_false_condition_meets(clause: str, goa
     assert (finding.diagnostic.help or "").partition(" write `semantics infinite`")[2] == goal
 
 
+@pytest.mark.parametrize(
+    ("clause", "advice"),
+    [
+        ("reach always a", "write `reach a`"),
+        ("require G F a", "write `reach a`"),
+        ("keep b and eventually a", "write `reach a`"),
+        ("reach b then (always a)", "leave out this `always`"),
+        ("require F (b or G a)", "leave out this `G`"),
+        ("require b implies G F (a or c)", "write `eventually (a or c)`"),
+        ("reach b then (c and G not G a)", "write `eventually not a`"),
+        ("require b implies G (c and F a)", "take it out of the `always`"),
+        ("require G (a until b)", "write `require a until b`"),
+        ("keep c and (a until b)", "write `require a until b`"),
+        ("require b implies G (a until c)", "write `(a until c)`"),
+        ("require b implies G (c and (a until b))", "take it out of the `always`"),
+    ],
+)
+def test_the_suggestion_keeps_the_rest_of_the_clause(clause: str, advice: str) -> None:
+    (help_,) = (
+        finding.diagnostic.help for finding in findings_in(block(clause)) if finding.diagnostic.code == "TLT0424"
+    )
+    assert (help_ or "").partition("if once is enough, ")[2] == advice
+
+
+def test_the_suggestion_fits_a_spec_or_let_without_clauses() -> None:
+    for text in ("spec s = G F a", "let often = G F a spec s = often"):
+        (finding,) = (found for found in findings_in(f"{SIGNALS}{text}") if found.diagnostic.code == "TLT0424")
+        assert (finding.diagnostic.help or "").endswith("if once is enough, write `eventually a`")
+
+
 def test_lets_are_checked_if_all_specs_are_finite() -> None:
     text = "signal a: bool let often = G F a spec s = often"
     assert labelled_texts(text, "TLT0424") == ["G F"]

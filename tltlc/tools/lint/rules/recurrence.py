@@ -31,30 +31,36 @@ def check(view: View) -> Iterator[Remark]:
     finite = [spec for spec in view.specs if spec.spec.semantics == "finite"]
     for spec in finite:
         for clause, formula in spec.clauses("reach", "keep", "avoid", "require"):
-            yield from _remarks_inside(formula.tree, view)
+            is_clause = spec.declaration.block and clause.kind != "avoid"
+            yield from _remarks_inside(formula.tree, view, without_brackets(formula.tree) if is_clause else None)
             # In a chain of goals only the last step can be a condition on the end of the trace.
             last = operands(formula.tree, "then")[-1] if clause.kind == "reach" else formula.tree
             start = clause.span.start if last is formula.tree else without_brackets(last).span.start
             if clause.kind in _OF_CLAUSES:
-                yield from _remarks(start, last, *_OF_CLAUSES[clause.kind], view)
+                yield from _remarks(start, last, *_OF_CLAUSES[clause.kind], view, is_clause=last is formula.tree)
     if len(finite) == len(view.specs) > 0:
         for declaration in view.module.declarations:
             if isinstance(declaration, LetDecl):
-                yield from _remarks_inside(declaration.body, view)
+                yield from _remarks_inside(declaration.body, view, None)
 
 
-def _remarks_inside(tree: Expr, view: View) -> Iterator[Remark]:
+def _remarks_inside(tree: Expr, view: View, clause: Expr | None) -> Iterator[Remark]:
+    """Yield remarks for each operator in an expression.
+
+    ``clause`` is the part of the expression, if any, that another clause can replace.
+    """
     for part in parts(tree):
         if isinstance(part, Unary) and part.op in _DUAL and part.bound is None:
-            yield from _remarks(part.span.start, part.operand, part.op, True, view)
+            yield from _remarks(part.span.start, part.operand, part.op, True, view, is_clause=part is clause)
 
 
-def _remarks(start: int, tree: Expr, outer: str, holds: bool, view: View) -> Iterator[Remark]:
+def _remarks(start: int, tree: Expr, outer: str, holds: bool, view: View, *, is_clause: bool) -> Iterator[Remark]:
     """Yield remarks for the parts of an operand that constrain only the last step.
 
     ``outer``, `F` or `G`, is the operator in front of the operand. If ``holds`` is false, the operand
     is negated. `always` distributes over `and`, and `eventually` over `or`, so the operands of
     these are checked, too. ``start`` is the offset at which the label of the whole operand begins.
+    ``is_clause`` says whether the operator and its operand are a whole clause.
     """
     whole = without_brackets(tree)
     pending = [(tree, holds)]
@@ -68,7 +74,10 @@ def _remarks(start: int, tree: Expr, outer: str, holds: bool, view: View) -> Ite
         elif isinstance(part, Unary) and part.op in _DUAL and part.bound is None:
             op = part.op if sign else _DUAL[part.op]
             if op == _DUAL[outer]:
-                yield _remark(Span(begin, part.op_span.end), op, Expression(part.operand, view.env), sign)
+                awaited = Expression(part.operand, view.env)
+                word = view.source.slice(part.op_span)
+                once = _once(awaited, sign, outer, word, is_whole=part is whole, is_clause=is_clause)
+                yield _remark(Span(begin, part.op_span.end), op, awaited, sign, once)
         elif (
             isinstance(part, BinaryExpr) and part.op in ("and", "or") and (part.op == "and") == ((outer == "G") == sign)
         ):
@@ -80,19 +89,43 @@ def _remarks(start: int, tree: Expr, outer: str, holds: bool, view: View) -> Ite
                 Span(begin, part.op_span.end),
                 f"required at every step, so `{goal}` must hold at the last one",
             )
-            once = " ".join(view.source.slice(part.span).split())
-            yield Remark(
-                "this `until` starts again at every step", (label,), f"if once is enough, write `require {once}`"
-            )
+            until = Expression(part, view.env)
+            advice = "take it out of the `always`"
+            if is_clause:
+                advice = f"write `require {until.text}`"
+            elif part is whole:
+                advice = f"write `{operand_text(until)}`"
+            yield Remark("this `until` starts again at every step", (label,), f"if once is enough, {advice}")
 
 
-def _remark(place: Span, op: str, awaited: Expression, sign: bool) -> Remark:
+def _once(awaited: Expression, sign: bool, outer: str, word: str, *, is_whole: bool, is_clause: bool) -> str:
+    """Return what to write if it is enough that ``awaited`` (not, if ``sign`` is false) holds once.
+
+    ``word`` is the operator in front of ``awaited``, and ``outer`` the operator around that.
+    ``is_whole`` says whether nothing else is inside the outer operator. ``is_clause`` says whether
+    the outer operator and its operand are a whole clause.
+    """
+    if is_clause and (is_whole or outer == "G"):
+        return f"write `reach {_goal(awaited, sign)}`"
+    if outer == "F":
+        return f"leave out this `{word}`"
+    if is_whole:
+        return f"write `eventually {operand_text(awaited) if sign else _goal(awaited, sign)}`"
+    return "take it out of the `always`"
+
+
+def _goal(awaited: Expression, sign: bool) -> str:
+    return awaited.text if sign else f"not {operand_text(awaited)}"
+
+
+def _remark(place: Span, op: str, awaited: Expression, sign: bool, once: str) -> Remark:
     """Return the remark. ``sign`` is false if the negation of ``awaited`` is required."""
-    goal = awaited.text if sign else f"not {operand_text(awaited)}"
-    label = Label(awaited.source, place, f"on a trace that ends, this only means `{goal}` at the last step")
+    label = Label(
+        awaited.source, place, f"on a trace that ends, this only means `{_goal(awaited, sign)}` at the last step"
+    )
     help_ = f"if play has no end and {_WORDS[op]}, write `semantics infinite`"
     if not (sign and consists_of_implications(awaited)):
-        help_ += f"; if once is enough, write `reach {goal}`"
+        help_ += f"; if once is enough, {once}"
     return Remark("this is only about the last step", (label,), help_)
 
 
