@@ -18,9 +18,11 @@ SIGNALS: Final = (spec.Signal("x", "number", None, 1.0), spec.Signal("seen", "bo
 
 @record
 class OddTrace:
-    """A trace, the values of ``x`` and ``seen`` in the samples that are read, and the refused line.
+    """A trace, and how it must be read.
 
-    ``line`` counts from 1. It is None if everything is read, and 0 if the trace has no sample.
+    ``samples`` has the values of ``x`` and ``seen`` in each sample that must be read. ``line`` is the
+    number of the line, from 1, that must be refused. It is None if the whole trace must be read,
+    and 0 if the trace has no sample.
     """
 
     trace: bytes

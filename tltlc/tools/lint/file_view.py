@@ -83,7 +83,7 @@ class Expression:
     def children(self) -> list[Expression]:
         """Return the operands, in order.
 
-        A quantifier has its body once for each entity.
+        For a quantifier, they are its body, once for each entity.
         """
         if isinstance(self.tree, Quantified):
             variable, body = self.tree.variable, self.tree.body

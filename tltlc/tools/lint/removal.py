@@ -39,10 +39,10 @@ def removal_span(source: SourceFile, span: Span, comments: Sequence[Comment] = (
 
 
 def item_removal_spans(spans: Sequence[Span], index: int, comments: Sequence[Comment]) -> tuple[Span, ...]:
-    """Return the span to delete in order to remove the item at ``index`` from a list.
+    """Return the spans to delete in order to remove the item at ``index`` from a list.
 
-    ``spans`` are the spans of the items, at least two. The result includes one comma. It is empty
-    if the deletion would remove a comment.
+    ``spans`` are the spans of the items, at least two. The result has one span, which includes one
+    comma. The result is empty if the deletion would remove a comment.
     """
     removed = Span(spans[index - 1].end, spans[index].end) if index else Span(spans[0].start, spans[1].start)
     return () if any(removed.start <= comment.span.start < removed.end for comment in comments) else (removed,)
