@@ -72,7 +72,7 @@ def _checked(command: Sequence[str], only: Sequence[str] | None, folder: Path, i
             differing += bool(problems)
             for problem in problems[:5]:
                 print(f"{trace['trace']}: {problem}")
-    print(f"{traces} traces, {differing} of them not as expected")
+    print(f"{traces} trace{'' if traces == 1 else 's'}, {differing} of them not as expected")
     return 1 if differing or not traces else 0
 
 

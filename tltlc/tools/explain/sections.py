@@ -118,7 +118,7 @@ def _states(explanation: Explanation) -> tuple[str | SectionTable, ...]:
         ("State", "Verdict", "To go", "What remains", "What leads on"), tuple(map(_row, rows[:_MOST_ROWS]))
     )
     rest = sum(map(len, rows[_MOST_ROWS:]))
-    return (table, f"And {rest} more states; `--format json` shows all of them.") if rest else (table,)
+    return (table, f"And {rest} more state{'s' * (rest > 1)}; `--format json` shows all of them.") if rest else (table,)
 
 
 def _row(run: tuple[StateRow, ...]) -> tuple[str, ...]:

@@ -97,9 +97,8 @@ class SpecSearch:
         """Return a sentence for each limit on work that left something out."""
         sentences = []
         if self._unrelated:
-            sentences.append(
-                f"only {MOST_EVENTS} atoms are related to each other, and {self._unrelated:,} others are not"
-            )
+            others = "1 other is" if self._unrelated == 1 else f"{self._unrelated:,} others are"
+            sentences.append(f"only {MOST_EVENTS} atoms are related to each other, and {others} not")
         if self._work.left < 0:
             sentences.append(f"only sequences of {WORK['mined sequences']:,} steps in total are tried, others are not")
         if self._candidates.is_cut:

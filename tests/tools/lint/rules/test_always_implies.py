@@ -24,8 +24,9 @@ from tltlc.pipeline import compile_text
 def test_an_always_that_ends_before_implies_is_reported(formula: str, condition: str, correction: str) -> None:
     text = f"{SIGNALS}spec s = {formula}"
     assert labelled_texts(text, "TLT0435") == [condition]
-    (help_text,) = (finding.diagnostic.help for finding in findings_in(text) if finding.diagnostic.code == "TLT0435")
-    suggestion, bracketed = re.findall("`([^`]*)`", help_text or "")
+    (diagnostic,) = (finding.diagnostic for finding in findings_in(text) if finding.diagnostic.code == "TLT0435")
+    assert diagnostic.title.endswith("left side" if " iff " in formula else "condition")
+    suggestion, bracketed = re.findall("`([^`]*)`", diagnostic.help or "")
     assert suggestion == correction
     # The suggestion is a different formula. With the brackets of the second suggestion, the formula is the
     # same and no longer reported.

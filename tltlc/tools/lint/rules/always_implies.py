@@ -37,12 +37,13 @@ def _remark(part: Expression, tree: BinaryExpr, first: Unary) -> Remark:
     word = text_between(first.span.start, first.operand.span.start)
     corrected = text_between(first.operand.span.start, tree.span.end)
     connective = text_between(tree.op_span.start, tree.op_span.end)
-    label = Label(part.source, tree.left.span, f"all of this is the condition: `{word}` ends before `{connective}`")
+    side = "condition" if tree.op == "implies" else "left side"
+    label = Label(part.source, tree.left.span, f"all of this is the {side}: `{word}` ends before `{connective}`")
     condition = text_between(first.span.start, tree.left.span.end)
     help_ = (
         f"for every step, write `{word} ({corrected})`; if you mean it as it is, write `({condition}) {connective} …`"
     )
-    return Remark(f"`{word}` applies only to the condition", (label,), help_)
+    return Remark(f"`{word}` applies only to the {side}", (label,), help_)
 
 
 RULE = LintRule("TLT0435", "warning", check)
