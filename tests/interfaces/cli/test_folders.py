@@ -126,6 +126,10 @@ def test_an_automaton_of_another_tool_is_rejected_as_a_source(command: str, tltl
     assert "error[TLT0652]: `hide.hoa` is an automaton in the Hanoi format" in tltlc(command, "hide.hoa").err
 
 
+def test_the_help_for_an_automaton_on_standard_input_names_standard_input(process: Command) -> None:
+    assert "`tltlc import - --predicates LIB.tltl`" in process("check", "-", stdin=b"HOA: v1\n").err
+
+
 @pytest.mark.skipif(os.name == "nt", reason="Windows has no named pipes in folders")
 @pytest.mark.parametrize(
     "arguments",

@@ -88,7 +88,7 @@ def test_an_automaton_is_read_from_standard_input(process, files: Path) -> None:
     ("arguments", "message"),
     [
         (["again.hoa"], "missing option '--predicates'"),
-        (["again.hoa", "--predicates", "game.tltl", "--name", "no word"], "`no word` is not a word of ASCII letters"),
+        (["again.hoa", "--predicates", "game.tltl", "--name", "no word"], "`no word` is not a name: use ASCII letters"),
         (["again.hoa", "--predicates", "game.tltl", "--atom", "near(post_1)"], "is not of the form AP=PREDICATE"),
         (["again.hoa", "--predicates", "game.tltl", "-t", "jsn"], "did you mean `json`?"),
         (["agin.hoa", "--predicates", "game.tltl"], "did you mean `again.hoa`?"),

@@ -24,6 +24,12 @@ def test_each_command_of_the_readme_succeeds(
     assert {command: tltlc(*command.split()).status for command in commands} == dict.fromkeys(commands, 0)
 
 
+def test_a_file_is_not_called_a_folder_that_is_not_empty(tltlc: Callable[..., Outcome], tmp_path: Path) -> None:
+    (tmp_path / "game").touch()
+    outcome = tltlc("new", str(tmp_path / "game"))
+    assert (outcome.status, "already exists and is not an empty folder" in outcome.err) == (2, True)
+
+
 def test_the_help_does_not_suggest_removing_a_folder_with_files(
     tltlc: Callable[..., Outcome], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -56,8 +56,8 @@ def is_free(folder: Path) -> bool:
 
 
 def occupied_folder_error(folder: Path, advice: str) -> TltlError:
-    """Return TLT0722 for a folder that a command must create, but that exists and is not empty."""
-    return TltlError([Diagnostic("TLT0722", f"`{folder}` already exists and is not empty", help=advice)])
+    """Return TLT0722 for a folder that a command must create, but whose path is not free (:func:`is_free`)."""
+    return TltlError([Diagnostic("TLT0722", f"`{folder}` already exists and is not an empty folder", help=advice)])
 
 
 def links_outside(path: str, arguments: Iterable[str]) -> bool:

@@ -116,10 +116,10 @@ def search_steps(settings: CompileSettings) -> int:
 
 
 def check_libraries(libraries: tuple[Path, ...]) -> None:
-    """Raise TLT0001 for a library folder that does not exist."""
+    """Raise TLT0001 for a library folder that does not exist or is not a folder."""
     for folder in libraries:
         if not is_dir(folder):
-            title = f"the library folder `{folder}` does not exist"
+            title = f"there is no library folder `{folder}`"
             raise TltlError([Diagnostic("TLT0001", title, help="name a folder that exists")])
 
 

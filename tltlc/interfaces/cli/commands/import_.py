@@ -19,7 +19,7 @@ def _name(_: click.Context, __: click.Parameter, name: str | None) -> str | None
     from tltlc.io.spec_file import is_plain_name
 
     if name is not None and not is_plain_name(name):
-        raise click.BadParameter(f"`{name}` is not a word of ASCII letters, digits and _")
+        raise click.BadParameter(f"`{name}` is not a name: use ASCII letters, digits and `_`, and no digit first")
     return name
 
 

@@ -145,7 +145,7 @@ def command(
         report.add(tuple(_limit_warning(title, predicates) for title in left_out))
         proposals = confirm(search.ranking(), evidence, words, options, top)
         if not proposals:
-            report.add((_no_proposal(evidence, whole=whole),))
+            report.add((_no_proposal(evidence, whole=whole, interrupted=interrupted),))
         elif output is not None:
             _write_proposals(output, proposals, evidence, search, words, imported, report)
         if as_json:
@@ -267,8 +267,9 @@ def _unread_messages(words: MiningVocabulary) -> Iterator[str]:
 
     if words.unread_count:
         most, instances = WORK["mined columns"], WORK["mined instances"]
-        of_each = f", at most {instances:,} of one predicate" if words.entities else ""
-        yield f"only the first {most:,} atoms are read{of_each}; {words.unread_count:,} others are left out"
+        of_each = f", and at most {instances:,} of one predicate" if words.entities else ""
+        others = "1 other is" if words.unread_count == 1 else f"{words.unread_count:,} others are"
+        yield f"at most {most:,} atoms are read{of_each}; {others} left out"
 
 
 def _limit_warning(title: str, predicates: str | None) -> Diagnostic:
@@ -276,9 +277,10 @@ def _limit_warning(title: str, predicates: str | None) -> Diagnostic:
     return Diagnostic("TLT0624", title, help=help_, severity="warning")
 
 
-def _no_proposal(evidence: Evidence, *, whole: bool) -> Diagnostic:
+def _no_proposal(evidence: Evidence, *, whole: bool, interrupted: bool) -> Diagnostic:
     if not whole:
-        return Diagnostic("TLT0761", "no spec was found so far", help="allow more time with --time")
+        help_ = "let the search run longer" if interrupted else "allow more time with --time"
+        return Diagnostic("TLT0761", "no spec was found so far", help=help_)
     title = "there is no spec to propose: the counterexamples have everything that the traces have in common"
     if evidence.made_up:
         title = "there is no spec to propose: the traces have nothing in common"
