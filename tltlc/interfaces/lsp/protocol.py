@@ -72,7 +72,7 @@ class Protocol(LanguageServerProtocol):
         if "method" in message:
             self._check_request(message)
         elif not _is_id(message.get("id", "")) and message["id"] is not None:
-            raise JsonRpcInvalidRequest("an id must be a number or a text")
+            raise JsonRpcInvalidRequest("an id must be a whole number or a text")
         elif "id" not in message or not message.keys() & _ANSWERS:
             raise JsonRpcInvalidRequest("this is neither a request nor an answer")
         try:
@@ -92,9 +92,9 @@ class Protocol(LanguageServerProtocol):
         """Raise JsonRpcException if a message is malformed or comes at a wrong time."""
         method = message["method"]
         if not isinstance(method, str) or ("id" in message and not _is_id(message["id"])):
-            raise JsonRpcInvalidRequest("a method must be a text, and an id must be a number or a text")
+            raise JsonRpcInvalidRequest("a method must be a text, and an id must be a whole number or a text")
         if method == types.CANCEL_REQUEST and not _has_id(message.get("params")):
-            raise JsonRpcInvalidParams("an id must be a number or a text")
+            raise JsonRpcInvalidParams("an id must be a whole number or a text")
         if method.startswith(_NOTEBOOK_METHODS):
             raise JsonRpcInvalidRequest("notebooks are not supported, as the server has said at its start")
         if method == types.INITIALIZE and self._workspace is not None:

@@ -143,7 +143,7 @@ function summary(diagnostics, more, specs, tests) {
     return number ? [`${number} ${word}${number === 1 ? "" : "s"}`] : [];
   };
   const parts = [...count("error", "error"), ...count("warning", "warning"), ...count("note", "note")];
-  if (more) parts.push(`${more} more messages`);
+  if (more) parts.push(`${more} more message${more === 1 ? "" : "s"}`);
   if (tests.length) parts.push(`${tests.filter((test) => test.passed).length} of ${tests.length} tests passed`);
   if (!specs.length && !parts.length) return "There is no spec yet. Write one: spec NAME { reach … keep … }";
   if (specs.length) return ["It compiles", ...parts].join("; ");
