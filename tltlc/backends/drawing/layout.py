@@ -71,7 +71,7 @@ def draw(fspa: Fspa, options: Options, picture_format: str) -> Files:
                 return {
                     name: make_accessible(picture, fspa.name, drawing.folded) if picture_format == "svg" else picture
                 }
-    title = f"`{fspa.name}` is too tangled to be drawn in time; its graph was written as `{fspa.name}.dot`"
+    title = f"`{fspa.name}` is too tangled to be drawn in time: its graph is written in the format DOT instead"
     options.report(Diagnostic("TLT0711", title, help="other tools may draw it", severity="note"))
     return {f"{fspa.name}.dot": graph(fspa, options)}
 
