@@ -63,7 +63,7 @@ GRAPH = {
     "fontcolor": "#0f172a",
 }
 DENSE_FROM = 30
-"""Above this number of edges, states are drawn closer together, since the picture would become too tall."""
+"""Above this number of edges, states are drawn closer together, because the picture would be too tall otherwise."""
 DENSE = {"nodesep": "0.2"}
 SKETCH = {"overlap": "prism", "K": "1.2", "splines": "line", "outputorder": "edgesfirst"}
 NODE = {

@@ -1,8 +1,8 @@
 """Fold several runs of states that count at the same time, as in `F[0,100] a & F[0,100] b`.
 
 A run is a path of states that differ only in a count. Several runs form a ladder: its rung n has
-the n-th state of each run. An edge from a rung leads to the next rung, in the same run or in
-another one, or out of the ladder.
+the n-th state of each run. The inner rungs are all except the first and the last one. An edge from
+a rung leads to the next rung, in the same run or in another one, or out of the ladder.
 """
 
 from __future__ import annotations
@@ -48,8 +48,8 @@ def _redirect(edge: DrawnEdge, first: Mapping[int, int], last: Mapping[int, int]
     """Return the edge with a target that is drawn.
 
     An edge to an inner rung leads to the first inner rung, and an edge along a run to the last
-    rung. ``first`` maps each inner state of a run to the first inner state, and ``last`` maps this
-    one to the last state of the run.
+    rung. ``first`` maps each inner state of a run to the first inner state of the run, and ``last``
+    maps the first inner state to the last state.
     """
     target = first.get(edge.target, edge.target)
     return replace(edge, target=last[target] if target == edge.source and target in last else target)

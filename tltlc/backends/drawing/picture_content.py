@@ -1,4 +1,4 @@
-"""What all pictures of automata share: the states and edges that are drawn, and the sentences of the legend."""
+"""Choose the states and edges that a picture of an automaton shows, and write the sentences of its legend."""
 
 from __future__ import annotations
 
