@@ -72,6 +72,7 @@ ENTRY_POINTS: Final = "tltlc.commands"
 """The entry-point group for commands of other distributions."""
 
 COMPLETE_VARIABLE: Final = "_TLTLC_COMPLETE"
+"""A shell sets this environment variable to get completions instead of a run of the command."""
 
 
 class CommandLine(click.Group):
@@ -194,10 +195,10 @@ class CommandLine(click.Group):
 
 
 def _completion_error(error: Exception | OutOfTimeError) -> Exception | OutOfTimeError:
-    """Return the error, or a usage error if it comes from a wrong :data:`COMPLETE_VARIABLE`.
+    """Return the error, or a usage error if the cause is a wrong :data:`COMPLETE_VARIABLE`.
 
-    A user may set this variable by mistake. The scripts of ``tltlc completion`` also set the other
-    variables that click needs.
+    It is wrong if a user set it by mistake. The scripts of ``tltlc completion`` set it together with
+    the other variables that click needs.
     """
     if os.environ.get(COMPLETE_VARIABLE) and isinstance(error, (KeyError, ValueError)):
         return click.UsageError(f"{COMPLETE_VARIABLE} is for the scripts that `tltlc completion` prints: unset it")

@@ -34,7 +34,10 @@ def files_in_folders(arguments: Iterable[str]) -> list[str]:
 
 
 def sources(argument: str) -> list[str]:
-    """Return the argument itself; for a folder, the visible ``.tltl`` files in and below it, sorted.
+    """Return the source files of one argument.
+
+    For a folder, these are the visible ``.tltl`` files in and below it, sorted; otherwise, it is the
+    argument itself.
 
     Raises TltlError: TLT0722 if the folder contains no such file, TLT0001 if a folder cannot be
     read.

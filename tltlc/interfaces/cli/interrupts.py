@@ -34,7 +34,7 @@ _arrival_times: Final[dict[int, float]] = {}
 
 @contextmanager
 def end_on_signals() -> Iterator[None]:
-    """Let SIGINT, SIGTERM and SIGHUP end the process with 128 plus the signal's number.
+    """Let SIGINT, SIGTERM and SIGHUP end the process with the exit status 128 plus the signal's number.
 
     These signals raise KeyboardInterrupt, so finished work is kept and temporary files are removed.
     There are four special cases:

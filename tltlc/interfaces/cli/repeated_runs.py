@@ -19,7 +19,7 @@ After a change, work starts only when a check finds no further change, so that f
 """
 
 _MOST_LOOKS: Final = 10
-"""The most checks with changes before work starts. Some programs never stop writing."""
+"""After more checks with changes than this, work starts anyway. Some programs never stop writing."""
 
 
 def repeat(work: Callable[[tuple[str, ...]], None], list_files: Callable[[], Iterable[str]] = tuple) -> NoReturn:
@@ -54,8 +54,9 @@ def _changes(
 ) -> tuple[str, ...]:
     """Wait until files change, and then until they stop changing; return their paths.
 
-    Return after at most ``_MOST_LOOKS`` checks that find changes. ``before`` has the earlier stamps
-    of files by path, and ``known`` the files that ``list_files`` returned before the last run.
+    Do not wait any longer after more than ``_MOST_LOOKS`` checks that find changes. ``before`` has
+    the earlier stamps of files by path: their times and sizes. ``known`` has the files that
+    ``list_files`` returned before the last run.
     """
     changed: dict[str, Stamp] = {}
     new: tuple[str, ...] = ()

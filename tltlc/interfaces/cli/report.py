@@ -18,9 +18,10 @@ _MOST_ALIKE: Final = 20
 
 
 class Report:
-    """Collects the diagnostics of a command; as a context manager, it reports a TltlError.
+    """Collects the diagnostics of a command, and shows them.
 
-    Each diagnostic is reported once, even if two files import the file with the error. The text
+    As a context manager, it also reports a TltlError that ends the block, and suppresses it. Each
+    diagnostic is reported once, even if two files import the file with the error. The text
     format is shown at once, on standard error. Machine formats form one document per run, which is
     shown at the end: on standard output, or on standard error for commands that print results.
     ``diagnostics`` has the diagnostics in order, and ``status`` is the exit status.

@@ -105,9 +105,9 @@ def compile_settings(settings: CompileSettings, project: Project, specs: tuple[s
 
 
 def search_steps(settings: CompileSettings) -> int:
-    """Return how many steps a search may take.
+    """Return the most steps that a search in automata may take.
 
-    This is also the most steps for building an automaton over infinite traces.
+    Building an automaton over infinite traces may take as many steps.
     """
     from tltlc.automaton.finite.build import DEFAULT_STATE_BUDGET
     from tltlc.automaton.work import STEPS_PER_STATE
