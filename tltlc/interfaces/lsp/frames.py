@@ -50,6 +50,7 @@ class Fault:
 
 
 Frame = Union[Body, Fault]
+"""What is found in the bytes: the body of a message, or a fault of its headers."""
 
 
 class Frames:

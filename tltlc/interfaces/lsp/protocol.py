@@ -30,7 +30,7 @@ _NOTEBOOK_METHODS: Final = "notebookDocument/"
 
 
 class Protocol(LanguageServerProtocol):
-    """The protocol of pygls, which also answers malformed messages."""
+    """The protocol of pygls, extended so that malformed messages are answered, too."""
 
     def receive(self, frame: Frame) -> None:
         """Handle the body of a message; if its headers have a fault, answer or log the fault."""

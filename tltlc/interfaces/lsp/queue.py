@@ -32,9 +32,9 @@ class Queue:
         self._analyse = analyse
         self._give_up = give_up
         self._waiting: dict[str, bool] = {}
-        """The documents to analyse, by URI, with whether to do so even if the analysis is known."""
+        """The URIs of the documents to analyse. The value says whether to do so even if the analysis is known."""
         self._looks: dict[str, int] = {}
-        """By URI, when the user last looked at a document: greater numbers are later looks."""
+        """When the user last looked at each document, by URI. A greater number means a later look."""
         self._current: str | None = None
         self._current_since = 0.0
         self._task: asyncio.Task[None] | None = None

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from pygls.server import ServerErrors
 
 SOON_S: Final = 0.01
-"""Seconds from a change to the quick diagnostics, which cover all further changes in this time."""
+"""Seconds from a change to the quick diagnostics. Changes in between need no diagnostics of their own."""
 LATER_S: Final = 0.4
 """Seconds without a change until the slow analysis, which builds the automata, is scheduled."""
 
@@ -61,7 +61,7 @@ class EditorSession(LanguageServer):
         return analysis if analysed_document is document else None
 
     def last_analysis(self, document: Document) -> DocumentAnalysis | None:
-        """Return the last analysis of a document, perhaps of an earlier text; None without one."""
+        """Return the last analysis of a document, perhaps of an earlier text; None if there is none."""
         _, analysis = self._analyses.get(document.source.name, (None, None))
         return analysis
 
@@ -82,7 +82,7 @@ class EditorSession(LanguageServer):
         return types.WorkspaceEdit(document_changes=[*changes])
 
     def report_server_error(self, error: Exception, source: ServerErrors) -> None:
-        """Log the error of a message, unless it is a request: the error is then its answer."""
+        """Log the error of a message. The error of a request is not logged, but sent as its answer."""
         if source is not FeatureRequestError:
             LOG.error("a message was not understood: %s", error)
 
