@@ -168,9 +168,9 @@ def _label_lines(fspa: Fspa, run: Sequence[State], notation: Notation) -> list[s
 
 
 def _shorten(texts: Sequence[str], width: int) -> list[str]:
-    """Wrap texts to at most ``_MOST_LINES`` lines of about ``width`` characters, and never more than twice as many.
+    """Wrap texts to at most ``_MOST_LINES`` lines of about ``width`` characters.
 
-    An ellipsis stands for the rest.
+    No line has more than ``2 * width`` characters. An ellipsis stands for text that is left out.
     """
     lines = [line for text in texts for line in wrap_text(text, width, _MOST_LINES)]
     if len(lines) > _MOST_LINES:

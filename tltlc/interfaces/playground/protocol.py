@@ -18,7 +18,9 @@ from tltlc.io.json_text import loads
 from tltlc.io.limits import ANSWER, MESSAGE
 
 MOST_LETTERS: Final = 1_000
+"""The most steps of the trace in a request."""
 TOO_LARGE: Final = "this takes more memory than the playground has"
+"""The title of the error for a text whose analysis needs too much memory."""
 
 
 class RequestError(ValueError):

@@ -9,9 +9,9 @@ from tltlc.resolve.spec import Signal
 
 UNITS: Final = {"length": "m", "time": "s", "speed": "m/s", "angle": "rad"}
 _OPEN: Final = 100.0
-"""How far a slider reaches where the range of its signal is open, in SI units.
+"""How far a slider reaches if the range of its signal is open, in SI units.
 
-If params have the type of the signal, their values say instead how far it reaches.
+If there are params of the signal's type, the greatest absolute value among them is used instead.
 """
 
 

@@ -90,7 +90,7 @@ function inBrowser() {
     ask(request) {
       const number = ++last;
       // The answer to the previous request is no longer needed. But a new worker takes seconds to start, so wait a little
-      // before ending the present one.
+      // before ending the current one.
       if (running) setTimeout(running.giveUp, running.since + PATIENCE_MS - performance.now());
       const asked = busy.then(() => {
         if (number !== last) throw new DOMException("a later request has come", "AbortError");
