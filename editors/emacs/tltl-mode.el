@@ -6,7 +6,7 @@
 
 ;;; Commentary:
 
-;; Colours and comments of .tltl files; `eglot' brings the rest from `tltlc lsp'.
+;; Colours and comments of .tltl files.  For everything else, `eglot' starts `tltlc lsp'.
 
 ;;; Code:
 
@@ -24,7 +24,7 @@
   `((,(regexp-opt (append tltl-mode--declarations tltl-mode--clauses) 'symbols) . font-lock-keyword-face)
     (,(regexp-opt tltl-mode--operators 'symbols) . font-lock-builtin-face)
     (,(regexp-opt '("true" "false" "inf") 'symbols) . font-lock-constant-face)
-    ;; Words that are free as names: they count where they begin a line.
+    ;; Words that may also be names: they have a colour only at the start of a line.
     ("^\\s-*\\(step\\|expect\\)\\_>" 1 font-lock-keyword-face)
     ("\\_<\\(?:spec\\|predicate\\|let\\)\\s-+\\([A-Za-z_][A-Za-z0-9_.]*\\)" 1 font-lock-function-name-face)
     ("\\_<\\(?:signal\\|param\\)\\s-+\\([A-Za-z_][A-Za-z0-9_.]*\\)" 1 font-lock-variable-name-face)

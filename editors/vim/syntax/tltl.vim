@@ -12,7 +12,7 @@ syntax keyword tltlConstant true false inf
 syntax match tltlConstant "\v[⊤⊥]"
 syntax match tltlOperator "\v[-+*/^=<>!&|¬∧∨⇒→⇔↔◇□○𝒰≤≥]|\[\]"
 
-" Words that are free as names: they count where they are used as words.
+" Words that may also be names: they have a colour only where they are keywords.
 syntax match tltlClause "\v<step>\ze\s+%(\a|_|!|¬|\(|\d+x>)"
 syntax match tltlClause "\v<expect>\ze\s+\a"
 syntax match tltlConstant "\v%(<expect\s+)@20<=%(satisfied|holding|pending|violated|progress|state)>"

@@ -33,7 +33,7 @@ function restart() {
 }
 
 async function stop() {
-  // If the server never ran or no longer answers, do not wait for its answer.
+  // If the server never ran or no longer answers, `dispose` fails. This does not matter.
   await client?.dispose().catch(() => {});
 }
 
