@@ -188,7 +188,7 @@ async def run_tests(server: EditorSession, uri: str, spec: str) -> None:
     elif analysis is None and document.is_clean:
         text = f"the tests of `{spec}` did not run: a text changed, or its automata take more than {LONGEST_S:g} s"
     else:
-        text = f"`{spec}` has errors, so its tests did not run"
+        text = f"the tests of `{spec}` did not run: its file, or a file that it imports, has errors"
     kind = types.MessageType.Info if figures is not None and not figures.failed else types.MessageType.Warning
     server.window_show_message(types.ShowMessageParams(kind, text))
 
