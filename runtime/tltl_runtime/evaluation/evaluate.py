@@ -86,7 +86,7 @@ def check_limit(fspa: Fspa) -> None:
     """Raise TltlError, TLT0851, if a spec has no limit."""
     if fspa.limit_steps is None:
         title = f"`{fspa.name}` has no limit, so an episode may go on for ever"
-        raise TltlError([Diagnostic("TLT0851", title, help="write a limit in the spec, such as `limit 60 s`")])
+        raise TltlError([Diagnostic("TLT0851", title, help="write a limit in the spec, such as `limit 400 steps`")])
 
 
 def results(

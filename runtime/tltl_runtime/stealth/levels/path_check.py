@@ -57,12 +57,13 @@ def _enemy_warnings(enemy: Enemy, level: StealthLevel, places: NamedParts) -> It
     distance = max(0.0, dist(enemy.route[0], level.start.position) - level.start.spread)
     if distance <= enemy.kind.attack_range:
         title = f"`{enemy.name}` begins where it can hit the player at once, {distance:.2g} m from the start"
-        help_ = "start its `route` elsewhere, where it does not see the player"
+        far = enemy.kind.attack_range + level.start.spread
+        help_ = f"begin its `route` more than {far:g} m from the start"
         yield _warning(title, places, enemy.name, help_=help_)
     for point in enemy.route[1:]:
         if not _can_walk(level, enemy.route[0], point, shut=False):
             title = f"`{enemy.name}` cannot walk to {point_text(point)}"
-            help_ = "it would walk as near as it can; leave out the point, or make a way that is 0.7 m wide"
+            help_ = "it would walk as near as it can; leave out the point, or make a way that is 1 m wide"
             yield _warning(title, places, enemy.name, help_=help_)
         elif not _can_walk(level, enemy.route[0], point, shut=True):
             title = f"`{enemy.name}` cannot walk to {point_text(point)} until a barrier opens"
