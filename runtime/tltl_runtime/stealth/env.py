@@ -75,9 +75,10 @@ class GameEnv(gymnasium.Env[dict[str, Any], Any]):
         render_view: View = "third_person",
         render_size: tuple[int, int] = (640, 480),
     ) -> None:
-        for name, value in (("level", level), ("variant", variant)):
-            if not isinstance(value, (str, os.PathLike)):
-                raise TypeError(f"the {name} must be a text or a path, not {value!r:.60}")
+        if not isinstance(level, (str, os.PathLike)):
+            raise TypeError(f"the level must be a text or a path, not {level!r:.60}")
+        if not isinstance(variant, str):
+            raise TypeError(f"the variant must be a text, not {variant!r:.60}")
         self.level = load_level(os.fspath(level), variant)
         self._screen = Screen(self.level, render_mode, render_view, render_size)
         self.render_mode = render_mode

@@ -211,8 +211,9 @@ def test_a_level_without_a_spec_needs_one() -> None:
     ("options", "text"),
     [
         ({"level": 3}, "the level must be a text or a path, not 3"),
-        ({"variant": 1}, "the variant must be a text or a path, not 1"),
-        ({"variant": None}, "the variant must be a text or a path, not None"),
+        ({"variant": 1}, "the variant must be a text, not 1"),
+        ({"variant": None}, "the variant must be a text, not None"),
+        ({"variant": Path("v0")}, "the variant must be a text, not "),
         ({"sensors": ["exit"]}, r"sensors must be a mapping, e\.g\. {'entities': \['exit'\]}, not \['exit'\]"),
         ({"reward": "sparse"}, r"RewardOptions\(mode=\"sparse\"\), not 'sparse'"),
         ({"params": [1.0]}, "params must map names to numbers"),
