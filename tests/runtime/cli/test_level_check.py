@@ -96,7 +96,7 @@ def test_a_jump_out_of_the_level_is_reported(tltlc, tmp_path: Path) -> None:  # 
     spec.write_text("import spatial entity exit spec leave { limit 200 steps reach near(exit) }")
     checked: Outcome = tltlc("check", spec, "--level", level)
     assert checked.status == 0
-    title = "a jump may lead out of `tower`: the player gets 1.75 m high, and the bounds end at 2.5 m"
+    title = "a jump may lead out of `tower`: the player can jump from 1.75 m up to 2.72 m, and the bounds end at 2.5 m"
     assert f"warning[TLT0806]: {title}\n  help: make the bounds end above 2.73 m\n" in checked.err
     result: Outcome = tltlc("demonstrate", level, "--spec", spec, "-o", tmp_path)
     assert result.status == 1

@@ -50,7 +50,7 @@ def check_height(level: StealthLevel, reach: Reach) -> list[Diagnostic]:
         return []
     title = (
         f"a jump may lead out of `{level.name}`: "
-        f"the player gets {reach.highest:.3g} m high, and the bounds end at {top:g} m"
+        f"the player can jump from {reach.highest:.3g} m up to {jump:.3g} m, and the bounds end at {top:g} m"
     )
     return [Diagnostic("TLT0806", title, help=f"make the bounds end above {jump + 0.01:.2f} m", severity="warning")]
 

@@ -67,7 +67,7 @@ def tree(branches: tuple[str, ...]) -> Node:
     """
     for name in branches:
         if name not in added_branches():
-            raise ValueError(f"{name!r} is not an optional branch: there are {', '.join(added_branches())}")
+            raise ValueError(f"{name!r} is not one of the optional branches: {', '.join(added_branches())}")
     chosen = [branch for branch in _BRANCHES.values() if not branch.added or branch.name in branches]
     return selector(*(branch.node for branch in sorted(chosen, key=lambda branch: (branch.rank, branch.name))))
 

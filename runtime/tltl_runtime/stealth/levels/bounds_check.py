@@ -73,7 +73,7 @@ def _check_goals(goals: list[tuple[str, Point]], solids: _Boxes, places: NamedPa
     """Yield TLT0807 for each switch or exit that is inside a solid, with the first such solid."""
     for goal, point in goals:
         if name := _first_overlap(_body_box(point, 0.01, 0.1), solids):
-            title = f"`{goal}` is inside `{name}`, where nobody can reach it"
+            title = f"`{goal}` is inside `{name}`, where no player can stand"
             yield Diagnostic("TLT0807", title, places.position_labels(goal, name), "move one of them")
 
 

@@ -23,7 +23,10 @@ def check_names(names: Iterable[str], places: NamedParts) -> list[Diagnostic]:
             re.fullmatch(r"[A-Za-z_]\w*", name, re.ASCII) and not syntax.parse(SourceFile("", f"entity {name}\n"))[1]
         )
         if not valid:
-            help_ = "use one word of letters, digits and _ that is not a word of the language, e.g. `north_door`"
+            help_ = (
+                "use one word of ASCII letters, digits and _ that does not begin with a digit "
+                "and is not a word of the language, e.g. `north_door`"
+            )
             diagnostics.append(
                 Diagnostic("TLT0804", f"no spec can use the name `{name}`", places.name_labels(name), help_)
             )
@@ -33,7 +36,7 @@ def check_names(names: Iterable[str], places: NamedParts) -> list[Diagnostic]:
 def check_references(level: StealthLevel, places: NamedParts) -> list[Diagnostic]:
     """Return TLT0805 for each reference to something that the level does not have.
 
-    Also return TLT0805 for each barrier that nothing opens, or that two things open.
+    Also return TLT0805 for each barrier that nothing opens, or that more than one thing opens.
     """
     # Leave out the aliases: the names that they stand for are checked here.
     signals = readers(replace(level, signals=()))
@@ -54,7 +57,7 @@ def check_references(level: StealthLevel, places: NamedParts) -> list[Diagnostic
     for barrier in level.barriers:
         openers = bool(barrier.opened_by) + unlocked[barrier.name]
         if openers != 1:
-            title = f"{'two things open' if openers else 'nothing opens'} the barrier `{barrier.name}`"
-            help_ = "name its switches in `opened_by`, or name the barrier in one `[[unlock]]`"
+            title = f"{'more than one thing opens' if openers else 'nothing opens'} the barrier `{barrier.name}`"
+            help_ = "either name its switches in `opened_by`, or name the barrier in one `[[unlock]]`"
             diagnostics.append(Diagnostic("TLT0805", title, places.name_labels(barrier.name), help_))
     return diagnostics

@@ -231,7 +231,7 @@ class _Loading:
         for key in overlays:
             if not fileio.is_plain_name(key):
                 title = f"no command can name the variant `{key}`"
-                help_ = "use one word of letters, digits and _, e.g. `very_hard`"
+                help_ = "use one word of ASCII letters, digits and _ that does not begin with a digit, e.g. `very_hard`"
                 self.log.append(Diagnostic("TLT0804", title, (table.label_of(key),), help_))
         self.check()
         return overlays

@@ -26,10 +26,10 @@ def fault(level: StealthLevel) -> str | None:
 
 
 def _faults(level: StealthLevel) -> Iterator[str]:
-    boxes = [("the bounds", level.bounds)]
-    boxes += [(f"the solid `{solid.name}`", solid.box) for solid in level.solids]
-    boxes += [(f"the barrier `{barrier.name}`", barrier.box) for barrier in level.barriers]
-    yield from (f"{name}: not a box within {FARTHEST:g} m" for name, box in boxes if not _is_box(box))
+    boxes = [("the bounds are", level.bounds)]
+    boxes += [(f"the solid `{solid.name}` is", solid.box) for solid in level.solids]
+    boxes += [(f"the barrier `{barrier.name}` is", barrier.box) for barrier in level.barriers]
+    yield from (f"{what} not a box within {FARTHEST:g} m" for what, box in boxes if not _is_box(box))
     for mover in level.movers:
         valid = mover.path and all(map(_is_place, mover.path)) and min(mover.size) >= _THINNEST and mover.speed > 0.0
         if not valid or min(mover.pause, mover.offset) < 0.0:

@@ -15,5 +15,5 @@ def player_fault(error: RuntimeError) -> TltlError | None:
 
     if not isinstance(error, WorldError) or error.body != "player":
         return None
-    help_ = "make its bounds higher than a jump (1 m) leads; `tltlc check --level` tells where the player gets"
+    help_ = "make its bounds higher than a jump (1 m) leads; `tltlc check --level` says how high that is"
     return TltlError([Diagnostic("TLT0806", str(error), help=help_)])

@@ -62,9 +62,9 @@ def test_conditions_and_actions_get_the_agent() -> None:
 
 def test_check_gaps_is_the_only_optional_branch() -> None:
     assert branches.added_branches() == ("check_gaps",)
-    with pytest.raises(ValueError, match="'fly' is not an optional branch: there are check_gaps"):
+    with pytest.raises(ValueError, match="'fly' is not one of the optional branches: check_gaps"):
         branches.tree(("fly",))
-    with pytest.raises(ValueError, match="'chase' is not an optional branch"):
+    with pytest.raises(ValueError, match="'chase' is not one of the optional branches"):
         branches.tree(("chase",))
 
 
