@@ -30,9 +30,10 @@ class FailureGroup:
 class Figures:
     """The statistics of ``episodes`` episodes.
 
-    ``pass_rate`` is in [0, 1]; ``pass_interval`` is its 95 % Wilson interval. The others are means
-    and deviations over the episodes: ``progress`` of the best progress of an episode, in [0, 1],
-    ``reward`` of its undiscounted return, and ``steps`` of its number of decisions.
+    ``pass_rate`` is in [0, 1]; ``pass_interval`` is its 95 % Wilson interval. Each other field has
+    a mean and a standard deviation over the episodes. The value of an episode is its best progress,
+    in [0, 1], for ``progress``; its undiscounted return for ``reward``; and its number of decisions
+    for ``steps``.
     """
 
     episodes: int

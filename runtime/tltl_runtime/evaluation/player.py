@@ -1,4 +1,4 @@
-"""What an evaluation plays, and the player that each worker has."""
+"""The setup of an evaluation, and the player of episodes that each worker makes."""
 
 from __future__ import annotations
 
@@ -24,11 +24,12 @@ CHOICES: Final = {True: "sampled", False: "arg-max"}
 
 @record
 class Setup:
-    """What an evaluation plays: ``policy`` on a level with a spec, with the default reward options.
+    """The setup of an evaluation: ``policy`` plays a level with a spec and default reward options.
 
-    ``level`` is an argument of :meth:`~tltl_runtime.game.game.Game.load_level`. ``params`` are in
-    SI units. ``recorded`` says which episodes to record. Unless it is None, the results also have
-    the trajectories of all episodes. ``player`` is the name of the policy in recordings.
+    ``level`` and ``variant`` are arguments of :meth:`~tltl_runtime.game.game.Game.load_level`.
+    ``seed`` is the seed of the evaluation. ``params`` are in SI units. ``recorded`` says which
+    episodes to record. Unless it is None, the results also have the trajectories of all episodes.
+    ``player`` is the name of the policy in recordings.
     """
 
     policy: Policy

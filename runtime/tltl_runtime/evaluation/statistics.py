@@ -32,7 +32,7 @@ def spread_of(values: Sequence[float]) -> Spread:
 
 
 def wilson(successes: int, count: int) -> tuple[float, float]:
-    """Return the 95 % score interval for the share ``successes / count``.
+    """Return the 95 % Wilson score interval for the share ``successes / count``.
 
     Both ends are in [0, 1]. Source: E. B. Wilson, J. Am. Stat. Assoc. 22 (1927), 209-212.
 

@@ -14,7 +14,7 @@ _WIDTH: Final = 24
 """The width of a column, in characters."""
 
 _MOST_LISTED: Final = 12
-"""The most episodes with the same end that are listed."""
+"""At most this many episodes of a group of failures are listed."""
 
 _ENDS: Final[Mapping[End, str]] = {"violation": "violated", "limit": "out of time"}
 

@@ -35,7 +35,7 @@ class RecordedEpisode(Protocol):
 
     @property
     def player(self) -> str:
-        """The player: ``expert``, ``keyboard``, or a policy's name."""
+        """The name of the player, such as ``expert``, ``keyboard``, or the name of a policy."""
 
     @property
     def seed(self) -> int:
@@ -43,7 +43,10 @@ class RecordedEpisode(Protocol):
 
     @property
     def actions(self) -> NDArray[Any]:
-        """The index of the choice in each branch of the action, from 0, (n, branches)."""
+        """The index of the choice in each branch of an action, (n, branches), from 0.
+
+        ``Game.choices`` explains branches and choices.
+        """
 
     @property
     def times(self) -> NDArray[np.float64]:
@@ -89,13 +92,13 @@ the episode is unfinished.
 
 @record
 class Cause:
-    """Why an episode ended: the ``kind`` of its end, by what, when and where, and a ``text`` for people.
+    """The reason why an episode ended.
 
-    ``by`` depends on the kind: the enemies and lasers that killed the player, those with the most
-    damage first; the atoms that violated the spec; or the entities that cannot be reached. ``time``
-    is in seconds since the reset. ``place`` is the position of the player's feet at that time.
-    ``broke`` names the atoms that violated the spec, whatever the ``kind``. It is empty if the spec
-    was not violated.
+    ``kind`` says how it ended, and ``text`` explains the reason to people. ``by`` depends on the
+    kind: the enemies and lasers that killed the player, those with the most damage first; the atoms
+    that violated the spec; or the entities that cannot be reached. ``time`` is in seconds since the
+    reset. ``place`` is the position of the player's feet at that time. ``broke`` names the atoms
+    that violated the spec, whatever the ``kind``. It is empty if the spec was not violated.
     """
 
     kind: Kind

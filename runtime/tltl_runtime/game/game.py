@@ -41,7 +41,7 @@ class Game(ABC, Generic[LevelT, EpisodeT]):
     modules: tuple[str, ...]
     """The modules that a process needs to play.
 
-    A fork server imports them once, so that the worker processes that it starts need not.
+    A fork server imports them once. The worker processes that it starts then have them already.
     """
 
     @property

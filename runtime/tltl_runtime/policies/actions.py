@@ -90,7 +90,10 @@ class MultiCategorical(Distribution):
         return torch.stack([(old.exp() * (old - new)).sum(-1) for old, new in pairs]).sum(0)
 
     def init_mlp_weights(self, mlp: Any) -> None:
-        """Start with nearly uniform probabilities, so that every choice is tried."""
+        """Set the weights of the last layer so that all choices begin nearly equally likely.
+
+        Then an untrained policy tries every choice.
+        """
         last = [layer for layer in mlp if isinstance(layer, nn.Linear)][-1]
         nn.init.orthogonal_(last.weight, gain=0.01)
         nn.init.zeros_(last.bias)

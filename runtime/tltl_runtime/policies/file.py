@@ -29,7 +29,7 @@ SUFFIX: Final = ".safetensors"
 FORMAT: Final = "tltl-policy"
 VERSION: Final = 1
 MAX_BYTES: Final = fileio.limits.POLICY.size
-"""The maximum size of a file: 64 MiB, or thirty million weights."""
+"""The maximum size of a file: 64 MiB, or about thirty million weights."""
 _RECORD_BYTES: Final = 1 << 20
 """The number of bytes that :func:`check_size` assumes for the card without its artefact."""
 
