@@ -16,7 +16,7 @@ from tltl_runtime.support.suggestion import suggestion
 from tltlc.api import Diagnostic, Fspa, Signal, TltlError, monitors, specs
 
 _KIND_OF: Final = {"active": "switch", "open": "barrier"}
-"""The signals that only one kind of entity has, and that kind."""
+"""The kind of entity that has a signal, for the signals that only one kind has."""
 
 _ARTICLE: Final = {"angle": "an angle"}
 

@@ -16,7 +16,7 @@ from tltl_runtime.stealth.world.player import PlayerKind
 from tltlc.api import Diagnostic, Fspa, Severity, TltlError, expressions, fileio, ranges, replace
 
 _LIFT_STEP: Final = 0.25
-"""Each jump that :class:`_ObstacleSearch` tries is higher than the last by this, in metres."""
+"""With each try, :class:`_ObstacleSearch` lets the player jump this much higher, in metres."""
 
 
 def check_reach(level: StealthLevel, reach: Reach, fspa: Fspa, places: SpecPlaces) -> list[Diagnostic]:
@@ -58,8 +58,8 @@ def check_height(level: StealthLevel, reach: Reach) -> list[Diagnostic]:
 def reach_warnings(level: StealthLevel, fspa: Fspa) -> list[Diagnostic]:
     """Return the diagnostics of :func:`check_reach`, all as warnings.
 
-    They are no errors here, because one may play a level whose spec nobody can meet. If the level
-    is too large to search, return TLT0006 as a warning.
+    They are not errors here, because a person may play a level whose spec nobody can meet. If the
+    level is too large to search, return TLT0006 as a warning.
     """
     try:
         diagnostics: Iterable[Diagnostic] = check_reach(level, compute_reach(level), fspa, SpecPlaces(None))

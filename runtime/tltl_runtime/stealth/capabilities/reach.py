@@ -159,7 +159,7 @@ def highest_jump(kind: PlayerKind) -> float:
 
 
 class _Search:
-    """A search: the ground that is reached so far, by height, and the space around it."""
+    """The state of a search: the ground reached so far, by height, and where the feet can be."""
 
     def __init__(
         self, level: StealthLevel, kind: PlayerKind, lift: float, without: Collection[str], budget: Budget

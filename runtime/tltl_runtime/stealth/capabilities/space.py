@@ -45,7 +45,7 @@ Space = NDArray[np.bool_]
 
 
 class SpaceBudgetError(Exception):
-    """A search examines more cells of space than its budget allows."""
+    """Raised if a search examines more cells of space than its budget allows."""
 
 
 class Budget:

@@ -41,7 +41,10 @@ _MOST_LEGS: Final = 16
 
 @record
 class PlayerView:
-    """What enemies perceive of the player: the position of the feet, the height of the head."""
+    """The part of the player's state that enemies can see.
+
+    ``position`` is at the feet; ``head`` is the height of the head above the feet, in metres.
+    """
 
     position: Point
     head: float = STANDING_HEAD
@@ -59,7 +62,7 @@ class Enemies:
         self._shut: set[int] = set()
         self._solids = [corners(solid.box) for solid in level.solids if solid.box.high[2] > 0.0]
         self._boxes: list[Corners] = []
-        """What blocks sight: the boxes that stand still, then the movers of the last step."""
+        """The boxes that block sight: those that stand still, then the movers of the latest step."""
         self._standing = 0
 
     def reset(self, rng: np.random.Generator) -> None:

@@ -99,7 +99,8 @@ class Grid:
 class Floor:
     """The walkable cells that enemies can reach from their ``starts``.
 
-    They are numbered row by row from the south-west. ``key`` has the indices of the shut barriers.
+    The cells are numbered row by row from the south-west. ``key`` has the indices of the shut
+    barriers.
     """
 
     def __init__(

@@ -1,8 +1,8 @@
 """The floor as a lattice of places, and the effect of each action in one decision.
 
-Places are 0.4 m apart, where the player fits between the things on the floor. An action moves the
-player by an exact displacement, which ends between places. The value there is interpolated from the
-four places around.
+A place is a point of the floor where the player fits between the things that stand there.
+Neighbouring places are 0.4 m apart. An action moves the player by an exact displacement, which
+usually ends between places. The cost there is interpolated from the four places around.
 """
 
 from __future__ import annotations
@@ -105,9 +105,9 @@ class Lattice:
         return feasible
 
     def values(self, value: Costs, places: NDArray[Any]) -> Costs:
-        """Interpolate ``value`` [n], which belongs to the lattice's places, at ``places`` [m, 2].
+        """Interpolate ``value``, which has a number for each lattice place, at ``places`` [m, 2].
 
-        The result is FAR where no place of the lattice is near.
+        The result is [m]. It is FAR where no place of the lattice is near.
         """
         corners, shares = self._interpolation(places)
         values: Costs = (value[corners] * shares).sum(-1)
@@ -117,9 +117,9 @@ class Lattice:
     def least_costs(self, standing: Costs, crouched: Costs, extra: Costs) -> Costs:
         """Return the cost of the cheapest action at each place of the lattice.
 
-        The cost of an action is the value at the point where the action ends, plus its ``extra``
-        [actions]. The value comes from ``standing`` or ``crouched`` [places], by the action's
-        stance.
+        The cost of an action is its ``extra`` [actions] plus the cost at the point where it ends.
+        The cost at a point is interpolated from ``crouched`` [places] if the action crouches, else
+        from ``standing`` [places].
         """
         both = np.concatenate((standing, crouched))
         costs: Costs = np.einsum("anc,anc->an", both[self._corners], self._shares)
@@ -149,7 +149,7 @@ class Lattice:
     def _interpolation(self, ends: NDArray[Any]) -> tuple[NDArray[np.int64], Costs]:
         """Return the four places around each point [m, 2], and their weights, [m, 4] each.
 
-        Free places have weights by their nearness. All other places have the weight 0.
+        The nearer a free place is, the greater is its weight. All other places have the weight 0.
         """
         position = (ends - self._low) / _SPACING
         base = np.floor(position).astype(np.int64)

@@ -1,7 +1,7 @@
 """A prediction of :mod:`~tltl_runtime.stealth.world.physics` for thousands of bodies at once.
 
 A body is a capsule, which boxes push out. Its motion agrees with the physics to within a few
-centimetres. A body touches a mover if the mover passes the capsule in the same decision.
+centimetres. A body touches a mover if the mover comes within 6 cm of it in the same decision.
 """
 
 from __future__ import annotations
@@ -134,7 +134,7 @@ class Motion:
         return _Boxes(low[:, near], high[:, near])
 
     def _stairs(self, poses: Poses, vx: Floats, vy: Floats, height: Floats, boxes: _Boxes) -> Floats:
-        """Return how high a stair in its way lifts each body, in metres; 0 without a stair."""
+        """Return how far a stair in the way lifts each body, in metres; 0 if there is no stair."""
         lift = np.zeros(poses.x.shape)
         kind = self.kind
         low, high = boxes.low, boxes.high

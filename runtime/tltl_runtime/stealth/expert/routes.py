@@ -279,7 +279,7 @@ def shut_barriers(snapshot: Snapshot) -> frozenset[int]:
 
 
 def _reaches(direction: tuple[int, int], least: int, reach: float) -> Iterator[tuple[int, float]]:
-    """Yield numbers of steps, from ``least`` up to ``reach`` metres, and the length of each."""
+    """Yield each number of steps from ``least`` up to ``reach`` metres, with its length."""
     length = CELL * hypot(*direction)
     for steps in range(least, int(reach / length + 1e-6) + 1):
         yield steps, steps * length

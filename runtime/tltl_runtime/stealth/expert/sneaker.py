@@ -37,7 +37,7 @@ _HORIZON: Final = 80
 _REPLAN: Final = 5
 """The plan is computed again after this many decisions."""
 _PRICE: Final = 12.0
-"""The price of a decision in sight, in decisions."""
+"""A decision in sight of an enemy costs as much as this many further decisions."""
 _ARRIVED: Final = 0.8
 """A place within this distance of a goal counts as the goal, in metres."""
 _WIDER: Final = 0.15
@@ -95,7 +95,7 @@ class Sneaker:
         return ACTIONS[int(costs.argmin())]
 
     def _make_plan(self, lattice: Lattice, lines: LinesOfSight, decisions: Costs) -> list[tuple[Costs, Costs]]:
-        """Return for each decision what it costs to stand and to crouch at each place at its end.
+        """Return the costs of standing and of crouching at each place, at the end of each decision.
 
         A cost includes that of the rest of the route. ``decisions`` is the length of the route from
         each place if there were no enemies.
