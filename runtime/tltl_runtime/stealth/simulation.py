@@ -26,7 +26,8 @@ class Simulation:
     level. The simulation continues at zero health: the spec decides when an episode is over.
 
     Raises:
-        WorldError: the level leaves the player no room, or a body leaves the level.
+        WorldError: the start leaves the player no room, or the bodies differ from the level; from
+            ``step``: the player leaves the level.
     """
 
     def __init__(self, level: StealthLevel) -> None:

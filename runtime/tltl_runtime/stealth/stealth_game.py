@@ -130,7 +130,7 @@ class StealthGame(Game[StealthLevel, Episode]):
         return is_infeasible(level, fspa)
 
     def level_fault(self, error: RuntimeError) -> TltlError | None:
-        """Return TLT0806 if ``error`` says that the player has left the level, else None."""
+        """Return TLT0806 if ``error`` says that the player has left the bounds, else None."""
         return player_fault(error)
 
     def make_env(

@@ -19,8 +19,8 @@ _THINNEST: Final = 1e-3
 def fault(level: StealthLevel) -> str | None:
     """Return a description of the first fault of a level, or None if it can be drawn and played.
 
-    Invalid names, and things without enough room, are no faults here: only level files are checked
-    for them.
+    Invalid names, and things without enough room, are not faults here: only level files are
+    checked for them.
     """
     return next(_faults(level), None)
 

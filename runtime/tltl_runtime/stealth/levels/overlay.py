@@ -19,8 +19,8 @@ def apply(overlay: Tree, assets: dict[str, Tree], log: list[Diagnostic]) -> dict
     - ``[change.ASSET.THING]`` replaces values of a thing in the asset.
     - ``[add.ASSET]`` appends to lists of the asset.
 
-    All keys must exist in the asset, so that a misspelled change cannot pass unnoticed: otherwise
-    ``log`` gets TLT0808. For an unknown key of the overlay itself, it gets TLT0802.
+    A key that the asset does not have adds TLT0808 to ``log``, so that a misspelled change cannot
+    pass unnoticed. An unknown key of the overlay itself adds TLT0802.
     """
     changed = dict(assets)
     for key, entry in overlay.items():

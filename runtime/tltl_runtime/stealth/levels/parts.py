@@ -55,7 +55,7 @@ _VARIABLES: Final = ("health", "stamina", "crouching", "grounded", "visible", "s
 class NamedParts:
     """The labels of things in the level's files, for later checks.
 
-    By the name of each thing, ``names`` has the label of its name, and ``positions`` the label of
+    ``names`` and ``positions`` map the name of each thing to the label of its name and to that of
     its position.
     """
 

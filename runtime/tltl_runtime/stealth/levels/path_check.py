@@ -63,6 +63,7 @@ def _enemy_warnings(enemy: Enemy, level: StealthLevel, places: NamedParts) -> It
     for point in enemy.route[1:]:
         if not _can_walk(level, enemy.route[0], point, shut=False):
             title = f"`{enemy.name}` cannot walk to {point_text(point)}"
+            # On cells of 0.25 m, a way that is just as wide as the enemy, 0.7 m, is not always walkable.
             help_ = "it would walk as near as it can; leave out the point, or make a way that is 1 m wide"
             yield _warning(title, places, enemy.name, help_=help_)
         elif not _can_walk(level, enemy.route[0], point, shut=True):

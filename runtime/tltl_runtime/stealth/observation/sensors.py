@@ -21,7 +21,7 @@ _EXTENT: Final = f"give an odd number of cells from {MAP_EXTENT[0]} to {MAP_EXTE
 
 
 def choose_sensors(level: StealthLevel, choice: SensorChoice | None = None) -> Sensors:
-    """Return the sensors that the agent uses: ``choice``, or those of the level for None.
+    """Return the sensors that the agent uses: ``choice``, or those of the level if it is None.
 
     ``choice`` is a record or a mapping. The level's own sensors decide what a mapping leaves out.
     ``{"map": None}`` removes the map; ``{"map": {"cell": 1.0}}`` keeps the level's map but changes

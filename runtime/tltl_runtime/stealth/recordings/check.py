@@ -38,7 +38,7 @@ def resimulate(episode: Episode) -> int | None:
     snapshot differs, or one of the spec's signals that the game supplies.
 
     Raises:
-        TltlError: TLT0730, pybullet is not installed. The other functions here do not need it.
+        TltlError: TLT0730, pybullet is not installed. :func:`check` does not need it.
     """
     from tltl_runtime.stealth.simulation import Simulation
     from tltl_runtime.stealth.world.physics import WorldError
@@ -69,7 +69,8 @@ def resimulate(episode: Episode) -> int | None:
 def check_replay(episode: Episode) -> tuple[Diagnostic, ...]:
     """Return TLT0824 if :func:`resimulate` finds a difference, else an empty tuple.
 
-    The help of the diagnostic says which versions have changed since the recording.
+    The help of the diagnostic says which versions have changed since the recording. Raises the
+    errors of :func:`resimulate`.
     """
     row = resimulate(episode)
     if row is None:

@@ -28,7 +28,7 @@ class Episode:
     params: Mapping[str, float]
     """The values of the spec's params, in SI units."""
     player: str
-    """The player: ``expert``, ``keyboard``, or a policy's name."""
+    """The name of the player, such as ``expert``, ``keyboard``, or the name of a policy."""
     seed: int
     actions: NDArray[np.uint8]
     """(n, 5), elements of MultiDiscrete([3, 3, 2, 2, 2])."""

@@ -54,7 +54,7 @@ class AxisNames:
 class Meta:
     """The content of the array ``meta``, which is JSON.
 
-    It contains everything of an episode but the other arrays and the artefact of its spec.
+    It has everything in an episode except the other arrays and the artefact of the spec.
     """
 
     format: str

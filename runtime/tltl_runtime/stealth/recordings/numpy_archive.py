@@ -23,7 +23,7 @@ _DAMAGE = (
 
 
 class ArchiveError(ValueError):
-    """The bytes are not a valid archive or array; the message says why."""
+    """Raised if bytes are not a valid archive or array; the message says why."""
 
 
 def read_members(data: bytes, names: Collection[str], most: int) -> dict[str, bytes]:

@@ -14,7 +14,7 @@ Picture = NDArray[np.uint8]
 
 
 class NoEncoderError(RuntimeError):
-    """No encoder for MP4 is available on this machine."""
+    """Raised if no encoder for MP4 is available on this machine."""
 
 
 def write_gif(path: Path, frames: Iterable[Picture], seconds: float) -> None:

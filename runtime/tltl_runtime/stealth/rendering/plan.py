@@ -52,9 +52,9 @@ _COLUMN: Final = 2.0
 """The width of a column of the legend of :func:`draw_level`, in inches."""
 
 _ROOMY: Final = 6.0
-"""Plans at least this wide and high, in inches, have text of full size.
+"""A plan at least this wide and high, in inches, has text of full size.
 
-A smaller plan has it only at its natural size.
+A smaller plan has text of full size only if it has its :func:`natural_size`.
 """
 
 MOST_LISTED: Final = 12

@@ -40,7 +40,7 @@ class Screen:
         self._cannot_open = False
 
     def render(self, snapshot: Snapshot) -> NDArray[np.uint8] | None:
-        """Draw a snapshot, by the mode:
+        """Draw a snapshot. The mode decides what happens with the picture:
 
         - ``rgb_array``: return the picture, (height, width, 3).
         - ``human``: show it in the window for the time of a decision, and return None. If no window

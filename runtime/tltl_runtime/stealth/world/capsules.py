@@ -20,7 +20,7 @@ class Capsules:
     """The two capsules, created at ``parking``; the standing one is active at first.
 
     ``body`` is the Bullet id of the active capsule; ``height`` and ``radius`` are its size.
-    Positions are at its feet.
+    Positions are those of its feet.
     """
 
     def __init__(self, client: int, kind: PlayerKind, parking: Point) -> None:

@@ -29,7 +29,7 @@ _HARDEST_PUSH = 8.0
 class MoverBody:
     """The body of a mover; ``place`` is its current centre, ``box`` has its corners.
 
-    It begins where the mover is after ``offset`` seconds.
+    At first, it is where the mover is ``offset`` seconds after the start of its cycle.
     """
 
     def __init__(self, client: int, mover: Mover) -> None:

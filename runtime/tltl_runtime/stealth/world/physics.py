@@ -45,14 +45,14 @@ _PARK_INTERVAL = 64
 
 
 class Random(Protocol):
-    """What a reset needs of a random generator: ``random.Random`` or ``numpy.random.Generator``."""
+    """A source of random numbers, such as ``random.Random`` or ``numpy.random.Generator``."""
 
     def random(self) -> float:
         """Return a number in [0, 1)."""
 
 
 class WorldError(RuntimeError):
-    """The bodies differ from the level, or the player left the level.
+    """Raised if the bodies differ from the level, or the player has no room or leaves the level.
 
     ``body`` is the name of the body at fault, such as ``player``. The error is in the level or in
     the physics.

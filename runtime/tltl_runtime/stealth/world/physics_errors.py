@@ -6,9 +6,10 @@ from tltlc.api import Diagnostic, TltlError
 
 
 def player_fault(error: RuntimeError) -> TltlError | None:
-    """Return TLT0806 if ``error`` says that the player has left the level, else None.
+    """Return TLT0806 if ``error`` is a WorldError about the player, else None.
 
-    The level is not at fault for other errors of the physics.
+    In a level that was read from a file, it means that the player has left the bounds. The level is
+    not at fault for other errors of the physics.
     """
     # Import this late, because it loads the physics.
     from tltl_runtime.stealth.world.physics import WorldError
