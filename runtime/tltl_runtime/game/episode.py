@@ -1,4 +1,4 @@
-"""What the runtime needs to know about a recorded episode of any game."""
+"""The properties of a recorded episode that the runtime needs, whatever the game."""
 
 from __future__ import annotations
 

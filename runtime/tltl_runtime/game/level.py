@@ -1,4 +1,4 @@
-"""What the runtime needs to know about a level of any game."""
+"""The properties of a level that the runtime needs, whatever the game."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a level supplies to a spec, and what a player can reach in it.
+"""Check what a level supplies to a spec, and what a player can reach in the level.
 
-Begin with `capabilities` for the first and with `feasible` for the second.
+`capabilities` checks the supply, and `feasible` what can be reached.
 """

@@ -48,8 +48,8 @@ NEAR: Final = 1.0
 _EDGE: Final = 0.28
 """How far the ground extends beside the top of a box, in metres.
 
-It follows from the physics: contact with an edge counts as ground if it points upwards by more than
-30 degrees.
+It follows from the physics: contact with an edge counts as ground if its normal points upwards by
+more than 30 degrees.
 """
 _EDGE_DEPTH: Final = 0.16
 """How far the feet are below a top when the body touches the top's edge, in metres."""

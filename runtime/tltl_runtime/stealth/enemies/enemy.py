@@ -165,7 +165,7 @@ class EnemyGuard:
         self._anchor: Place = (self.x, self.y)
         """The last position from which the guard found a path.
 
-        If it is stuck in a narrow corner, it can walk back there in a straight line.
+        If the guard is stuck in a narrow corner, it can walk back there in a straight line.
         """
         self._half_angle_cosine = cos(min(enemy.kind.sight_angle, 2 * pi) / 2)
 

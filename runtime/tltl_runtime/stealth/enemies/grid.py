@@ -79,7 +79,7 @@ class Grid:
         return self._floors[key]
 
     def steps_to_goals(self, floor: Floor, chunk: int) -> NDArray[np.uint8]:
-        """Return the first steps from all cells of a floor to up to 512 goals.
+        """Return the first steps of shortest paths from all cells of a floor to up to 512 goals.
 
         The goals are the cells from number ``chunk * 512`` on. The result is that of
         :func:`steps_to`, uint8 [512 or fewer, cells].

@@ -1,4 +1,4 @@
-"""Predict where movers will be: their paths are known, and snapshots show their clocks."""
+"""Predict where movers will be, from their paths and from the places where snapshots show them."""
 
 from __future__ import annotations
 

@@ -279,7 +279,10 @@ def shut_barriers(snapshot: Snapshot) -> frozenset[int]:
 
 
 def _reaches(direction: tuple[int, int], least: int, reach: float) -> Iterator[tuple[int, float]]:
-    """Yield each number of steps from ``least`` up to ``reach`` metres, with its length."""
+    """Yield the numbers of steps in ``direction``, from ``least`` on, that are not too far.
+
+    Each comes with its length in metres, which is at most ``reach``.
+    """
     length = CELL * hypot(*direction)
     for steps in range(least, int(reach / length + 1e-6) + 1):
         yield steps, steps * length

@@ -40,7 +40,7 @@ _LONG: Final = (14, 32)
 _REPLAN: Final = 6
 """The search is repeated after this many decisions."""
 _ASTRAY: Final = 0.08
-"""The search is repeated when the player is this far from its prediction, in metres."""
+"""The search is repeated when the player is this far from its predicted position, in metres."""
 
 
 class Walker:

@@ -17,7 +17,7 @@ from tltl_runtime.stealth.world.player import PlayerKind
 from tltlc.api import Atom, expressions, label_text
 
 _RECENT: Final = 3.0
-"""Damage counts as a cause of death if the player took it at most this many seconds before."""
+"""Damage is a cause of death if the player took it at most this many seconds before the death."""
 
 
 def cause(episode: Episode) -> Cause:

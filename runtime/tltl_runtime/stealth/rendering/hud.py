@@ -30,7 +30,7 @@ _WIDTH: Final = 36
 _LONG: Final = 72
 """Characters per line below a title."""
 _MOST_LINES: Final = 10
-"""The most lines beside the picture for what remains to be done."""
+"""At most this many lines beside the picture say what remains to be done."""
 
 
 @record

@@ -85,7 +85,7 @@ class Scene:
             self.client = -1
 
     def obstacles(self, snapshot: Snapshot) -> list[Obstacle]:
-        """Return all boxes in a snapshot: solids except the floor, shut barriers, movers."""
+        """Return the boxes in a snapshot: solids except floors, shut solid barriers, and movers."""
         solid = [
             is_open
             for barrier, is_open in zip(self.level.barriers, snapshot.open, strict=True)

@@ -18,9 +18,9 @@ from tltl_runtime.stealth.world.mover_path import MoverPath
 from tltl_runtime.stealth.world.player import DECISION
 
 _REACH = 1.5
-"""The player touches no mover farther away than this in a decision, in metres.
+"""The player can touch a mover within a decision from at most this far away, in metres.
 
-The distance that the mover itself moves is added.
+The distance that the mover itself moves in the decision is added.
 """
 _HARDEST_PUSH = 8.0
 """The greatest speed that a mover gives to the player, in metres per second."""
