@@ -138,7 +138,7 @@ def _existing_lines(demonstrations: Demonstrations, requested: int) -> list[str]
     if number := len(demonstrations.rejected):
         count_text = f"{number} recording{'s' * (number > 1)} in the folder "
         count_text += "is not a demonstration" if number == 1 else "are not demonstrations"
-        first, suffix = demonstrations.rejected[0], " and others" * (number > 1)
+        first, suffix = demonstrations.rejected[0], f" and {number - 1} more" if number > 1 else ""
         lines.append(plain_text(f"{count_text} of this level and spec: `{first.path.name}` ({first.reason}){suffix}"))
     return lines
 

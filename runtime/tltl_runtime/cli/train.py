@@ -209,18 +209,21 @@ def _start_lines(run: TrainingRun, *, resume: bool) -> Iterator[str]:
     how = f" by {run.settings.method}" if run.settings.imitates else ""
     yield f"training {run.fspa.name} on {place}{how}, seed {run.seed}, in {run.folder}"
     if run.initial and not (run.folder / CHECKPOINT).exists():
-        critic_note = f"; its critic is new: only the critic learns in the first {run.settings.ppo.warm_up} iterations"
-        yield f"it begins with the weights of {run.initial.path}{critic_note if run.settings.ppo.warm_up else ''}"
+        count = run.settings.ppo.warm_up
+        iterations = "iteration" if count == 1 else f"{count} iterations"
+        critic_note = f"; its critic is new: only the critic learns in the first {iterations}" if count else ""
+        yield f"it begins with the weights of {run.initial.path}{critic_note}"
     files = [name for name in (METRICS, RECORD, POLICY) if (run.folder / name).exists()]
     if not resume or not files or (run.folder / CHECKPOINT).exists():
         return
     fates = {
         METRICS: "its measurements are lost",
-        RECORD: "so is its record",
+        RECORD: "so is its record" if METRICS in files else "its record is lost",
         POLICY: f"{POLICY} stays until there is a new one",
     }
     fate = ", and ".join(fates[name] for name in files)
-    ways = "; Ctrl-C before the end of its search leaves these files as they are" if run.settings.searches else ""
+    kept = "these files as they are" if len(files) > 1 else "this file as it is"
+    ways = f"; Ctrl-C before the end of its search leaves {kept}" if run.settings.searches else ""
     yield f"there is no {CHECKPOINT} in {run.folder}: the training starts again, {fate}{ways}"
 
 

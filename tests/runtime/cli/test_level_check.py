@@ -142,6 +142,13 @@ def test_nothing_to_report_is_not_printed_next_to_a_warning(tltlc, tmp_path: Pat
     assert "nothing to report" not in result.err
 
 
+def test_a_spec_may_need_nothing_of_a_level(tltlc, tmp_path: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    spec = tmp_path / "nothing.tltl"
+    spec.write_text("spec nothing { limit 9 steps require true }")
+    result: Outcome = tltlc("check", spec, "--level", "navigation:v0")
+    assert "navigation:v0 has nothing to supply\n" in result.err
+
+
 def test_an_unwritable_plan_is_reported(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     result: Outcome = tltlc("check", "--level", "navigation:v0", "--plan", "no/such.png")
     assert result.status == 3

@@ -108,6 +108,11 @@ def test_a_damaged_recording_does_not_count_and_stays(tltlc: TltlcFunction, here
     )
     assert (folder / "damaged.episode.npz").read_bytes() == b"PK, and no more"
     assert names(folder) == ["cover_and_hide-v0-0", "cover_and_hide-v0-5", "damaged"]
+    (folder / "empty.episode.npz").write_bytes(b"")
+    again = tltlc("record", "cover_and_hide", "--spec", "soon.tltl", "--episodes", "2", "-o", "mine")
+    (line,) = again.err.splitlines()
+    assert line.startswith("2 recordings in the folder are not demonstrations of this level and spec: `damaged.")
+    assert line.endswith(") and 1 more")
 
 
 @pytest.mark.parametrize(

@@ -10,6 +10,7 @@ from tltl_runtime.cli.support.training_text import (
     duration,
     minutes,
     report_line,
+    search_end,
     search_line,
     search_result_line,
     seconds_left,
@@ -53,6 +54,12 @@ def test_the_line_of_the_search(lengths: tuple[int, ...], said: str) -> None:
 def test_the_line_at_the_end_of_the_search() -> None:
     searched = SearchProgress(steps=6400, replayed=3200, seconds=61.0, places=1200, lengths=(90, 80), complete=True)
     assert search_result_line(searched) == "search: 2 ways found in 1 min 1 s, the shortest of 80 steps"
+
+
+@pytest.mark.parametrize(("ways", "said"), [(1, "1 way is"), (2, "2 ways are")])
+def test_the_end_of_the_search(ways: int, said: str) -> None:
+    settings = replace(read_settings().exploration, ways=ways, steps=640)
+    assert search_end(settings) == f"The search ends when {said} found, at the latest after 640 steps."
 
 
 def test_the_nearer_limit_determines_the_remaining_time(stop: Stop) -> None:

@@ -79,7 +79,7 @@ class _LevelCheck:
                 if not diagnostics:
                     receiver = f" to `{fspa.name}`" if has_several else ""
                     note = "" if warnings or opened.diagnostics else " (nothing to report)"
-                    self._say(f"{level.name}:{variant} supplies {_supply_text(level, fspa)}{receiver}{note}")
+                    self._say(f"{level.name}:{variant} {_supply_text(level, fspa)}{receiver}{note}")
         self._say(f"{level.name}: the agent senses {_sensor_text(senses)}")
         return level, reach
 
@@ -121,14 +121,14 @@ def _specs(opened: cli.Input) -> Iterator[tuple[Fspa, SpecPlaces]]:
 
 
 def _supply_text(level: StealthLevel, fspa: Fspa) -> str:
-    """Return, as text, what a level supplies to a spec.
+    """Say what a level supplies to a spec, for example ``supplies s1, exit``.
 
     These are the entities and params that the spec uses, and its signals that are about no entity.
     """
     names = list(used_entities(level, fspa))
     names += [signal.name for signal in fspa.signals if "(" not in signal.name]
     names += [f"{name} = {value:.4g} m" for name, value in params_from_level(level, fspa).items()]
-    return ", ".join(names) or "nothing (nothing is needed)"
+    return f"supplies {', '.join(names)}" if names else "has nothing to supply"
 
 
 def _sensor_text(senses: Observer) -> str:

@@ -110,7 +110,8 @@ def _select_cases(suite: Suite, options: RegressOptions) -> Selection:
             click.echo(workflow_command("warning", message, {"title": "--changed"}))
     if selection.left_out:
         names = plain_text(", ".join(case.name for case in selection.left_out))
-        click.echo(f"left out, because they depend on none of the named files: {names}", err=True)
+        depends = "it depends" if len(selection.left_out) == 1 else "they depend"
+        click.echo(f"left out, because {depends} on none of the named files: {names}", err=True)
     return selection
 
 

@@ -60,8 +60,8 @@ def search_line(progress: SearchProgress) -> str:
 
 def search_end(exploration: SearchSettings) -> str:
     """Say in a sentence when the search ends."""
-    ways = f"{exploration.ways} way{'s' * (exploration.ways != 1)}"
-    return f"The search ends when {ways} are found, at the latest after {exploration.steps:,} steps."
+    ways = "1 way is" if exploration.ways == 1 else f"{exploration.ways} ways are"
+    return f"The search ends when {ways} found, at the latest after {exploration.steps:,} steps."
 
 
 def search_result_line(progress: SearchProgress) -> str:
