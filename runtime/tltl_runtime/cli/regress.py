@@ -63,7 +63,8 @@ Examples:
 @click.option(
     "--retrain",
     is_flag=True,
-    help="Train a new policy for each case that does not pass, to find out whether its level can still be played.",
+    help="Train the policy of each case that does not pass on the changed level, to find out whether this level can "
+    "still be played.",
 )
 @click.option(
     "--minutes",

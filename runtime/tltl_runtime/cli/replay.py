@@ -69,7 +69,7 @@ Examples:
     "--fps",
     "rate",
     type=cli.FiniteRange(1.0, 60.0),
-    help="The frames per second of a film (default: one frame per decision).",
+    help="The frames per second of a film (default: one frame per decision, but at most 30 per second).",
 )
 @click.option(
     "--size", metavar="WxH", callback=_size, help="The size of a film (default: 640x480) or a plan, in pixels."
@@ -169,9 +169,14 @@ def _check_text(fields: dict[str, Any]) -> str:
 
 
 def _span(episode: Episode, start: float | None, stop: float | None) -> tuple[float, float]:
-    """Return the start and the end of a film or a trace, in seconds: by default, of the episode."""
+    """Return the start and the end of a film or a trace, in seconds.
+
+    By default, these are the start and the end of the episode.
+    """
     end = episode.snapshots[-1].time
     begin, last = start or 0.0, end if stop is None else stop
+    if begin > last and stop is not None:
+        raise click.UsageError(f"--from {begin:g} is after --to {last:g}")
     if begin > min(last, end):
         raise click.UsageError(f"there is nothing from {begin:g} s to {last:g} s: the episode ends at {end:.2f} s")
     return begin, min(last, end)

@@ -257,6 +257,7 @@ def test_the_exported_trace_gives_the_same_judgement(tltlc, recorded: Path, epis
         (("-o", "run.gif", "--to", "inf"), "write a finite number"),
         (("-o", "run.gif", "--from", "-1"), "range"),
         (("-o", "run.gif", "--from", "8", "--to", "9"), "there is nothing from 8 s to 9 s: the episode ends at 3.00 s"),
+        (("-o", "run.gif", "--from", "2", "--to", "1"), "--from 2 is after --to 1"),
         ((), ""),
     ],
 )

@@ -21,14 +21,15 @@ FILMS: Final = (".gif", ".mp4")
 """The file extensions of films."""
 
 _MAX_FRAMES_PER_SECOND: Final = 30.0
-"""The greatest default frame rate. In a film with more decisions per second, some have no frame."""
+"""The greatest default frame rate. If a film has more decisions per second, it skips some of them."""
 
 
 @record
 class Film:
     """The options of a film.
 
-    ``rate`` is in frames per second; None: one frame per decision. ``size`` is in pixels.
+    ``rate`` is in frames per second. If it is None, the film has one frame per decision, but at
+    most 30 frames per second. ``size`` is in pixels.
     """
 
     view: View = "third_person"
