@@ -43,7 +43,8 @@ def test_cases_that_were_not_run_show_the_reason(suite: Suite) -> None:
     text = page(SuiteRun(suite, Path("run"), judged(suite, 1), False, ("room:v1",), ("hopeless",), changed))
     names = ", ".join(f"<code>{name}</code>" for name in changed[:8])
     assert text.count(f"it depends on none of the files that --changed names: {names} and 2 more") == 2
-    assert text.count("the run was stopped before this case; run the same command again to continue") == 2
+    stopped = "the run was stopped before this case; run the same command again, without --fresh, to continue"
+    assert text.count(stopped) == 2
     assert page(SuiteRun(suite, Path("run"), (), True, NAMES)).count("--changed names no file") == 6
 
 

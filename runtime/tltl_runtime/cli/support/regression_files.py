@@ -96,7 +96,8 @@ def _cases_not_run(outcome: SuiteRun) -> Iterator[NotRun]:
         unaffected = f"it depends on none of the files that --changed names: {names}"
     reasons = {
         **dict.fromkeys(
-            outcome.missing, "the run was stopped before this case; run the same command again to continue"
+            outcome.missing,
+            "the run was stopped before this case; run the same command again, without --fresh, to continue",
         ),
         **dict.fromkeys(outcome.left_out, unaffected),
     }
