@@ -49,8 +49,11 @@ class CheckedTable:
         return self._read(key, default, expected, lambda v: type(v) is int and low <= v <= high, low, int)
 
     def text(self, key: str, default: str = REQUIRED, one_of: tuple[str, ...] = ()) -> str:
-        """Read a non-empty text, which must be one of ``one_of`` if that is given."""
-        expected = "one of " + ", ".join(f'"{word}"' for word in one_of) if one_of else "a text"
+        """Read a text that is not empty and, if ``one_of`` is given, is one of these."""
+        entry = self.entries.get(key)
+        expected = "a text" if entry is None or entry.value != "" else "a text that is not empty"
+        if one_of:
+            expected = "one of " + ", ".join(f'"{word}"' for word in one_of)
         is_valid = lambda value: isinstance(value, str) and bool(value) and (not one_of or value in one_of)  # noqa: E731
         return self._read(key, default, expected, is_valid, "", str)
 

@@ -171,8 +171,9 @@ def test_an_unreadable_policy_is_an_error_in_the_suite(tmp_path: Path, monkeypat
     ((code, title, help_),) = refused(Path(), f'{folder}"')
     assert (code, title) == ("TLT0872", "there is neither a training nor a policy in `training`")
     Path("training/vault/run.json").write_text("{}", encoding="utf-8")
-    ((_, _, help_),) = refused(Path(), f'{folder}"')
-    assert help_ == "name one of them: `training/vault`"
+    ((_, title, help_),) = refused(Path(), f'{folder}"')
+    assert title == "`training` contains trainings, but is not a training itself"
+    assert help_ == "add the name of one of them to the path: `vault`"
     ((code, title, _),) = refused(Path(), f'{folder}/vault"')
     assert (code, title) == ("TLT0872", "the training in `training/vault` has no policy yet")
     Path("training/vault/policy.safetensors").write_bytes(data)
@@ -263,3 +264,7 @@ def test_reading_stops_after_many_errors(tmp_path: Path) -> None:
     diagnostics = caught.value.diagnostics
     assert len(diagnostics) == 101
     assert diagnostics[-1].title == "the last 1,900 cases were not read, because there are too many errors before them"
+    with pytest.raises(TltlError) as caught:
+        read(tmp_path, "".join(f'[[case]]\nlevel = "x{number}"\n' for number in range(101)))
+    last = caught.value.diagnostics[-1].title
+    assert last == "the last case was not read, because there are too many errors before it"

@@ -127,7 +127,7 @@ def _training_folder(suite: Suite, case: Case, folder: Path) -> Path:
         if policy_file(suite_case.policy).resolve().parent == place.resolve():
             whose = "its training" if suite_case.name == case.name else f"the training for `{case.name}`"
             title = f"the policy of the case `{suite_case.name}` is stored in `{place}`, where {whose} will write"
-            help_ = "move it beside the suite, and name its new place there as `policy`"
+            help_ = "move it next to the suite, and name its new place there as `policy`"
             raise TltlError([Diagnostic("TLT0942", title, help=help_)])
     return place
 

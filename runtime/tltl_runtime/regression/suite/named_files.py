@@ -12,9 +12,13 @@ from tltl_runtime.game.registry import registered_game
 from tltl_runtime.policies.file import read_policy
 from tltl_runtime.policies.shipped import shipped_policies
 from tltl_runtime.spec.task import read_spec
+from tltl_runtime.support.number_text import short_list
 from tltlc.api import Diagnostic, Label, TltlError, fileio, replace
 
 _NO_SUCH_SPEC: Final = {"TLT0720", "TLT0721"}
+
+_MOST_NAMED: Final = 8
+"""The most trainings that a message names."""
 
 
 def policy_file(path: Path) -> Path:
@@ -103,10 +107,15 @@ def _with_label(label: Label, diagnostics: Iterable[Diagnostic]) -> list[Diagnos
 
 
 def _no_policy(folder: Path) -> Diagnostic:
-    from tltl_runtime.training.files.run_file import RUN, named_trainings, resume_command
+    from tltl_runtime.training.files.run_file import RUN, resume_command
 
     if fileio.exists(folder / RUN):
         help_ = f"`{resume_command(folder)}` continues it until it has one; if it is running, it will have one soon"
         return Diagnostic("TLT0872", f"the training in `{folder}` has no policy yet", help=help_)
-    help_ = named_trainings(folder) or "name a .safetensors file, or the folder that `tltlc train` named when it ended"
+    if trainings := sorted(path.parent.name for path in folder.glob(f"*/{RUN}")):
+        # The suite names the folder relative to itself, and this message relative to the working directory.
+        names = short_list([f"`{name}`" for name in trainings], _MOST_NAMED)
+        title = f"`{folder}` contains trainings, but is not a training itself"
+        return Diagnostic("TLT0872", title, help=f"add the name of one of them to the path: {names}")
+    help_ = "name a .safetensors file, or the folder that `tltlc train` named when it ended"
     return Diagnostic("TLT0872", f"there is neither a training nor a policy in `{folder}`", help=help_)

@@ -20,7 +20,7 @@ from tltl_runtime.regression.suite.named_files import (
     similar_level,
     spec_diagnostics,
 )
-from tltl_runtime.support.checked_table import REQUIRED, CheckedTable, wrong_value
+from tltl_runtime.support.checked_table import CheckedTable, wrong_value
 from tltl_runtime.support.shown_path import path_text
 from tltl_runtime.support.suggestion import suggestion
 from tltl_runtime.support.toml_tree import Entry, read_tree
@@ -170,8 +170,10 @@ def _other_kind_of_file(table: CheckedTable) -> str | None:
 
 
 def _unread_cases_error(count: int, label: Label) -> Diagnostic:
-    title = f"the last {count:,} cases were not read, because there are too many errors before them"
-    return Diagnostic("TLT0803", title, (label,), "correct the errors above, and try again")
+    unread = "the last case was not read, because there are too many errors before it"
+    if count > 1:
+        unread = f"the last {count:,} cases were not read, because there are too many errors before them"
+    return Diagnostic("TLT0803", unread, (label,), "correct the errors above, and try again")
 
 
 def _case(
@@ -184,12 +186,12 @@ def _case(
     """
     before = len(table.log)
     level, place = _level(table, folder)
-    variant = _text(table, "variant", "")
+    variant = table.text("variant", "")
     overlays = _overlays(table, folder)
-    reference = _text(table, "reference", "")
+    reference = table.text("reference", "")
     spec = _spec(table, folder)
     episodes, thresholds = _episodes(table, episodes), _thresholds(table, thresholds)
-    name = _text(table, "name", "")
+    name = table.text("name", "")
     policy = _policy(table, folder, level)
     table.report_unknown_keys()
     if len(table.log) > before or policy is None:
@@ -214,14 +216,6 @@ def _case(
     ), table.label
 
 
-def _text(table: CheckedTable, key: str, default: str = REQUIRED) -> str:
-    """Read a text; the default if the key is missing. A text that is present must not be empty."""
-    text, entry = table.text(key, default), table.entries.get(key)
-    if entry is not None and entry.value == "":
-        table.log[-1] = wrong_value(entry, key, "a text that is not empty")
-    return text
-
-
 def _variants(table: CheckedTable, level: str, known_variants: dict[str, tuple[str, ...]]) -> tuple[str, ...]:
     """Return the variants of a level.
 
@@ -243,7 +237,7 @@ def _level(table: CheckedTable, folder: Path) -> tuple[str, str]:
 
     The second is empty if the level is not a file.
     """
-    level = _text(table, "level")
+    level = table.text("level")
     if not level:
         return "", ""
     if level.endswith(".toml"):
@@ -282,7 +276,7 @@ def _overlays(table: CheckedTable, folder: Path) -> tuple[str, ...]:
     """Read the overlays to add to the variant: names, or paths from the working directory."""
     entry = table.entries.get("overlay")
     single = entry is not None and not isinstance(entry.value, list)
-    names = (_text(table, "overlay"),) if single else table.names("overlay", ())
+    names = (table.text("overlay"),) if single else table.names("overlay", ())
     overlays = []
     for name in names:
         path = folder / name
@@ -293,7 +287,7 @@ def _overlays(table: CheckedTable, folder: Path) -> tuple[str, ...]:
 
 
 def _spec(table: CheckedTable, folder: Path) -> str | None:
-    text = _text(table, "spec", "")
+    text = table.text("spec", "")
     if not text:
         return None
     file, name = fileio.split_spec_name(text)
@@ -312,7 +306,7 @@ def _policy(table: CheckedTable, folder: Path, level: str) -> Path | None:
     policy that comes with that level. By default, it is the policy that comes with the case's
     level.
     """
-    name = _text(table, "policy", "")
+    name = table.text("policy", "")
     if not name or name in shipped_policies():
         shipped = shipped_policy(name or level)
         if shipped is None and level and not table.log:
