@@ -25,7 +25,7 @@ _PLAIN = {str: "a text", bool: "true or false", int: "a whole number", float: "a
 
 
 class RecordJsonError(ValueError):
-    """Raised for JSON that does not fit a record; the message says where, but what was expected."""
+    """Raised for JSON that does not fit a record; the message says where, and what was expected."""
 
 
 def to_json(value: object) -> Any:
@@ -107,7 +107,8 @@ def _tuple(kinds: tuple[Any, ...], data: object, where: str) -> tuple[object, ..
     if kinds[-1] is Ellipsis:
         kinds = kinds[:1] * len(data)
     if len(data) != len(kinds):
-        raise RecordJsonError(f"`{where}` has {len(data)} values, {len(kinds)} were expected")
+        values = f"{len(data)} value{'s' * (len(data) != 1)}"
+        raise RecordJsonError(f"`{where}` has {values}, but {len(kinds)} were expected")
     pairs = enumerate(zip(kinds, data, strict=True))
     return tuple(_value(kind, item, f"{where}[{index}]") for index, (kind, item) in pairs)
 
@@ -126,7 +127,8 @@ def _record(kind: Any, data: object, where: str, known: Mapping[str, object]) ->
     except MissingFieldsError as error:
         missing += error.names
     if missing:
-        raise RecordJsonError(f"`{where}` lacks one of the keys {', '.join(missing)}")
+        keys = ", ".join(f"`{key}`" for key in missing)
+        raise RecordJsonError(f"`{where}` lacks the key{'s' * (len(missing) > 1)} {keys}")
     return instance
 
 

@@ -207,7 +207,7 @@ BIAS = "actor.mlp.0.bias"
         (set_card(version=True), "TLT0841.*version True"),
         (set_card(level=3), "TLT0842.*`card.level` is 3, but a text was expected"),
         (set_card(more=3), "TLT0842.*`more`"),
-        (lambda _, card: card.__delitem__("sensors"), "TLT0842.*lacks one of the keys sensors"),
+        (lambda _, card: card.__delitem__("sensors"), "TLT0842.*lacks the key `sensors`"),
         (set_card(level_hash="x"), "TLT0842.*`card.level_hash` is not a hash"),
         (set_card(params={"level_size": float("nan")}), "TLT0842.*`card.params.level_size` is nan"),
         (set_card(training={"curve": [[1, float("inf")]]}), r"TLT0842.*`card.training.curve\[0\]\[1\]` is inf"),

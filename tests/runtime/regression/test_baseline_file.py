@@ -87,7 +87,7 @@ def test_missing_keys_are_named_in_their_order(tmp_path: Path) -> None:
         del document["references"][0]["accounts"][0][key]
     path.write_text(json.dumps(document), encoding="utf-8")
     with pytest.raises(
-        TltlError, match=r"`baseline\.references\[0\]\.accounts\[0\]` lacks one of the keys index, unmet, cause"
+        TltlError, match=r"`baseline\.references\[0\]\.accounts\[0\]` lacks the keys `index`, `unmet`, `cause`"
     ):
         read_baseline(path)
 
