@@ -1,8 +1,8 @@
-"""The runtime of ``.tltl`` specs: a stealth game, environments rewarded by specs, batched automata.
+"""The runtime of ``.tltl`` specs: a stealth game, Gymnasium environments that specs reward, and batches of automata.
 
 Importing this package registers the environments ``tltl/Navigation-v0``, ``tltl/CoverAndHide-v0``
-and ``tltl/Branching-v0``.  It loads neither torch nor pybullet.  The package needs the extra
-``game``; ``batch`` needs the extra ``rl``.
+and ``tltl/Branching-v0``. It loads neither torch nor pybullet. The package needs the extra ``game``;
+:mod:`tltl_runtime.spec.batch` needs the extra ``rl``.
 """
 
 from __future__ import annotations

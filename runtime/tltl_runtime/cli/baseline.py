@@ -1,4 +1,4 @@
-"""``tltlc baseline``: record the figures that a suite is compared with."""
+"""``tltlc baseline``: record the episodes that the cases of a suite are compared with."""
 
 from __future__ import annotations
 
@@ -105,7 +105,10 @@ def _stopped_text(path: Path, partial: Path | None, *, existed: bool) -> str:
 
 
 def _print_reference(suite: Suite, recorded: RecordedReference, older: tuple[Reference, ...], *, fresh: bool) -> None:
-    """Print the result of a reference, and the cases that will not pass even if nothing changes."""
+    """Print how often a reference met its spec, and which cases will not pass even if nothing changes.
+
+    ``older`` are the references that the output file had before.
+    """
     from tltl_runtime.regression.verdict.baseline_run import verdict_if_unchanged
 
     reference = recorded.reference
@@ -130,10 +133,10 @@ def _success_count(reference: Reference) -> int:
 
 
 def _older_reference(reference: Reference, older: tuple[Reference, ...]) -> Reference | None:
-    """Return the entry of the old baseline that ``reference`` replaces; None without such an entry.
+    """Return the reference in ``older`` that ``reference`` replaces; None without one.
 
-    It is about the same level (name and place), variant and spec. The first one of the same policy
-    wins; otherwise the only candidate, if there is exactly one.
+    Candidates have the same level (name and place), variant and spec. Return the first candidate
+    with the same policy. If none has it, return the only candidate, or None if there are several.
     """
     names = ("level", "variant", "place", "spec")
     played = reference.played

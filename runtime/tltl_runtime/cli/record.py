@@ -118,8 +118,8 @@ def command(
 def _level_and_variant(level: str | None, spec: str | None) -> tuple[str, str]:
     """Return the level and the variant to play.
 
-    They are those of the argument ``level``, by default in ``v0``. Without the argument, the level
-    is the one that the spec names, in ``v0``.
+    ``level`` is ``LEVEL`` or ``LEVEL:VARIANT``. If it is None, return the level that the spec names.
+    The default variant is ``v0``.
     """
     if level is not None:
         file, variant = split_level(level)
@@ -132,7 +132,7 @@ def _level_and_variant(level: str | None, spec: str | None) -> tuple[str, str]:
 
 
 def _existing_lines(demonstrations: Demonstrations, requested: int) -> list[str]:
-    """Return lines that describe the recordings that are in the folder already."""
+    """Describe, in at most two lines, the recordings that are in the folder already."""
     # If there are enough demonstrations, the last line of the output says so.
     lines = [f"{_count_text(demonstrations, requested)} already"] if 0 < demonstrations.count < requested else []
     if number := len(demonstrations.rejected):
@@ -171,7 +171,7 @@ def _record_person(
 
 
 class _DemonstrationRecorder:
-    """Writes those episodes of a person that meet the spec.
+    """Writes the episodes that a person plays, if they meet the spec.
 
     If the folder of demonstrations cannot be written, an episode goes to the folder for temporary
     files instead, and does not count as a demonstration.

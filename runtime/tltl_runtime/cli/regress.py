@@ -124,7 +124,7 @@ def command(
 
 
 def _is_suite(word: str) -> bool:
-    """Whether a word is the path of a suite."""
+    """Whether a word is the path of a suite: a TOML file with a table ``[[case]]``."""
     if not word.endswith(".toml") or not fileio.is_file(word):
         return False
     try:

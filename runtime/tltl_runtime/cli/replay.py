@@ -30,7 +30,7 @@ _ONLY_FOR: Final = {
     "start": (*FILMS, ".csv"),
     "stop": (*FILMS, ".csv"),
 }
-"""The file extensions of the outputs that each option applies to."""
+"""For each option, by its parameter name: the file extensions of the outputs that it applies to."""
 
 _SIZES: Final = (160, 4096)
 """The least and the greatest width and height, in pixels."""

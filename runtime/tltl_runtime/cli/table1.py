@@ -91,7 +91,10 @@ def command(folder: Path, shipped: bool, minutes: float | None, workers: Any) ->
 
 
 def _table(options: _Table1Options) -> str:
-    """Return two tables as text: over the paper's number of episodes, and over all episodes."""
+    """Return two tables as text: one over the first 25 episodes, as in the paper, one over all 100.
+
+    Trainings and episodes that are missing are run now.
+    """
     from tltl_runtime.regression.table1.paper_table import LEVELS, MODELS, RUNS, VARIANTS, TableRow, markdown
     from tltl_runtime.regression.table1.table_cells import EPISODES, SEED, cell_episodes, figures
     from tltl_runtime.training.files.versions import versions

@@ -23,7 +23,10 @@ if TYPE_CHECKING:
 
 
 def _setting(table: str, key: str) -> Callable[[click.Context, click.Parameter, Any], Any]:
-    """Return a callback that checks an option like the setting ``key`` in the table ``table``."""
+    """Return the callback of an option that accepts only valid values of a setting.
+
+    The setting is ``key`` in the table ``table`` of a settings file; ``""`` is the top level.
+    """
 
     def check(_: click.Context, parameter: click.Parameter, value: Any) -> Any:
         from tltl_runtime.training.files.settings_file import KINDS

@@ -50,11 +50,12 @@ class EvaluationFiles:
     """Collects the results of an evaluation and writes its files.
 
     ``path`` is the policy's file, ``sha256`` the hash of its bytes, in hexadecimal, and ``first``
-    the index of the first episode. ``command`` evaluates the same episodes again. ``folder``, which
-    is created if it is missing, gets recordings, pictures and the JSON report. ``json_file`` gets
-    the JSON report, too. Each of the two is None if it was not requested. When the first result is
-    added, the report and the pictures of an earlier evaluation are removed from the folder, and so
-    are recordings of another policy on this level. ``removed_files`` names them.
+    the index of the first episode. ``command`` is the shell command that plays these episodes again,
+    without ``--first`` and ``--episodes``. ``folder``, which is created if it is missing, gets
+    recordings, pictures and the JSON report. ``json_file`` gets the JSON report, too. Each of the
+    two is None if it was not requested. When the first result is added, the report and the pictures
+    of an earlier evaluation are removed from the folder, and so are recordings of another policy on
+    this level. ``removed_files`` names them.
 
     Raises:
         TltlError: TLT0005, a file cannot be written, also from ``add`` and ``write``; TLT0722, a file has
@@ -173,7 +174,7 @@ class EvaluationFiles:
         return f"{self._folder}: {recordings_text}, {', '.join((*pictures, _REPORT))}{hint}"
 
     def _note(self) -> str:
-        """Return a note if the level is not the one that the policy was trained on; else an empty text."""
+        """Return a note if the policy was trained on another level, or before this level changed; else ``""``."""
         card, level = self._setup.policy.card, self._level
         if level_hash(level) == card.level_hash:
             return ""
@@ -182,9 +183,9 @@ class EvaluationFiles:
         return f"note: the policy was trained on another level, {card.level} {card.variant}\n"
 
     def _remove_older(self, folder: Path) -> tuple[str, ...]:
-        """Remove the files that will be written again, and recordings of another policy on this level.
+        """Remove the pictures and the report of an earlier evaluation; return the names of removed files.
 
-        Return the names of the removed files.
+        Also remove recordings of another policy on this level, with their plans.
         """
         choices = "|".join(CHOICES.values())
         recording = re.compile(rf"({re.escape(self._name)}-\d+-\d+-({choices})(-\d+)?){re.escape(SUFFIX)}")

@@ -38,7 +38,7 @@ def command(
     sensors: Mapping[str, Any],
     plan: Path | None,
 ) -> None:
-    """Hold levels against compiled specs, or where there are none against the spec that each is made for."""
+    """Check levels against the compiled specs in ``inputs``; without any, each against its own spec."""
     if plan is not None and plan.suffix.lower() != ".png":
         raise click.UsageError(f"--plan writes a .png file, not `{plan}`", click.get_current_context())
     check = _LevelCheck(inputs, settings, report, sensors)
@@ -54,7 +54,7 @@ def command(
 
 
 class _LevelCheck:
-    """Checks levels, and reports each message only once, even if it applies to several variants."""
+    """Checks levels. It reports each message only once, even if it applies to several variants."""
 
     def __init__(
         self, inputs: Sequence[cli.Input], settings: cli.CompileSettings, report: cli.Report, sensors: Mapping[str, Any]

@@ -53,7 +53,10 @@ class RecordingFiles:
             write_episode(self._unfinished, episode)
 
     def save(self, episode: Episode) -> str:
-        """Write an episode, if necessary to the folder for temporary files; return its path."""
+        """Write an episode, print its result, and return the path of its file.
+
+        If the folder cannot be written, the file goes to the folder for temporary files.
+        """
         path = new_path(self._folder, self._name)
         try:
             write_episode(path, episode)

@@ -16,7 +16,7 @@ _EPISODES_BETWEEN_LINES: Final = 25
 
 
 class RegressionDisplay:
-    """Shows the progress of a case. The display is a function to be called after each episode.
+    """Shows the progress of a case. Call the display, like a function, after each episode.
 
     As a context manager, it removes the bar at the end. ``most`` is printed before the number of
     episodes of a case, for example ``at most``.

@@ -44,8 +44,9 @@ _NOT_UTF8: Final = re.compile("[\ud800-\udfff]")
 
 @record
 class SuiteRun:
-    """The outcome of a run of a suite in its ``folder``.
+    """The outcome of a run of a suite.
 
+    ``folder`` is the folder of the run. ``cases`` are the judged cases, in the suite's order.
     ``left_out`` are the names of the cases that depend on none of the ``changed`` files. ``missing`` are
     the names of the cases that were not judged because the run was stopped. ``complete`` says whether
     all requested cases were judged and retrained.

@@ -153,7 +153,10 @@ def _ends_title(window: EpisodeWindow, shown_states: int, states: int) -> str:
 
 
 def _state_table(window: EpisodeWindow, fspa: Fspa, states: tuple[State, ...], count: int, bar: int) -> Table:
-    """Return the ``count`` states in which most of the last episodes ended, with what remained to be done there."""
+    """Return a table of the ``count`` states in which most of the last episodes ended.
+
+    A row shows the share of these episodes, and what remained to be done in the state.
+    """
     shown_states = sorted(states, key=lambda state: -window.states.get(state.id, 0.0))[:count]
     table = _grid(bar)
     for state in sorted(shown_states, key=lambda state: state.id):
