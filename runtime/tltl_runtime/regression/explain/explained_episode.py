@@ -62,7 +62,7 @@ class ExplainedEpisode:
       :class:`~tltl_runtime.game.episode.Cause`.
     - ``seen_by`` are the enemies that saw the player in the last 3 seconds; none for a success.
     - ``arrivals`` are all entries into states, in order. The first is the start at step 0.
-    - ``nearest`` is the nearest miss, or None: a success has none.
+    - ``nearest`` is the nearest miss. It is None for a success, and for a failure without one.
     - ``way`` is the simplified trajectory.
     - ``broke`` are the atoms that broke the spec.
     - ``arrived`` says whether only the atoms in ``broke`` kept the last step from leading towards
@@ -162,7 +162,7 @@ def _target_and_distance(episode: RecordedEpisode, atom: int, rows: Sequence[int
     """Return the entity that an atom asks the player to approach, and the least distance to it.
 
     The distance, in metres, is the least over those of the steps ``rows`` at which the atom does
-    not hold. Both are None if the atom asks for no such thing: see
+    not hold. Both are None if the atom has no such entity: see
     :func:`~tltl_runtime.regression.explain.stages.target_of`.
     """
     target = target_of(episode.fspa, atom)

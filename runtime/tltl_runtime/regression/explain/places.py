@@ -15,9 +15,9 @@ _NEAR_M: Final = 2.5
 """A place is near an entity if the distance between them is at most this, in metres."""
 
 _BESIDE: Final = 0.99
-"""A box hides a target if the line from the player to the target enters the box early enough.
+"""A box hides a target only if the line from the player to the target enters the box early enough.
 
-It must enter the box before this share of the way to the target.
+The line must enter the box within this share of its length.
 """
 
 _TOUCHING_M: Final = 0.7

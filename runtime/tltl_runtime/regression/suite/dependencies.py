@@ -30,8 +30,8 @@ class Selection:
     """The result of selecting cases by changed files.
 
     ``cases`` are those that depend on a changed file, and ``left_out`` those that depend on none.
-    ``unknown`` are the names that mean no dependency of any case. ``suggestions`` are pairs of an
-    unknown name and a similar name that means a dependency.
+    ``unknown`` are the given names that match no dependency of any case. ``suggestions`` are pairs of
+    an unknown name and a similar name that matches a dependency.
     """
 
     cases: tuple[Case, ...]
@@ -87,7 +87,7 @@ def files_of(suite: Suite) -> frozenset[Path]:
 
 
 def _matches_any(name: str, paths: Iterable[Path]) -> bool:
-    """Whether a name, as in :func:`select`, means one of the paths."""
+    """Whether a name matches one of the paths, as :func:`select` describes."""
     named_path = Path(_unquote(name))
     resolved, parts = named_path.resolve(), named_path.parts
     return any(
@@ -100,7 +100,7 @@ def _matches_any(name: str, paths: Iterable[Path]) -> bool:
 
 
 def _similar_name(name: str, paths: Iterable[Path]) -> str | None:
-    """Return a name that is similar to ``name`` and means one of ``paths``; None without one.
+    """Return a name that is similar to ``name`` and matches one of ``paths``; None without one.
 
     Also return None if ``name`` exists, and if it contains a folder: then it may be a deleted file
     that git lists.

@@ -131,7 +131,7 @@ def _line(level: str, model: str, row: TableRow) -> str:
 
 
 def _rate(figures: CellFigures) -> str:
-    """Format a pass rate. Add its confidence interval if it has more episodes than the paper's."""
+    """Format a pass rate. Add its confidence interval if it is over more episodes than in the paper."""
     if figures.runs <= RUNS:
         return f"{figures.pass_rate:.2f}"
     low, high = wilson(round(figures.pass_rate * figures.runs), figures.runs)

@@ -75,7 +75,7 @@ def limits_of_policy(card: Card, minutes: float | None) -> Limits:
 
 
 def table_training(folder: Path, level: str, model: Model, limits: Limits) -> TableTraining:
-    """Configure the training of a model on a level as it is now.
+    """Configure the training of a model on the present version of a level.
 
     The name of its folder contains a hash of the level, the spec, the sensors and the settings. So
     a change of any of them gives a new training, while a change of the code does not. If the model
@@ -122,7 +122,7 @@ def train_arguments(training: TableTraining) -> list[str]:
 
 
 def finished_training(training: TableTraining) -> TrainedModel | None:
-    """Return the result of a training that reached its goal or one of its limits, else None.
+    """Return the result of a training; None if it has reached neither its goal nor one of its limits.
 
     Raises:
         TltlError: TLT0863, the folder cannot be read.

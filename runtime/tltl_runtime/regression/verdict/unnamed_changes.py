@@ -18,8 +18,8 @@ def unnamed_changes(
 ) -> dict[str, tuple[str, ...]]:
     """Return the files of ``left_out`` cases that differ from the baseline, each with its cases.
 
-    A file has the name that the baseline gives it, and comes with the names of the cases that use
-    it. Only the files of levels are compared.
+    The keys are the names of the files in the baseline. The values are the names of the cases that
+    use the file. Only the files of levels are compared.
     """
     cases_of: dict[str, tuple[str, ...]] = {}
     for case in left_out:

@@ -56,7 +56,10 @@ _EQUAL_SHARE: Final = 0.5
 
 @record
 class FigureChange:
-    """A certain change of a figure: its mean in the baseline, its mean now, and the p-value."""
+    """A certain change of a figure: its mean in the baseline, its mean now, and the p-value.
+
+    The p-value is that of the hypothesis that the mean is within the threshold of the baseline's mean.
+    """
 
     figure: str
     before: float

@@ -22,7 +22,7 @@ At this resolution, most differences between successive points are encoded as a 
 
 
 def case_data(case: ReportedCase, slug: str) -> dict[str, Any] | None:
-    """Return the data for the map and the automaton of a case; None if the case lacks either.
+    """Return the data for the map and the automaton of a case; None if it cannot be played.
 
     ``slug`` is the case's short name in addresses within the page.
     """

@@ -21,9 +21,9 @@ from tltlc.api import formula_text, record
 
 @record
 class _Reason:
-    """A reason of the verdict: a sentence, with links to recorded episodes that show what it says.
+    """A reason of the verdict: a sentence, and links to recorded episodes as examples.
 
-    ``links`` is None if no recorded episode shows it.
+    ``links`` is None if no example was recorded.
     """
 
     text: str

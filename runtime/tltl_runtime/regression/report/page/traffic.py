@@ -29,7 +29,7 @@ class Traffic:
 def traffic(episodes: Sequence[ExplainedEpisode]) -> Traffic:
     """Count how episodes moved through their automaton.
 
-    An episode counts once for a state that it visited, or an edge that it took, several times.
+    An episode that visited a state, or took an edge, several times counts once for it.
     """
     visited: Counter[int] = Counter()
     edges = []
