@@ -1,4 +1,4 @@
-"""A hash of all source modules. It tells code apart that has the same version number."""
+"""A hash of all source modules. It differs if the code differs, even if the version number is the same."""
 
 from __future__ import annotations
 

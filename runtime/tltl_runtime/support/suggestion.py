@@ -7,9 +7,9 @@ from difflib import get_close_matches
 from typing import Final
 
 MOST_SUGGESTIONS: Final = 100
-"""The most diagnostics per file that suggest similar names.
+"""Once a file has this many diagnostics, further ones suggest no similar names.
 
-Searching for similar names takes too long for thousands of diagnostics.
+With thousands of diagnostics, the search for similar names takes too long.
 """
 
 _LONGEST: Final = 100

@@ -1,6 +1,7 @@
-"""Read TOML so that every value has a label: the place of its key in the file.
+"""Read TOML so that every value has a label: its file and the place of its key in this file.
 
-So a diagnostic about a value that an overlay changed can point into the file of the overlay.
+If an overlay changes a value of a level, a diagnostic about the value can point into the overlay's
+file.
 """
 
 from __future__ import annotations
