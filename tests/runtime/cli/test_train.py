@@ -499,6 +499,23 @@ def test_a_killed_worker_is_reported(
     assert (here / "run" / "checkpoint.pt").is_file()
 
 
+def test_a_worker_that_is_killed_in_the_search_is_reported(
+    tltlc: TltlcFunction,  # noqa: F811
+    here: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def with_a_kill(*_: object) -> None:
+        for worker in active_children():
+            worker.kill()
+
+    monkeypatch.setattr("tltl_runtime.cli.support.training_display._LineDisplay.show_search", with_a_kill)
+    Path("search.toml").write_text(SMALL.replace("ways = 0", "ways = 2\nsteps = 6400"))
+    result = tltlc("train", EXAMPLE, "--config", "search.toml", "--out", "run")
+    assert "error[TLT0871]: the training was interrupted: worker 0 was killed by SIGKILL\n" in result.err
+    assert "to start again: tltlc train --resume run" in result.err
+    assert not (here / "run" / "checkpoint.pt").exists()
+
+
 def test_a_terminal_shows_the_live_display(here: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for name, value in {"TERM": "xterm", "COLUMNS": "110", "LINES": "40"}.items():
         monkeypatch.setenv(name, value)

@@ -21,7 +21,7 @@ def train_with_display(run: TrainingRun, *, resume: bool, again: str) -> Trainin
     Raises:
         TltlError: TLT0871, a worker was lost; errors from training.
     """
-    with _worker_errors(again), display(run, again) as progress:
+    with _worker_errors(run, again), display(run, again) as progress:
         training = train(run, resume=resume, on_search=progress.show_search, on_attempt=progress.show_attempt)
         with closing(training) as reports:
             for last in reports:
@@ -38,7 +38,7 @@ def stopped_line(run: TrainingRun, again: str) -> str | None:
 
 
 @contextmanager
-def _worker_errors(again: str) -> Iterator[None]:
+def _worker_errors(run: TrainingRun, again: str) -> Iterator[None]:
     """Raise TltlError, TLT0871, if a worker is lost. ``again`` is the command that resumes the training."""
     try:
         yield
@@ -46,5 +46,6 @@ def _worker_errors(again: str) -> Iterator[None]:
         causes = [str(error.loss), *error.loss.traceback.splitlines()[-1:]]
         played = [f"it played {playing}" for playing in error.playing if playing.busy]
         title = f"the training was interrupted: {': '.join(causes)}"
-        help_ = "; ".join([*played, f"to go on from the last checkpoint: {again}"])
+        proceed = "go on from the last checkpoint" if (run.folder / CHECKPOINT).exists() else "start again"
+        help_ = "; ".join([*played, f"to {proceed}: {again}"])
         raise TltlError([Diagnostic("TLT0871", title, help=help_)]) from error
