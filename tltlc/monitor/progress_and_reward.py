@@ -31,7 +31,7 @@ TerminalPenalty = Literal["undiscounted", "discounted"]
 
 @record
 class RewardOptions:
-    """How steps are rewarded and when episodes end (``docs/semantics.md``, section 4).
+    """How steps are rewarded and when episodes end (``docs/semantics.md``, "Reward").
 
     - ``mode`` is the name of the reward, one of :data:`MODES`.
     - ``termination`` says when an episode ends. With ``entry``, it ends as soon as it enters a trap

@@ -1,4 +1,4 @@
-"""Algorithm 1 for N environments (``docs/semantics.md``, section 4).
+"""Algorithm 1 for N environments (``docs/semantics.md``, "Reward").
 
 The order of operations is the same as in :mod:`tltlc.monitor.progress_and_reward`, which lists the
 deviations from the paper. What depends only on the states is looked up in tables, by the number of
