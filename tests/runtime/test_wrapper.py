@@ -364,6 +364,19 @@ def test_the_clock_must_match_the_environment() -> None:
         TltlEnv(Clocked([FAR]), replace(cover_and_hide(), clock_s=clock), current)
 
 
+def test_the_clock_in_the_help_matches_the_environment() -> None:
+    class Clocked(Playback):
+        tltl_clock_s = 1 / 30
+
+    text = "clock {} s\nsignal door: bool\nspec leave {{ reach door }}"
+    with pytest.raises(TltlError) as error:
+        TltlEnv(Clocked([FAR]), text.format("0.0333333"), current)
+    (diagnostic,) = error.value.diagnostics
+    assert "every 0.0333333 s, but a step of the environment takes 0.03333333333333333 s" in diagnostic.title
+    assert diagnostic.help == "write `clock 0.03333333333333333 s` in the specification"
+    TltlEnv(Clocked([FAR]), text.format("0.03333333333333333"), current)
+
+
 @pytest.mark.parametrize("vector", [SyncVectorEnv, partial(AsyncVectorEnv, context="spawn")], ids=["here", "workers"])
 def test_vector_environments_give_the_same_steps(vector: Any) -> None:
     makers = [make_mountain_car] * 2

@@ -216,8 +216,10 @@ def _check_clock(fspa: Fspa, env: gymnasium.Env[Any, Any]) -> None:
         return
     clock_s = env.get_wrapper_attr("tltl_clock_s")
     if not isclose(fspa.clock_s, clock_s, rel_tol=1e-9):
-        title = f"`{fspa.name}` is sampled every {fspa.clock_s:g} s, but a step of the environment takes {clock_s:g} s"
-        raise TltlError([Diagnostic("TLT0617", title, help=f"write `clock {clock_s:g} s` in the specification")])
+        # With fewer digits, the two numbers could look equal, and the clock in the help could differ from the step.
+        own, step = monitors.number_text(fspa.clock_s), monitors.number_text(clock_s)
+        title = f"`{fspa.name}` is sampled every {own} s, but a step of the environment takes {step} s"
+        raise TltlError([Diagnostic("TLT0617", title, help=f"write `clock {step} s` in the specification")])
 
 
 def _missing_signals(missing: list[str], returned: list[str], when: str) -> Diagnostic:
