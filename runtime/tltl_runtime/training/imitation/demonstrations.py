@@ -147,8 +147,8 @@ def _expert_failed(episode: RecordedEpisode) -> TltlError:
     level, spec = episode.level, episode.fspa.name
     title = f"the expert failed to meet `{spec}` in {MOST_FAILURES} episodes in a row on `{level.name}:{level.variant}`"
     help_ = (
-        f"`tltlc demonstrate {level.name}:{level.variant}` shows how it fails; "
-        f"`tltlc record --seed {episode.seed + 1}` tries other episodes; "
-        "`tltlc record --by keyboard` records a person; give the folder to `tltlc train --demonstrations`"
+        f"`tltlc demonstrate --seed {episode.seed}` with the same level and --spec shows how it fails; "
+        f"`tltlc record --seed {episode.seed + 1}` tries other episodes, and `tltlc record --by keyboard` records a "
+        "person; give the folder to `tltlc train --method imitation --demonstrations`"
     )
     return TltlError([Diagnostic("TLT0920", title, help=help_)])
