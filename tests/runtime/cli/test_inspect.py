@@ -145,7 +145,10 @@ def test_the_progress_of_an_unfinished_training_is_shown(tltlc, tmp_path: Path) 
     assert training["best"]["pass_rate"] == round(last.best_pass_rate, 6)
 
 
-@pytest.mark.parametrize(("broken", "code"), [("checkpoint.pt", "TLT0864"), ("run.json", "TLT0863")])
+@pytest.mark.parametrize(
+    ("broken", "code", "title"),
+    [("checkpoint.pt", "TLT0864", "cannot use the checkpoint"), ("run.json", "TLT0863", "cannot use")],
+)
 def test_a_broken_training_does_not_hide_other_policies(
     tltlc,  # type: ignore[no-untyped-def] # noqa: F811
     policy: Policy,
@@ -153,6 +156,7 @@ def test_a_broken_training_does_not_hide_other_policies(
     tmp_path: Path,
     broken: str,
     code: str,
+    title: str,
 ) -> None:
     folder = tmp_path / "run"
     write_run(run_in(folder))
@@ -160,7 +164,7 @@ def test_a_broken_training_does_not_hide_other_policies(
     (folder / broken).write_text("{}")
     result: Outcome = tltlc("inspect", str(folder), str(file))
     assert result.status == 1
-    assert f"error[{code}]: cannot resume from `{folder / broken}`" in result.err
+    assert f"error[{code}]: {title} `{folder / broken}`" in result.err
     assert [line for line in result.out.splitlines() if line.endswith(("run", ".safetensors"))] == [str(file)]
     result = tltlc("inspect", str(folder), str(file), "--format", "json")
     assert [diagnostic["code"] for diagnostic in json.loads(result.err)["diagnostics"]] == [code]

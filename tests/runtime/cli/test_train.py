@@ -352,7 +352,7 @@ def test_a_folder_with_other_files_is_rejected(
             2,
             "`small.toml` is not a spec: if it contains settings, write `--config small.toml`; if it is a",
         ),
-        (["--resume", "gone"], 1, "cannot resume from `gone`: there is no training in it"),
+        (["--resume", "gone"], 1, "there is no training in `gone`"),
         (["vault.tltl"], 2, "there is no level `vault`: `vault.toml` does not exist, and no level of that name comes"),
         (["--resume", "gone", "--out", "there"], 2, "--resume continues in the folder of the training"),
         (["soon.tltl", "--out", "small.toml/run"], 3, "cannot write into `small.toml/run`"),

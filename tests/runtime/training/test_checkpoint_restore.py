@@ -99,7 +99,7 @@ CHANGES: dict[str, tuple[Callable[[Content], object], str]] = {
     "averages that are missing": (lambda it: _state(it).pop("exp_avg_sq"), "an optimizer in it has other averages"),
     "averages that are no tensor": (
         lambda it: _state(it).update(exp_avg="text"),
-        "contains a value that is not an average",
+        "contains a value that is not a tensor of finite numbers",
     ),
     "optimizer of fewer weights": (lambda it: _group(it)["params"].pop(), "is of another optimizer"),
     "optimizer whose rate is a text": (

@@ -219,7 +219,7 @@ def _tensors(value: object, where: str) -> Mapping[str, Tensor]:
     """Return ``value`` if it maps names to tensors. Raises RecordJsonError otherwise."""
     if isinstance(value, Mapping) and all(type(k) is str and isinstance(v, Tensor) for k, v in value.items()):
         return value
-    raise RecordJsonError(f"`{where}` must contain only tensors")
+    raise RecordJsonError(f"`{where}` must map names to tensors")
 
 
 def _lists(value: object) -> object:
@@ -248,15 +248,15 @@ def _check_run(path: Path, actual: Mapping[str, str], expected: Mapping[str, str
 
 def checkpoint_error(path: Path, reason: str) -> TltlError:
     """Return error TLT0864: a checkpoint is damaged or does not fit, for this reason."""
-    help_ = "put back a copy of it, or move it away: the training then starts again"
-    return TltlError([Diagnostic("TLT0864", f"cannot resume from `{path}`: {reason}", help=help_)])
+    help_ = "put back a copy of it, or move it away: --resume then starts the training from its beginning"
+    return TltlError([Diagnostic("TLT0864", f"cannot use the checkpoint `{path}`: {reason}", help=help_)])
 
 
 def level_changed_error(folder: Path) -> TltlError:
     """Return error TLT0868: the level has changed since the training in ``folder`` began."""
     help_ = (
         f"put it back and continue with `{resume_command(folder)}`, or train on the level as it is now: from the "
-        f"beginning, or from what was learned with `tltlc train --from {quote(str(folder))}`"
+        f"beginning, or with `tltlc train --from {quote(str(folder))}` from what was learned"
     )
     title = f"the level has changed since the training in `{folder}` began"
     return TltlError([Diagnostic("TLT0868", title, help=help_)])
@@ -275,7 +275,7 @@ def _part_name(part: str) -> str:
 
 def _version_error(path: Path, version: object) -> TltlError:
     folder = quote(str(path.parent))
-    title = f"cannot resume from `{path}`: it was written by another version of tltlc"
+    title = f"cannot use the checkpoint `{path}`: it was written by another version of tltlc"
     title += f" (it has version {version!r:.20} of the format, and only {VERSION} can be read)"
     help_ = f"continue with that version, or train again; `tltlc evaluate {folder}` plays what was learned"
     return TltlError([Diagnostic("TLT0864", title, help=help_)])

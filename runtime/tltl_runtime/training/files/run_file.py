@@ -173,7 +173,7 @@ def _read_document(folder: Path) -> tuple[SourceFile, Mapping[str, Any]]:
 def _check_settings(source: SourceFile, document: Mapping[str, Any]) -> None:
     """Raise TLT0863 if another version of tltlc, with other settings, wrote the document."""
     stored, known = set(dict(leaves(document.get("settings", {})))), set(dict(leaves(to_json(read_settings()))))
-    help_ = f"start the training again; `tltlc evaluate {quote(str(Path(source.name).parent))}` plays what it learned"
+    help_ = f"train again; `tltlc evaluate {quote(str(Path(source.name).parent))}` plays what was learned"
     if stored and (missing := sorted(known - stored)):
         raise _invalid_run_error(
             source, f"it is from an older version of tltlc, which had no setting `{missing[0]}`", help_
@@ -258,7 +258,7 @@ def _content_hash(folder: Path) -> str:
 
 
 def _no_training_error(folder: Path) -> TltlError:
-    title = f"cannot resume from `{folder}`: there is no training in it"
+    title = f"there is no training in `{folder}`"
     help_ = named_trainings(folder) or "name the folder of a training, as in `tltlc train --out`"
     return TltlError([Diagnostic("TLT0863", title, help=help_)])
 
@@ -266,4 +266,4 @@ def _no_training_error(folder: Path) -> TltlError:
 def _invalid_run_error(
     source: SourceFile, reason: str, help_: str = "name the folder of a training, as in `tltlc train --out`"
 ) -> TltlError:
-    return TltlError([Diagnostic("TLT0863", f"cannot resume from `{source.name}`: {reason}", help=help_)])
+    return TltlError([Diagnostic("TLT0863", f"cannot use `{source.name}`: {reason}", help=help_)])

@@ -60,7 +60,7 @@ def _check_part(saved: object, expected: object, where: str) -> None:
         if all(isinstance(value, Tensor) for value in expected.values()):
             _check_weights(saved, expected, where)
     elif isinstance(expected, (int, float)) and not (_kind(saved) == _kind(expected) and _is_limit(saved)):
-        raise RecordJsonError(f"`{where}` is {saved!r:.60}, but a number of at least 0 was expected")
+        raise RecordJsonError(f"`{where}` is {saved!r:.60}, but a number from 0 to {2**63 - 1:,} was expected")
 
 
 def _is_limit(value: Any) -> bool:
@@ -92,7 +92,7 @@ def _check_optimizer(saved: object, expected: Mapping[str, Any], where: str) -> 
         raise RecordJsonError(f"`{where}.state` is of another optimizer")
     for number, averages in state.items():
         if not isinstance(averages, Mapping) or not all(map(_is_moment, averages.values())):
-            raise RecordJsonError(f"`{where}.state.{number}` contains a value that is not an average")
+            raise RecordJsonError(f"`{where}.state.{number}` contains a value that is not a tensor of finite numbers")
 
 
 def _check_options(saved: Mapping[str, Any], expected: Mapping[str, Any]) -> None:

@@ -42,7 +42,7 @@ def read_initial_policy(initial: InitialPolicy, folder: Path) -> Policy:
     policy = read_policy(initial.path)
     if weights_hash(policy) != initial.weights:
         raise _changed_policy_error(
-            f"`{initial.path}` is now another policy than when the training in `{folder}` was started", folder
+            f"the weights in `{initial.path}` have changed since the training in `{folder}` was started", folder
         )
     return policy
 
