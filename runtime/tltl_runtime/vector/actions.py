@@ -23,7 +23,7 @@ def check_batch(space: Space[Any], batch: Any, count: int) -> None:
         return
     if isinstance(space, spaces.Tuple):
         if len(batch) != len(space):
-            raise ValueError(f"a batch of actions must have {len(space)} parts, not {len(batch)}")
+            raise ValueError(f"the number of parts of a batch of actions must be {len(space)}, not {len(batch)}")
         for part, values in zip(space, batch, strict=True):
             check_batch(part, values, count)
         return

@@ -27,7 +27,7 @@ def check_arguments(
     if isinstance(workers, int) and workers < 1:
         raise ValueError(f"at least one worker is needed, not {workers}")
     if names is not None and len(names) != len(functions):
-        raise ValueError(f"{len(functions)} names are needed, not {len(names)}")
+        raise ValueError(f"the number of names must be {len(functions)}, not {len(names)}")
     if autoreset == AutoresetMode.DISABLED:
         raise ValueError("autoreset must be SAME_STEP or NEXT_STEP here, not DISABLED")
     if on_death not in ("stop", "replace"):
@@ -46,5 +46,6 @@ def split_mask(options: dict[str, Any] | None, count: int) -> tuple[NDArray[np.b
         return np.ones(count, dtype=np.bool_), options
     mask = np.asarray(options["reset_mask"])
     if mask.shape != (count,) or mask.dtype != np.bool_ or not mask.any():
-        raise ValueError(f"options['reset_mask'] must be an array of {count} bools, one of them True, not {mask!r:.80}")
+        expected = f"a bool array of the shape {(count,)} with at least one True"
+        raise ValueError(f"options['reset_mask'] must be {expected}, not {mask!r:.80}")
     return mask, {key: value for key, value in options.items() if key != "reset_mask"}

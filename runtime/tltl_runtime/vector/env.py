@@ -209,7 +209,7 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         """
         env_values = list(values) if isinstance(values, (list, tuple)) else [values] * self.num_envs
         if len(env_values) != self.num_envs:
-            raise ValueError(f"{self.num_envs} values are needed, not {len(env_values)}")
+            raise ValueError(f"the number of values must be {self.num_envs}, not {len(env_values)}")
         self._ask_all("set_attr", [(name, env_values[share]) for share in self._workers.shares])
 
     def render(self) -> tuple[Any, ...] | None:
@@ -252,7 +252,7 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
             return [int(seed) + index for index in range(self.num_envs)]
         if seed is not None:
             if len(seed) != self.num_envs:
-                raise ValueError(f"{self.num_envs} seeds are needed, not {len(seed)}")
+                raise ValueError(f"the number of seeds must be {self.num_envs}, not {len(seed)}")
             return [None if env_seed is None else int(env_seed) for env_seed in seed]
         return [self._new_seed() if current is None else None for current in self._seeds]
 

@@ -264,7 +264,7 @@ def test_arrays_and_lists_work_like_tensors() -> None:
     assert monitor.state.tolist() == [0, before[1]]
     monitor.reset(np.array([False, True]))
     assert monitor.state.tolist() == [0, 0]
-    with pytest.raises(ValueError, match=r"2 bools are needed, one for each environment, not \(3,\)"):
+    with pytest.raises(ValueError, match=r"the mask must be torch.bool of the shape \(2,\), not torch.bool of \(3,\)"):
         monitor.reset([True] * 3)
     with pytest.raises(ValueError, match=r"the signals must have the shape \(2, 1\), not \(2,\)"):
         monitor.step([0.5, 0.5])

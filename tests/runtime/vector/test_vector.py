@@ -212,7 +212,7 @@ def test_invalid_arguments_are_rejected() -> None:
         WorkerVectorEnv([])
     with pytest.raises(ValueError, match="not 0"):
         WorkerVectorEnv([Fragile], workers=0)
-    with pytest.raises(ValueError, match="2 names are needed"):
+    with pytest.raises(ValueError, match="the number of names must be 2, not "):
         WorkerVectorEnv([Fragile] * 2, names=["one"])
     with pytest.raises(ValueError, match="not DISABLED"):
         WorkerVectorEnv([Fragile], autoreset=AutoresetMode.DISABLED)

@@ -151,8 +151,8 @@ class BatchMonitor:
         if mask is not None:
             chosen = torch.as_tensor(mask, device=self.device)
             if chosen.shape != (self.count,) or chosen.dtype != torch.bool:
-                expected = f"{self.count} bools are needed, one for each environment"
-                raise ValueError(f"{expected}, not {tuple(chosen.shape)} of {chosen.dtype}")
+                expected = f"torch.bool of the shape {(self.count,)}"
+                raise ValueError(f"the mask must be {expected}, not {chosen.dtype} of {tuple(chosen.shape)}")
             fresh = tuple(torch.where(chosen, new, old) for new, old in zip(fresh, self._episode(), strict=True))
         self.state, self.steps, self.progress, self._done, self._success, self._memory = fresh
 

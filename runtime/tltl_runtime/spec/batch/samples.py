@@ -107,7 +107,7 @@ class BatchSamples:
         rows = [torch.as_tensor(signals[name], dtype=self._dtype, device=self._device) for name in self.names]
         for name, row in zip(self.names, rows, strict=True):
             if row.shape != (self._count,):
-                raise ValueError(f"the signal {name} must have the shape {(self._count,)}, not {tuple(row.shape)}")
+                raise ValueError(f"the signal `{name}` must have the shape {(self._count,)}, not {tuple(row.shape)}")
         return torch.stack(rows)
 
     def _in_range(self, columns: Tensor) -> bool:

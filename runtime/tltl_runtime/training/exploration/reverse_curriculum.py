@@ -261,7 +261,7 @@ def _check_figures(arrays: Mapping[str, NDArray[Any]]) -> None:
     if not ((rates >= 0) & (rates <= 1)).all():
         raise ValueError("`rates` or `passed` contains a number outside 0 to 1")
     if not ((arrays["lengths"] > 0) & np.isfinite(arrays["lengths"])).all():
-        raise ValueError("`lengths` contains a value that is not a positive number")
+        raise ValueError("`lengths` contains a number that is not above 0, or not finite")
 
 
 def _weights(rates: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -198,8 +198,9 @@ def read_settings(path: Path | None = None) -> TrainingSettings:
         values = {name: {**defaults, **overrides.get(name, {})} for name, defaults in values.items()}
     ppo, rollout = Ppo(**values["ppo"]), Rollout(**values["rollout"])
     if ppo.minibatches > rollout.envs * rollout.steps:
-        title = f"{ppo.minibatches} minibatches are more than the decisions of a rollout"
-        raise TltlError([Diagnostic("TLT0862", title, help=f"give at most {rollout.envs * rollout.steps}")])
+        decisions = rollout.envs * rollout.steps
+        title = f"a rollout has {decisions} decisions, too few for {ppo.minibatches} minibatches"
+        raise TltlError([Diagnostic("TLT0862", title, help=f"set `minibatches` to at most {decisions}")])
     return TrainingSettings(
         ppo=ppo,
         rollout=rollout,

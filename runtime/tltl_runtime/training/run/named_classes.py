@@ -45,7 +45,9 @@ def device_of(device: str) -> str:
         title = f"each of {group.count} processes needs its own device, but `{device}` is only one"
         raise _no_device(title, 'write "cuda"; the variable CUDA_VISIBLE_DEVICES chooses which devices they use')
     if group.local_count > gpus:
-        title = f"each of {group.local_count} processes needs its own device, but torch finds {gpus} here"
+        count = group.local_count
+        need = "the process needs a device" if count == 1 else f"each of {count} processes needs its own device"
+        title = f"{need}, but torch finds {gpus} here"
         raise _no_device(title, 'start no more processes than devices, or train on the "cpu"')
     return f"cuda:{group.local_rank}"
 
