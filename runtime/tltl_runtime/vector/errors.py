@@ -61,7 +61,9 @@ class Loss:
             return f"worker {self.worker} was silent for {self.silent:g} s, and was killed"
         if self.traceback:
             return f"worker {self.worker} ended with an exception"
-        if self.status is not None and self.status < 0:
+        if self.status is None:
+            return f"worker {self.worker} closed its connection without ending, and was killed"
+        if self.status < 0:
             return f"worker {self.worker} was killed by {_signal_name(-self.status)}"
         return f"worker {self.worker} ended with exit status {self.status}"
 

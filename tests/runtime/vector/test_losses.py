@@ -21,6 +21,7 @@ from tests.runtime.vector.clock import Clock
 from tests.runtime.vector.envs import EXIT, GO, HANG, HOLD, RAISE, Ending, Fragile, Held, Unmade, leaves_its_level
 from tests.waiting import HANG_S, until, until_gone
 from tltl_runtime.vector import WorkerError, WorkerVectorEnv
+from tltl_runtime.vector.errors import Loss
 
 
 def fragile(workers: int, count: int = 2, **options: Any) -> WorkerVectorEnv:
@@ -52,6 +53,10 @@ def error_of_loss(env: WorkerVectorEnv, *actions: list[int]) -> WorkerError:
     with pytest.raises(ClosedEnvironmentError):
         env.step(np.array(actions[0]))
     return caught.value
+
+
+def test_a_worker_without_a_status_had_to_be_killed() -> None:
+    assert str(Loss(0)) == "worker 0 closed its connection without ending, and was killed"
 
 
 def test_a_worker_that_exits_is_reported_with_its_status() -> None:
