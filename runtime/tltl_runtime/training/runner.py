@@ -26,8 +26,8 @@ __all__ = ["Iteration", "Runner"]
 class Runner(OnPolicyRunner):
     """An rsl-rl runner whose learning loop is a generator: it yields after each iteration.
 
-    The runner prints nothing. Updates run in ``cfg["threads"]`` threads, because no environment
-    steps meanwhile. In the first ``cfg["warm_up"]`` iterations only the critic learns. If there are
+    The runner prints nothing. Updates run in ``cfg["threads"]`` threads, because the environments
+    wait during an update. In the first ``cfg["warm_up"]`` iterations only the critic learns. If there are
     several processes, each must use the runner within
     :func:`~tltl_runtime.training.ppo.distributed.join_process_group`.
     """

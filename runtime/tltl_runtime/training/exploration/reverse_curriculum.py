@@ -63,7 +63,7 @@ The limit is the first number times the demonstration's remaining decisions, plu
 
 
 class ReverseCurriculum:
-    """Draws starts of episodes.
+    """Draws the starts of training episodes, and learns from the results of these episodes.
 
     Nothing else may draw from ``generator``, because equal seeds must give equal trainings.
     ``segments`` is the number of segments of a demonstration.

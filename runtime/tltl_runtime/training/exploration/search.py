@@ -210,9 +210,9 @@ class TrajectorySearch:
     def _record_cell(self, episodes: Episodes, row: int, infos: dict[str, NDArray[np.int64]]) -> bool:
         """Record the current cell of an environment; return whether it is new.
 
-        In these cases the cell is not recorded and counts as not new: it has no number, because the
-        player is in the air; there is a demonstration with the seed of the episode; or the search
-        began with failures, and none of them failed in the current state.
+        The cell is not recorded, and counts as not new, in three cases: the player is in the air, so
+        that the cell has no number; the search already has a demonstration with the seed of the
+        episode; or the search began with failures, and none of them failed in the current state.
         """
         state, cell, seed = int(infos["state"][row]), int(infos["cell"][row]), episodes.starts[row].seed
         is_done = any(demonstration.seed == seed for demonstration in self.demonstrations)
@@ -247,7 +247,7 @@ class TrajectorySearch:
 
 
 class _CellArchive:
-    """The cells that were reached: the shortest actions to each, and how often each was drawn."""
+    """The cells that were reached, with the shortest actions to each and how often it was drawn."""
 
     def __init__(self, random: np.random.Generator) -> None:
         self._random = random

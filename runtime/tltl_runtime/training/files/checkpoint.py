@@ -1,4 +1,4 @@
-"""Checkpoints: everything to resume a training, in one file that is written atomically."""
+"""Checkpoints: everything that a training needs to resume, in one file that is written atomically."""
 
 from __future__ import annotations
 
@@ -51,11 +51,12 @@ class Checkpoint:
     - ``processes`` has the state of each process, by rank: the states of torch's random generators
       by device, and the arrays of its
       :class:`~tltl_runtime.training.exploration.reverse_curriculum.ReverseCurriculum`.
-    - ``window`` and ``unbroken`` are from
-      :class:`~tltl_runtime.training.ppo.recent_episodes.RecentEpisodes`, ``standstill`` from
+    - ``window`` and ``unbroken`` are the arguments of
+      :meth:`tltl_runtime.training.ppo.recent_episodes.RecentEpisodes.load`.
+    - ``standstill`` has the arguments of
       :class:`~tltl_runtime.training.ppo.recent_episodes.Standstill`.
-    - ``best`` is the best policy so far; ``met`` says whether it has met the spec in all windows
-      and in its confirmation.
+    - ``best`` is the best policy so far; None if there is none yet. ``met`` says whether this
+      policy has met the spec in all windows and in its confirmation.
     """
 
     run: Mapping[str, str]
@@ -181,7 +182,7 @@ def _checkpoint(content: Mapping[str, Any]) -> Checkpoint:
 
 
 def _check_figures(checkpoint: Checkpoint) -> None:
-    """Raise RecordJsonError for counts and times that are below 0 or too large."""
+    """Raise RecordJsonError for counts, times and pass rates that are below 0 or too large."""
     best, searched, (rate, since) = checkpoint.best, checkpoint.searched, checkpoint.standstill
     names = ("iteration", "steps", "seconds", "replayed", "unbroken")
     _check_counts({f"it.{name}": getattr(checkpoint, name) for name in names})

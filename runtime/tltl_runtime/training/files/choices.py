@@ -14,7 +14,7 @@ EntropySchedule = Literal["fading", "fixed"]
 """Whether the weight of the entropy bonus falls as the spec is met more often."""
 
 PenaltySchedule = Literal["rising", "fixed"]
-"""Whether the violation penalty rises as the spec is met more often."""
+"""Whether the terminal penalty of failed episodes rises as the spec is met more often."""
 
 Pool = Literal["processes", "ray"]
 """Whether the environments run in processes on this machine or on a Ray cluster."""

@@ -50,7 +50,7 @@ class Metrics:
             raise _write_error(folder, error) from None
 
     def add(self, report: TrainingReport) -> None:
-        """Append the metrics of an iteration to the file of metrics, and write them as TensorBoard events."""
+        """Append the metrics of an iteration to ``metrics.jsonl``, and write them for TensorBoard."""
         fields = metrics_line(report, self._fspa)
         try:
             _append(self._path, _line_text(fields).encode())

@@ -105,7 +105,9 @@ def _initial_policy(run: TrainingRun) -> dict[str, Any] | None:
 
 
 def record_so_far(folder: Path) -> dict[str, Any]:
-    """Return the fields of the record that are already known of an unfinished training in a folder.
+    """Return the record of an unfinished training: only the fields that are already known.
+
+    ``folder`` is the folder of the training.
 
     Raises:
         TltlError: the files of the training cannot be read.

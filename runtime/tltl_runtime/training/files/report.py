@@ -21,8 +21,9 @@ class Iteration:
     """The result of a rollout and the update after it.
 
     ``number`` counts from 1. ``steps`` counts the decisions of all environments. ``finished`` are
-    the episodes that ended. ``losses`` are the losses of rsl-rl's PPO by name, and ``imitation`` if
-    there was self-imitation. ``collect_s`` and ``learn_s`` are wall-clock seconds.
+    the episodes that ended. ``losses`` are the losses of the algorithm by name, and the loss of
+    self-imitation, if there was any, under ``imitation``. ``collect_s`` and ``learn_s`` are the
+    wall-clock seconds of the rollout and of the update.
     """
 
     number: int
@@ -40,8 +41,8 @@ class EpisodeWindow:
     ``progress`` in [0, 1], ``reward`` and ``steps`` are means over the episodes; they are 0 if
     there is no episode. ``reward`` always has the undiscounted terminal penalty. ``states`` maps an
     automaton state to the share of episodes that ended in it, or were in it before a violation.
-    ``violated`` counts only the episodes that ended in a violation. Both are shares of all
-    episodes, in [0, 1], and leave out states in which none ended.
+    ``violated`` maps a state to the share of episodes that were in it before a violation. Both are
+    shares of all episodes, in [0, 1]. States with a share of 0 are left out.
     """
 
     count: int

@@ -63,7 +63,7 @@ class InitialPolicy:
 
 @record
 class TrainingRun:
-    """What to train, and the folder that stores it.
+    """The description of a training: what is trained, with which settings, and in which folder.
 
     ``params`` are the values of the params of ``fspa`` in SI units. ``level`` is the name of a
     level or the path of its file, as for :meth:`~tltl_runtime.game.game.Game.load_level`.
@@ -120,7 +120,7 @@ def write_run(run: TrainingRun) -> None:
 
 
 def read_run(folder: Path) -> TrainingRun:
-    """Read the training in a folder.
+    """Read the description of the training in a folder.
 
     Raises:
         TltlError: TLT0001, its file cannot be read; TLT0863, there is no training, or its file is

@@ -104,7 +104,7 @@ class RewardSettings:
 
     @property
     def penalty_rises(self) -> bool:
-        """Whether the violation penalty rises during the training."""
+        """Whether the terminal penalty of failed episodes rises during the training."""
         return self.penalty_schedule == "rising" and (self.mode, self.terminal_penalty) == ("progress", "discounted")
 
 
@@ -125,7 +125,7 @@ class Stop:
     minutes: float
 
     def is_out_of_time(self, seconds: float) -> bool:
-        """Whether a training has reached the limit of minutes after these seconds."""
+        """Whether a training of this many seconds has reached the limit of minutes."""
         return 0 < self.minutes * 60 <= seconds
 
     def reached_limit(self, steps: int, seconds: float) -> Literal["steps", "minutes"] | None:
@@ -256,7 +256,11 @@ def algorithm_name(settings: TrainingSettings) -> str:
 
 
 def rsl_config(settings: TrainingSettings, shapes: Shapes, branches: Sequence[int]) -> dict[str, Any]:
-    """Return rsl-rl's configuration for these shapes of observations and branches of actions."""
+    """Return rsl-rl's configuration.
+
+    ``shapes`` are the shapes of an observation by key. ``branches`` has the number of choices of
+    each branch of an action.
+    """
     ppo, imitation = settings.ppo, settings.imitation
     groups = list(shapes)
     gail = {

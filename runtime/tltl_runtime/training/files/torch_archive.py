@@ -157,9 +157,9 @@ def _pushed_kinds(opcode: pickletools.OpcodeInfo, argument: object) -> list[str]
 
 
 def _check_values(content: object) -> None:
-    """Check the number of values and the depth of loaded data.
+    """Raise TorchArchiveError if loaded data has too many values, or is nested too deeply.
 
-    A value in two places counts twice.
+    A value in two places counts twice. Tensors must not be larger than their storage.
     """
     values: list[object] = [content]
     count = 0

@@ -50,7 +50,7 @@ class Demonstrations:
     """The demonstrations on a level in ``folder``, which need not exist yet.
 
     A recording in the folder is a demonstration if its level is ``level``, its spec and params are
-    those of ``task``, and it meets the spec. ``rejected`` are the recordings that are no
+    those of ``task``, and it meets the spec. ``rejected`` are the recordings that are not
     demonstrations or cannot be read.
     """
 

@@ -32,7 +32,7 @@ _Observation = Mapping[str, NDArray[Any]]
 class ImitationSummary:
     """The numbers of ``episodes`` and ``decisions`` of the demonstrations, and who played them.
 
-    ``left_out`` are the file names of the recordings that are no demonstrations, each with the
+    ``left_out`` are the file names of the recordings that are not demonstrations, each with the
     reason.
     """
 
@@ -74,7 +74,7 @@ class ImitationData:
             yield self.rows(indices)
 
     def to(self, device: str) -> ImitationData:
-        """Return a copy on a device of torch."""
+        """Return a copy on a torch device, such as ``cuda:0``."""
         return ImitationData(self.observations.to(device), self.actions.to(device), self.summary)
 
 

@@ -42,7 +42,7 @@ class TrainingEnv(VecEnv):
     subtracted from the reward. ``limit_steps`` is the spec's limit; None if it has no limit.
 
     Raises:
-        TypeError: the spaces are not a Dict of Boxes and a MultiDiscrete.
+        TypeError: the observation space is not a Dict, or the action space is not a MultiDiscrete.
     """
 
     def __init__(
@@ -152,7 +152,7 @@ class TrainingEnv(VecEnv):
         return summaries
 
     def _episode_steps(self, row: int, episode: EpisodeSummary) -> int:
-        """Return the steps of the episode that ended in this row, including replayed ones."""
+        """Return the number of steps of the episode that ended in this row, with the replayed ones."""
         return len(self._episodes.actions[row]) if self._episodes else episode.steps
 
     def _tensors(self, observation: Mapping[str, NDArray[Any]]) -> TensorDict:

@@ -1,4 +1,4 @@
-"""What processes exchange after an iteration, and the state that each process has for itself."""
+"""Exchange results between the processes of a training, and get and set the state of a process."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class GatheredIteration:
 def gather_iteration(group: ProcessGroup, iteration: Iteration, runner: Runner) -> GatheredIteration:
     """Collect the results of an iteration from all processes, which must all call this function.
 
-    Raises TltlError, TLT0866, if a loss of any process is not a number.
+    Raises TltlError, TLT0866, if a loss of any process is not a finite number.
     """
     values = group.gather((iteration, process_state(runner), runner.env.replayed))
     iterations, processes, replayed = zip(*values, strict=True)

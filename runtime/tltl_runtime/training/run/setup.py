@@ -111,7 +111,7 @@ def load_imitation_data(
 def initial_policy(run: TrainingRun, group: ProcessGroup, checkpoint: Checkpoint | None) -> Policy | None:
     """Return the policy that the training begins with.
 
-    Return None if the training begins with random weights or goes on from a checkpoint.
+    Return None if the training begins with random weights or continues from a checkpoint.
 
     Raises:
         TltlError: TLT0940, the policy's file is missing or has changed; the errors of
@@ -132,13 +132,13 @@ def prepare_environment(
     imitation_data: ImitationData | None,
     initial: Policy | None,
 ) -> tuple[TrainingEnv, SearchProgress | None]:
-    """Search for demonstrations if needed; return rsl-rl's environment and the search's progress.
+    """Search for demonstrations if needed; return the environment and the progress of the search.
 
-    The environment has begun new episodes. Their seeds depend on process and iteration, so that
-    they differ from those of episodes played before. The progress is None without a search. A
-    search is not repeated, unless a limit broke it off before it found a demonstration. In the
-    search, ``initial``, the policy that the training begins with, plays first. ``on_search`` is
-    called with the progress of the search.
+    The environment is for rsl-rl, and has begun new episodes. Their seeds depend on process and
+    iteration, so that they differ from those of episodes played before. The progress is None
+    without a search. A search is not repeated, unless it ended at a limit before it found a
+    demonstration. In the search, ``initial``, the policy that the training begins with, plays
+    first. ``on_search`` is called with the progress of the search.
     """
     progress, curriculum, self_imitation = None, None, None
     iteration = checkpoint.iteration if checkpoint else 0

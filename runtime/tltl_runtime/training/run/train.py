@@ -55,7 +55,7 @@ def train(
     ``policy.safetensors`` and the files of :class:`~tltl_runtime.training.files.metrics.Metrics`.
     What is written for an iteration is written before its report is yielded. Any end of the
     training, even by Ctrl-C or by closing the iterator, leaves a checkpoint of the last complete
-    iteration. Only if the process is killed, the iterations after the last checkpoint are lost.
+    iteration. If the process is killed, however, the iterations after the last checkpoint are lost.
     With ``resume``, the training continues from the checkpoint; a training that is over yields its
     last report again.
 
@@ -73,8 +73,8 @@ def train(
         TltlError: TLT0005, a file cannot be written; TLT0854, the environment gave values that are
             not numbers; TLT0862, the device or a class does not exist, or the network is too large
             for a policy file; TLT0864, the checkpoint cannot be resumed from; TLT0865, another
-            process trains in the folder; TLT0866, a loss is not a number; TLT0867, the folder holds
-            a training and ``resume`` is false; TLT0868, the level has changed; TLT0920 and TLT0921,
+            process trains in the folder; TLT0866, a loss is not finite; TLT0867, the folder holds a
+            training and ``resume`` is false; TLT0868, the level has changed; TLT0920 and TLT0921,
             there are no demonstrations to imitate; TLT0922, the demonstrations have changed;
             TLT0940, the policy to begin with has changed.
         WorkerError: a worker process of the environments was lost.

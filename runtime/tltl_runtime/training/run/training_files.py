@@ -17,8 +17,8 @@ from tltl_runtime.training.ppo.policy import policy_of
 class TrainingFiles:
     """Writes the files of a training into its folder; only the first process does so.
 
-    ``card`` is the card of its policies. ``saved`` is the checkpoint in the folder; None if there
-    is none yet.
+    ``card`` describes the policies of the training. ``saved`` is the checkpoint in the folder; None
+    if there is none yet.
 
     Raises:
         TltlError: from any method: TLT0005, a file cannot be written; TLT0001, the metrics cannot
