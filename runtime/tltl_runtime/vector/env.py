@@ -63,13 +63,14 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
     episode. The end of an episode also has ``episode``: the sum of rewards ``r`` and the length
     ``l``.
 
-    A worker is lost if it ends, raises or is silent for ``timeout`` seconds. The report says what
-    happened, and the name (``names``, one for each environment), seed, episode and step of each of
-    the worker's environments. With ``on_death="stop"``, a :class:`WorkerError` with this report is
-    raised, and this vector environment is closed. With ``"replace"``, a new worker takes over, the
-    report goes to this module's logger, and the affected environments begin episodes with new
-    seeds. Their step is ``truncated`` with reward 0, ``final_obs`` is their last observation, and
-    ``infos["lost"]`` is True for them.
+    A worker is lost if it ends, raises or is silent for ``timeout`` seconds. A report then says
+    what happened to the worker. For each of its environments, the report gives the name (from
+    ``names``, which has one for each environment), the seed, the episode and the step. With
+    ``on_death="stop"``, a :class:`WorkerError` with this report is raised, and this vector
+    environment is closed. With ``"replace"``, a new worker takes over, the report goes to this
+    module's logger, and the affected environments begin episodes with new seeds. Their step is
+    ``truncated`` with reward 0, ``final_obs`` is their last observation, and ``infos["lost"]`` is
+    True for them.
 
     If an environment has a method ``prepare``, its worker calls the method while idle, until it
     returns False. So the environment can prepare the next reset in small steps.
@@ -81,7 +82,7 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         ValueError: a space has no fixed size, or another argument is invalid.
         TypeError: an argument is of another type.
         WorkerError: an environment cannot be made, or its spaces differ from those of the first.
-        TltlError: TLT0730, Ray is not installed; TLT0852, there is no cluster.
+        TltlError: TLT0730, Ray is not installed; TLT0852, there is no cluster, or no worker starts.
     """
 
     def __init__(
@@ -204,8 +205,8 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
     def set_attr(self, name: str, values: Any) -> None:
         """Set an attribute of each environment.
 
-        If ``values`` is a list or tuple, it has a value for each. Otherwise it is the value for
-        all.
+        If ``values`` is a list or tuple, it has a value for each environment. Otherwise it is the
+        value for all environments.
         """
         env_values = list(values) if isinstance(values, (list, tuple)) else [values] * self.num_envs
         if len(env_values) != self.num_envs:
@@ -213,7 +214,7 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         self._ask_all("set_attr", [(name, env_values[share]) for share in self._workers.shares])
 
     def render(self) -> tuple[Any, ...] | None:
-        """Return what each environment renders."""
+        """Return what each environment renders, in the order of the environments."""
         return self.call("render")
 
     def close_extras(self, **_: Any) -> None:
@@ -273,7 +274,7 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
     # --- lost workers -----------------------------------------------------------------------------
 
     def _continue(self, loss: Loss) -> list[tuple[int, dict[str, Any]]]:
-        """Replace a worker during a step; return pairs of row and info of its environments."""
+        """Replace a worker during a step; return the row and the info of each of its environments."""
         share = self._workers.shares[loss.worker]
         resets = self._replace(loss)
         self._rows.truncated[share] = True
@@ -284,7 +285,7 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         return infos
 
     def _replace(self, loss: Loss) -> list[tuple[int, dict[str, Any]]]:
-        """Replace the lost worker, begin episodes in its environments, and return their infos.
+        """Replace the lost worker, and begin episodes in its environments; return rows and infos.
 
         Raise WorkerError instead if workers are not to be replaced, if the lost worker is itself
         new and has not taken a step, or if the new worker is lost before its episodes begin.

@@ -23,7 +23,7 @@ class RayWorkers:
     """Actors that step environments, one on each free core; actor w has slice w of ``shares``.
 
     Actors share no memory. So actions are sent with each command, and the new rows that come back
-    are copied to ``rows``. In all else, the actors are like the processes of
+    are copied to ``rows``. In all other respects, the actors are like the processes of
     :class:`~tltl_runtime.vector.workers.Workers`. ``info`` has the types of the info columns of
     ``rows``, by name.
 
@@ -145,7 +145,7 @@ class RayWorkers:
 
 
 class _EnvironmentActor:
-    """A share of the environments, somewhere in the cluster."""
+    """An actor that steps a share of the environments, on any machine of the cluster."""
 
     def begin(
         self,

@@ -87,7 +87,7 @@ class Rows:
 
 
 def write(columns: Columns, row: int, value: Any) -> None:
-    """Write a value of the space into a row."""
+    """Write a value of a space into one row of the columns of this space."""
     if isinstance(columns, dict):
         for key, column in columns.items():
             write(column, row, value[key])
@@ -99,7 +99,7 @@ def write(columns: Columns, row: int, value: Any) -> None:
 
 
 def write_batch(columns: Columns, batch: Any) -> None:
-    """Write a value into each row.
+    """Write a batch of values of a space into its columns: one value into each row.
 
     ``batch`` has passed :func:`tltl_runtime.vector.actions.check_batch`.
     """
@@ -114,7 +114,7 @@ def write_batch(columns: Columns, batch: Any) -> None:
 
 
 def read(columns: Columns, rows: int | slice) -> Any:
-    """Return a copy of a row, or of a slice of rows as a batch."""
+    """Return a copy of the value in a row, or of the values in a slice of rows as a batch."""
     if isinstance(columns, dict):
         return {key: read(column, rows) for key, column in columns.items()}
     if isinstance(columns, tuple):

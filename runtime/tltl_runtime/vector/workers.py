@@ -170,7 +170,7 @@ class Workers:
         return Loss(worker, status, silent, traceback)
 
     def _end(self, worker: int) -> None:
-        """Kill a worker unless it has ended, and release what belongs to it."""
+        """Kill a worker unless it has ended, and release its process object and its connection."""
         self._unwatch(worker)
         process, connection = self._processes.pop(worker), self._connections.pop(worker)
         connection.close()
