@@ -1,4 +1,4 @@
-"""The next goals of a spec, read from the automaton without knowledge of the level."""
+"""Find the next goals of a spec from its automaton, without knowledge of the level."""
 
 from __future__ import annotations
 

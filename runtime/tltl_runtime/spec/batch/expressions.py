@@ -58,8 +58,8 @@ class TensorExpressions:
     def run(self, columns: Tensor) -> tuple[Tensor, tuple[Tensor | None, ...]]:
         """Return the values [expressions, N], and for each expression a mask [N] of failures.
 
-        The mask says in which environments the expression has no value. ``columns`` are the values
-        of the signals, [signals, N]. The mask is None for an expression that cannot fail.
+        The mask says in which environments the expression has no value; it is None for an
+        expression that cannot fail. ``columns`` are the values of the signals, [signals, N].
         """
         values, failures = self._function(columns)
         if not values:

@@ -49,7 +49,7 @@ class PrimeSets:
         return self._distinct_robustness(values).index_select(0, self._rows)
 
     def robustness_of(self, choice: Tensor, values: Tensor) -> Tensor:
-        """Return, for each environment, the robustness of the set of primes that ``choice`` gives for it, shape [N]."""
+        """Return the robustness of the set that ``choice`` names for each environment, shape [N]."""
         rows = self._rows.index_select(0, choice)
         if self._dense:
             robustness = self._distinct_robustness(values)
@@ -104,9 +104,9 @@ class PrimeSets:
         return torch.tensor(rows, dtype=torch.int64).view(len(rows), self._depth * self._width).t().contiguous()
 
     def _literal_rows(self, primes: Primes) -> list[int]:
-        """Return the rows in which the literals of a set are found in a stack of arrays.
+        """Return, for each literal of a set, the row of its values in a stack of arrays.
 
-        The stack has the values of the atoms, the negated values, a row of 1, and a row of
+        The stack consists of the values of the atoms, the negated values, a row of 1, and a row of
         ``empty``.
 
         All sets have the same number of rows: padding repeats the first literal or prime, which
@@ -128,8 +128,8 @@ class PrimeSets:
 class Transitions:
     """Finds the edges that N automata take.
 
-    Of the edges that leave a state, exactly one has a true guard, except where atoms hold at once
-    that the spec declares ``exclusive``. If ``checked``, this is an error; otherwise some edge of
+    Exactly one of the edges that leave a state has a true guard, unless atoms that the spec
+    declares ``exclusive`` hold at once. If ``checked``, that is an error; otherwise, some edge of
     the state is taken.
     """
 

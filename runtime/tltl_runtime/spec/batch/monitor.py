@@ -26,7 +26,7 @@ class BatchStep:
     - ``state``: int64, the state after the sample.
     - ``done``: bool, the episode has ended, in this step or before.
     - ``success``: bool, the episode has ended in success.
-    - ``progress``: the best so far, in [0, 1].
+    - ``progress``: the best progress so far, in [0, 1].
     - ``reward``: the reward of this step, 0 after the end of the episode.
     - ``edge``: int64, the number of the edge taken.
     - ``values``: the values of the atoms, [atoms, N], in [-1, 1].
@@ -140,7 +140,7 @@ class BatchMonitor:
         self.reset()
 
     def reset(self, mask: ArrayLike | Tensor | None = None) -> None:
-        """Return the environments in ``mask`` to the state before their first sample.
+        """Put the environments in ``mask`` back into the state before their first sample.
 
         ``mask`` is bool [N], or None for all environments.
 

@@ -1,8 +1,8 @@
-"""Algorithm 1 for N environments (``docs/semantics.md``, "Reward").
+"""Compute the paper's Algorithm 1 for N environments (``docs/semantics.md``, "Reward").
 
 The order of operations is the same as in :mod:`tltlc.monitor.progress_and_reward`, which lists the
-deviations from the paper. What depends only on the states is looked up in tables, by the number of
-the edge.
+deviations from the paper. Values that depend only on the states before and after a step are in
+lookup tables, by the number of the edge.
 """
 
 from __future__ import annotations
