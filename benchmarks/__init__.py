@@ -1,1 +1,4 @@
-"""Compare tltlc with peers, by ratios that are measured in one run: ``python -m benchmarks`` (or ``make bench``)."""
+"""Compare tltlc with its peers, which are similar tools, by ratios that are measured in one run.
+
+``python -m benchmarks`` or ``make bench`` measures them.
+"""

@@ -41,7 +41,10 @@ def measure(store: Store, _: float, say: Callable[[str], None]) -> None:
 
 
 def compare_monitors(name: str) -> Record:
-    """Return steps per second of CPU time of both monitors, and their ratio; with a GPU, also milliseconds a call."""
+    """Return the steps per second of CPU time of both monitors, and their ratio.
+
+    If there is a GPU, also return the milliseconds that a call takes on it.
+    """
     import torch
 
     from tltl_runtime.spec.batch import BatchMonitor
@@ -103,7 +106,7 @@ def _inputs(samples: list[dict[str, float]], names: tuple[str, ...], count: int,
 
 
 def _check_equal(fspa: Fspa, samples: list[dict[str, float]]) -> None:
-    """Raise AssertionError if the monitors differ anywhere on the trace; each environment starts at its own sample."""
+    """Raise AssertionError if the monitors differ on the trace; each environment starts at another sample."""
     from tltl_runtime.spec.batch import BatchMonitor
     from tltlc.monitor import Monitor
 
@@ -134,7 +137,10 @@ def _rate(work: Callable[[], int]) -> float:
 
 
 def _on_gpu(fspa: Fspa, samples: list[dict[str, float]]) -> Record:
-    """Return milliseconds of wall time per call for a million environments, until it ends; nothing without a GPU."""
+    """Return the wall time, in milliseconds, of a call for a million environments on a GPU.
+
+    Return an empty record without a GPU. The time includes the wait for the GPU to finish.
+    """
     import torch
 
     from tltl_runtime.spec.batch import BatchMonitor

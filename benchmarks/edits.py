@@ -1,8 +1,8 @@
 """Compare the verdicts of ``tltlc regress`` on random edits of levels with the truth about these edits.
 
-Each edit changes an asset of a shipped level. An over-approximation of reach finds what nobody can
-reach any more, and the scripted expert plays the level before and after the edit. Then the level's
-policy plays, and ``tltlc regress`` judges it.
+Each edit changes an asset of a shipped level. An over-approximation of what the player can reach
+shows what nobody can reach any more. The scripted expert plays the level before and after the edit.
+Then the level's policy plays, and ``tltlc regress`` judges it.
 
 ``python -m benchmarks.edits --quick`` tries all of this on two edits with a few episodes, and stores nothing.
 """
@@ -40,12 +40,16 @@ FOLDER = Path(__file__).with_name(".edits")
 BASE: Final = "v0"
 
 ENOUGH_FAILURES: Final = 5
-"""The expert stops after this many failures in a row: each may take minutes, and more would show nothing new."""
+"""The expert stops after this many failures in a row. Each may take minutes, and more would show nothing new."""
 
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """What is measured: the requested edits, the episodes of the expert, and the most episodes of a policy."""
+    """What is measured.
+
+    ``requests`` are the edits to make, ``expert_episodes`` the number of episodes of the expert, and
+    ``episodes`` the greatest number of episodes of a policy.
+    """
 
     requests: Sequence[EditRequest] = EDIT_REQUESTS
     seed: int = 15
@@ -63,7 +67,7 @@ QUICK = Plan(
 
 
 def measure(store: Store, _: float, say: Callable[[str], None], plan: Plan = FULL, folder: Path = FOLDER) -> None:
-    """Play and judge what has no record in the store; ``folder`` keeps the episodes of interrupted runs."""
+    """Play and judge the levels and edits without a record; ``folder`` keeps the episodes of interrupted runs."""
     missing = [name for name in NEEDED if find_spec(name) is None]
     if missing:
         say(f"{SECTION} left out: {', '.join(missing)} not installed (the extra `rl`, Python 3.10 or 3.11)")
@@ -103,9 +107,9 @@ def edit_name(edit: Edit) -> str:
 def truth(case: Case, before: Record, plan: Plan) -> Record:
     """Return the truth about an edited level: what nobody can reach, and how the expert's episodes differ.
 
-    ``infeasible``: nobody can meet the spec; ``in part``: nobody can in some of the episodes, since
-    chance decides what the spec asks; ``unchanged``: the expert's episodes are those of ``before``,
-    step by step; otherwise ``changed``.
+    ``infeasible``: nobody can meet the spec. ``in part``: nobody can meet it in some episodes,
+    because chance decides which barrier opens. ``unchanged``: the expert's episodes are those of
+    ``before``, step by step. Otherwise the truth is ``changed``.
     """
     now = expert(case.level, case.variant, plan)
     unchanged_count = sum(new == old for new, old in zip(now["ways"], before["ways"], strict=False))
@@ -120,8 +124,9 @@ def truth(case: Case, before: Record, plan: Plan) -> Record:
 def expert(level: str, variant: str, plan: Plan) -> Record:
     """Play episodes of the careful expert with seeds from 0, and find what nobody can reach.
 
-    The record has the titles of what is ``far``, whether the spec needs any of it (``undoable``),
-    the number of successes, and a digest of each episode (``ways``).
+    In the record, ``far`` has a warning for each thing that nobody can reach, and ``undoable`` says
+    whether the spec cannot be met without one of them. ``successes`` is the number of successes,
+    and ``ways`` has a digest of each episode.
     """
     from tltl_runtime.stealth.capabilities.feasible import check_reach
     from tltl_runtime.stealth.capabilities.reach import compute_reach
@@ -180,7 +185,7 @@ def judge_edit(suite: Suite, case: Case) -> Record:
 
 
 def _episode_key(account: ExplainedEpisode) -> tuple[object, ...]:
-    """Return a key that is equal for episodes that went alike."""
+    """Return a key of an episode; episodes with equal keys count as the same."""
     return account.summary.steps, account.summary.reward, account.way
 
 

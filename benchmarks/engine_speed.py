@@ -73,7 +73,7 @@ def monitor_rows(task: Task, command: Sequence[str], traces: Sequence[Path]) -> 
 
 
 def disagreement(actual: Sequence[Sequence[str]], expected: Sequence[Sequence[str]]) -> str | None:
-    """Return the first difference of two monitors as text, or None; numbers may differ by 1e-12."""
+    """Return the first difference of two monitors as text, None if there is none; numbers may differ by 1e-12."""
     if not expected or len(actual) != len(expected):
         return f"{len(actual)} steps, not {len(expected)}"
     for step, (row, right) in enumerate(zip(actual, expected, strict=True), start=1):

@@ -1,4 +1,4 @@
-"""Measure how often the scripted expert finishes each level, if it avoids enemies and if it ignores them.
+"""Measure how often the scripted expert finishes each level, once avoiding enemies and once ignoring them.
 
 A level needs stealth if the expert that ignores enemies fails. Episodes are grouped by the barrier
 that opened by chance.
@@ -73,7 +73,7 @@ def wilson(successes: int, episodes: int) -> tuple[float, float]:
 
 
 def _cases() -> Iterator[Sequence[str]]:
-    """Yield each variant with each kind of care; without enemies, there is only one kind."""
+    """Yield each variant with ``careful`` and ``careless``; without enemies, only with ``careful``."""
     from tltl_runtime.stealth.levels.file import load_level
 
     for level, variant in variants_of_all():
@@ -88,7 +88,7 @@ def _chance_barrier(level: StealthLevel, opened: Collection[str]) -> str:
 
 
 def _summary(episodes: Sequence[tuple[EpisodeSummary, bool]]) -> Record:
-    """Return the figures of episodes, each with whether an enemy chased the player."""
+    """Return the figures of episodes; the bool of an episode says whether an enemy chased the player."""
     return {
         "episodes": len(episodes),
         "successes": sum(episode.success for episode, _ in episodes),

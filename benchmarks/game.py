@@ -1,8 +1,9 @@
-"""Measure the time of a decision in the game and in bare physics, worker processes, and the semantic map.
+"""Measure how long a decision takes in the game and in bare physics, and how fast worker processes are.
 
 *Bare* is Bullet with only the bodies of the level: it sets the player's velocity and makes nine
 physics steps, which every decision needs. *env* adds the rest of the game and the observation.
-*with spec* also adds the automaton, its reward, and the resets after the episodes that it ends.
+*with spec* also adds the automaton, its reward, and the resets after the episodes that it ends. The
+time to compute the semantic map is measured, too.
 
 ``python -m benchmarks.game LEVEL VARIANT`` measures one variant in a process of its own, and
 ``python -m benchmarks.game workers COUNT`` the worker processes.
@@ -53,7 +54,7 @@ def measure(store: Store, _: float, say: Callable[[str], None]) -> None:
 
 
 def compare_speeds(level: str, variant: str) -> Record:
-    """Return the CPU time of a decision in microseconds: bare, in the environment, with its spec; and ratios."""
+    """Return the CPU time of a decision in microseconds: bare, in the environment, and with its spec; and ratios."""
     import numpy as np
 
     from tltl_runtime.stealth.env import GameEnv, make_env
@@ -184,7 +185,7 @@ def _rate(env: WorkerVectorEnv) -> float:
 
 
 def _idle_cores() -> float:
-    """Return how many cores were idle during a short pause; all cores if the system does not tell."""
+    """Return how many cores were idle during a short pause; the number of all cores if the system does not tell."""
     before = _idle_ticks()
     time.sleep(PROBE_S)
     after = _idle_ticks()

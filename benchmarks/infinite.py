@@ -33,13 +33,13 @@ PEERS: Final[Mapping[str, str]] = {
 COLUMNS: Final = ("states", "without", "ms")
 """The lists in a record, each with a value for each formula of its corpus, in the order of the table."""
 _TRIAL: Final = 4448
-"""The number of states on Owl's corpus in a trial of this construction."""
+"""The number of states, over all formulas of Owl's corpus, in an earlier trial of this construction."""
 _MEDIAN_MS: Final = 10.0
 _SLOWEST_S: Final = 10.0
 
 
 def measure(store: Store, _: float, say: Callable[[str], None]) -> None:
-    """Build the automata of each corpus whose record is not of this code."""
+    """Build the automata of each corpus that has no record, or only one that other code made."""
     code = {"source": source_digest("tltlc")}
     measure_missing(
         store, SECTION, CORPORA, lambda name: {**_measure_corpus(name), **code}, say, field="ms", current=code
@@ -154,7 +154,7 @@ process, from a formula in memory to the automaton. *Smaller*: formulas for whic
 
 
 def _totals(corpus: str, rows: Sequence[Mapping[str, Any]]) -> dict[str, tuple[int, int, int, int, int]]:
-    """Return for each peer: our states, its states, and for how many formulas ours are fewer, equal or more."""
+    """Return for each peer: our states, its states, and for how many formulas ours are fewer, as many or more."""
     totals = {}
     for peer in PEERS:
         pairs = [(row["states" if corpus == "families" else "without"], row[peer]) for row in rows if peer in row]

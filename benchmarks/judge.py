@@ -18,7 +18,7 @@ from benchmarks.store import ROOT, Record, Store, measure_missing, source_digest
 
 SECTION = "judge"
 FACTOR: Final = 2.0
-"""How many times as long as reading the traces judging them may take."""
+"""Judging the traces may take this many times as long as reading them."""
 TRACES: Final = 10_000
 SAMPLES: Final = 1_000
 ROUNDS: Final = 3
@@ -38,11 +38,11 @@ if __name__ == "__main__":
     with multiprocessing.Pool(int(sys.argv[2])) as pool:
         print(sum(pool.imap(read, paths, chunksize=8)))
 """
-"""A program that reads all traces with Python's own reader, in as many processes."""
+"""A program that reads all traces with Python's own reader, in as many processes as ``tltlc monitor`` uses."""
 
 
 def measure(store: Store, _: float, say: Callable[[str], None]) -> None:
-    """Measure both programs in turns, if the code has changed since."""
+    """Measure both programs in turns, unless the store has a record of this code."""
     code = {"source": source_digest("tltlc")}
     measure_missing(store, SECTION, [_KEY], lambda _: {**_compare(), **code}, say, field="ratio", current=code)
 

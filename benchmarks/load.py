@@ -9,7 +9,7 @@ from pathlib import Path
 
 
 class LoadMeter:
-    """Measures the load from its creation on."""
+    """Measures the load since the creation of this object."""
 
     def __init__(self) -> None:
         self._start, self._busy, self._own = time.monotonic(), _busy_s(), _children_s()

@@ -28,7 +28,7 @@ _TOP: Final = 5
 _RANDOM: Final = 20
 _MOST_PEER_S: Final = 20.0
 _LEAST_FOUND: Final = 20
-"""At least this many specs without noise should be at rank 1."""
+"""At least this many specs should be at rank 1, in traces without noise."""
 _FACTOR: Final = 10.0
 
 SPECS: Final[Mapping[str, PlantedSpec]] = {
@@ -38,7 +38,7 @@ PEERS: Final = {"enumeration": "plain enumeration", "scarlet": "Scarlet 0.0.4"}
 
 
 def measure(store: Store, timeout_s: float, say: Callable[[str], None]) -> None:
-    """Plant and recover each spec whose record is not of this code."""
+    """Plant and recover each spec that has no record, or only one that other code made."""
     code = {"source": source_digest("tltlc/tools/mine", "benchmarks/mine_peers.py", "benchmarks/mine_traces.py")}
     if not has_scarlet():
         say("mine: Scarlet is left out, since it is not installed (benchmarks/requirements.txt)")

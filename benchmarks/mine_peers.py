@@ -28,7 +28,11 @@ LTLlearner(input_file=sys.argv[1], csvname=sys.argv[2], timeout=float(sys.argv[3
 
 @dataclass(frozen=True)
 class LearnedFormula:
-    """The formula that a peer found, in our language, or None; and the seconds until it ended or was stopped."""
+    """What a peer found.
+
+    ``formula`` is in our language; None if the peer found none. ``seconds`` is the time until the
+    peer ended or was stopped, and ``tried`` the number of formulas that it tried or reported.
+    """
 
     formula: str | None
     seconds: float

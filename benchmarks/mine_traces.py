@@ -126,7 +126,10 @@ class _Walker:
         return self._fspa.states[state].accepting
 
     def walk(self, random: Random, *, steered: bool) -> tuple[Letter, ...]:
-        """Return random letters; a steered walk often takes the best of a few. It ends soon after the goal."""
+        """Return the letters of a random walk, which often ends soon after it has reached an accepting state.
+
+        A ``steered`` walk often draws a few letters and takes the one that leads nearest to the goal.
+        """
         state = 0
         letters: list[Letter] = []
         for number in range(random.randint(_SHORTEST, _LONGEST)):
@@ -158,7 +161,7 @@ class _Walker:
         return target
 
     def _rank(self, state: int, letter: Letter) -> tuple[bool, int]:
-        """Return the sort key of a letter: letters that lead nearer to the goal first, those into traps last."""
+        """Return the sort key of a letter: letters that lead nearer to the goal come first, those into traps last."""
         distance = self._fspa.states[self._target(state, letter)].distance
         return distance is None, distance or 0
 

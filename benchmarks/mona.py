@@ -26,7 +26,7 @@ def available() -> bool:
 
 
 def solve(formula: Formula, timeout_s: float) -> tuple[Run, int | None]:
-    """Run MONA on a formula; return the run, and the size of the automaton as we count it, or None without one."""
+    """Run MONA on a formula; return the run and the :func:`size` of the automaton, None if there is no automaton."""
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "formula.mona"
         file.write_text(program(formula), encoding="ascii")

@@ -1,4 +1,4 @@
-"""Make random edits of the assets that the shipped levels share, harmless or not, as designers make them.
+"""Make random edits of the assets that the shipped levels share, some of them harmless, as designers make them.
 
 Each edit is an overlay; equal seeds give equal edits.
 """
@@ -24,7 +24,7 @@ HARMLESS: Final = frozenset({"words", "hair", "top", "behind"})
 """Kinds of edits that are meant to change nothing."""
 
 _TALL: Final = 2.0
-"""The height in metres from which nobody gets over a wall, or sees over it."""
+"""Nobody gets over a wall that is at least this high, in metres, or sees over it."""
 
 _TRIES: Final = 200
 
@@ -123,7 +123,7 @@ def _make_hair(random: Random, asset: Asset) -> EditContent:
 
 
 def _make_top(random: Random, asset: Asset) -> EditContent:
-    """Make a wall higher that nobody gets over or sees over anyway."""
+    """Raise a wall that is already too high to get over or to see over."""
     tall = [thing for thing in _solids(asset) if thing["at"][2] + thing["size"][2] >= _TALL]
     thing, by = random.choice(tall), random.uniform(0.05, 0.3)
     x, y, z = thing["size"]

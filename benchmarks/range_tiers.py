@@ -59,13 +59,13 @@ class Question:
     high: float
 
     def kinds(self) -> tuple[str, ...]:
-        """Return the kinds of findings; none means that range and continuity are proved."""
+        """Return the kinds of findings; without any, range and continuity are proved."""
         findings = check.check_predicate(self.expression, self.signals, self.params, self.low, self.high)
         return tuple(finding.kind for finding in findings)
 
 
 def corpus(generated: int) -> dict[str, list[Question]]:
-    """Return the distinct predicates, by where they come from."""
+    """Return the distinct predicates by their origin; ``generated`` is the number of random ones."""
     questions = {name: _distinct(_questions_of_folder(folder)) for name, folder in FOLDERS.items()}
     questions["tests"] = _distinct([*questions["tests"], *_inline_questions()])
     questions["generated"] = list(_random_questions(generated))
@@ -223,7 +223,7 @@ REPLACEMENTS: Final[Mapping[str, tuple[Any, str, Callable[..., Any]]]] = {
     "search for a jump": (jumps, "find_jump", _return_none),
     "sympy": (check, "_proves_exactly", _return_false),
 }
-"""For each method, its module, the name of its function, and a function in its place that never decides."""
+"""For each method: its module, the name of its function, and a function that replaces it and never decides."""
 PROOFS: Final = tuple(REPLACEMENTS)[:4]
 """The methods of proof in a browser, which has no sympy."""
 

@@ -33,7 +33,7 @@ SPEED_BUCKET = 3.0
 
 @record
 class Search:
-    """The result of a search: whether it found the goal, what it explored, and the places of the feet."""
+    """The result of a search: whether it found the goal, how much it explored, and where the feet were."""
 
     found_goal: bool
     poses: int

@@ -98,7 +98,7 @@ def _begin_episode(env: GameEnv, own_level: StealthLevel, rng: np.random.Generat
 
 
 def _places(level: StealthLevel, rng: np.random.Generator) -> Iterable[Point]:
-    """Yield random places on floors without end, at least 0.5 m from their edges."""
+    """Yield random places on the floors, at least 0.5 m from their edges; the iterator never ends."""
     floors = [solid.box for solid in level.solids if solid.kind == "floor"]
     areas = [(box.high[0] - box.low[0]) * (box.high[1] - box.low[1]) for box in floors]
     while True:

@@ -23,14 +23,14 @@ KEYSTROKES: Final = 25
 PAUSE_S: Final = 0.2
 """Seconds between two keystrokes."""
 FACTORS: Final[Mapping[str, float]] = {"lint": 3.0, "explain": 3.0}
-"""How many times as long as ``compile`` a command may take."""
+"""A command may take this many times as long as ``compile``."""
 KEYSTROKE_MS: Final = 100.0
 _KEYSTROKE: Final = "a keystroke"
 _QUIET_S: Final = 2.0
 
 
 def measure(store: Store, _: float, say: Callable[[str], None]) -> None:
-    """Measure the commands on the paper's specs, and the language server, if the code has changed since."""
+    """Measure the commands on the paper's specs, and the language server, unless the store has records of this code."""
     code = {"source": source_digest("tltlc")}
     measure_missing(
         store, SECTION, PAPER_SPECS, lambda name: {**_commands(name), **code}, say, field="ratio", current=code

@@ -61,7 +61,7 @@ class Play:
 
 @dataclass(frozen=True, slots=True)
 class Scenario:
-    """How a policy plays now, and how it played when the baseline was recorded."""
+    """How a policy plays ``now``, and how it played ``before``, when the baseline was recorded."""
 
     now: Play
     before: Play
@@ -124,7 +124,7 @@ class Plan:
 
 
 def measure(store: Store, _: float, say: Callable[[str], None], plan: Plan | None = None) -> None:
-    """Simulate each scenario without a record of the present rule in the store."""
+    """Simulate each scenario for which the store has no record of the present :func:`rule`."""
     if find_spec("numpy") is None:
         say(f"{SECTION} left out: numpy is not installed (the extra `rl`, Python 3.10 or 3.11)")
         return
@@ -141,7 +141,7 @@ def measure(store: Store, _: float, say: Callable[[str], None], plan: Plan | Non
 
 
 def rule() -> str:
-    """Return a hash of the code of the rule; records of another rule are measured again."""
+    """Return a hash of the code that decides verdicts; records of other code are measured again."""
     return source_digest(*(f"runtime/tltl_runtime/regression/verdict/{name}.py" for name in ("verdict", "confidence")))
 
 
@@ -197,10 +197,10 @@ def probability_in_suite(share: float, size: int) -> float:
 
 
 def upper_limit(share: float, trials: int) -> float:
-    """Return the upper limit, at 95 %, of the probability of what happened in a share of the trials.
+    """Return the upper limit, at 95 %, of the probability of an event that happened in ``share`` of the trials.
 
-    It is the greatest probability with which the event happens that seldom in at least 1 of 20
-    simulations (C. Clopper, E. Pearson, Biometrika 26 (1934), 404-413).
+    With any greater probability, the event would happen at most this often in less than 1 of 20 sets
+    of trials (C. Clopper, E. Pearson, Biometrika 26 (1934), 404-413).
     """
     count = round(share * trials)
     low, high = share, 1.0
@@ -243,7 +243,10 @@ def _summary(index: int, success: bool, progress: float, reward: float) -> Episo
 
 
 def _shares(judgements: Sequence[tuple[Judgement, int]]) -> Mapping[str, float]:
-    """Return the shares of verdicts, uncertain verdicts, certain changes and early findings; and the mean episodes."""
+    """Return the shares of verdicts, uncertain verdicts, certain changes and early findings.
+
+    ``episodes`` is the mean number of episodes that a verdict took.
+    """
     counts = Counter(judgement.verdict for judgement, _ in judgements)
     early = {f"changed_by_{latest}": _count_found_by(judgements, latest) for latest in LATEST}
     figures = {

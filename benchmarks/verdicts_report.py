@@ -153,7 +153,10 @@ reward certainly changed by more than its threshold of {THRESHOLD:g}. *Found by 
 
 
 def _of_suites(share: float, trials: int, size: str) -> str:
-    """Return the probability that a suite has at least one such case, and its upper limit in brackets."""
+    """Return the probability that a suite has one of the counted cases, and in brackets its upper limit.
+
+    ``share`` is the share of these cases in the trials.
+    """
     limit = probability_in_suite(upper_limit(share, trials), int(size))
     return f"{probability_in_suite(share, int(size)):.1%} ({limit:.1%})"
 

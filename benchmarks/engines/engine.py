@@ -1,4 +1,4 @@
-"""The description of a language for the benchmark: how to build its driver, and the sizes of its monitors."""
+"""Describe a language for the benchmark: how to build its driver, and how large its monitors are."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class Signal:
 
 @record
 class Task:
-    """A spec, and the folder with its generated monitor, in which everything is built."""
+    """A spec, and the folder that has its generated monitor and in which everything is built."""
 
     name: str
     signals: tuple[Signal, ...]
@@ -74,7 +74,7 @@ class Engine:
     tools: tuple[str, ...] = ()
 
     def missing(self) -> str | None:
-        """Return why the language cannot be measured on this machine, or None."""
+        """Return why the language cannot be measured on this machine; None if it can."""
         missing = [tool for tool in self.tools if shutil.which(tool) is None]
         return f"{', '.join(missing)} is not installed" if missing else None
 
@@ -90,7 +90,7 @@ def engines() -> tuple[Engine, ...]:
 
 
 def generate(engine: Engine, name: str, folder: Path) -> Task:
-    """Write the generated monitor of a spec into a folder."""
+    """Write the generated monitor of a spec into a folder; return the task of building and running it."""
     fspa = next(fspa for fspa in compile_file(source(name)) if fspa.name == name)
     for file, content in emit(engine.target, fspa).items():
         (folder / file).write_bytes(content.encode() if isinstance(content, str) else content)

@@ -34,7 +34,10 @@ LIMIT = 600
 
 
 class Monitor:
-    """States as in the picture: 0, 1, 3 wait for a switch, 4 for an exit, 5 is the goal, 2 is the trap."""
+    """States are numbered as in the compiled automaton.
+
+    States 0, 1 and 3 wait for a switch, 4 waits for an exit, 5 is the goal, and 2 is the trap.
+    """
 
     __slots__ = ("done", "level_size", "progress", "state", "steps")
 

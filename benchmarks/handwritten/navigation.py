@@ -13,7 +13,7 @@ LIMIT = 300
 
 
 class Monitor:
-    """The state is the number of marks that were reached in order."""
+    """The state is the number of places that were reached in order."""
 
     __slots__ = ("done", "level_size", "progress", "state", "steps")
 
