@@ -140,7 +140,7 @@ class BatchMonitor:
         self.reset()
 
     def reset(self, mask: ArrayLike | Tensor | None = None) -> None:
-        """Put the environments in ``mask`` back into the state before their first sample.
+        """Reset the environments in ``mask`` to the state before their first sample.
 
         ``mask`` is bool [N], or None for all environments.
 
