@@ -1,4 +1,4 @@
-"""The Ray cluster that this process is connected to."""
+"""Connect to a Ray cluster, and wait for its actors."""
 
 from __future__ import annotations
 

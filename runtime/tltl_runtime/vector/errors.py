@@ -77,7 +77,7 @@ class WorkerError(RuntimeError):
 
 
 def report(loss: Loss, playing: tuple[Playing, ...]) -> str:
-    """Return a loss as text.
+    """Return the report on a lost worker, as text.
 
     It has a line for the worker, a line for each environment, and the traceback or a likely cause.
     """

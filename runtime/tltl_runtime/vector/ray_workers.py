@@ -66,7 +66,7 @@ class RayWorkers:
     def start(self, workers: Sequence[int]) -> list[Loss]:
         """Start these workers and wait until they have made their environments.
 
-        Return how workers were lost meanwhile; an empty list if none was.
+        Return a :class:`Loss` for each worker that was lost while it started.
 
         Raises:
             TltlError: TLT0852, a new actor does not start in time.

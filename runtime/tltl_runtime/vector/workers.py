@@ -67,7 +67,7 @@ class Workers:
     def start(self, workers: Sequence[int]) -> list[Loss]:
         """Start these workers and wait until they have made their environments.
 
-        Return how workers were lost meanwhile; an empty list if none was.
+        Return a :class:`Loss` for each worker that was lost while it started.
         """
         for worker in workers:
             ours, theirs = self._context.Pipe()

@@ -9,7 +9,7 @@ from torch import Tensor
 
 
 def fits(numbers: Iterable[float], dtype: torch.dtype) -> bool:
-    """Whether each number is 0 or a normal number of the format."""
+    """Whether each number is 0 or a normal number of the format: finite, and not subnormal."""
     format_ = torch.finfo(dtype)
     return all(number == 0.0 or format_.tiny <= abs(number) <= format_.max for number in numbers)
 

@@ -15,7 +15,7 @@ Primes = tuple[Implicant, ...]
 
 _LETTER_ATOMS: Final = 12
 _LETTER_CELLS: Final = 1 << 22
-"""The most atoms and cells for which the lookup table of edges is built.
+"""The lookup table of edges is built only for at most this many atoms and cells.
 
 The table has a cell for each state and letter.
 """

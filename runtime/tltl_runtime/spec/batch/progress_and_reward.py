@@ -52,7 +52,7 @@ class Outcomes:
         self.nearest = PrimeSets(primes, len(fspa.atoms), device, -1.0)
         """For each self-loop, the primes of the edges from its state towards acceptance.
 
-        There is a set for each edge; for edges that are no self-loops, it is empty.
+        There is a set for each edge; for edges that are not self-loops, it is empty.
         """
         self._approaches = any(primes) and not self._by_share
         self._size = numbers([float(fspa.spec_size or 1)])

@@ -256,7 +256,7 @@ def _check_episodes(name: str, arrays: Mapping[str, NDArray[Any]]) -> None:
 
 
 def _check_figures(arrays: Mapping[str, NDArray[Any]]) -> None:
-    """Raise ValueError for success rates outside [0, 1] and lengths that are not positive."""
+    """Raise ValueError for success rates outside [0, 1] and lengths that are not above 0 and finite."""
     rates = np.append(arrays["rates"].ravel(), arrays["passed"])
     if not ((rates >= 0) & (rates <= 1)).all():
         raise ValueError("`rates` or `passed` contains a number outside 0 to 1")

@@ -36,8 +36,8 @@ class Metrics:
     later iterations are removed, because these iterations run again.
 
     Raises:
-        TltlError: TLT0005, the folder cannot be written to, here or in ``add``; TLT0001, a file in
-            it cannot be read.
+        TltlError: TLT0005, the folder cannot be written to, here or in ``add``; the errors of
+            :func:`read_metrics`.
     """
 
     def __init__(self, folder: Path, fspa: Fspa, *, after: int = 0, steps: int = 0) -> None:

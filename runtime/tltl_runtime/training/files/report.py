@@ -1,4 +1,4 @@
-"""The report of a training after each iteration."""
+"""The report that a training makes after each iteration."""
 
 from __future__ import annotations
 

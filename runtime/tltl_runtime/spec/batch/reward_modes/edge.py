@@ -14,7 +14,7 @@ from tltlc.api import Fspa, Implicant, RewardOptions
 
 
 class Reward:
-    """The greatest robustness of an edge that leads to another state, except into a trap.
+    """The greatest robustness of the edges that lead to another state that is not a trap.
 
     It is 0 if there is no such edge.
     """
