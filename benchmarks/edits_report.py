@@ -13,7 +13,7 @@ EXPERT: Final = "expert "
 """Prefix of the records of the expert on unedited levels; the name of the level follows."""
 
 ALARM_RATE: Final = 1 / 20
-"""The greatest share of edits without effect that may have a finding."""
+"""The greatest share of edits without effect that may get a `review` or `fail`."""
 
 _INFEASIBLE: Final = ("infeasible", "in part")
 _TRUTHS: Final = (*_INFEASIBLE, "changed", "unchanged")

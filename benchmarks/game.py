@@ -54,7 +54,7 @@ def measure(store: Store, _: float, say: Callable[[str], None]) -> None:
 
 
 def compare_speeds(level: str, variant: str) -> Record:
-    """Return the CPU time of a decision in microseconds: bare, in the environment, and with its spec; and ratios."""
+    """Return the microseconds of CPU time of a decision: bare, in the environment, and with its spec; and ratios."""
     import numpy as np
 
     from tltl_runtime.stealth.env import GameEnv, make_env

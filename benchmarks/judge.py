@@ -91,7 +91,7 @@ def _trace(random: Random) -> str:
 
 
 def goals(records: Mapping[str, Record]) -> Iterable[Sequence[str]]:
-    """Yield the row of the table of goals, if it was measured."""
+    """Yield the row of the table of goals, if there is a measurement."""
     record = records.get(_KEY, {})
     if "ratio" in record:
         goal = f"{TRACES:,} traces of {SAMPLES:,} samples judged in {FACTOR:g} times the time of reading them"

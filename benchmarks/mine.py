@@ -70,7 +70,10 @@ def _measure_spec(spec: PlantedSpec, peer_s: float) -> Record:
 
 
 def _ours(evidence_: Evidence, planted_fspa: Fspa, min_support: float) -> Record:
-    """Return the time from letters in memory to confirmed proposals, and the rank of the planted spec."""
+    """Return the time from traces in memory to confirmed proposals, and the rank of the planted spec.
+
+    The rank is None if no proposal is equivalent to the planted spec.
+    """
     start = time.perf_counter()
     words = vocabulary_of_columns(dict.fromkeys(evidence_.atoms(), True))
     search = SpecSearch(evidence_, MiningOptions(min_support=min_support))

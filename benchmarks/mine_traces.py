@@ -24,7 +24,7 @@ _SHORTEST, _LONGEST = 8, 35
 
 @dataclass(frozen=True)
 class PlantedSpec:
-    """A spec as its clauses, and the probability that each atom holds at a sample."""
+    """A spec, given by its clauses, and for each atom the probability that it holds at a sample."""
 
     name: str
     clauses: tuple[str, ...]
@@ -40,7 +40,7 @@ class PlantedSpec:
 
 
 def paper_specs() -> tuple[PlantedSpec, ...]:
-    """Return the paper's three plans over free atoms."""
+    """Return the paper's three plans, with atoms that are signals of type bool instead of predicates."""
     usual = dict.fromkeys(("s1", "s2", "exit"), _USUAL_PROBABILITY)
     ends = dict.fromkeys(("e_right", "e_left"), _USUAL_PROBABILITY) | dict.fromkeys(("open_right", "open_left"), 0.4)
     alive = {"alive": 0.985, "seen": 0.3}

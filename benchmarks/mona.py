@@ -38,9 +38,9 @@ def solve(formula: Formula, timeout_s: float) -> tuple[Run, int | None]:
 def size(output: str) -> int | None:
     """Return the number of states of the automaton that MONA printed, counted as ours; None if it printed none.
 
-    We do not count MONA's own initial state. MONA also rejects the empty trace, which our automata
-    leave open: if the state before the first sample differs from another state only in acceptance,
-    ours has one state fewer.
+    MONA's own initial state is not counted. MONA also rejects the empty trace, while our automata do
+    not judge it. So if the state before the first sample differs from another state only in
+    acceptance, our automaton has one state fewer.
     """
     if "Formula is unsatisfiable" in output:
         return 1  # it prints no automaton then

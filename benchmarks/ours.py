@@ -1,8 +1,9 @@
 """Measure how long tltlc takes for a formula from standard input, and print the results.
 
-``python -m benchmarks.ours`` prints a JSON object per line as soon as it is known, so that a kill
-loses only what is missing: the time from formula to minimal automaton, the times of complete builds,
-and the time to the minimal automaton with its guards as text.
+``python -m benchmarks.ours`` prints each result at once, as a JSON object on a line, so that a
+process that is killed loses only the missing results. The results are the time from the formula to
+the minimal automaton, the times of complete builds, and the time to the minimal automaton with its
+guards as text.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ ENOUGH_BUILDS_S = 10.0
 
 
 def main() -> None:
-    """Print ``minimal_ms``, for each build ``cpu_ms``, ``peak_mb``, ``states``, and ``guarded_ms``."""
+    """Print ``minimal_ms``; for each build ``cpu_ms``, ``peak_mb`` and ``states``; and ``guarded_ms``."""
     formula = read_formula(sys.stdin.read())
     atoms = formula.atoms()
     try:

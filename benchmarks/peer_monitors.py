@@ -72,9 +72,9 @@ def rtamt_peer(name: str, atoms: Values) -> Peer:
 
 
 def reelay_peer(name: str, atoms: Values) -> Peer:
-    """Return Reelay's discrete robustness monitor, which is C++ behind Python.
+    """Return Reelay's discrete robustness monitor, a C++ library with a Python interface.
 
-    It has no reset, and making one takes longer than the trace, so one monitor runs on in all timed passes.
+    It has no reset, and making a monitor takes longer than the trace. So one monitor runs on through all timed passes.
     """
     import reelay  # type: ignore[import-untyped,import-not-found,unused-ignore]
 

@@ -52,7 +52,10 @@ def _commands(folder: Path) -> dict[str, Sequence[str]]:
 
 
 def _compare_with_bare(arguments: Sequence[str], environment: dict[str, str]) -> Record:
-    """Return medians of ``ROUNDS`` pairs of runs, and the ratios of pairs; the order alternates."""
+    """Compare a command with a bare interpreter in ``ROUNDS`` pairs of runs; return medians and ratios.
+
+    The order of the two runs alternates from pair to pair.
+    """
 
     def run_once(line: Sequence[str]) -> Run:
         return run(line, TIMEOUT_S, cwd=ROOT, environment=environment)

@@ -147,7 +147,7 @@ def _depth_in_boxes(kind: Any, player: Any, level: StealthLevel) -> float:
 
 
 def main() -> None:
-    """Check the variant that the command line names, and print the record; a violation is its ``failed``."""
+    """Check the variant that the command line names, and print the record; ``failed`` says which check failed."""
     from tltl_runtime.stealth.world.physics import WorldError
 
     level, variant, *steps = sys.argv[1:]

@@ -36,9 +36,9 @@ FRESH_SEED = 1000
 """The first seed of evaluations, far from the seeds of trainings."""
 CURVE_POINTS = 60
 OTHER_CORES_FILE = "other_cores.txt"
-"""In the folder of a training: how many cores other processes used during its last run."""
+"""A file in the folder of a training: it says how many cores other processes used during the last run."""
 SOURCE_SUFFIX = ".source.json"
-"""Suffix of the file beside the folder of a training that identifies the code that last began or resumed it."""
+"""Suffix of a file beside the folder of a training; it identifies the code that last began or resumed the training."""
 
 Settings = Mapping[str, Mapping[str, str | int | list[int]]]
 """Settings of a training that differ from the defaults, by table and key; keys outside tables are under ""."""

@@ -169,7 +169,7 @@ def measure_scenario(scenario: Scenario, trials: int, sizes: Sequence[int]) -> R
 def draw_episodes(
     scenario: Scenario, generator: np.random.Generator
 ) -> tuple[list[EpisodeSummary], list[EpisodeSummary]]:
-    """Return the greatest number of episodes that a case plays, and as many of its baseline."""
+    """Draw the episodes of a case, as many as a case may play at most, and as many episodes of its baseline."""
     before, now = (_episodes(play, generator) for play in (scenario.before, scenario.now))
     same_share = {"identical": 1.0, "half": 0.5, "independent": 0.0}[scenario.pairing]
     is_same = generator.random(len(now)) < same_share
@@ -192,7 +192,7 @@ def first_verdict(
 
 
 def probability_in_suite(share: float, size: int) -> float:
-    """Return the probability that an event of probability ``share`` happens in one of ``size`` cases or more."""
+    """Return the probability that an event of probability ``share`` happens in at least one of ``size`` cases."""
     return float(1.0 - (1.0 - share) ** size)
 
 
