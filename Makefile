@@ -23,7 +23,7 @@ unexport PYTHONDONTWRITEBYTECODE
 .PHONY: demo quick test tests test-again test-slow fuzz lint format generate docs vscode bench checkers clean
 
 # Compile and draw the Cover and Hide spec, run its generated monitor over a recorded trace, and play the level.
-demo: $(VENV)/.installed-rl
+demo: $(VENV)/.installed-game
 	$(BIN)/tltlc compile examples/cover_and_hide.tltl -o demo -t json,dot,python,svg
 	$(BIN)/python demo/cover_and_hide_monitor.py examples/cover_and_hide.csv > demo/cover_and_hide_run.csv
 	@echo "The last step of the recorded trace, as the generated monitor saw it:"
@@ -135,13 +135,13 @@ $(VENV)/.installed: pyproject.toml constraints.txt | $(VENV)/bin/python
 	$(PIP) install -c constraints.txt -e .
 	@touch $@
 
-$(VENV)/.installed-rl: pyproject.toml constraints.txt | $(VENV)/bin/python
-	$(PIP) install -c constraints.txt -e '.[rl]'
+$(VENV)/.installed-game: pyproject.toml constraints.txt | $(VENV)/bin/python
+	$(PIP) install -c constraints.txt -e '.[game]'
 	@touch $@ $(VENV)/.installed
 
 $(VENV)/.installed-dev: pyproject.toml constraints.txt | $(VENV)/bin/python
 	$(PIP) install -c constraints.txt -e '.[dev,ray]'
-	@touch $@ $(VENV)/.installed $(VENV)/.installed-rl
+	@touch $@ $(VENV)/.installed $(VENV)/.installed-game
 
 $(VENV)/.installed-bench: benchmarks/requirements.txt | $(VENV)/.installed-dev
 	$(PIP) install -c constraints.txt -r benchmarks/requirements.txt

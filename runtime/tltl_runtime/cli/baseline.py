@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from tltl_runtime.cli.support.closed_output import ignore_closed_pipe
-from tltl_runtime.cli.support.learning_extra import require_learning
+from tltl_runtime.cli.support.missing_extra import name_missing_extra
 from tltl_runtime.cli.support.options import output_file
 from tltl_runtime.cli.support.player_outside_level import level_faults
 from tltl_runtime.cli.support.printable import plain_text
@@ -47,7 +47,7 @@ def command(suite: Path | None, path: Path | None, fresh: bool, workers: Any) ->
     existing file are kept if level, policy, spec, seed, versions and code have not changed. Without SUITE, the command
     plays the levels that come with tltlc and writes `shipped.baseline.json`.
     """
-    with cli.Report() as report, require_learning("`tltlc baseline`"), ignore_closed_pipe():
+    with cli.Report() as report, name_missing_extra("`tltlc baseline`"), ignore_closed_pipe():
         check_suite_exists(suite)
         from tltl_runtime.cli.support.regression_display import RegressionDisplay
         from tltl_runtime.regression.suite.dependencies import files_of

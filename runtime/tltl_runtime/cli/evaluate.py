@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import click
 
-from tltl_runtime.cli.support.learning_extra import require_learning
+from tltl_runtime.cli.support.missing_extra import name_missing_extra
 from tltl_runtime.cli.support.options import output_folder, seed_option
 from tltl_runtime.cli.support.player_outside_level import level_faults
 from tltl_runtime.cli.support.worker_options import WorkersType
@@ -107,7 +107,7 @@ def command(
         raise click.UsageError("name a POLICY or a --level, or both")
     if recorded and not folder:
         raise click.UsageError("--record needs a folder for the recordings: add --out DIR")
-    with cli.Report() as report, require_learning("`tltlc evaluate`"):
+    with cli.Report() as report, name_missing_extra("`tltlc evaluate`"):
         from tltl_runtime.cli.support.level_argument import check_named, check_no_toml
 
         check_no_toml(spec)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from tltl_runtime.cli.support.input_files import read_each
-from tltl_runtime.cli.support.learning_extra import require_learning
+from tltl_runtime.cli.support.missing_extra import name_missing_extra
 from tltl_runtime.cli.support.options import output_file, summary_format
 from tltlc.api import cli
 
@@ -38,7 +38,7 @@ def command(files: tuple[str, ...], path: Path | None, format: str) -> int:  # n
     if path is not None and len(files) > 1:
         raise click.UsageError("-o takes one POLICY")
     summaries: list[dict[str, Any]] = []
-    with cli.Report(format, results=True) as report, require_learning("`tltlc inspect`"):
+    with cli.Report(format, results=True) as report, name_missing_extra("`tltlc inspect`"):
         from tltl_runtime.policies.summary import summary, summary_text
 
         for name, (policy, training_so_far, progress_line) in read_each(files, _read, report):
@@ -61,13 +61,15 @@ def _read(name: str) -> tuple[Policy, dict[str, Any], str]:
     """
     from tltl_runtime.cli.support.policy_path import policy_file, progress
     from tltl_runtime.policies.file import read_policy
-    from tltl_runtime.training.files.record import record_so_far
     from tltl_runtime.training.files.run_file import RUN
 
     path = Path(name)
     policy = read_policy(policy_file(path))
     if policy.card.training or not (path / RUN).exists():
         return policy, {}, ""
+    # Checkpoints, unlike policies, are read by torch.
+    from tltl_runtime.training.files.record import record_so_far
+
     return policy, {"training": record_so_far(path)}, f"  ended    not yet: {progress(path)}\n"
 
 

@@ -11,7 +11,7 @@ import click
 
 from tltl_runtime.cli.support.changed_option import ChangedCommand
 from tltl_runtime.cli.support.closed_output import ignore_closed_pipe
-from tltl_runtime.cli.support.learning_extra import require_learning
+from tltl_runtime.cli.support.missing_extra import name_missing_extra
 from tltl_runtime.cli.support.options import Function, output_folder
 from tltl_runtime.cli.support.suite_argument import check_suite_exists
 from tltl_runtime.cli.support.worker_options import all_cores_option
@@ -104,7 +104,7 @@ def command(
         raise click.UsageError("--minutes works only with --retrain: add --retrain")
     if suite is None and (swallowed := next(filter(_is_suite, changed or ()), None)):
         raise click.UsageError(f"`{swallowed}` counts as a file of --changed: put the suite before --changed")
-    with cli.Report() as report, require_learning("`tltlc regress`"), ignore_closed_pipe():
+    with cli.Report() as report, name_missing_extra("`tltlc regress`"), ignore_closed_pipe():
         check_suite_exists(suite)
         from tltl_runtime.cli.support.regression_run import RegressOptions, run
 

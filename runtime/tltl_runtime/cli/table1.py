@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from tltl_runtime.cli.support.closed_output import ignore_closed_pipe
-from tltl_runtime.cli.support.learning_extra import require_learning
+from tltl_runtime.cli.support.missing_extra import name_missing_extra
 from tltl_runtime.cli.support.options import output_folder
 from tltl_runtime.cli.support.worker_options import all_cores_option
 from tltl_runtime.cli.support.writable_paths import check_no_training
@@ -68,7 +68,7 @@ def command(folder: Path, shipped: bool, minutes: float | None, workers: Any) ->
     the folder, so that the same command continues a run. If a level, a spec, a setting or the code has changed, the
     command trains or plays again.
     """
-    with cli.Report() as report, require_learning("`tltlc table1`"), ignore_closed_pipe():
+    with cli.Report() as report, name_missing_extra("`tltlc table1`"), ignore_closed_pipe():
         from tltl_runtime.support.folder_lock import lock_folder
         from tltlc.api import fileio
 

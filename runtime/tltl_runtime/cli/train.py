@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, get_args
 
 import click
 
-from tltl_runtime.cli.support.learning_extra import require_learning
+from tltl_runtime.cli.support.missing_extra import name_missing_extra
 from tltl_runtime.cli.support.options import output_folder
 from tltl_runtime.cli.support.sensor_options import senses_options
 from tltl_runtime.cli.support.worker_options import WorkersType
@@ -140,7 +140,7 @@ def command(
         raise click.UsageError(
             "--resume continues in the folder of the training: leave out --out", click.get_current_context()
         )
-    with cli.Report() as report, require_learning("`tltlc train`"):
+    with cli.Report() as report, name_missing_extra("`tltlc train`"):
         from tltl_runtime.cli.support.level_argument import check_no_toml
 
         check_no_toml(spec, settings="--config")

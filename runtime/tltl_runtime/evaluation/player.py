@@ -11,8 +11,8 @@ from tltl_runtime.evaluation.play import play
 from tltl_runtime.game.episode import Trajectory, trajectory
 from tltl_runtime.game.recorder import EpisodeRecorder
 from tltl_runtime.game.registry import registered_game
+from tltl_runtime.policies.blas_threads import blas_threads
 from tltl_runtime.policies.policy import Policy
-from tltl_runtime.policies.threads import threads
 from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltlc.api import EMPTY, Fspa, RewardOptions, record, replace
 
@@ -103,7 +103,7 @@ class Player:
         """Play one episode."""
         setup = self._setup
         # In one thread, equal observations give equal logits on any number of cores.
-        with threads(1):
+        with blas_threads(1):
             played = play(setup.policy, self._env, setup.seed, task.index, task.sampled)
         if self._recorder is None:
             return PlayedEpisode(task, played)

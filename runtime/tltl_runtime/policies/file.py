@@ -12,15 +12,17 @@ from math import prod
 from pathlib import Path
 from typing import Any, Final
 
+import numpy as np
+from numpy.typing import NDArray
 from safetensors import SafetensorError
-from safetensors.torch import load, save
-from torch import Tensor
+from safetensors.numpy import load, save
 
 from tltl_runtime.game.registry import registered_game
 from tltl_runtime.game.sensors import Sensors
+from tltl_runtime.policies.actor import weight_shapes
 from tltl_runtime.policies.card import Card
 from tltl_runtime.policies.network import Network
-from tltl_runtime.policies.policy import Policy, blank_actor, weight_count
+from tltl_runtime.policies.policy import Policy
 from tltl_runtime.support.load_errors import LoadErrors
 from tltl_runtime.support.record_json import RecordJsonError, from_json, to_json
 from tltlc.api import Diagnostic, Fspa, TltlError, compiler, fileio
@@ -74,7 +76,7 @@ def read_policy(path: str | os.PathLike[str]) -> Policy:
 def to_bytes(policy: Policy) -> bytes:
     """Return the bytes that :func:`write_policy` writes."""
     text = json.dumps(card_json(policy.card), ensure_ascii=False, allow_nan=False)
-    weights = {f"{_PREFIX}{name}": tensor for name, tensor in policy.weights().items()}
+    weights = {f"{_PREFIX}{name}": weight for name, weight in policy.weights().items()}
     data = save(weights, {_KEY: text})
     if len(data) > MAX_BYTES:
         raise _too_large(len(data))
@@ -82,11 +84,14 @@ def to_bytes(policy: Policy) -> bytes:
 
 
 def check_size(network: Network, fspa: Fspa, sensors: Sensors) -> None:
-    """Raise TltlError, TLT0862, if a policy with this network is too large for a file."""
+    """Raise TltlError, TLT0862, if the network does not fit the map, or its policy is too large for a file."""
     # Encoded twice: the card is a JSON string in the JSON header of the file.
     text = json.dumps(json.dumps(compiler.encode_artefact(fspa), ensure_ascii=False), ensure_ascii=False)
-    weights = 2 * weight_count(network, _observation_shapes(fspa, sensors), registered_game().branches)
-    size = weights + len(text.encode()) + _RECORD_BYTES
+    try:
+        shapes = weight_shapes(network, _observation_shapes(fspa, sensors), registered_game().branches)
+    except ValueError as error:
+        raise TltlError([Diagnostic("TLT0862", f"`network`: {error}", help="give a smaller `stride`")]) from None
+    size = 2 * sum(map(prod, shapes.values())) + len(text.encode()) + _RECORD_BYTES
     if size > MAX_BYTES:
         raise _too_large(size)
 
@@ -186,9 +191,10 @@ def _check_tensors(header: dict[str, Any], card: Card, name: str) -> None:
     This check comes before any weights are loaded.
     """
     try:
-        expected = {f"{_PREFIX}{key}": list(tensor.shape) for key, tensor in blank_actor(card).state_dict().items()}
-    except (ValueError, RuntimeError, OverflowError) as error:
+        shapes = weight_shapes(card.network, dict(card.shapes), card.branches)
+    except ValueError as error:
         raise _ERRORS.broken_error(name, f"its card does not describe a network: {error!s:.80}") from None
+    expected = {f"{_PREFIX}{key}": list(shape) for key, shape in shapes.items()}
     stored = {key: entry for key, entry in header.items() if key != "__metadata__"}
     for key in sorted(expected.keys() | stored.keys()):
         if key not in stored:
@@ -201,12 +207,12 @@ def _check_tensors(header: dict[str, Any], card: Card, name: str) -> None:
             raise _ERRORS.broken_error(name, f"the tensor `{key}` is {is_}, not F16 of shape {expected[key]}")
 
 
-def _weights(data: bytes, name: str) -> dict[str, Tensor]:
+def _weights(data: bytes, name: str) -> dict[str, NDArray[np.float16]]:
     try:
-        tensors = load(data)
+        weights = load(data)
     except (SafetensorError, ValueError):
         raise _ERRORS.unreadable_error(name, "its weights are cut off or damaged") from None
-    for key, tensor in tensors.items():
-        if not bool(tensor.isfinite().all()):
+    for key, weight in weights.items():
+        if not np.isfinite(weight).all():
             raise _ERRORS.broken_error(name, f"the tensor `{key}` has values that are not finite numbers")
-    return {key.removeprefix(_PREFIX): tensor for key, tensor in tensors.items()}
+    return {key.removeprefix(_PREFIX): weight for key, weight in weights.items()}

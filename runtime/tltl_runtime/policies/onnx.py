@@ -19,6 +19,7 @@ from tltl_runtime.policies.card import Card
 from tltl_runtime.policies.file import card_json
 from tltl_runtime.policies.identity import spec_hash
 from tltl_runtime.policies.policy import Policy
+from tltl_runtime.policies.torch_actor import torch_actor
 from tltlc.api import label_text, replace
 
 SUFFIX: Final = ".onnx"
@@ -59,7 +60,7 @@ class _PolicyModule(nn.Module):
     def __init__(self, policy: Policy) -> None:
         super().__init__()
         self.keys = [key for key, _ in policy.card.shapes]
-        self.actor = policy.actor
+        self.actor = torch_actor(policy)
 
     def forward(self, *parts: Tensor) -> tuple[Tensor, Tensor]:
         logits = self.actor.mlp(self.actor.get_latent(dict(zip(self.keys, parts, strict=True))))

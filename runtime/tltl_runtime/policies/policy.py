@@ -2,19 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-import torch
 from numpy.typing import NDArray
-from rsl_rl.models import MLPModel
-from rsl_rl.utils import resolve_class
-from tensordict import TensorDict
-from torch import Tensor
 
+from tltl_runtime.policies.actor import Actor
 from tltl_runtime.policies.card import Card
-from tltl_runtime.policies.network import Network, Shapes, model_config
 
 
 class NotFiniteError(ValueError):
@@ -34,26 +29,25 @@ class Policy:
         ValueError: the weights do not fit the network that the card describes.
     """
 
-    def __init__(self, card: Card, weights: Mapping[str, Tensor]) -> None:
-        # `contiguous`: with another memory layout, torch would compute in another order.
-        rounded = {name: tensor.detach().cpu().half().contiguous() for name, tensor in weights.items()}
-        if not all(bool(tensor.isfinite().all()) for tensor in rounded.values()):
+    def __init__(self, card: Card, weights: Mapping[str, NDArray[Any]]) -> None:
+        with np.errstate(over="ignore"):  # A weight that is too large becomes infinite.
+            # In one memory layout: with another one, NumPy would add in another order.
+            rounded = {name: np.array(weight, np.float16, order="C") for name, weight in weights.items()}
+        if not all(np.isfinite(weight).all() for weight in rounded.values()):
             raise NotFiniteError(
                 "a weight of the actor is not a finite number in half precision: its training has diverged"
             )
         self.card = card
-        self.actor = _actor_of(card, rounded)
+        self._weights = rounded
+        self._actor = Actor(card.network, dict(card.shapes), card.branches, rounded)
 
-    def weights(self) -> dict[str, Tensor]:
-        """Return the weights by name, in half precision, as in the policy's file."""
-        return {name: tensor.to(torch.float16) for name, tensor in self.actor.state_dict().items()}
+    def weights(self) -> dict[str, NDArray[np.float16]]:
+        """Return copies of the weights by name, in half precision, as in the policy's file."""
+        return {name: weight.copy() for name, weight in self._weights.items()}
 
     def logits(self, observation: Mapping[str, NDArray[Any]]) -> NDArray[np.float32]:
         """Return the logits [sum(branches)] for the observation of one environment."""
-        # The model accepts a plain dict. Making a TensorDict takes as long as running the network.
-        batch = {key: torch.from_numpy(np.asarray(observation[key], np.float32)[None]) for key, _ in self.card.shapes}
-        with torch.inference_mode():
-            return self.actor.mlp(self.actor.get_latent(batch))[0].numpy()  # type: ignore[no-any-return]
+        return self._actor.logits(observation)
 
     def choose(
         self, observation: Mapping[str, NDArray[Any]], generator: np.random.Generator | None = None
@@ -79,43 +73,3 @@ def _not_finite_message(observation: Mapping[str, NDArray[Any]]) -> str:
     parts = [key for key, values in observation.items() if not np.isfinite(values).all()]
     cause = f"`{parts[0]}` of the observation has values" if parts else "the policy's network gives values"
     return f"{cause} that are not finite numbers"
-
-
-def new_actor(card: Card) -> MLPModel:
-    """Return the actor that the card describes, with random weights.
-
-    Raises ValueError if the card describes no network.
-    """
-    return _actor(card.network, dict(card.shapes), card.branches)
-
-
-def blank_actor(card: Card) -> MLPModel:
-    """Return the actor that the card describes, with names and shapes of weights but no values.
-
-    No random numbers are drawn.
-    """
-    with torch.device("meta"):
-        return new_actor(card)
-
-
-def weight_count(network: Network, shapes: Shapes, branches: Sequence[int]) -> int:
-    """Return the number of weights of an actor, without allocating them."""
-    with torch.device("meta"):
-        return sum(tensor.numel() for tensor in _actor(network, shapes, branches).state_dict().values())
-
-
-def _actor_of(card: Card, weights: Mapping[str, Tensor]) -> MLPModel:
-    """Return an actor with a copy of the weights, in evaluation mode."""
-    actor = blank_actor(card)
-    try:
-        actor.load_state_dict({name: tensor.float() for name, tensor in weights.items()}, assign=True)
-    except RuntimeError as error:
-        raise ValueError(f"the weights are of another network than the card describes: {error}") from None
-    return actor.requires_grad_(False).eval()
-
-
-def _actor(network: Network, shapes: Shapes, branches: Sequence[int]) -> MLPModel:
-    model, arguments = resolve_class(model_config(network, shapes, branches))
-    blank = TensorDict({key: torch.zeros(1, *shape) for key, shape in shapes.items()}, batch_size=[1])
-    actor: MLPModel = model(blank, {"actor": list(shapes)}, "actor", len(branches), **arguments)
-    return actor

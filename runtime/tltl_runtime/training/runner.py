@@ -8,16 +8,18 @@ from collections.abc import Iterator, Mapping
 from contextlib import redirect_stdout
 from typing import Any
 
+import numpy as np
 import torch
+from numpy.typing import NDArray
 from rsl_rl.runners import OnPolicyRunner
 from rsl_rl.utils import check_nan
 from torch import Tensor, nn
 
-from tltl_runtime.policies.threads import threads
 from tltl_runtime.training.exploration.self_imitation import imitate
 from tltl_runtime.training.files.report import Iteration
 from tltl_runtime.training.ppo.distributed import process_group
 from tltl_runtime.training.ppo.environment import TrainingEnv
+from tltl_runtime.training.ppo.torch_threads import threads
 from tltlc.api import Diagnostic, TltlError
 
 __all__ = ["Iteration", "Runner"]
@@ -58,9 +60,9 @@ class Runner(OnPolicyRunner):
                 name: _in_layout_of(value, parameter) for name, value in state.items() if value.shape == parameter.shape
             }
 
-    def load_actor(self, weights: Mapping[str, Tensor]) -> None:
+    def load_actor(self, weights: Mapping[str, NDArray[np.float16]]) -> None:
         """Load weights, by name, into the actor. The critic keeps its random weights."""
-        self.alg.actor.load_state_dict({name: tensor.float() for name, tensor in weights.items()})
+        self.alg.actor.load_state_dict({name: torch.from_numpy(weight).float() for name, weight in weights.items()})
 
     def scale_inverse_temperature(self, factor: float) -> None:
         """Multiply the actor's logits by ``factor``: above 1, it makes likely choices likelier.

@@ -84,7 +84,7 @@ def test_the_json_report(tltlc: Run, policy: Path) -> None:  # noqa: F811
         assert episode["reward"] == pytest.approx(episode["progress"] - 1.0)
         assert list(episode) == EPISODE
     assert re.fullmatch("[0-9a-f]{64}", report["policy"]["sha256"])
-    assert {"tltlc", "pybullet", "numpy", "torch"} < report["versions"].keys()
+    assert {"tltlc", "gymnasium", "pybullet", "numpy"} < report["versions"].keys()
 
     again = json.loads(tltlc("evaluate", policy, "--episodes", "2", "--first", "2", "--seed", "5", "--json", "-").out)
     assert again["episodes"] == report["episodes"][2:]

@@ -10,9 +10,12 @@ import pytest
 
 from tests.runtime.evaluation.untrained import untrained
 from tltl_runtime.evaluation.play import episode_seed, play
+from tltl_runtime.policies.actor import weight_shapes
+from tltl_runtime.policies.network import Network
 from tltl_runtime.policies.policy import Policy
 from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltl_runtime.stealth.env import make_env
+from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.monitor import RewardOptions
 
@@ -109,9 +112,9 @@ def test_nan_in_an_observation_is_reported(policy: Policy) -> None:
 
 
 def test_a_network_that_overflows_is_reported() -> None:
-    huge = untrained()
-    for weights in huge.actor.parameters():
-        weights.mul_(1e30)
+    card = replace(untrained().card, network=Network(hidden=(8,) * 9, channels=(4,)))
+    shapes = weight_shapes(card.network, dict(card.shapes), card.branches)
+    huge = Policy(card, {name: np.full(shape, 6e4) for name, shape in shapes.items()})
     where = f"episode 5 of seed 3 (seed {episode_seed(3, 5)} of the level), step 1"
     title = f"{where}: the policy's network gives values that are not finite numbers"
     assert diagnostic_of(huge, blinded=False) == ("TLT0854", title)

@@ -6,7 +6,8 @@ import torch
 
 from tltl_runtime.policies.card import Card
 from tltl_runtime.policies.network import Network
-from tltl_runtime.policies.policy import Policy, new_actor
+from tltl_runtime.policies.policy import Policy
+from tltl_runtime.policies.torch_actor import arrays, new_actor
 from tltl_runtime.spec.wrapper import TltlEnv
 from tltl_runtime.stealth.env import make_env
 from tltl_runtime.stealth.level import StealthLevel
@@ -36,7 +37,7 @@ def untrained(spec: str | None = SOON, level: str = "cover_and_hide", variant: s
         with torch.no_grad():
             for weights in actor.parameters():
                 weights.mul_(3.0)
-    return Policy(card, actor.state_dict())
+    return Policy(card, arrays(actor.state_dict()))
 
 
 def card_of(env: TltlEnv) -> Card:

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from tltl_runtime.game.sensors import SensorChoice
 from tltl_runtime.policies.card import Card
 from tltl_runtime.policies.network import Network
-from tltl_runtime.policies.policy import Policy, new_actor
+from tltl_runtime.policies.policy import Policy
+from tltl_runtime.policies.torch_actor import arrays, new_actor
 from tltl_runtime.stealth.env import make_env
 from tltl_runtime.stealth.levels.identity import level_hash
 from tltlc.monitor import RewardOptions
@@ -49,7 +50,7 @@ def policy_of(card: Card, seed: int = 0, sharpness: float = 50.0) -> Policy:
     with torch.no_grad():
         actor.mlp[-1].weight.mul_(sharpness)
         actor.mlp[-1].bias.uniform_(-1, 1)
-    return Policy(card, actor.state_dict())
+    return Policy(card, arrays(actor.state_dict()))
 
 
 def observation_of(card: Card, rng: np.random.Generator, batch: tuple[int, ...] = ()) -> dict[str, NDArray[Any]]:

@@ -3,15 +3,25 @@
 from __future__ import annotations
 
 import pickle
+from typing import Any, get_args
 
 import numpy as np
 import pytest
 import torch
+from hypothesis import given
+from hypothesis import strategies as st
+from numpy.typing import NDArray
 from tensordict import TensorDict
 
 from tests.runtime.policies.examples import card_of, observation_of, policy_of
-from tltl_runtime.policies.network import Network
+from tltl_runtime.policies.actor import Actor, weight_shapes
+from tltl_runtime.policies.card import Card
+from tltl_runtime.policies.network import Activation, Network
 from tltl_runtime.policies.policy import Policy
+from tltl_runtime.policies.torch_actor import arrays, new_actor, torch_actor
+from tltlc.core.record import replace
+
+EXAMPLE = card_of()
 
 
 @pytest.fixture(name="policy", scope="module", params=[{}, {"map": None}], ids=["map", "no_map"])
@@ -20,16 +30,55 @@ def _policy(request: pytest.FixtureRequest) -> Policy:
 
 
 def test_the_logits_equal_the_logits_of_rsl_rl(policy: Policy) -> None:
+    actor = torch_actor(policy)
     for seed in range(20):
         observation = observation_of(policy.card, np.random.default_rng(seed))
         batch = {key: torch.from_numpy(values).float().unsqueeze(0) for key, values in observation.items()}
         with torch.no_grad():
-            action = policy.actor(TensorDict(batch, batch_size=[1]))
-            policy.actor(TensorDict(batch, batch_size=[1]), stochastic_output=True)
-        logits = torch.from_numpy(policy.logits(observation).copy())
-        for part, log in zip(logits.split(policy.card.branches), policy.actor.output_distribution_params, strict=True):
-            torch.testing.assert_close(part.log_softmax(-1), log[0], rtol=0, atol=0)
+            action = actor(TensorDict(batch, batch_size=[1]))
+            actor(TensorDict(batch, batch_size=[1]), stochastic_output=True)
+        logits = torch.from_numpy(policy.logits(observation))
+        for part, log in zip(logits.split(policy.card.branches), actor.output_distribution_params, strict=True):
+            torch.testing.assert_close(part.log_softmax(-1), log[0], rtol=1e-5, atol=1e-5)
         assert policy.choose(observation).tolist() == action[0].tolist()
+
+
+@pytest.mark.hypothesis
+@given(data=st.data())
+def test_any_network_computes_what_rsl_rl_computes(data: st.DataObject) -> None:
+    network = data.draw(networks())
+    shapes: dict[str, tuple[int, ...]] = {"automaton": (data.draw(st.integers(1, 9)),), "progress": (1,)}
+    for key in data.draw(st.sampled_from([(), ("map",), ("map", "plan")])):
+        shapes[key] = (data.draw(st.integers(1, 4)), data.draw(st.integers(1, 12)), data.draw(st.integers(1, 12)))
+    card = replace(EXAMPLE, network=network, shapes=tuple(shapes.items()), branches=(3, 2))
+    batch = {key: torch.from_numpy(values).float()[None] for key, values in draw_observation(card, data).items()}
+    try:
+        torch.manual_seed(0)
+        actor = new_actor(card)
+        for weight in actor.state_dict().values():
+            weight.uniform_(-1, 1)
+        expected = actor.mlp(actor.get_latent(batch))[0].detach().double().numpy()
+    except (RuntimeError, ValueError):
+        with pytest.raises(ValueError, match="do not fit a map"):
+            weight_shapes(network, shapes, card.branches)
+        return
+    weights = arrays(actor.state_dict())
+    assert {name: weight.shape for name, weight in weights.items()} == weight_shapes(network, shapes, card.branches)
+    logits = Actor(network, shapes, card.branches, weights).logits(
+        {key: part[0].numpy() for key, part in batch.items()}
+    )
+    np.testing.assert_allclose(logits, expected, rtol=1e-4, atol=1e-4 * np.abs(expected).max())
+
+
+@st.composite
+def networks(draw: st.DrawFn) -> Network:
+    widths = st.lists(st.integers(1, 8), min_size=1, max_size=3).map(tuple)
+    activation = draw(st.sampled_from(get_args(Activation)))
+    return Network(draw(widths), activation, draw(widths), draw(st.integers(1, 6)), draw(st.integers(1, 6)))
+
+
+def draw_observation(card: Card, data: st.DataObject) -> dict[str, NDArray[Any]]:
+    return observation_of(card, np.random.default_rng(data.draw(st.integers(0, 2**32 - 1))))
 
 
 def test_samples_have_the_frequencies_of_the_softmax(policy: Policy) -> None:
@@ -57,10 +106,9 @@ def test_equal_generators_give_equal_choices(policy: Policy) -> None:
 
 
 def test_the_first_of_equal_choices_is_chosen(policy: Policy) -> None:
-    with torch.no_grad():
-        flat = Policy(policy.card, policy.weights())
-        flat.actor.mlp[-1].weight.zero_()
-        flat.actor.mlp[-1].bias.zero_()
+    last = max(name for name in policy.weights() if name.startswith("mlp.")).removesuffix(".weight")
+    zeros = {name: weight * (not name.startswith(last)) for name, weight in policy.weights().items()}
+    flat = Policy(policy.card, zeros)
     observation = observation_of(policy.card, np.random.default_rng(3))
     assert flat.choose(observation).tolist() == [0, 0, 0, 0, 0]
     assert flat.choose(observation).dtype == np.int64
@@ -75,7 +123,6 @@ def test_choosing_has_no_side_effects(policy: Policy) -> None:
     assert torch.equal(state, torch.get_rng_state())
     assert all((observation[key] == before[key]).all() for key in observation)
     assert (policy.logits(observation) == logits).all()
-    assert not any(parameter.requires_grad for parameter in policy.actor.parameters())
     again = pickle.loads(pickle.dumps(policy))
     assert again.logits(observation).tobytes() == logits.tobytes()
     assert again.card == policy.card
@@ -83,10 +130,7 @@ def test_choosing_has_no_side_effects(policy: Policy) -> None:
 
 def test_the_memory_layout_of_weights_does_not_count() -> None:
     policy = policy_of(card_of("cover_and_hide", network=Network()))
-    weights = {
-        name: weight.float().to(memory_format=torch.channels_last) if weight.dim() == 4 else weight.float()
-        for name, weight in policy.weights().items()
-    }
+    weights = {name: np.asfortranarray(weight, np.float32) for name, weight in policy.weights().items()}
     copy = Policy(policy.card, weights)
     for seed in range(20):
         observation = observation_of(policy.card, np.random.default_rng(seed))

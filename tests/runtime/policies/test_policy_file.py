@@ -21,7 +21,8 @@ from safetensors.torch import load, save
 from tests.runtime.policies.examples import card_of, observation_of, policy_of
 from tltl_runtime.policies.file import MAX_BYTES, check_size, from_bytes, read_policy, to_bytes, write_policy
 from tltl_runtime.policies.network import Network
-from tltl_runtime.policies.policy import NotFiniteError, Policy, new_actor
+from tltl_runtime.policies.policy import NotFiniteError, Policy
+from tltl_runtime.policies.torch_actor import arrays, new_actor
 from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.diagnostics.render import render
@@ -72,18 +73,24 @@ def test_a_policy_that_is_too_large_to_be_read_is_not_written(
     check_size(card.network, card.fspa, card.sensors)
 
 
+def test_convolutions_that_do_not_fit_the_map_are_refused(policy: Policy) -> None:
+    card, network = policy.card, replace(policy.card.network, kernel=1, stride=8)
+    with pytest.raises(TltlError, match=r"TLT0862.*a kernel of 1 and a stride of 8 do not fit a map that is"):
+        check_size(network, card.fspa, card.sensors)
+    check_size(replace(network, stride=1), card.fspa, card.sensors)
+
+
 def test_a_policy_copies_its_weights_in_half_precision(policy: Policy) -> None:
     actor = new_actor(policy.card)
-    new_policy = Policy(policy.card, actor.state_dict())
+    new_policy = Policy(policy.card, arrays(actor.state_dict()))
     before = to_bytes(new_policy)
     with torch.no_grad():
         for weight in actor.parameters():
             weight.add_(1.0)
     assert to_bytes(new_policy) == before
     for name, weight in new_actor(policy.card).state_dict().items():
-        kept = new_policy.actor.state_dict()[name]
-        assert kept.dtype == weight.dtype == torch.float32
-        assert torch.equal(kept, kept.half().float())
+        kept = new_policy.weights()[name]
+        assert (kept.dtype, kept.shape) == (np.float16, tuple(weight.shape))
 
 
 def test_making_and_reading_policies_uses_no_random_numbers(policy: Policy) -> None:
@@ -98,12 +105,12 @@ def test_weights_outside_half_precision_are_rejected(policy: Policy, value: floa
     with torch.no_grad():
         actor.mlp[0].bias[3] = value
     with pytest.raises(NotFiniteError, match="not a finite number in half precision"):
-        Policy(policy.card, actor.state_dict())
+        Policy(policy.card, arrays(actor.state_dict()))
 
 
 def test_weights_of_another_network_are_rejected(policy: Policy) -> None:
     other_card = replace(policy.card, network=Network(hidden=(7,)))
-    with pytest.raises(ValueError, match="of another network"):
+    with pytest.raises(ValueError, match="not those of the network"):
         Policy(other_card, policy.weights())
 
 
@@ -124,7 +131,7 @@ def test_safetensors_alone_reads_a_policy_file(tmp_path: Path, policy: Policy) -
         card = json.loads(file.metadata()["card"])
         weights = file.get_tensor("actor.mlp.0.weight")
     assert weights.dtype == np.float16
-    assert np.array_equal(weights, policy.actor.state_dict()["mlp.0.weight"].numpy())
+    assert np.array_equal(weights, policy.weights()["mlp.0.weight"])
     assert (card["format"], card["version"], card["level"]) == ("tltl-policy", 1, "branching")
     assert card["artefact"]["spec"]["name"] == "branching"
 

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import json
 import shutil
+from collections.abc import Mapping
 from itertools import pairwise
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
+import numpy as np
 import pytest
 import torch
+from numpy.typing import NDArray
 from torch import nn
 
 from tests.runtime.training.runs import checkpoint_of, run_in
@@ -17,6 +21,7 @@ from tests.runtime.training.test_settings import compare
 from tltl_runtime.policies.file import read_policy, write_policy
 from tltl_runtime.policies.policy import NotFiniteError, Policy
 from tltl_runtime.policies.summary import summary, summary_text
+from tltl_runtime.policies.torch_actor import arrays
 from tltl_runtime.training.exploration.search import SearchProgress
 from tltl_runtime.training.files.checkpoint import deep_copy
 from tltl_runtime.training.files.record import record_so_far, write_record
@@ -40,12 +45,13 @@ def _policy(tmp_path: Path, whole: tuple[TrainingRun, list[TrainingReport]]) -> 
     return tmp_path / "old.safetensors"
 
 
-def weights(run: TrainingRun) -> dict[str, torch.Tensor]:
-    return {name: weight.half() for name, weight in checkpoint_of(run).algorithm["actor_state_dict"].items()}
+def weights(run: TrainingRun) -> dict[str, NDArray[Any]]:
+    actor = checkpoint_of(run).algorithm["actor_state_dict"]
+    return {name: weight.astype(np.float16) for name, weight in arrays(actor).items()}
 
 
-def differing(one: dict[str, torch.Tensor], other: dict[str, torch.Tensor]) -> list[str]:
-    return [name for name in one if not torch.equal(one[name], other[name])]
+def differing(one: Mapping[str, Any], other: Mapping[str, Any]) -> list[str]:
+    return [name for name in one if not np.array_equal(np.asarray(one[name]), np.asarray(other[name]))]
 
 
 def test_the_critic_learns_first_and_then_the_actor(tmp_path: Path, policy: Path) -> None:

@@ -13,7 +13,8 @@ from tensorboard.backend.event_processing.event_accumulator import EventAccumula
 from tests.docs.blocks import DOCS
 from tests.runtime.training.reports import a_report, an_episode
 from tltl_runtime.spec.task import read_spec
-from tltl_runtime.training.files.metrics import METRICS, Metrics, read_metrics
+from tltl_runtime.training.files.metrics import METRICS, read_metrics
+from tltl_runtime.training.files.metrics_writer import Metrics
 from tltl_runtime.training.files.report import Confirmation
 from tltlc.automaton.fspa import Fspa
 from tltlc.diagnostics.diagnostic import TltlError

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import re
 from contextlib import suppress
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any, Final
 
 from tltl_runtime.evaluation.figures import Evaluation, evaluation_of
 from tltl_runtime.evaluation.player import CHOICES, PlayedEpisode, Setup
 from tltl_runtime.evaluation.text import report_text
+from tltl_runtime.evaluation.versions import versions
 from tltl_runtime.game.episode import Trajectory
 from tltl_runtime.game.recording_path import SUFFIX, new_path
 from tltl_runtime.spec.episode_summary import EpisodeSummary
@@ -18,7 +18,6 @@ from tltl_runtime.stealth.episode_recorder import writable_folder
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.stealth.levels.identity import level_hash
 from tltl_runtime.stealth.recordings.file import from_bytes, read_episode
-from tltl_runtime.stealth.recordings.versions import versions
 from tltl_runtime.stealth.rendering.plan import draw_episode
 from tltl_runtime.stealth.rendering.trajectories import draw_trajectories
 from tltl_runtime.support.record_json import to_json
@@ -148,7 +147,7 @@ class EvaluationFiles:
                 "variant": card.variant,
                 "level_hash": card.level_hash,
             },
-            "versions": {**versions(), "torch": version("torch")},
+            "versions": versions(),
             **(_as_json(evaluations[True]) if True in evaluations else {}),
             "argmax": _as_json(evaluations[False]) if False in evaluations else None,
         }

@@ -9,6 +9,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Final, cast, get_args
 
+from tltl_runtime.evaluation.versions import versions
 from tltl_runtime.game.level import Level
 from tltl_runtime.regression.report.junit import junit
 from tltl_runtime.regression.report.page.contents import NotRun, ReportedCase, SuiteReport
@@ -23,7 +24,6 @@ from tltl_runtime.regression.verdict.verdict import Verdict
 from tltl_runtime.stealth.recordings.episode import Episode
 from tltl_runtime.stealth.recordings.file import read_episode
 from tltl_runtime.support.number_text import short_list
-from tltl_runtime.training.files.versions import versions
 from tltlc.api import TltlError, fileio, record
 
 PAGE: Final = "report.html"

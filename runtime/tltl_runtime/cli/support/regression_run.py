@@ -15,11 +15,9 @@ from tltl_runtime.cli.support.printable import plain_text
 from tltl_runtime.cli.support.regression_display import RegressionDisplay
 from tltl_runtime.cli.support.regression_files import REPORTS, SuiteRun, write_reports
 from tltl_runtime.cli.support.regression_text import case_lines, summary_line
-from tltl_runtime.cli.support.retraining import Retraining, retrain_cases
 from tltl_runtime.cli.support.writable_paths import check_apart, check_no_training, check_writable, is_standard_output
 from tltl_runtime.evaluation.evaluate import Pool
 from tltl_runtime.regression.report.github import workflow_commands
-from tltl_runtime.regression.retrain.retrain import check_policy_folders
 from tltl_runtime.regression.suite.dependencies import Selection, files_of, select
 from tltl_runtime.regression.suite.suite import SHIPPED, Case, Suite, read_suite
 from tltl_runtime.regression.suite_run import FinishedCase, check_references, lock_run, regress
@@ -78,6 +76,9 @@ def run(options: RegressOptions) -> int:
     selection = _select_cases(suite, options)
     cases, left_out = selection.cases, tuple(case.name for case in selection.left_out)
     if options.minutes is not None:
+        # What retrains needs torch; what judges does not.
+        from tltl_runtime.regression.retrain.retrain import check_policy_folders
+
         check_policy_folders(suite, cases, options.folder)
     references = _references(suite, cases)
     _warn_unnamed(suite, selection.left_out, references)
@@ -164,6 +165,8 @@ def _play(
 def _retrain(suite: Suite, options: RegressOptions, results: list[FinishedCase]) -> None:
     """Retrain for the cases in ``results`` that do not pass, if requested."""
     if options.minutes is not None:
+        from tltl_runtime.cli.support.retraining import Retraining, retrain_cases
+
         resume_command = join([*_resume_words(options), "--retrain"])
         retraining = Retraining(suite, options.folder, options.minutes, options.workers, resume_command, options.fresh)
         retrain_cases(retraining, results, to_stderr=options.printed_option is not None)

@@ -8,8 +8,7 @@ from tltl_runtime.support.number_text import duration, number, share
 from tltl_runtime.training.exploration.search import SearchProgress, SearchSettings
 from tltl_runtime.training.files.report import Confirmation, TrainingReport
 from tltl_runtime.training.files.settings import Stop
-from tltl_runtime.training.imitation.demonstrations import Attempt
-from tltl_runtime.training.imitation.imitation_data import ImitationSummary
+from tltl_runtime.training.imitation.demonstrations import Attempt, ImitationSummary
 
 SEARCH_IS_LOST: Final = "Ctrl-C stops it; when you continue, an unfinished search starts again."
 SEARCHED_AGAIN: Final = "the pass rate no longer rises: a random search for ways starts from where episodes failed"

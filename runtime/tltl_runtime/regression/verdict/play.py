@@ -11,6 +11,7 @@ from typing import Final
 
 from tltl_runtime.evaluation.evaluate import Pool, results, set_up
 from tltl_runtime.evaluation.player import EpisodeRequest, Setup
+from tltl_runtime.evaluation.versions import versions
 from tltl_runtime.game.level import Level
 from tltl_runtime.game.registry import registered_game
 from tltl_runtime.policies.file import MAX_BYTES, from_bytes
@@ -22,7 +23,6 @@ from tltl_runtime.regression.suite.suite import Case
 from tltl_runtime.regression.verdict.baseline import Identity, Reference
 from tltl_runtime.regression.verdict.verdict import Judgement, judge
 from tltl_runtime.spec.task import read_spec
-from tltl_runtime.training.files.versions import versions
 from tltlc.api import Diagnostic, TltlError, fileio, record
 
 OnEpisode = Callable[[Case, int, ExplainedEpisode], None]

@@ -7,7 +7,7 @@ from typing import Literal
 
 from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltl_runtime.training.exploration.search import SearchProgress
-from tltl_runtime.training.imitation.imitation_data import ImitationSummary
+from tltl_runtime.training.imitation.demonstrations import ImitationSummary
 from tltlc.api import record
 
 StopReason = Literal["met", "steps", "minutes"]

@@ -26,6 +26,20 @@ MOST_FAILURES: Final = 20
 
 
 @record
+class ImitationSummary:
+    """The numbers of ``episodes`` and ``decisions`` of the demonstrations, and who played them.
+
+    ``left_out`` are the file names of the recordings that are not demonstrations, each with the
+    reason.
+    """
+
+    episodes: int
+    decisions: int
+    players: tuple[str, ...]
+    left_out: tuple[str, ...]
+
+
+@record
 class Attempt:
     """An episode that was played to record a demonstration.
 

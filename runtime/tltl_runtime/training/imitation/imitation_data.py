@@ -19,6 +19,7 @@ from tltl_runtime.training.imitation.demonstrations import (
     PLAYER,
     Attempt,
     Demonstrations,
+    ImitationSummary,
     error_text,
     expert_attempts,
     recordings,
@@ -26,20 +27,6 @@ from tltl_runtime.training.imitation.demonstrations import (
 from tltlc.api import Diagnostic, TltlError, record
 
 _Observation = Mapping[str, NDArray[Any]]
-
-
-@record
-class ImitationSummary:
-    """The numbers of ``episodes`` and ``decisions`` of the demonstrations, and who played them.
-
-    ``left_out`` are the file names of the recordings that are not demonstrations, each with the
-    reason.
-    """
-
-    episodes: int
-    decisions: int
-    players: tuple[str, ...]
-    left_out: tuple[str, ...]
 
 
 @record

@@ -9,6 +9,7 @@ from torch import Tensor
 from tltl_runtime.game.registry import registered_game
 from tltl_runtime.policies.card import Card
 from tltl_runtime.policies.policy import NotFiniteError, Policy
+from tltl_runtime.policies.torch_actor import arrays
 from tltl_runtime.training.files.run_file import TrainingRun
 from tltl_runtime.training.files.versions import versions
 from tltl_runtime.training.ppo.environment import TrainingEnv
@@ -46,7 +47,7 @@ def policy_of(card: Card, weights: Mapping[str, Tensor]) -> Policy:
         TltlError: TLT0866, a weight is not finite in half precision.
     """
     try:
-        return Policy(card, weights)
+        return Policy(card, arrays(weights))
     except NotFiniteError as error:
         help_ = "train again with a smaller `learning_rate` or `max_gradient`"
         raise TltlError([Diagnostic("TLT0866", str(error), help=help_)]) from None

@@ -23,8 +23,8 @@ def weights_hash(policy: Policy) -> str:
     The weights are as the policy's file stores them.
     """
     digest = hashlib.sha256()
-    for name, tensor in sorted(policy.weights().items()):
-        digest.update(name.encode() + b"\0" + tensor.numpy().tobytes())
+    for name, weight in sorted(policy.weights().items()):
+        digest.update(name.encode() + b"\0" + weight.tobytes())
     return digest.hexdigest()
 
 

@@ -10,7 +10,6 @@ import torch
 from rsl_rl.algorithms import PPO
 
 from tltl_runtime.policies.file import check_size
-from tltl_runtime.policies.threads import threads
 from tltl_runtime.support.record_json import RecordJsonError
 from tltl_runtime.training.exploration.search import SearchProgress, combined_progress
 from tltl_runtime.training.files.checkpoint import BestPolicy, Checkpoint, checkpoint_error, deep_copy
@@ -25,6 +24,7 @@ from tltl_runtime.training.ppo.policy import card_of, policy_of
 from tltl_runtime.training.ppo.random_streams import Purpose, stream
 from tltl_runtime.training.ppo.recent_episodes import RecentEpisodes, Standstill
 from tltl_runtime.training.ppo.scheduled_weights import scheduled_weights
+from tltl_runtime.training.ppo.torch_threads import threads
 from tltl_runtime.training.run.checkpoint_restore import restore_checkpoint
 from tltl_runtime.training.run.confirmation import confirm
 from tltl_runtime.training.run.named_classes import class_of, device_of
@@ -52,7 +52,7 @@ def train(
     """Train in ``run.folder``; yield a report after each iteration.
 
     The last report says why the training ends. The folder gets ``run.json``, ``checkpoint.pt``,
-    ``policy.safetensors`` and the files of :class:`~tltl_runtime.training.files.metrics.Metrics`.
+    ``policy.safetensors`` and the files of :class:`~tltl_runtime.training.files.metrics_writer.Metrics`.
     What is written for an iteration is written before its report is yielded. Any end of the
     training, even by Ctrl-C or by closing the iterator, leaves a checkpoint of the last complete
     iteration. If the process is killed, however, the iterations after the last checkpoint are lost.

@@ -8,7 +8,7 @@ from tltl_runtime.policies.card import Card
 from tltl_runtime.policies.file import write_policy
 from tltl_runtime.policies.policy import Policy
 from tltl_runtime.training.files.checkpoint import BestPolicy, Checkpoint, write_checkpoint
-from tltl_runtime.training.files.metrics import Metrics
+from tltl_runtime.training.files.metrics_writer import Metrics
 from tltl_runtime.training.files.report import TrainingReport
 from tltl_runtime.training.files.run_file import CHECKPOINT, CURVE, POLICY, RECORD, WRITABLE, TrainingRun
 from tltl_runtime.training.ppo.policy import policy_of

@@ -1,0 +1,30 @@
+"""Say which extra of tltlc to install if a package is missing that a command needs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Final
+
+from tltlc.api import cli
+
+_EXTRAS: Final = {
+    **dict.fromkeys(("safetensors", "threadpoolctl", "jinja2", "markupsafe"), "game"),
+    **dict.fromkeys(("torch", "rsl_rl", "tensordict", "tensorboard", "onnx", "onnxscript"), "rl"),
+}
+"""The extra that installs a module, by the module's name."""
+
+
+@contextmanager
+def name_missing_extra(command: str) -> Iterator[None]:
+    """Raise TltlError, TLT0730, if a package is missing that policies or trainings need.
+
+    The help of the error is the command that installs it.
+    """
+    try:
+        yield
+    except ModuleNotFoundError as error:
+        module = (error.name or "").partition(".")[0]
+        if module not in _EXTRAS:
+            raise
+        raise cli.exits.missing_component(command, module, f"tltlc[{_EXTRAS[module]}]") from error

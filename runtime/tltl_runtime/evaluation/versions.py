@@ -1,0 +1,14 @@
+"""The versions of Python and of the packages that an episode of a policy depends on."""
+
+from __future__ import annotations
+
+import platform
+from importlib.metadata import version
+from typing import Final
+
+_PACKAGES: Final = ("tltlc", "gymnasium", "pybullet", "numpy")
+
+
+def versions() -> dict[str, str]:
+    """Return the installed versions, by name."""
+    return {"python": platform.python_version(), **{name: version(name) for name in _PACKAGES}}

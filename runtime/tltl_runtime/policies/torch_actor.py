@@ -1,0 +1,42 @@
+"""The network of a policy as a module of torch: trainings and exports use it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import torch
+from numpy.typing import NDArray
+from rsl_rl.models import MLPModel
+from rsl_rl.utils import resolve_class
+from tensordict import TensorDict
+from torch import Tensor
+
+from tltl_runtime.policies.card import Card
+from tltl_runtime.policies.network import model_config
+from tltl_runtime.policies.policy import Policy
+
+
+def new_actor(card: Card) -> MLPModel:
+    """Return the actor that the card describes, with random weights.
+
+    Raises ValueError if the card describes no network.
+    """
+    model, arguments = resolve_class(model_config(card.network, dict(card.shapes), card.branches))
+    blank = TensorDict({key: torch.zeros(1, *shape) for key, shape in card.shapes}, batch_size=[1])
+    actor: MLPModel = model(blank, {"actor": [key for key, _ in card.shapes]}, "actor", len(card.branches), **arguments)
+    return actor
+
+
+def torch_actor(policy: Policy) -> MLPModel:
+    """Return the actor of a policy, in evaluation mode."""
+    with torch.device("meta"):
+        actor = new_actor(policy.card)
+    weights = {name: torch.from_numpy(weight).float() for name, weight in policy.weights().items()}
+    actor.load_state_dict(weights, assign=True)
+    return actor.requires_grad_(False).eval()
+
+
+def arrays(weights: Mapping[str, Tensor]) -> dict[str, NDArray[Any]]:
+    """Return weights, such as the state of an actor, as arrays by name."""
+    return {name: weight.detach().cpu().numpy() for name, weight in weights.items()}
