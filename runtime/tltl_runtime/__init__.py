@@ -1,8 +1,9 @@
-"""The runtime of ``.tltl`` specs: a stealth game, Gymnasium environments that specs reward, and batches of automata.
+"""The runtime of ``.tltl`` specs: a stealth game, Gymnasium environments, and automata in batches.
 
-Importing this package registers the environments ``tltl/Navigation-v0``, ``tltl/CoverAndHide-v0``
-and ``tltl/Branching-v0``. It loads neither torch nor pybullet. The package needs the extra ``game``;
-:mod:`tltl_runtime.spec.batch` needs the extra ``rl``.
+The rewards of the environments follow from a spec. Importing this package registers the
+environments ``tltl/Navigation-v0``, ``tltl/CoverAndHide-v0`` and ``tltl/Branching-v0``. It loads
+neither torch nor pybullet. The package needs the extra ``game``; :mod:`tltl_runtime.spec.batch`
+needs the extra ``rl``.
 """
 
 from __future__ import annotations

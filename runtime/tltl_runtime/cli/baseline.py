@@ -1,4 +1,4 @@
-"""``tltlc baseline``: record the episodes that the cases of a suite are compared with."""
+"""``tltlc baseline``: record episodes that ``tltlc regress`` later compares with new ones."""
 
 from __future__ import annotations
 
@@ -77,9 +77,9 @@ def command(suite: Path | None, path: Path | None, fresh: bool, workers: Any) ->
 
 
 def _older_references(path: Path) -> tuple[Reference, ...]:
-    """Return the references of the baseline in the output file.
+    """Return the references, that is, the recorded episodes, of the baseline in the output file.
 
-    The result is empty if the file is missing or is not a baseline.
+    The result is empty if the file ``path`` is missing or is not a baseline.
     """
     from tltl_runtime.regression.verdict.baseline import read_baseline
 
@@ -89,10 +89,10 @@ def _older_references(path: Path) -> tuple[Reference, ...]:
 
 
 def _stopped_text(path: Path, partial: Path | None, *, existed: bool) -> str:
-    """Describe the files of a stopped recording and how to continue.
+    """Describe what a stopped recording of a baseline has written, and how to continue it.
 
     ``path`` is the output file, and ``existed`` says whether it existed before. ``partial`` is the
-    file of the finished references; None without such a file.
+    file from which the same command continues, with the finished references; None if there is none.
     """
     from tltl_runtime.support.shown_path import path_text
 
@@ -105,9 +105,10 @@ def _stopped_text(path: Path, partial: Path | None, *, existed: bool) -> str:
 
 
 def _print_reference(suite: Suite, recorded: RecordedReference, older: tuple[Reference, ...], *, fresh: bool) -> None:
-    """Print how often a reference met its spec, and which cases will not pass even if nothing changes.
+    """Print how often a recorded policy met its spec, and which cases do not pass even without a change.
 
-    ``older`` are the references that the output file had before.
+    A reference is the recorded episodes with which one or several cases are compared. ``older`` are
+    the references that the output file had before.
     """
     from tltl_runtime.regression.verdict.baseline_run import verdict_if_unchanged
 
@@ -133,7 +134,7 @@ def _success_count(reference: Reference) -> int:
 
 
 def _older_reference(reference: Reference, older: tuple[Reference, ...]) -> Reference | None:
-    """Return the reference in ``older`` that ``reference`` replaces; None without one.
+    """Return the earlier recording in ``older`` that ``reference`` replaces; None if there is none.
 
     Candidates have the same level (name and place), variant and spec. Return the first candidate
     with the same policy. If none has it, return the only candidate, or None if there are several.
@@ -148,7 +149,11 @@ def _older_reference(reference: Reference, older: tuple[Reference, ...]) -> Refe
 
 
 def _advice(pass_rate: float, case: Case, error: float) -> str:
-    """Say how a case can pass, given the pass rate of its baseline."""
+    """Say what the user can change so that ``case`` passes.
+
+    ``pass_rate`` is that of the case's baseline. ``error`` is the allowed probability of a wrong
+    verdict on the case.
+    """
     if pass_rate == 1.0:
         from tltl_runtime.regression.verdict.baseline_run import episodes_for_certainty
 

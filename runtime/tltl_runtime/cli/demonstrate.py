@@ -87,7 +87,10 @@ def command(
 
 
 def _write(folder: Path, episode: Episode, film: str | None, notation: Notation) -> Path:
-    """Write the recording and the pictures of an episode; return the path of the recording."""
+    """Write the recording and a plan (.png) of an episode; return the path of the recording.
+
+    Also write a film unless ``film``, the extension of its file, is None.
+    """
     from tltl_runtime.game.recording_path import SUFFIX, file_stem, new_path
     from tltl_runtime.stealth.recordings.file import to_bytes
     from tltl_runtime.stealth.rendering.plan import draw_episode

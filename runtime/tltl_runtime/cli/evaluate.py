@@ -1,4 +1,4 @@
-"""``tltlc evaluate``: let a trained policy play episodes, and report its figures."""
+"""``tltlc evaluate``: let a trained policy play episodes, and report how often it meets the spec."""
 
 from __future__ import annotations
 
@@ -150,16 +150,19 @@ def command(
 
 
 def _replay_command(policy: Path | None, level: str | None, spec: str | None, seed: int) -> str:
-    """Return the shell command that plays episodes of the same evaluation again."""
+    """Return the shell command that repeats this evaluation.
+
+    The caller adds options that select episodes.
+    """
     words = ["tltlc", "evaluate", *([] if policy is None else [str(policy)])]
     words += [word for name, value in (("--level", level), ("--spec", spec)) if value for word in (name, value)]
     return join([*words, "--seed", str(seed)])
 
 
 def _with_progress(playing: Iterator[PlayedEpisode], count: int) -> Iterator[PlayedEpisode]:
-    """Yield the results and report progress on standard error.
+    """Yield the episodes of ``playing``, and report progress on standard error.
 
-    On a terminal this is a bar, else a line for each tenth of the episodes.
+    On a terminal, the progress is a bar; elsewhere, it is a line for each tenth of the episodes.
     """
     from tltl_runtime.evaluation.player import CHOICES
 
@@ -194,7 +197,7 @@ def _bar(count: int) -> Any:
 
 
 def _print_results(files: EvaluationFiles, json_file: Path | None, folder: Path | None, requested: int) -> None:
-    """Print the report on the played episodes, and write the files.
+    """Print the report on the played episodes; write the JSON report and pictures, if requested.
 
     ``requested`` is the number of episodes to play with sampled actions, and again with the most
     probable ones. Fewer were played if the evaluation was stopped.

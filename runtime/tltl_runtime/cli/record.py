@@ -132,7 +132,7 @@ def _level_and_variant(level: str | None, spec: str | None) -> tuple[str, str]:
 
 
 def _existing_lines(demonstrations: Demonstrations, requested: int) -> list[str]:
-    """Describe, in at most two lines, the recordings that are in the folder already."""
+    """Describe, in at most two lines, the recordings that the folder of demonstrations already has."""
     # If there are enough demonstrations, the last line of the output says so.
     lines = [f"{_count_text(demonstrations, requested)} already"] if 0 < demonstrations.count < requested else []
     if number := len(demonstrations.rejected):
@@ -171,7 +171,7 @@ def _record_person(
 
 
 class _DemonstrationRecorder:
-    """Writes the episodes that a person plays, if they meet the spec.
+    """Writes those episodes that meet the spec, while a person plays.
 
     If the folder of demonstrations cannot be written, an episode goes to the folder for temporary
     files instead, and does not count as a demonstration.

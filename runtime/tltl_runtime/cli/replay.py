@@ -141,7 +141,7 @@ def command(
 def _check_usage(
     context: click.Context, files: tuple[str, ...], path: Path | None, size: tuple[int, int] | None
 ) -> None:
-    """Reject options that would be ignored."""
+    """Raise UsageError for options that the requested output does not use, and for other wrong options."""
     extension = None if path is None else path.suffix.lower()
     if extension is not None and extension not in _ENDINGS:
         raise click.UsageError(f"`{path}` does not end with a known extension: use one of {', '.join(_ENDINGS)}")
@@ -169,7 +169,7 @@ def _check_text(fields: dict[str, Any]) -> str:
 
 
 def _span(episode: Episode, start: float | None, stop: float | None) -> tuple[float, float]:
-    """Return the start and the end of a film or a trace, in seconds.
+    """Return the start and the end of the part of an episode to draw or write, in seconds.
 
     By default, these are the start and the end of the episode.
     """
@@ -183,10 +183,11 @@ def _span(episode: Episode, start: float | None, stop: float | None) -> tuple[fl
 
 
 def _write(path: Path, episode: Episode, span: tuple[float, float], film: Film, size: tuple[int, int] | None) -> None:
-    """Write the output that the extension of the path selects.
+    """Write a plan, a film or the signals of an episode: the extension of ``path`` selects which.
 
-    ``span`` applies to films and signals, and ``film`` to films. ``size``, in pixels, applies to
-    plans. If it is None, the plan has a size that fits its contents.
+    ``span``, the start and the end in seconds, applies to films and signals, and ``film`` to films.
+    ``size``, in pixels, applies to plans. If it is None, the plan has a size that fits its
+    contents.
     """
     from tltlc.api import fileio
 

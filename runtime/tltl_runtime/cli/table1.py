@@ -28,7 +28,7 @@ _SAVING_S = 20.0
 
 @record
 class _Table1Options:
-    """The options of the command."""
+    """The options of ``tltlc table1``."""
 
     folder: Path
     shipped: bool
@@ -37,7 +37,7 @@ class _Table1Options:
 
     @property
     def resume_command(self) -> str:
-        """The shell command that continues the run."""
+        """The shell command that continues a stopped run."""
         words = ["tltlc", "table1", "--out", str(self.folder), *["--shipped"] * self.shipped]
         words += [] if self.minutes is None else ["--minutes", f"{self.minutes:g}"]
         return join([*words, "--workers", str(self.workers)] if self.workers else words)
@@ -93,7 +93,7 @@ def command(folder: Path, shipped: bool, minutes: float | None, workers: Any) ->
 def _table(options: _Table1Options) -> str:
     """Return two tables as text: one over the first 25 episodes, as in the paper, one over all 100.
 
-    Trainings and episodes that are missing are run now.
+    The function first runs the trainings and plays the episodes that are not in the folder yet.
     """
     from tltl_runtime.regression.table1.paper_table import LEVELS, MODELS, RUNS, VARIANTS, TableRow, markdown
     from tltl_runtime.regression.table1.table_cells import EPISODES, SEED, cell_episodes, figures
@@ -128,7 +128,7 @@ def _table(options: _Table1Options) -> str:
 def _training_result(options: _Table1Options, level: str, model: Model) -> TrainedModel | None:
     """Return the result of a model's training; None for the expert.
 
-    If the training is unfinished, it continues now.
+    If the training is missing or unfinished, the function starts or continues it.
     """
     from tltl_runtime.policies.file import read_policy
     from tltl_runtime.policies.shipped import shipped_policies
@@ -161,7 +161,7 @@ def _training_result(options: _Table1Options, level: str, model: Model) -> Train
 
 
 def _train(arguments: list[str]) -> None:
-    """Run ``tltlc train``, which shows its progress. Ctrl-C reaches that process, too."""
+    """Run ``tltlc train`` as a process, which shows its progress. Ctrl-C reaches that process, too."""
     with subprocess.Popen([sys.executable, "-m", "tltlc", "train", *arguments], stdout=sys.stderr) as training:
         try:
             training.wait()

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 def _setting(table: str, key: str) -> Callable[[click.Context, click.Parameter, Any], Any]:
-    """Return the callback of an option that accepts only valid values of a setting.
+    """Return a callback for a click option: it accepts only values that a training setting may have.
 
     The setting is ``key`` in the table ``table`` of a settings file; ``""`` is the top level.
     """
@@ -231,9 +231,9 @@ def _start_lines(run: TrainingRun, *, resume: bool) -> Iterator[str]:
 
 
 def _end_lines(run: TrainingRun, last: TrainingReport, again: str) -> Iterator[str]:
-    """Describe how a training ended, its files and the next steps.
+    """Say how a training ended, where its files are, and what the user can do next.
 
-    ``again`` is the command that resumes it.
+    ``again`` is the command that resumes the training.
     """
     window, folder = last.window, quote(str(run.folder))
     ending = "the spec is met" if last.stop == "met" else f"ended by the limit of {last.stop}"
@@ -247,7 +247,7 @@ def _end_lines(run: TrainingRun, last: TrainingReport, again: str) -> Iterator[s
 
 
 def _finished_text(run: TrainingRun, record: Mapping[str, Any], again: str) -> str:
-    """Describe a training that is not resumed because it has ended.
+    """Say that a training is finished, so that it is not resumed.
 
     ``again`` is the command that resumes the training. The user can add a higher limit to it.
     """

@@ -1,4 +1,4 @@
-"""Let a person play a level in a window, for commands that record the episodes."""
+"""Let a person play a level in a window, for the commands ``tltlc play`` and ``tltlc record``."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def play_at_keyboard(
 ) -> None:
     """Open a window and play episodes of ``env`` until the player stops.
 
-    The game also ends if ``enough`` returns true after an episode. ``recordings`` takes the name
+    Playing also ends if ``enough`` returns true after an episode. ``recordings`` takes the name
     LEVEL-VARIANT, and returns the object that stores the episodes. ``seed`` is the seed of the
     first episode. ``crouch`` is ``hold`` or ``toggle``. Warnings about unreachable goals are
     printed to standard error before the window opens.

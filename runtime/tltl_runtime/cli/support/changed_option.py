@@ -24,7 +24,10 @@ class ChangedCommand(click.Command):
 
 
 def _with_repeated_option(words: Sequence[str]) -> Iterator[str]:
-    """Yield the words, with ``--changed=`` in place of the option and before each of its values."""
+    """Yield the words of a command line, with ``--changed`` repeated before each of its values.
+
+    For example, ``--changed a b`` becomes ``--changed= --changed=a --changed=b``.
+    """
     is_value = False
     for index, word in enumerate(words):
         if word == "--":

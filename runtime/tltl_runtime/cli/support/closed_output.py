@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 @contextmanager
 def ignore_closed_pipe() -> Iterator[None]:
-    """Discard what is printed into a closed pipe, as after ``head``, instead of ending the command."""
+    """Within this context, discard what is printed into a closed pipe, as after ``head``, and go on."""
     before = sys.stdout, sys.stderr
     streams = []
     for name, stream in (("stdout", sys.stdout), ("stderr", sys.stderr)):

@@ -49,16 +49,16 @@ class EvaluationFiles:
     """Collects the results of an evaluation and writes its files.
 
     ``path`` is the policy's file, ``sha256`` the hash of its bytes, in hexadecimal, and ``first``
-    the index of the first episode. ``command`` is the shell command that plays these episodes again,
-    without ``--first`` and ``--episodes``. ``folder``, which is created if it is missing, gets
-    recordings, pictures and the JSON report. ``json_file`` gets the JSON report, too. Each of the
-    two is None if it was not requested. When the first result is added, the report and the pictures
-    of an earlier evaluation are removed from the folder, and so are recordings of another policy on
-    this level. ``removed_files`` names them.
+    the index of the first episode. ``command`` is the shell command that plays these episodes
+    again, without ``--first`` and ``--episodes``. ``folder``, which is created if it is missing,
+    gets recordings, pictures and the JSON report. ``json_file`` gets the JSON report, too. Each of
+    the two is None if it was not requested. When the first result is added, the report and the
+    pictures of an earlier evaluation are removed from the folder, and so are recordings of another
+    policy on this level. ``removed_files`` has the names of the removed files.
 
     Raises:
-        TltlError: TLT0005, a file cannot be written, also from ``add`` and ``write``; TLT0722, a file has
-            the name of a report or a picture, but no evaluation wrote it.
+        TltlError: TLT0005, a file cannot be written, also from ``add`` and ``write``; TLT0722, a
+            file has the name of a report or a picture, but no evaluation wrote it.
     """
 
     def __init__(
@@ -184,7 +184,8 @@ class EvaluationFiles:
     def _remove_older(self, folder: Path) -> tuple[str, ...]:
         """Remove the pictures and the report of an earlier evaluation; return the names of removed files.
 
-        Also remove recordings of another policy on this level, with their plans.
+        Also remove recordings of another policy on this level, with the plans (pictures of the
+        path) beside them.
         """
         choices = "|".join(CHOICES.values())
         recording = re.compile(rf"({re.escape(self._name)}-\d+-\d+-({choices})(-\d+)?){re.escape(SUFFIX)}")
@@ -234,10 +235,9 @@ def _is_report(path: Path) -> bool:
 
 
 def _as_json(evaluation: Evaluation) -> dict[str, Any]:
-    """Return the figures, how failed episodes ended, and the list of episodes.
+    """Return the JSON data of an evaluation: figures, how failed episodes ended, and all episodes.
 
-    The value of ``episodes`` is the list. It replaces the number of episodes, which the figures
-    have under the same key.
+    The value of the key ``episodes`` is the list of episodes, not their number as in ``Figures``.
     """
     figures = {name: value for name, value in to_json(evaluation.figures).items() if name != "episodes"}
     return {
@@ -248,5 +248,5 @@ def _as_json(evaluation: Evaluation) -> dict[str, Any]:
 
 
 def _episode_json(episode: EpisodeSummary) -> dict[str, Any]:
-    """Return an episode in the JSON report."""
+    """Return the data that the JSON report has about an episode."""
     return {key: getattr(episode, key) for key in _EPISODE_KEYS}

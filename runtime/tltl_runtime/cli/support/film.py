@@ -68,7 +68,7 @@ def write_film(path: Path, episode: Episode, span: tuple[float, float], film: Fi
 
 
 def _with_progress(pictures: Iterable[T], count: int) -> Iterator[T]:
-    """Yield the pictures, with a progress bar if standard error is a terminal."""
+    """Yield the pictures of a film, and show a progress bar if standard error is a terminal."""
     if not sys.stderr.isatty():
         yield from pictures
         return

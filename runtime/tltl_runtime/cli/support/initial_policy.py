@@ -27,7 +27,7 @@ _COMMAND = "tltlc train --from"
 
 @record
 class InitialPolicyOptions:
-    """An initial policy and its file."""
+    """The policy with which a training begins, and the path of its file."""
 
     policy: Policy
     path: Path
@@ -39,9 +39,10 @@ class InitialPolicyOptions:
 
 
 def read_policy_option(named: Path) -> InitialPolicyOptions:
-    """Read the policy of ``--from``, named as for `tltlc evaluate`.
+    """Read the policy that ``--from`` names.
 
-    Raises TltlError if the policy cannot be read.
+    ``named`` may be all that ``tltlc evaluate`` accepts: a policy's file, the folder of a training,
+    or the name of a level. Raises TltlError if the policy cannot be read.
     """
     path = policy_file(named)
     return InitialPolicyOptions(read_policy(path), path)
@@ -62,7 +63,7 @@ def level_of_policy(named: Path, initial: InitialPolicyOptions) -> tuple[str, st
 def with_policy_network(
     settings: TrainingSettings, initial: InitialPolicyOptions, config: Path | None
 ) -> TrainingSettings:
-    """Return the settings with the policy's network.
+    """Return the training settings with the network of the initial policy.
 
     Raises:
         TltlError: TLT0941, the file ``config`` sets another network.
@@ -99,7 +100,7 @@ def check_initial_policy(
 
 
 def policy_difference(run: TrainingRun, named: Path) -> str | None:
-    """Return a sentence if a training did not start with this policy; None if it did."""
+    """Return a sentence if a training did not start with the policy ``named``; None if it did."""
     where = f"the training in `{run.folder}` begins with"
     if run.initial is None:
         return f"{where} random weights, not with the policy `{named}`"
@@ -108,7 +109,7 @@ def policy_difference(run: TrainingRun, named: Path) -> str | None:
 
 
 def with_policy_path(run: TrainingRun, named: Path) -> TrainingRun:
-    """Return the training with its initial policy at ``named``, in case the policy has moved."""
+    """Return a training with the new place ``named`` of its initial policy, which may have moved."""
     assert run.initial is not None
     return replace(run, initial=replace(run.initial, path=str(policy_file(named))))
 

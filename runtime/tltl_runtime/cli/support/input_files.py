@@ -11,7 +11,10 @@ T = TypeVar("T")
 
 
 def read_each(files: Sequence[str], read: Callable[[str], T], report: cli.Report) -> Iterator[tuple[str, T]]:
-    """Yield the name of each file and the result of ``read``. Errors go into the report."""
+    """Yield the name of each file and the result of ``read``.
+
+    If ``read`` raises TltlError, add the error to ``report`` and go on with the next file.
+    """
     for name in files:
         try:
             content = read(name)

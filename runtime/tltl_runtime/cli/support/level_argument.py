@@ -16,12 +16,16 @@ from tltlc.api import Diagnostic, TltlError, fileio
 
 
 def names_level(text: str) -> bool:
-    """Whether a text is ``LEVEL`` or ``LEVEL:VARIANT`` of a level of the package, and not an existing path."""
+    """Whether a text is ``LEVEL`` or ``LEVEL:VARIANT`` of a level in the package, and not an existing path."""
     return not fileio.exists(text) and split_level(text)[0] in level_names()
 
 
 def check_spelling(text: str) -> None:
-    """Raise TltlError, TLT0001, if a plain name is not an existing path and resembles the name of a level."""
+    """Raise TltlError, TLT0001, if a text is no existing path, but resembles a level's name.
+
+    Names of levels in the package are compared. A text with a folder or an extension is not
+    checked.
+    """
     name = split_level(text)[0]
     close = get_close_matches(name, level_names(), n=1)
     if close and re.fullmatch(r"[\w-]+", name) and not fileio.exists(text):
@@ -46,7 +50,8 @@ def check_named(policy: Path | None, level: str | None) -> None:
 def check_no_toml(spec: str | None, settings: str = "") -> None:
     """Raise UsageError if a ``.toml`` file is given as a spec.
 
-    The message suggests ``--level`` and, if ``settings`` is an option, this option instead.
+    The message suggests ``--level``. ``settings`` is the command's option for a file of settings,
+    or empty. The message suggests this option, too.
     """
     path = fileio.split_spec_name(spec)[0] if spec else ""
     if path.endswith(".toml"):
@@ -58,7 +63,7 @@ def check_no_toml(spec: str | None, settings: str = "") -> None:
 def check_level_exists(level: str, variant: str, command: str) -> None:
     """Raise TltlError, TLT0001, if a level's file is missing.
 
-    The help suggests ``command`` with ``--level``.
+    The help of the error suggests ``command`` with ``--level``.
     """
     if level.endswith(".toml") and not fileio.exists(level):
         suffix = "" if variant == "v0" else f":{variant}"

@@ -38,7 +38,7 @@ def command(
     sensors: Mapping[str, Any],
     plan: Path | None,
 ) -> None:
-    """Check levels against the compiled specs in ``inputs``; without any, each against its own spec."""
+    """Check levels against the compiled specs ``inputs``; without these, check each against its own spec."""
     if plan is not None and plan.suffix.lower() != ".png":
         raise click.UsageError(f"--plan writes a .png file, not `{plan}`", click.get_current_context())
     check = _LevelCheck(inputs, settings, report, sensors)
@@ -132,7 +132,7 @@ def _supply_text(level: StealthLevel, fspa: Fspa) -> str:
 
 
 def _sensor_text(senses: Observer) -> str:
-    """Return, as text, the parts of the observation that depend on the level, with their sizes."""
+    """Describe the parts of the observation that depend on the level, with their sizes."""
     sensors = senses.sensors
     names = {
         "entities": sensors.entities,

@@ -18,7 +18,7 @@ NAMES: Final = (_STARTER.stem, *level_names())
 
 
 def files(name: str) -> dict[str, str]:
-    """Return the texts of a level, its assets, overlays and spec, and of a README, by name.
+    """Return the texts of a level's files (with assets, overlays, spec) and of a README, by file name.
 
     Names are relative to the level's folder. The level's own file is the first. ``name`` is one of
     :data:`NAMES` or a ``.toml`` file.

@@ -10,7 +10,8 @@ from tltl_runtime.stealth.levels.file import changes, level_names, load_level, v
 def rows() -> Iterator[dict[str, str]]:
     """Yield a row for each variant of each level of the package.
 
-    ``doc`` is what the overlays of the variant change or, without overlays, what the level is about.
+    The value of ``doc`` is what the overlays of the variant change or, without overlays, what the
+    level is about.
     """
     for name in level_names():
         for variant in variants(name):

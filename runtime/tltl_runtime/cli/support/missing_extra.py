@@ -17,9 +17,9 @@ _EXTRAS: Final = {
 
 @contextmanager
 def name_missing_extra(command: str) -> Iterator[None]:
-    """Raise TltlError, TLT0730, if a package is missing that policies or trainings need.
+    """Raise TltlError, TLT0730, if code in this context imports a missing package of an extra.
 
-    The help of the error is the command that installs it.
+    The help of the error says how to install the extra. ``command`` is the command that needs it.
     """
     try:
         yield

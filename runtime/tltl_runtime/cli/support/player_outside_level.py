@@ -1,4 +1,4 @@
-"""Report a player who leaves the level as an error of the level."""
+"""Report a player who leaves the level: it is an error of the level, not a bug."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from contextlib import contextmanager
 
 @contextmanager
 def level_faults() -> Iterator[None]:
-    """Raise TltlError, TLT0806, if a player leaves the level.
+    """Within this context, raise TltlError, TLT0806, if a player has left the level.
 
-    Other errors of the physics are bugs: they propagate.
+    Other errors of the physics engine are bugs: they propagate.
     """
     try:
         yield

@@ -1,4 +1,4 @@
-"""The progress display of a suite, on standard error: a bar on a terminal, else a line now and then."""
+"""Show on standard error how far the episodes of a case are: a bar on a terminal, else lines."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ _EPISODES_BETWEEN_LINES: Final = 25
 
 
 class RegressionDisplay:
-    """Shows the progress of a case. Call the display, like a function, after each episode.
+    """Shows how many episodes of a case were played, and how many of them met the spec.
 
-    As a context manager, it removes the bar at the end. ``most`` is printed before the number of
-    episodes of a case, for example ``at most``.
+    Call the display, like a function, after each episode. As a context manager, it removes the bar
+    at the end. ``most``, such as ``at most``, is printed before the greatest number of episodes.
     """
 
     def __init__(self, most: str = "") -> None:

@@ -46,10 +46,10 @@ _NOT_UTF8: Final = re.compile("[\ud800-\udfff]")
 class SuiteRun:
     """The outcome of a run of a suite.
 
-    ``folder`` is the folder of the run. ``cases`` are the judged cases, in the suite's order.
-    ``left_out`` are the names of the cases that depend on none of the ``changed`` files. ``missing`` are
-    the names of the cases that were not judged because the run was stopped. ``complete`` says whether
-    all requested cases were judged and retrained.
+    ``folder`` is the folder of the run's reports and results. ``cases`` are the judged cases, in
+    the suite's order. ``left_out`` are the names of the cases that depend on none of the
+    ``changed`` files. ``missing`` are the names of the cases that were not judged because the run
+    was stopped. ``complete`` says whether all requested cases were judged and retrained.
     """
 
     suite: Suite
@@ -73,7 +73,7 @@ def _junit_text(outcome: SuiteRun) -> str:
 
 
 def _page_text(outcome: SuiteRun) -> str:
-    """Return the HTML page."""
+    """Return the HTML report as text."""
     suite = outcome.suite
     is_shipped = suite.path == SHIPPED
     contents = SuiteReport(
@@ -90,7 +90,7 @@ def _page_text(outcome: SuiteRun) -> str:
 
 
 def _cases_not_run(outcome: SuiteRun) -> Iterator[NotRun]:
-    """Yield the cases that were not judged, in the suite's order."""
+    """Yield the cases that were not judged in this run, with the reason, in the suite's order."""
     unaffected = "--changed names no file"
     if outcome.changed:
         names = short_list([f"`{file}`" for file in outcome.changed], _MOST_NAMED)
@@ -108,7 +108,7 @@ def _cases_not_run(outcome: SuiteRun) -> Iterator[NotRun]:
 
 
 def _earlier_verdict(outcome: SuiteRun, name: str) -> Verdict | None:
-    """Return the verdict on a case that an earlier run stored in the folder; None without one."""
+    """Return the verdict on a case that an earlier run stored in the folder of the run; None without one."""
     path = case_folder(outcome.suite, name, outcome.folder / CASES) / _REPORT
     with suppress(OSError, ValueError, KeyError, TypeError, RecursionError):
         verdict = fileio.load_json(path, fileio.limits.REPORT)["content"]["verdict"]
@@ -130,11 +130,11 @@ REPORTS: Final[Mapping[str, Callable[[SuiteRun], str]]] = {
 
 
 def write_reports(outcome: SuiteRun, files: Mapping[str, Path]) -> Path | None:
-    """Write the requested reports, and the page into the folder of the run.
+    """Write the requested reports, and an HTML page into the folder of the run.
 
-    ``files`` are the files of reports, by their options. Return the path of the requested page, or
-    else of the page in the folder. If the run was stopped before its first case and no page was
-    requested, write no page and return None.
+    ``files`` maps the option of each requested report, such as ``--json``, to the file to write.
+    Return the path of the page that ``--html`` requests, or else of the page in the folder. If the
+    run was stopped before its first case and no page was requested, write no page and return None.
 
     Raises:
         TltlError: TLT0005, a file cannot be written; errors from drawing the page.
@@ -152,7 +152,7 @@ def write_reports(outcome: SuiteRun, files: Mapping[str, Path]) -> Path | None:
 
 
 def _reported_case(case: FinishedCase, suite: Suite, folder: Path) -> ReportedCase:
-    """Return a case with the data that the page draws."""
+    """Return a case with the data that the HTML page needs to draw it."""
     if case.prepared is None or case.reference is None:
         return ReportedCase(case.report)
     episodes = _episodes(case, case_folder(suite, case.report.name, folder / CASES))
@@ -168,9 +168,9 @@ def _reported_case(case: FinishedCase, suite: Suite, folder: Path) -> ReportedCa
 
 
 def _baseline_level(ready: PreparedCase, reference: Reference) -> Level | None:
-    """Return the level that the baseline was recorded on; None if it is unknown.
+    """Return the level on which a reference was recorded; None if it is unknown.
 
-    If the level has changed, it is loaded from the texts in the baseline.
+    If the level has changed since, it is loaded from the texts in the baseline.
     """
     return ready.level if ready.played.files == reference.played.files else baseline_level(reference)
 
@@ -185,7 +185,7 @@ def _curve(case: FinishedCase, folder: Path) -> bytes:
 
 
 def _episodes(case: FinishedCase, folder: Path) -> dict[int, Episode]:
-    """Return the recorded episodes by index. Damaged recordings are left out."""
+    """Read the recorded episodes of a case; return them by index. Damaged recordings are left out."""
     episodes: dict[int, Episode] = {}
     for index, name in case.report.recordings:
         with suppress(TltlError):

@@ -35,8 +35,9 @@ _EXPECTED_NOTE: Final = "v1 and v2 of the shipped levels are changed on purpose:
 class RegressOptions:
     """The options of ``tltlc regress``.
 
-    ``files`` are the files of reports, by their options. ``folder`` is the folder of the run.
-    ``minutes`` limits the retraining of each case that does not pass; None: no retraining.
+    ``files`` maps the option of each requested report, such as ``--json``, to the file to write.
+    ``folder`` is the folder of the run. ``minutes`` limits the retraining of each case that does
+    not pass; None: no retraining.
     """
 
     suite: Path | None
@@ -51,12 +52,12 @@ class RegressOptions:
 
     @property
     def printed_option(self) -> str | None:
-        """The option of the report that goes to standard output; None if the text goes there."""
+        """The option, such as ``--json``, of the report for standard output; None if the text goes there."""
         return next((option for option, path in self.files.items() if is_standard_output(path)), None)
 
     @property
     def report_files(self) -> dict[str, Path]:
-        """The files of reports, by their options, without a report that goes to standard output."""
+        """The files to write, by the options of their reports; standard output is left out."""
         return {option: path for option, path in self.files.items() if not is_standard_output(path)}
 
 
@@ -117,7 +118,9 @@ def _select_cases(suite: Suite, options: RegressOptions) -> Selection:
 
 
 def _references(suite: Suite, cases: Sequence[Case]) -> tuple[Reference, ...]:
-    """Return the references of the baseline; none if it has errors but there are no cases to play.
+    """Return the references (recorded episodes) of the suite's baseline.
+
+    If the baseline cannot be read, but there are no ``cases`` to play, the result is empty.
 
     Raises:
         TltlError: the errors of reading the baseline, if there are cases to play.
@@ -131,7 +134,7 @@ def _references(suite: Suite, cases: Sequence[Case]) -> tuple[Reference, ...]:
 
 
 def _warn_unnamed(suite: Suite, left_out: Sequence[Case], references: tuple[Reference, ...]) -> None:
-    """Warn about files that have changed but were not named as changed."""
+    """Warn about files that have changed since the baseline, but that ``--changed`` does not name."""
     for name, cases in unnamed_changes(suite, left_out, references).items():
         names = plain_text(short_list(cases, _MOST_NAMED))
         message = (
@@ -163,7 +166,7 @@ def _play(
 
 
 def _retrain(suite: Suite, options: RegressOptions, results: list[FinishedCase]) -> None:
-    """Retrain for the cases in ``results`` that do not pass, if requested."""
+    """Retrain the policies of the cases in ``results`` that do not pass, if ``--retrain`` is given."""
     if options.minutes is not None:
         from tltl_runtime.cli.support.retraining import Retraining, retrain_cases
 
@@ -173,7 +176,7 @@ def _retrain(suite: Suite, options: RegressOptions, results: list[FinishedCase])
 
 
 def _untrained_count(options: RegressOptions, results: list[FinishedCase]) -> int:
-    """Return the number of cases whose requested training is not finished."""
+    """Return the number of cases whose retraining is requested, but not finished."""
     return 0 if options.minutes is None else sum(case.case_to_train is not None for case in results)
 
 
@@ -225,7 +228,10 @@ def _report_after_error(outcome: SuiteRun, options: RegressOptions) -> None:
 
 
 def _are_expected(outcome: SuiteRun) -> bool:
-    """Whether cases do not pass, and all of them play another variant than their baselines."""
+    """Whether it is no surprise that cases do not pass.
+
+    That is so if some cases do not pass, and each of these plays another variant than its baseline.
+    """
     findings = {case.report.name for case in outcome.cases if case.report.verdict != "pass"}
     return bool(findings) and all(
         case.variant != case.reference for case in outcome.suite.cases if case.name in findings

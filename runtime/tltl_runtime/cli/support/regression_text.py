@@ -28,7 +28,11 @@ def case_lines(report: CaseReport, width: int, *, is_cached: bool) -> Iterator[s
 
 
 def summary_line(reports: Sequence[CaseReport], missing: Sequence[str] = ()) -> str:
-    """Return the counts of verdicts and of the outcomes of trainings; ``missing`` cases were not judged."""
+    """Return one line: how many cases got each verdict, and how many retrainings had each outcome.
+
+    ``missing`` are the names of cases that were not judged. They only matter if there are no
+    reports.
+    """
     if not reports:
         return "no case was judged" if missing else "there was no case to play"
     text = f"{len(reports)} case{'s' * (len(reports) != 1)}: {_counts([report.verdict for report in reports], _COLORS)}"

@@ -33,10 +33,11 @@ _FATAL_ERRORS: Final = WORKER_ERRORS | {"TLT0005"}
 
 @record
 class Retraining:
-    """The options of retraining: at most ``minutes`` for each case, below the ``folder`` of the run.
+    """The options of retraining.
 
-    ``again`` is the command that continues a stopped run, without --minutes. With ``fresh``, stored
-    trainings are not reused.
+    The training of each case takes at most ``minutes``. Its files go into a folder inside
+    ``folder``, the folder of the run. ``again`` is the command that continues a stopped run,
+    without --minutes. With ``fresh``, stored trainings are not reused.
     """
 
     suite: Suite
@@ -48,7 +49,7 @@ class Retraining:
 
 
 def retrain_cases(options: Retraining, results: list[FinishedCase], *, to_stderr: bool) -> None:
-    """Train for each case that needs it; print each result at once and store it in ``results``.
+    """Retrain the policy of each case that needs it; print each result and store it in ``results``.
 
     An error of one case, for example because its level was edited meanwhile, is printed to standard
     error, and the next case follows.
@@ -83,7 +84,10 @@ def retrain_cases(options: Retraining, results: list[FinishedCase], *, to_stderr
 
 @contextmanager
 def _case_errors(name: str) -> Iterator[None]:
-    """Print errors of a case; raise TltlError for errors that affect all cases."""
+    """Within this context, print an error of the case ``name`` instead of raising it.
+
+    Errors that affect all cases are raised.
+    """
     try:
         with level_faults():
             yield
@@ -95,7 +99,10 @@ def _case_errors(name: str) -> Iterator[None]:
 
 
 def _train(options: Retraining, name: str, run: TrainingRun) -> None:
-    """Start or continue the training to its end, unless it is already finished."""
+    """Run the training of the case ``name`` to its end, unless it is already finished.
+
+    A training that was stopped continues.
+    """
     exists = (run.folder / RUN).exists()
     kept = exists and is_stored(run)
     if kept and finished_record(run):
@@ -111,13 +118,13 @@ def _train(options: Retraining, name: str, run: TrainingRun) -> None:
 
 
 def _make_room(options: Retraining, name: str, run: TrainingRun) -> None:
-    """Make room for a new training, and print where an earlier one was moved."""
+    """Clear the folder of a new training, and print where an earlier training was moved."""
     if run.folder.is_dir() and (new_folder := make_room(options.suite, run.folder)):
         click.echo(f"{plain_text(name)}: the training that was in {run.folder} is now in {new_folder}", err=True)
 
 
 def _result(options: Retraining, case: FinishedCase, run: TrainingRun) -> RetrainingResult:
-    """Return the result of the training, and show the progress of its episodes on standard error."""
+    """Let the retrained policy of a case play, and return the result; show progress on standard error."""
     assert case.prepared is not None
     shown_case = replace(case.prepared.case, name=f"{case.report.name}, retrained")
     with RegressionDisplay("at most") as display:
@@ -127,7 +134,7 @@ def _result(options: Retraining, case: FinishedCase, run: TrainingRun) -> Retrai
 
 
 def _lines(options: Retraining, name: str, result: RetrainingResult) -> Iterator[str]:
-    """Yield the lines that describe the result of a training and the next steps."""
+    """Yield the lines that describe the result of a training and what the user can do next."""
     yield f"{name}, retrained: {result.text}"
     policy = quote(str(options.folder / result.policy))
     if result.outcome != "learned":

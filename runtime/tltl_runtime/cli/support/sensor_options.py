@@ -57,7 +57,7 @@ def senses_options(command: Function) -> Function:
 
 
 def option_of(key: str, sensors: Sensors) -> str:
-    """Return the command-line option that selects one part of these sensors, quoted for a shell.
+    """Return the command-line option that selects one part of the agent's sensors, quoted for a shell.
 
     ``key`` is the part: ``entities``, ``variables`` or ``map``.
     """
@@ -69,7 +69,7 @@ def option_of(key: str, sensors: Sensors) -> str:
 
 
 class _Names(_Type):
-    """A list ``a,b`` of one or more names."""
+    """The click type of an option value ``a,b``: a list of one or more names."""
 
     name = "names"
 
@@ -83,7 +83,10 @@ class _Names(_Type):
 
 
 class _Map(_Type):
-    """A map ``cell=0.5,extent=15,types=wall,low``: keys with values, in any order; ``types`` may have several."""
+    """The click type of an option value such as ``cell=0.5,extent=15,types=wall,low``.
+
+    The keys may come in any order, and ``types`` may have several values. The result is a dict.
+    """
 
     name = "map"
 
@@ -104,7 +107,10 @@ class _Map(_Type):
         }
 
     def _number(self, key: str, items: list[str], param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """Convert the value of a numeric key. Unknown keys are reported later, with the level."""
+        """Convert the value of ``key``: to a number if it is ``cell`` or ``extent``, else keep the text.
+
+        Unknown keys are reported later, when the sensors are checked against the level.
+        """
         kind = {"cell": float, "extent": int}.get(key, str)
         try:
             (item,) = items

@@ -35,7 +35,7 @@ class Display(Protocol):
     """Shows the progress of a training."""
 
     def show_search(self, progress: SearchProgress) -> None:
-        """Show the progress of the search that precedes the training."""
+        """Show the progress of the search for ways to meet the spec, which precedes the training."""
 
     def show_attempt(self, attempt: Attempt) -> None:
         """Show the progress of recording the demonstrations that precede the training."""
@@ -46,10 +46,10 @@ class Display(Protocol):
 
 @contextmanager
 def display(run: TrainingRun, again: str) -> Iterator[Display]:
-    """Yield a display that writes to standard error.
+    """Return a context manager for a display that writes the training's progress to standard error.
 
-    ``again`` is the command that resumes the training. If torchrun started several processes, only the
-    first one writes.
+    ``again`` is the command that resumes the training. If torchrun started several processes, only
+    the first one writes.
     """
     if process_group().rank > 0:
         yield _NoDisplay()

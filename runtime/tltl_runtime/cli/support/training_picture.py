@@ -44,7 +44,10 @@ _BAR: Final = 24, 10
 
 
 class TrainingDisplay:
-    """Draws the last report of a training. The times in the picture go on between reports."""
+    """Draws the last report of a training as text and bars.
+
+    The times in the picture go on between reports.
+    """
 
     def __init__(self, run: TrainingRun, console: Console) -> None:
         self._run, self._console = run, console
@@ -57,7 +60,7 @@ class TrainingDisplay:
         self._resumed = (run.folder / CHECKPOINT).exists()
 
     def show_search(self, progress: SearchProgress) -> None:
-        """Store the progress of the search."""
+        """Store the progress of the search for ways to meet the spec."""
         self._search = progress
 
     def show_attempt(self, attempt: Attempt) -> None:
@@ -90,7 +93,7 @@ class TrainingDisplay:
         )
 
     def _before_first_iteration(self, bar: int) -> RenderableType:
-        """Return the picture before the first iteration."""
+        """Return the picture while the agent does not train yet: the progress of searching or recording."""
         exploration, searched = self._run.settings.exploration, self._search
         if attempt := self._attempt:
             return Text(recording_line(attempt, self._run.settings.imitation.demonstrations))
@@ -106,7 +109,10 @@ class TrainingDisplay:
         return Group(table, Text(f"\n{search_line(searched)}\n\n{search_end(exploration)}\n\n{SEARCH_IS_LOST}"))
 
     def _after_iteration(self, report: TrainingReport, bar: int, room: int) -> RenderableType:
-        """Return the picture after an iteration, in ``room`` lines. With less room, it shows fewer states."""
+        """Return the picture after an iteration of the training, in ``room`` lines.
+
+        The fewer lines there are, the fewer states of the automaton it shows.
+        """
         now, run, window, stop = time.monotonic(), self._run, report.window, self._run.settings.stop
         space = [Text()] if room >= _LINES_FOR_SPACE else []
         since = 0.0 if report.stop else now - self._report_time
@@ -134,7 +140,7 @@ class TrainingDisplay:
 
 
 def _success_table(report: TrainingReport, stop: Stop, bar: int) -> Table:
-    """Return the pass rate, and the progress towards the stopping rule."""
+    """Return a table with the pass rate, the episodes met in a row, and the mean progress."""
     window, row, required = report.window, report.unbroken, stop.windows * stop.episodes
     table = _grid(bar)
     rate_of = f"of {window.count} episodes"
@@ -155,7 +161,7 @@ def _ends_title(window: EpisodeWindow, shown_states: int, states: int) -> str:
 def _state_table(window: EpisodeWindow, fspa: Fspa, states: tuple[State, ...], count: int, bar: int) -> Table:
     """Return a table of the ``count`` states in which most of the last episodes ended.
 
-    A row shows the share of these episodes, and what remained to be done in the state.
+    A row shows the share of episodes that ended in the state, and what remained to be done in it.
     """
     shown_states = sorted(states, key=lambda state: -window.states.get(state.id, 0.0))[:count]
     table = _grid(bar)
@@ -170,7 +176,10 @@ def _state_table(window: EpisodeWindow, fspa: Fspa, states: tuple[State, ...], c
 
 
 def _figures(report: TrainingReport, stop: Stop, since: float) -> list[str]:
-    """Return the lines with figures, ``since`` seconds after the report."""
+    """Return lines about reward, steps, speed and time, ``since`` seconds after the report.
+
+    If there was a search, or if demonstrations are imitated, a line describes each of them.
+    """
     window, iteration = report.window, report.iteration
     best = "" if report.best_pass_rate is None else f"; best so far: met in {percent(report.best_pass_rate)}"
     learning = iteration.learn_s / ((iteration.learn_s + iteration.collect_s) or 1.0)

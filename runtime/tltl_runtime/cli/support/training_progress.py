@@ -30,7 +30,7 @@ def train_with_display(run: TrainingRun, *, resume: bool, again: str) -> Trainin
 
 
 def stopped_line(run: TrainingRun, again: str) -> str | None:
-    """Describe a training that Ctrl-C has stopped; None if it had not started."""
+    """Say that Ctrl-C has stopped a training, and how to go on; None if the training had not started."""
     if not (run.folder / RUN).exists():
         return None
     before = "during the search, which will start again" if run.settings.searches else "before the first iteration"
@@ -39,7 +39,10 @@ def stopped_line(run: TrainingRun, again: str) -> str | None:
 
 @contextmanager
 def _worker_errors(run: TrainingRun, again: str) -> Iterator[None]:
-    """Raise TltlError, TLT0871, if a worker is lost. ``again`` is the command that resumes the training."""
+    """Within this context, raise TltlError, TLT0871, if a worker process is lost.
+
+    ``again`` is the command that resumes the training.
+    """
     try:
         yield
     except WorkerError as error:

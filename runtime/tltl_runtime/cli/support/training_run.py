@@ -170,7 +170,7 @@ def resumed_run(options: TrainOptions, folder: Path) -> TrainingRun:
 
 
 def check_limits(run: TrainingRun) -> None:
-    """Raise TltlError, TLT0862, if a resumed training gets a limit that it has already passed."""
+    """Raise TltlError, TLT0862, if a new limit of a resumed training is already passed."""
     stop, before = run.settings.stop, read_run(run.folder).settings.stop
     checkpoint = None if stop == before else read_checkpoint(run.folder / CHECKPOINT)
     if checkpoint is None:
@@ -202,10 +202,10 @@ def _level_and_variant(options: TrainOptions, initial: InitialPolicyOptions | No
 
 
 def _with_level_path(run: TrainingRun, options: TrainOptions) -> TrainingRun:
-    """Return the training with the path of ``--level``, if that is the same level.
+    """Return the training with the path that ``--level`` gives for its level, which may have moved.
 
-    If it is another level, return the training unchanged. Without ``--level``, check that the file
-    of the training's level exists.
+    If ``--level`` names another level, return the training unchanged. Without ``--level``, check
+    that the file of the training's level exists.
     """
     if options.level is None:
         check_level_exists(run.level, run.variant, resume_command(run.folder))
@@ -264,7 +264,7 @@ def _with_file(settings: TrainingSettings, path: Path) -> TrainingSettings:
 
 
 def _with_limits(settings: TrainingSettings, options: TrainOptions) -> TrainingSettings:
-    """Return the settings with the limits, the workers and the device that options give."""
+    """Return the settings with the limits, workers and device of ``options`` in place of their own."""
     stop, rollout = settings.stop, settings.rollout
     if options.workers == "ray":
         rollout = replace(rollout, pool="ray")
@@ -285,7 +285,7 @@ def _value_or(value: T | None, default: T) -> T:
 
 
 def _differences(run: TrainingRun, options: TrainOptions, settings: TrainingSettings) -> Iterator[str]:
-    """Yield a sentence for each difference between a training and the options."""
+    """Yield a sentence for each option that contradicts the training to be resumed."""
     where = f"the training in `{run.folder}`"
     if options.level is not None:
         path, variant = split_level(options.level)

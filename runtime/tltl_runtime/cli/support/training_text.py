@@ -15,7 +15,7 @@ SEARCHED_AGAIN: Final = "the pass rate no longer rises: a random search for ways
 
 
 def report_line(report: TrainingReport, stop: Stop) -> str:
-    """Describe a report in one line."""
+    """Describe the progress that a training reports after an iteration, in one line."""
     window = report.window
     parts = [f"iteration {report.iteration.number}: {report.steps:,} steps in {duration(report.seconds)}"]
     if window.count:
@@ -34,13 +34,13 @@ def report_line(report: TrainingReport, stop: Stop) -> str:
 
 
 def recording_line(attempt: Attempt, requested: int) -> str:
-    """Describe the progress of recording the expert's demonstrations in one line."""
+    """Say in one line whether the expert's last episode is kept, and how many demonstrations there are."""
     seed, fate = attempt.episode.seed, "is kept" if attempt.path else "fails and is not kept"
     return f"recording the expert: {attempt.kept} of {requested} demonstrations, the episode of seed {seed} {fate}"
 
 
 def demonstrations_line(summary: ImitationSummary) -> str:
-    """Describe the imitated demonstrations in one line."""
+    """Describe in one line the demonstrations that an agent imitates."""
     count = f"{summary.episodes} demonstration{'s' * (summary.episodes != 1)}"
     text = f"imitating {count} of {summary.decisions:,} decisions, by {' and '.join(summary.players)}"
     left = len(summary.left_out)
@@ -48,7 +48,7 @@ def demonstrations_line(summary: ImitationSummary) -> str:
 
 
 def search_line(progress: SearchProgress) -> str:
-    """Describe the progress of the search in one line."""
+    """Describe in one line the progress of the search for ways to meet the spec."""
     if count := len(progress.lengths):
         ways = f"{count} way{'s' * (count > 1)} to meet the spec, the shortest of {min(progress.lengths)} steps"
     else:
@@ -58,13 +58,13 @@ def search_line(progress: SearchProgress) -> str:
 
 
 def search_end(exploration: SearchSettings) -> str:
-    """Say in a sentence when the search ends."""
+    """Say in a sentence when the search for ways to meet the spec ends."""
     ways = "1 way is" if exploration.ways == 1 else f"{exploration.ways} ways are"
     return f"The search ends when {ways} found, at the latest after {exploration.steps:,} steps."
 
 
 def search_result_line(progress: SearchProgress) -> str:
-    """Describe the result of the search in one line of at most 72 characters."""
+    """Describe the result of the search before a training in one line of at most 72 characters."""
     spent, count = duration(progress.seconds), len(progress.lengths)
     if not count:
         return f"search: no way found in {spent}; episodes begin at the level's start"
@@ -72,21 +72,28 @@ def search_result_line(progress: SearchProgress) -> str:
 
 
 def confirmation_line(number: int, confirmation: Confirmation) -> str:
-    """Describe the result of a confirmation after iteration ``number`` in one line of at most 72 characters."""
+    """Say, in at most 72 characters, whether a policy met the spec in fresh episodes, too.
+
+    These episodes confirm the policy after iteration ``number`` of its training.
+    """
     if confirmation.passed:
         return f"confirmed: the policy met it in {confirmation.of} fresh episodes, too"
     return f"not confirmed after iteration {number}: fresh episode {confirmation.met + 1} of {confirmation.of} failed"
 
 
 def seconds_left(report: TrainingReport, stop: Stop) -> float:
-    """Estimate the seconds until a limit ends the training, from its speed since the search."""
+    """Estimate the seconds until a limit ends the training.
+
+    The estimate uses the mean speed since the end of the search, or since the start without a
+    search.
+    """
     trained_s = max(0.0, report.seconds - (report.searched.seconds if report.searched else 0.0))
     left = max(0.0, (stop.steps - report.steps) * trained_s / max(report.steps, 1))
     return min(left, max(0.0, stop.minutes * 60 - report.seconds)) if stop.minutes else left
 
 
 def minutes(number: float) -> str:
-    """Format a number of minutes."""
+    """Return a number of minutes as text, for example ``1 minute``."""
     return f"{number:g} minute{'s' * (number != 1)}"
 
 

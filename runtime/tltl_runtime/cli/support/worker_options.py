@@ -14,12 +14,12 @@ else:
 
 
 class WorkersType(_Type):
-    """The number of processes, 0 for the number of cores, or ``ray``."""
+    """The click type of ``--workers``: a number of processes, 0 for the number of cores, or ``ray``."""
 
     name = "workers"
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """Convert the value to a number or ``ray``."""
+        """Convert the value to a number or to ``ray``."""
         if value == "ray" or isinstance(value, int):
             return value
         from tltl_runtime.training.files.settings_file import KINDS
