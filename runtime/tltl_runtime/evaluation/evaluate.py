@@ -98,9 +98,9 @@ def results(
 ) -> Generator[PlayedEpisode]:
     """Play the requested episodes and yield them in order. Closing the iterator ends the workers.
 
-    While no core of a Ray cluster is free, ``waiting`` is called with the seconds that are left to
-    wait. If a worker is lost, the error shows a command that plays only the lost episode.
-    ``replay_command`` returns that command; by default it is ``tltlc evaluate``.
+    While no core of a Ray cluster is free, ``waiting`` is called now and then with the seconds that
+    are left to wait. If a worker is lost, the error shows a command that plays only the lost
+    episode. ``replay_command`` returns that command; by default it is ``tltlc evaluate``.
 
     Raises:
         TltlError: TLT0850, a worker was lost; TLT0730, Ray is requested and not installed; TLT0852,
@@ -126,7 +126,8 @@ def local_results(
 ) -> Generator[PlayedEpisode]:
     """Play the requested episodes on this machine and yield them in order, like :func:`results`.
 
-    ``make`` returns the player for a process. It must be picklable if there are worker processes.
+    Each process calls ``make`` once, which returns its player of episodes. If there are worker
+    processes, ``make`` must be picklable.
 
     Raises:
         TltlError: TLT0850, a worker was lost; the message names its episode and the evaluation's

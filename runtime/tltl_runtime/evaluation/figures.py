@@ -31,9 +31,9 @@ class Figures:
     """The statistics of ``episodes`` episodes.
 
     ``pass_rate`` is in [0, 1]; ``pass_interval`` is its 95 % Wilson interval. Each other field has
-    a mean and a standard deviation over the episodes. The value of an episode is its best progress,
-    in [0, 1], for ``progress``; its undiscounted return for ``reward``; and its number of decisions
-    for ``steps``.
+    a mean and a standard deviation over the episodes. ``progress`` is about the best progress of
+    each episode, in [0, 1], ``reward`` about its undiscounted return, and ``steps`` about its
+    number of decisions.
     """
 
     episodes: int
@@ -54,7 +54,7 @@ class Evaluation:
 
 
 def figures_of(episodes: Sequence[EpisodeSummary]) -> Figures:
-    """Return the figures of some episodes. Raises ValueError if there are none."""
+    """Return the statistics of some episodes. Raises ValueError if there are none."""
     passed = sum(episode.success for episode in episodes)
     # Compute this first: without episodes, it raises an error with a clear message.
     interval = wilson(passed, len(episodes))
@@ -69,12 +69,12 @@ def figures_of(episodes: Sequence[EpisodeSummary]) -> Figures:
 
 
 def evaluation_of(episodes: Sequence[EpisodeSummary]) -> Evaluation:
-    """Return the evaluation with these episodes. Raises ValueError if there are none."""
+    """Return the statistics, failures and summaries of some episodes. Raises ValueError if there are none."""
     return Evaluation(figures_of(episodes), _failure_groups(episodes), tuple(episodes))
 
 
 def _failure_groups(episodes: Sequence[EpisodeSummary]) -> tuple[FailureGroup, ...]:
-    """Group the failed episodes by state and end, the most frequent group first."""
+    """Group the failed episodes by how and in which state they ended, the largest group first."""
     groups: dict[tuple[int, str, End], list[int]] = {}
     for episode in episodes:
         if not episode.success:

@@ -1,4 +1,4 @@
-"""The setup of an evaluation, and the player of episodes that each worker makes."""
+"""The setup of an evaluation, and the player that each worker makes to play its episodes."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ class Setup:
     """The setup of an evaluation: ``policy`` plays a level with a spec and default reward options.
 
     ``level`` and ``variant`` are arguments of :meth:`~tltl_runtime.game.game.Game.load_level`.
-    ``seed`` is the seed of the evaluation. ``params`` are in SI units. ``recorded`` says which
-    episodes to record. Unless it is None, the results also have the trajectories of all episodes.
-    ``player`` is the name of the policy in recordings.
+    ``seed`` is the seed of the evaluation. ``params`` are the values of the spec's params, in SI
+    units. ``recorded`` says which episodes to record. Unless it is None, the results also have the
+    trajectories of all episodes. ``player`` is the name of the policy in recordings.
     """
 
     policy: Policy
@@ -68,17 +68,17 @@ class PlayedEpisode:
 
 
 class EpisodePlayer(Protocol):
-    """A player of episodes, one after the other."""
+    """What a worker needs to play episodes, one after the other."""
 
     def play(self, task: EpisodeRequest) -> PlayedEpisode:
-        """Play one episode."""
+        """Play the requested episode to its end, and return it."""
 
     def close(self) -> None:
-        """Free the game."""
+        """Free the environment and its resources."""
 
 
 class Player:
-    """Plays the episodes of an evaluation with its policy, one after the other.
+    """Lets the policy of an evaluation play the requested episodes, one after the other.
 
     Each player has an environment of its own.
     """
@@ -100,7 +100,7 @@ class Player:
             self._env = self._recorder = self._game.recorder(self._env)
 
     def play(self, task: EpisodeRequest) -> PlayedEpisode:
-        """Play one episode."""
+        """Play the requested episode to its end, and return it."""
         setup = self._setup
         # In one thread, equal observations give equal logits on any number of cores.
         with blas_threads(1):
@@ -114,5 +114,5 @@ class Player:
         return PlayedEpisode(task, played, trajectory(episode), recording)
 
     def close(self) -> None:
-        """Free the game."""
+        """Free the environment and its resources."""
         self._env.close()

@@ -17,10 +17,10 @@ PATIENCE_S: Final = 120.0
 
 @contextmanager
 def ray_workers(setup: Setup, most: int, waiting: Callable[[float], None]) -> Iterator[list[RayWorker]]:
-    """Start a worker on each free core of the cluster, up to ``most``.
+    """Return a context manager that starts a worker on each free core of a Ray cluster, up to ``most``.
 
-    The workers end after the context. ``waiting`` is called now and then with the seconds that are
-    left to wait for the first worker.
+    It gives the list of the workers that have started, and ends them at its exit. ``waiting`` is
+    called now and then with the seconds that are left to wait for the first worker.
 
     Raises:
         TltlError: the errors of :func:`cluster`; TLT0852, no worker starts in time.
@@ -37,7 +37,7 @@ def ray_workers(setup: Setup, most: int, waiting: Callable[[float], None]) -> It
 
 
 class RayWorker:
-    """A player in the cluster; ``setup`` is a Ray reference to its :class:`Setup`."""
+    """A worker in a process of a Ray cluster (an actor); ``setup`` is a Ray reference to a :class:`Setup`."""
 
     def __init__(self, ray: Any, setup: Any) -> None:
         self._ray, self._setup = ray, setup
@@ -47,7 +47,7 @@ class RayWorker:
     def play(self, task: EpisodeRequest) -> Future[PlayedEpisode]:
         """Start to play an episode; return a future of its result.
 
-        The future raises :class:`WorkerLostError` if the actor ends.
+        The future raises :class:`WorkerLostError` if the worker's process ends.
         """
         future: Future[PlayedEpisode] = Future()
         playing = self.actor.play.remote(self._setup, task).future()
@@ -55,7 +55,7 @@ class RayWorker:
         return future
 
     def close(self) -> None:
-        """End the actor."""
+        """End the process of this worker."""
         self._ray.kill(self.actor)
 
     def _pass_on(self, done: Future[PlayedEpisode], future: Future[PlayedEpisode]) -> None:
@@ -71,7 +71,7 @@ class RayWorker:
 
 
 class _EvaluationActor:
-    """An actor that makes its player in the first call of ``play``.
+    """A Ray actor that plays episodes. It makes its :class:`Player` in the first call of ``play``.
 
     If that call fails, Ray reports the error. If a constructor failed, Ray would report only that
     it failed.

@@ -12,20 +12,20 @@ from tltlc.api import Diagnostic, TltlError
 
 
 class WorkerLostError(Exception):
-    """Raised if a worker ended before it returned its result; the message says how."""
+    """Raised if a worker ended before it returned its episode; the message says how it ended."""
 
 
 class EpisodeWorker(Protocol):
     """Plays one episode at a time, for example in another process."""
 
     def play(self, task: EpisodeRequest) -> Future[PlayedEpisode]:
-        """Start an episode; return a future of its result.
+        """Start to play the requested episode; return a future of its result.
 
-        The future raises the exception of the game, or :class:`WorkerLostError`.
+        The future raises the exception that the episode raised, or :class:`WorkerLostError`.
         """
 
     def close(self) -> None:
-        """Free the resources."""
+        """End the worker and free its resources."""
 
 
 ReplayCommand = Callable[[EpisodeRequest], str]

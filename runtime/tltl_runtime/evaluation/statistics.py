@@ -22,7 +22,7 @@ class Spread:
 
 
 def spread_of(values: Sequence[float]) -> Spread:
-    """Return the mean and the sample standard deviation.
+    """Return the mean and the sample standard deviation of ``values``.
 
     Raises ValueError if there are no values.
     """

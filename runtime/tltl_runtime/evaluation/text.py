@@ -52,7 +52,7 @@ def _rate(figures: Figures) -> str:
 
 
 def _std(figures: Figures, spread: Spread, places: int) -> str:
-    """Return a standard deviation as text; ``-`` for a single episode."""
+    """Return the standard deviation ``spread.std`` as text; ``-`` if there is only one episode."""
     return number(spread.std, places) if figures.episodes > 1 else "-"
 
 

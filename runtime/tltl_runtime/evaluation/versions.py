@@ -1,4 +1,4 @@
-"""The versions of Python and of the packages that an episode of a policy depends on."""
+"""The versions of Python and of the packages on which the course of an episode depends."""
 
 from __future__ import annotations
 
@@ -10,5 +10,5 @@ _PACKAGES: Final = ("tltlc", "gymnasium", "pybullet", "numpy")
 
 
 def versions() -> dict[str, str]:
-    """Return the installed versions, by name."""
+    """Return the installed versions of Python and of these packages, by name."""
     return {"python": platform.python_version(), **{name: version(name) for name in _PACKAGES}}

@@ -20,10 +20,11 @@ from tltlc.api import fileio
 
 
 class WorkerProcess:
-    """A worker process.
+    """A process on this machine that plays episodes.
 
     Each worker has an executor of its own. So if the process ends, it is known which episode was
-    lost. ``make`` returns the player; it is called in the process, so it must be picklable.
+    lost. The process calls ``make``, which returns its player of episodes; ``make`` must be
+    picklable.
     """
 
     def __init__(self, make: Callable[[], EpisodePlayer]) -> None:
@@ -69,9 +70,9 @@ def _begin(make: Callable[[], EpisodePlayer]) -> None:
 
 
 def _end_with_parent() -> None:
-    """End this process when its parent has ended.
+    """Wait until the parent process has ended, then end this process.
 
-    Otherwise it would wait forever if the parent is killed.
+    Otherwise a worker would wait forever if its parent is killed.
     """
     parent = multiprocessing.parent_process()
     if parent is not None:

@@ -15,10 +15,10 @@ from tltlc.api import Fspa, record
 
 
 class RecordedEpisode(Protocol):
-    """An episode of n decisions.
+    """A recorded episode of n decisions.
 
-    If the level is reset with ``seed`` and ``actions`` are played, the same episode results, bit for
-    bit.
+    If the level is reset with ``seed`` and ``actions`` are played, the same episode results, bit
+    for bit.
     """
 
     @property
@@ -27,7 +27,7 @@ class RecordedEpisode(Protocol):
 
     @property
     def fspa(self) -> Fspa:
-        """The automaton of the spec."""
+        """The automaton of the spec that judged the episode."""
 
     @property
     def params(self) -> Mapping[str, float]:
@@ -39,38 +39,38 @@ class RecordedEpisode(Protocol):
 
     @property
     def seed(self) -> int:
-        """The seed of the reset."""
+        """The seed with which the level was reset."""
 
     @property
     def actions(self) -> NDArray[Any]:
-        """The index of the choice in each branch of an action, (n, branches), from 0.
+        """The actions, (n, branches): the index, from 0, of the choice in each branch.
 
         ``Game.choices`` explains branches and choices.
         """
 
     @property
     def times(self) -> NDArray[np.float64]:
-        """The seconds since the reset, (n + 1,)."""
+        """The seconds since the reset, (n + 1,): at the reset and after each decision."""
 
     @property
     def positions(self) -> NDArray[np.float64]:
-        """The positions of the player, (n + 1, 3), in metres."""
+        """The positions of the player, (n + 1, 3), in metres: at the reset and after each decision."""
 
     @property
     def signals(self) -> NDArray[np.float64]:
-        """The signals of the spec, (n + 1, signals), in its order and in SI units."""
+        """The values of the spec's signals, (n + 1, signals), in the order of the spec and in SI units."""
 
     @property
     def atoms(self) -> NDArray[np.float64]:
-        """The robustness of the atoms, (n, atoms), in the spec's order."""
+        """The robustness of each atom at each decision, (n, atoms), in the order of the spec."""
 
     @property
     def states(self) -> NDArray[np.int32]:
-        """The states of the automaton, (n + 1,), from 0."""
+        """The numbers of the automaton's states, (n + 1,), from 0: at the reset and after each decision."""
 
     @property
     def progress(self) -> NDArray[np.float64]:
-        """The best progress so far, (n + 1,), in [0, 1]."""
+        """The best progress so far, (n + 1,), in [0, 1]: at the reset and after each decision."""
 
     @property
     def success(self) -> bool:
@@ -78,7 +78,7 @@ class RecordedEpisode(Protocol):
 
     @property
     def end(self) -> End:
-        """How the episode ended."""
+        """How the episode ended, for example ``success`` or ``violation``."""
 
 
 Kind = Literal["success", "killed", "violated", "limit", "no way", "stopped"]

@@ -1,4 +1,4 @@
-"""A game: everything that training, evaluation and regression tests need of one."""
+"""The interface of a game for training, evaluation and regression tests."""
 
 from __future__ import annotations
 
@@ -46,7 +46,10 @@ class Game(ABC, Generic[LevelT, EpisodeT]):
 
     @property
     def branches(self) -> tuple[int, ...]:
-        """The number of choices of each branch of an action."""
+        """The number of choices in each branch of an action.
+
+        ``choices`` explains branches and choices.
+        """
         return tuple(map(len, self.choices.values()))
 
     # --- levels ------------------------------------------------------------------------------------
@@ -76,7 +79,7 @@ class Game(ABC, Generic[LevelT, EpisodeT]):
 
     @abstractmethod
     def missing_sensors(self, level: LevelT, sensors: Sensors) -> Iterator[str]:
-        """Yield what the sensors refer to and a level does not have, such as "the entity `exit`"."""
+        """Yield what ``sensors`` names but the level does not have, for example "the entity `exit`"."""
 
     @abstractmethod
     def landmarks(self, level: LevelT) -> dict[str, Point]:
@@ -94,7 +97,7 @@ class Game(ABC, Generic[LevelT, EpisodeT]):
     def reach_warnings(self, level: LevelT, fspa: Fspa) -> list[Diagnostic]:
         """Return a warning for each entity of a spec that no player can reach.
 
-        If the level is too large to search, return TLT0006 instead, as a warning.
+        If the level is too large to search, return a single warning with the code TLT0006 instead.
         """
 
     @abstractmethod
@@ -130,7 +133,10 @@ class Game(ABC, Generic[LevelT, EpisodeT]):
 
     @abstractmethod
     def recorder(self, env: gymnasium.Env[Any, Any], player: str = "unknown") -> EpisodeRecorder[EpisodeT]:
-        """Wrap an environment of :meth:`make_env` to record its episodes, with ``player`` as the player's name."""
+        """Wrap an environment of :meth:`make_env` in a recorder of its episodes.
+
+        ``player`` is the name of the player in the recordings.
+        """
 
     @abstractmethod
     def expert_episodes(
@@ -159,7 +165,7 @@ class Game(ABC, Generic[LevelT, EpisodeT]):
 
     @abstractmethod
     def cause(self, episode: EpisodeT) -> Cause:
-        """Find the cause of the end of an episode."""
+        """Return the reason why an episode ended."""
 
     @abstractmethod
     def observers(self, episode: EpisodeT, begin_s: float, end_s: float) -> tuple[str, ...]:
@@ -170,4 +176,4 @@ class Game(ABC, Generic[LevelT, EpisodeT]):
 
     @abstractmethod
     def shut_barriers(self, episode: EpisodeT) -> tuple[str, ...]:
-        """Return the barriers that were shut at the end and stop players, in the order of the level."""
+        """Return the barriers, in the level's order, that were shut at the end and that players cannot pass."""

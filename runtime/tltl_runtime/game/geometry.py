@@ -20,7 +20,7 @@ class Box:
 
 @record
 class Region:
-    """A named part of a level, for reports."""
+    """A part of a level with a name, by which reports say where something happened."""
 
     name: str
     box: Box

@@ -18,7 +18,7 @@ class Level(Protocol):
 
     @property
     def variant(self) -> str:
-        """The name of the variant and of the overlays added to it: ``v0`` or ``v0+OVERLAY``."""
+        """The name of the variant, and the names of overlays added to it: ``v0`` or ``v0+OVERLAY``."""
 
     @property
     def spec(self) -> str:
@@ -34,7 +34,7 @@ class Level(Protocol):
 
     @property
     def bounds(self) -> Box:
-        """The box that encloses everything."""
+        """The box that encloses everything in the level."""
 
     @property
     def regions(self) -> tuple[Region, ...]:

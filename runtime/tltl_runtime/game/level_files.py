@@ -58,5 +58,5 @@ class LevelFiles(ABC, Generic[LevelT]):
     def candidates(self, name: str, variant: str, file_name: str) -> Iterator[Path]:
         """Yield the paths at which one of a level's files may be.
 
-        ``file_name`` is the name of the file in the ``files`` of the level.
+        ``file_name`` is the name of the file as ``Level.files`` has it.
         """

@@ -12,7 +12,7 @@ EpisodeT = TypeVar("EpisodeT", bound=RecordedEpisode)
 
 
 class EpisodeRecorder(gymnasium.Wrapper[Any, Any, Any, Any], Generic[EpisodeT]):
-    """Records the current episode; observations, rewards and infos pass through unchanged.
+    """A wrapper that records the current episode. Observations, rewards and infos pass through unchanged.
 
     The wrapped environment is a :class:`~tltl_runtime.spec.wrapper.TltlEnv` over a game, or
     wrappers around one.
