@@ -13,9 +13,9 @@ from torch import Tensor, nn
 class MultiCategorical(Distribution):
     """Independent categorical distributions, one per branch of a ``MultiDiscrete(branches)`` space.
 
-    The network outputs ``sum(branches)`` logits, the first branch first. An action is a row of
-    ``len(branches)`` numbers, one choice per branch, stored as floats like all actions in rsl-rl.
-    Log probabilities, entropies and divergences are sums over the branches, in nats.
+    The policy's network outputs ``sum(branches)`` logits, the first branch first. An action is a
+    row of ``len(branches)`` numbers, one choice per branch, stored as floats like all actions in
+    rsl-rl. Log probabilities, entropies and divergences are sums over the branches, in nats.
 
     Raises:
         ValueError: the number of branches is not ``output_dim``, or a branch has no choice.
@@ -31,7 +31,7 @@ class MultiCategorical(Distribution):
 
     @property
     def input_dim(self) -> int:
-        """The number of logits that the network outputs."""
+        """The number of logits that the network must output for an action."""
         return sum(self.branches)
 
     def update(self, mlp_output: Tensor) -> None:
@@ -109,7 +109,7 @@ class _LikeliestChoice(nn.Module):
 
 
 def _argmax(branches: list[Tensor]) -> Tensor:
-    """Return the argmax of each branch [..., branches], in their dtype; the first one on ties."""
+    """Return the argmax in each branch [..., branches], with the dtype of the inputs; the first one on ties."""
     # A list, not a sequence: rsl-rl may export an actor to TorchScript, which has no sequences.
     return torch.stack([values.argmax(-1) for values in branches], -1).to(branches[0].dtype)
 

@@ -22,9 +22,10 @@ WeightShapes = dict[str, tuple[int, ...]]
 
 
 def weight_shapes(network: Network, shapes: Shapes, branches: Sequence[int]) -> WeightShapes:
-    """Return the shapes of an actor's weights by name.
+    """Return the shapes of the weights of a policy's network, by name.
 
-    ``shapes`` are those of the observation, and ``branches`` the numbers of choices of an action.
+    ``shapes`` are the shapes in the observation. ``branches`` are the numbers of choices in the
+    branches of an action.
 
     Raises:
         ValueError: the convolutions do not fit a map.

@@ -20,10 +20,11 @@ class Card:
     ``level`` and ``variant`` name the level of the training; ``level_hash`` is its
     :meth:`~tltl_runtime.game.game.Game.level_hash`. ``fspa`` is the automaton of the spec, with
     ``params`` in SI units. ``sensors`` are all sensors of the policy. ``shapes`` maps the keys of
-    the observation to shapes, in the order of the network's inputs. An action has several
-    branches; ``branches`` has the number of choices of each. ``versions`` are the versions of
-    Python and of the packages that trained the policy, by name. ``training`` is the record of the
-    training as JSON data. ``observation`` is the :data:`OBSERVATION` of that time.
+    the observation to shapes, in the order of the network's inputs. An action has several branches;
+    ``branches`` has the number of choices of each. ``versions`` are the versions of Python and of
+    the packages that trained the policy, by name. ``training`` is the record of the training as
+    JSON data. ``observation`` is the version of the observations (:data:`OBSERVATION`) that the
+    policy was trained with.
     """
 
     level: str

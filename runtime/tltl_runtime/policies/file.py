@@ -49,8 +49,8 @@ _HASH: Final = re.compile(r"[0-9a-f]{64}\Z")
 def write_policy(path: str | os.PathLike[str], policy: Policy, advice: str = "name another place") -> None:
     """Write a policy to a file, so that even a power failure leaves no partial file.
 
-    Equal policies give equal bytes. ``advice`` is the help of the error if the system refuses to
-    write.
+    Equal policies give equal bytes. If the system refuses to write, ``advice`` is the help of the
+    error.
 
     Raises:
         TltlError: TLT0005, the system refuses to write; TLT0862, the file would be larger than
@@ -84,7 +84,11 @@ def to_bytes(policy: Policy) -> bytes:
 
 
 def check_size(network: Network, fspa: Fspa, sensors: Sensors) -> None:
-    """Raise TltlError, TLT0862, if the network does not fit the map, or its policy is too large for a file."""
+    """Raise TltlError, TLT0862, if a policy with this network cannot be used or stored.
+
+    It cannot be used if its convolutions do not fit the map of ``sensors``. It cannot be stored if
+    it is too large for a file.
+    """
     # Encoded twice: the card is a JSON string in the JSON header of the file.
     text = json.dumps(json.dumps(compiler.encode_artefact(fspa), ensure_ascii=False), ensure_ascii=False)
     try:
@@ -186,7 +190,7 @@ def _observation_shapes(fspa: Fspa, sensors: Sensors) -> dict[str, tuple[int, ..
 
 
 def _check_tensors(header: dict[str, Any], card: Card, name: str) -> None:
-    """Raise TLT0842 unless the header lists exactly the weights of the network.
+    """Raise TltlError, TLT0842, unless the header lists exactly the weights of the card's network.
 
     This check comes before any weights are loaded.
     """

@@ -89,9 +89,9 @@ def _differing(kind: str, before: Mapping[str, Any], after: Mapping[str, Any]) -
 
 
 def _states(before: Fspa, after: Fspa) -> Iterator[str]:
-    """Yield a text for each state that is judged differently or has other edges.
+    """Yield a text for each state that ``after`` judges differently or with other edges than ``before``.
 
-    One more text follows if the declarations of exclusive atoms differ.
+    One more text follows if other atoms are declared exclusive.
     """
     for old, new in zip(before.states, after.states, strict=True):
         judged = (old.accepting, old.verdict, old.distance) == (new.accepting, new.verdict, new.distance)

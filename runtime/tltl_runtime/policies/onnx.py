@@ -86,7 +86,7 @@ def _metadata(card: Card) -> dict[str, str]:
 
 
 def _input_names(card: Card) -> dict[str, list[str]]:
-    """Return, for each input, the names of its entries along the first axis."""
+    """Return, for each input of the model, the names of its entries along the axis after the batch."""
     sensors = card.sensors
     names: Mapping[str, list[str]] = {
         "automaton": [f"state {state.id}" for state in card.fspa.states],
@@ -99,7 +99,7 @@ def _input_names(card: Card) -> dict[str, list[str]]:
 
 
 def _forget_source(model: ModelProto) -> None:
-    """Remove the metadata that names the source files of each node."""
+    """Remove from an ONNX model the metadata that names the source files of each node."""
     for part in (*model.graph.node, *model.graph.value_info, *model.graph.input, *model.graph.output):
         part.ClearField("metadata_props")
         part.ClearField("doc_string")

@@ -13,7 +13,7 @@ from tltl_runtime.policies.card import Card
 
 
 class NotFiniteError(ValueError):
-    """Raised if weights, input or output of a network are not finite; the message says which."""
+    """Raised if weights, input or output of a network are infinite or NaN; the message says which."""
 
 
 class Policy:

@@ -78,7 +78,7 @@ def _map(sensor: Mapping[str, Any]) -> str:
 
 
 def _training(record: Mapping[str, Any]) -> str:
-    """Describe how the training went; a number that the record does not have is left out."""
+    """Describe how a training went, from its record; leave out numbers that the record does not have."""
     window = record.get("window")
     # Without episodes there is no pass rate.
     values = {**(window if isinstance(window, dict) and window.get("episodes") else {}), **record}
@@ -92,7 +92,7 @@ def _training(record: Mapping[str, Any]) -> str:
 
 
 def _best_policy(record: Mapping[str, Any]) -> str:
-    """Describe the best policy, which the training kept; empty if the record does not say."""
+    """Describe the best policy, which the training kept in the end; empty if the record does not say."""
     best = record.get("best")
     if not isinstance(best, dict) or not isinstance(best.get("pass_rate"), (int, float)):
         return ""
@@ -111,7 +111,7 @@ def _initial_policy(record: Mapping[str, Any]) -> str:
 
 
 def _search(record: Mapping[str, Any]) -> str:
-    """Describe the result of the search before the training; empty if the record has none."""
+    """Describe the result of the search that preceded the training; empty if the record has none."""
     search = record.get("search")
     lengths = search.get("lengths") if isinstance(search, dict) else None
     if not isinstance(lengths, list) or not all(type(length) is int for length in lengths):

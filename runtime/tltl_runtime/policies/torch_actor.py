@@ -38,5 +38,5 @@ def torch_actor(policy: Policy) -> MLPModel:
 
 
 def arrays(weights: Mapping[str, Tensor]) -> dict[str, NDArray[Any]]:
-    """Return weights, such as the state of an actor, as arrays by name."""
+    """Convert weights, such as the state dict of an actor, to NumPy arrays, by name."""
     return {name: weight.detach().cpu().numpy() for name, weight in weights.items()}
