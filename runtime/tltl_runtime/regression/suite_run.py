@@ -44,8 +44,8 @@ class FinishedCase:
     """A case whose report is finished.
 
     ``is_cached`` says that an earlier run played the case and nothing has changed since.
-    ``prepared`` and ``reference`` are what was played and what it was compared with, or None if the
-    case could not be played.
+    ``prepared`` is the case as it was played, and ``reference`` are the episodes of the baseline
+    with which it was compared. Both are None if the case could not be played.
     """
 
     report: CaseReport
@@ -55,7 +55,7 @@ class FinishedCase:
 
     @property
     def case_to_train(self) -> PreparedCase | None:
-        """The case if retraining its policy makes sense, else None.
+        """The case as it was played, if retraining its policy makes sense; else None.
 
         Retraining makes sense if the case was played and did not pass, its policy was not retrained
         yet, and there is no ``training_obstacle``.
@@ -80,7 +80,7 @@ class FinishedCase:
 
 
 def check_references(suite: Suite, cases: Sequence[Case], references: tuple[Reference, ...]) -> None:
-    """Check that the baseline has a valid reference for each case that can be played.
+    """Check that the baseline has valid episodes (a reference) for each case that can be played.
 
     Raises:
         TltlError: TLT0903, the baseline lacks a case; TLT0902, the baseline is invalid.
@@ -153,7 +153,7 @@ def case_folder(suite: Suite, name: str, folder: Path) -> Path:
 
 
 def _prepare(suite: Suite, case: Case, references: tuple[Reference, ...]) -> tuple[PreparedCase, Reference] | TltlError:
-    """Set up a case; return it with its reference, or the error if it cannot be played."""
+    """Set up a case; return it with the episodes to compare with, or the error if it cannot be played."""
     try:
         prepared = prepare_case(case, suite.seed)
     except TltlError as error:
@@ -172,10 +172,10 @@ def _prepare(suite: Suite, case: Case, references: tuple[Reference, ...]) -> tup
 def _judge(
     suite: Suite, prepared: PreparedCase, reference: Reference, folder: Path, pool: Pool, on_episode: OnEpisode
 ) -> FinishedCase:
-    """Return the cached result of a case, or play the case now.
+    """Return the result of a case: the cached one if it is up to date, else by playing the case now.
 
     Raises:
-        TltlError: an error that is no fault of the case.
+        TltlError: an error for which no file of the case is to blame.
     """
     case, error = prepared.case, suite.error / len(suite.cases)
     own_folder, inputs = case_folder(suite, case.name, folder / CASES), _inputs(prepared, reference, error)

@@ -53,8 +53,8 @@ def findings(
 ) -> tuple[Finding, ...]:
     """Compare the episodes ``now`` with those of the baseline, ``before``.
 
-    The findings say which stages the episodes complete, how they fail, how long successes are, and
-    which regions they pass through. ``level`` is the level that was played now.
+    The findings say which stages the episodes complete, how they fail, how long the successful ones
+    are, and through which regions these pass. ``level`` is the level that was played now.
     """
     return (
         *_stages(fspa, now, before),
@@ -65,11 +65,12 @@ def findings(
 
 
 def _stages(fspa: Fspa, now: Sequence[ExplainedEpisode], before: Sequence[ExplainedEpisode]) -> Iterator[Finding]:
-    """Yield one finding about the completed stages, or none.
+    """Yield at most one finding about the stages that episodes complete.
 
-    The finding goes through the stages in order, up to the first one that clearly more or clearly
-    fewer episodes complete than before. It names that stage, and those of the earlier stages that
-    most episodes complete.
+    The finding is about the first stage that clearly more or clearly fewer episodes complete now
+    than before. It also names the earlier stages that most episodes complete. If there is no such
+    stage, the finding names all stages that most episodes complete; if there are none, there is no
+    finding.
     """
     unchanged_stages: list[Subgoal] = []
     for distance, states in _visited_states(fspa, (*now, *before)):
@@ -93,7 +94,7 @@ def _stages(fspa: Fspa, now: Sequence[ExplainedEpisode], before: Sequence[Explai
 
 
 def _visited_states(fspa: Fspa, episodes: Sequence[ExplainedEpisode]) -> list[tuple[int, set[int]]]:
-    """Return the states that the episodes visited, grouped by distance, greatest distance first.
+    """Return the visited states, grouped by distance from acceptance, greatest distance first.
 
     Each pair is a distance and the states at that distance. Accepting states and traps are left
     out.
@@ -125,7 +126,7 @@ def most_frequent_end(
 def _ends(
     level: Level, fspa: Fspa, now: Sequence[ExplainedEpisode], before: Sequence[ExplainedEpisode]
 ) -> Iterator[tuple[str, Finding]]:
-    """Yield a short text and a finding for each way in which the episodes ``now`` fail.
+    """Yield a short text and a finding for each way in which episodes ``now`` fail.
 
     The finding also says how many episodes ``before`` failed in this way. The order is that of
     :func:`~tltl_runtime.regression.explain.failures.failures`. All texts are distinct.

@@ -132,7 +132,7 @@ def _has_arrived(episode: RecordedEpisode, state: int, broke: Sequence[str]) -> 
 
 
 def _nearest_miss(episode: RecordedEpisode, state: int, positions: Sequence[Point]) -> NearestMiss | None:
-    """Return how near an episode came, in its last stay in ``state``, to leaving it for acceptance.
+    """Return how near an episode came to a step towards acceptance in its last stay in ``state``.
 
     None if no edge leads from the state towards acceptance, or if the episode made no step in it.
     ``positions`` are those of the player's feet.
@@ -151,7 +151,10 @@ def _nearest_miss(episode: RecordedEpisode, state: int, positions: Sequence[Poin
 
 
 def _last_stay(episode: RecordedEpisode, state: int) -> list[int]:
-    """Return the steps, numbered from 0, that an episode made in its last stay in ``state``."""
+    """Return the steps of an episode in its last stay in ``state``, numbered from 0.
+
+    A stay is a run of successive steps in one state of the automaton.
+    """
     in_state = (episode.states[:-1] == state).tolist()
     end = max((step + 1 for step, is_in_state in enumerate(in_state) if is_in_state), default=0)
     began = max((step + 1 for step in range(end) if not in_state[step]), default=0)

@@ -40,7 +40,7 @@ class FailureEnd:
 
     @property
     def kind(self) -> _FailureKind:
-        """The cause and the names in ``by``, without place and subgoal."""
+        """The cause and the names in ``by``: how the episode failed, without place and subgoal."""
         return self.cause, self.by
 
 
@@ -48,8 +48,8 @@ class FailureEnd:
 class Failures:
     """A group of episodes that fail alike.
 
-    ``text`` says how they fail, and ``more`` adds details. ``matches`` is a predicate that says
-    whether an end belongs to the group. Call it only for ends that belong to no earlier group.
+    ``text`` says how they fail, and ``more`` adds details. ``matches`` says whether a
+    :class:`FailureEnd` belongs to the group. Call it only for ends that belong to no earlier group.
     """
 
     text: str
@@ -87,7 +87,7 @@ def failures(level: Level, fspa: Fspa, episodes: Sequence[ExplainedEpisode]) -> 
 
 
 def _frequent_groups(groups: Mapping[_T, Sequence[ExplainedEpisode]], episode_count: int) -> list[_T]:
-    """Return the keys of the groups that get a text of their own (see ``_FEW``), largest first."""
+    """Return the keys of the largest groups, which get texts of their own (see ``_FEW``), largest first."""
     largest = sorted(groups, key=lambda key: -len(groups[key]))[:_FEW]
     return [key for key in largest if len(groups[key]) >= _FEW or 10 * len(groups[key]) >= episode_count]
 
@@ -153,7 +153,7 @@ def _text_for_cause(
 
 
 def _end_text(level: Level, end: FailureEnd, episodes: Sequence[ExplainedEpisode]) -> str:
-    """Describe an end that ``episodes`` share, without the number of episodes.
+    """Describe how ``episodes`` failed, which all share ``end``, without the number of episodes.
 
     The caller appends the number. So if the text ends with a clause that is set off by a comma, a
     comma also follows the clause.

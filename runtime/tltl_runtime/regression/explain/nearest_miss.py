@@ -1,4 +1,4 @@
-"""Describe the nearest misses of failed episodes, and what remained to be done."""
+"""Describe how near failed episodes came to their next subgoals, and what remained to be done."""
 
 from __future__ import annotations
 
@@ -40,9 +40,10 @@ def remaining_text(fspa: Fspa, episodes: Sequence[ExplainedEpisode]) -> str:
 
 
 def _limit_text(level: Level, fspa: Fspa, misses: Sequence[NearestMiss], of: str) -> str:
-    """Describe the atom that limits the misses most often, and the nearest miss that it limits.
+    """Describe the atom that limits the nearest misses most often, and the best of these misses.
 
-    ``of`` says which episodes are meant, for example `` of the others``. It may be empty.
+    A nearest miss says how near an episode came to its next subgoal. ``of`` says which episodes are
+    meant, for example `` of the others``. It may be empty.
     """
     (((atom, must_hold), count),) = Counter((miss.atom, miss.wanted) for miss in misses).most_common(1)
     same_limit = [miss for miss in misses if (miss.atom, miss.wanted) == (atom, must_hold)]

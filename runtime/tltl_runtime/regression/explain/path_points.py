@@ -58,10 +58,11 @@ def positions_along(trajectory: TrajectoryPoints) -> Iterator[tuple[float, float
 def _split_rows(times: NDArray[np.float64], places: NDArray[np.float64], first: int, last: int) -> Iterator[int]:
     """Yield the rows between ``first`` and ``last`` that the simplified trajectory needs.
 
-    Split at the row that is farthest from the straight line between the two, if it is farther than
-    ``_TOLERANCE_M``. Repeat for both halves. The distance of a row is measured to the point of the
-    line at the same time, as in Meratnia and de By, Spatiotemporal compression techniques for
-    moving point objects, EDBT 2004.
+    A row is an index into ``times`` and ``places``. Split at the row that is farthest from the
+    straight line between the rows ``first`` and ``last``, if it is farther than ``_TOLERANCE_M``.
+    Repeat for both halves. The distance of a row is measured to the point of the line at the same
+    time, as in Meratnia and de By, Spatiotemporal compression techniques for moving point objects,
+    EDBT 2004.
     """
     spans = [(first, last)]
     while spans:

@@ -115,9 +115,10 @@ def _subgoal(fspa: Fspa, prime: Implicant) -> Subgoal | None:
 
 
 def subgoal_of_all(fspa: Fspa, states: Collection[int], distance: int) -> Subgoal:
-    """Return the subgoal that ``states`` share. All are at ``distance`` from acceptance.
+    """Return the subgoal that ``states`` share, which all have the same ``distance`` from acceptance.
 
-    If they do not share one, return a subgoal that only says how near to acceptance it leads.
+    If they do not share one, return a subgoal that only says to which distance from acceptance it
+    leads.
     """
     subgoals = {subgoal(fspa, state) for state in states}
     if len(subgoals) == 1:

@@ -61,7 +61,7 @@ class CaseReport:
 
     @property
     def headline(self) -> str:
-        """The most important sentence; empty if there is none."""
+        """The most important sentence of the report; empty if there is none."""
         return self.told or next(iter(self.reasons), "")
 
     @property
@@ -119,7 +119,7 @@ def _edits(result: JudgedCase) -> Iterator[str]:
 def _headline(
     judgement: Judgement, thresholds: Thresholds, statistics: Sequence[str], most_frequent: str | None
 ) -> str:
-    """Return the headline: the first of these sentences that applies.
+    """Return the headline of a case's report: the first of these sentences that applies.
 
     1. how failed episodes end most often, if that is given and the pass rate may be too low;
     2. which figure has changed;
@@ -169,6 +169,6 @@ def _one_line(diagnostic: Diagnostic) -> str:
 
 
 def _error_location(error: TltlError) -> tuple[str, int] | None:
-    """Return the file and the line, from 1, of the first label; None if no diagnostic has one."""
+    """Return the file and the line, from 1, that an error points to first; None if it points to none."""
     label = next((diagnostic.labels[0] for diagnostic in error.diagnostics if diagnostic.labels), None)
     return (label.source.name, label.source.position(label.span.start)[0]) if label else None

@@ -57,7 +57,7 @@ def _file_to_annotate(suite: Suite, case: Case, report: CaseReport) -> Path:
 
 
 def _path_from_root(path: Path, root: Path) -> str:
-    """Return a path relative to ``root`` if it is inside, else unchanged."""
+    """Return a path as text, relative to ``root`` if it is inside, else unchanged."""
     try:
         return path.resolve().relative_to(root.resolve()).as_posix()
     except ValueError:

@@ -96,7 +96,7 @@ def sentence(
     thresholds: Thresholds,
     best: BestFailedEpisode | None,
 ) -> str:
-    """Describe the outcome in a sentence."""
+    """Describe the outcome of a retraining in a sentence."""
     effort = f"{duration(trained.seconds)} of training ({trained.steps:,} steps)"
     if trained.searched:
         counts = f"{trained.searched:,} and {trained.steps:,} steps"

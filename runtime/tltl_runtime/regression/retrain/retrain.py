@@ -58,7 +58,7 @@ _VERSION: Final = 1
 
 
 def configure_retraining(suite: Suite, prepared: PreparedCase, folder: Path, minutes: float, pool: Pool) -> TrainingRun:
-    """Configure the retraining of a case's policy on its level, below the ``folder`` of a run.
+    """Configure the retraining of a case's policy on its level, in a folder inside ``folder``.
 
     The training stops after ``minutes`` at the latest. ``pool`` says which processes play.
 
@@ -84,7 +84,7 @@ def configure_retraining(suite: Suite, prepared: PreparedCase, folder: Path, min
 
 
 def is_stored(run: TrainingRun) -> bool:
-    """Whether ``run.folder`` contains this training, finished or not.
+    """Whether ``run.folder`` already contains the training that ``run`` configures, finished or not.
 
     The stored training must have the same level, spec, initial policy, seed and settings.
 
@@ -110,7 +110,7 @@ def check_policy_folders(suite: Suite, cases: Sequence[Case], folder: Path) -> N
     """Check that no policy of the suite lies in the folder of a training for one of ``cases``.
 
     Raises:
-        TltlError: TLT0942, a policy lies there.
+        TltlError: TLT0942, the policy of a case lies in such a folder.
     """
     for case in cases:
         _training_folder(suite, case, folder)
@@ -133,7 +133,7 @@ def _training_folder(suite: Suite, case: Case, folder: Path) -> Path:
 
 
 def make_room(suite: Suite, folder: Path) -> Path | None:
-    """Make room for another training in ``folder``.
+    """Clear ``folder`` for another training.
 
     - If the training there is finished, rename the folder, and return its new path.
     - Else remove the files of the training, leave all other files, and return None.
@@ -276,10 +276,10 @@ def _inputs(
     error: float,
     judged_episodes: Sequence[ExplainedEpisode],
 ) -> str:
-    """Return the hash of everything that the result depends on, for the cache.
+    """Return the hash of everything that the result of a retraining depends on, for the cache.
 
-    ``weights`` is the hash of the policy's weights. ``judged_episodes`` are the episodes by which
-    the case was judged.
+    ``weights`` is the hash of the retrained policy's weights. ``judged_episodes`` are the episodes
+    by which the case was judged.
     """
     case = prepared.case
     parts = [
@@ -295,6 +295,6 @@ def _inputs(
 
 
 def _cached_result(folder: Path, inputs: str) -> RetrainingResult | None:
-    """Return the cached result if it is up to date and its episode's file exists; else None."""
+    """Return the cached result if it has the hash ``inputs`` and its episode's file exists; else None."""
     result = read_cache(RetrainingResult, folder / _RESULT, inputs)
     return result if result and (result.episode is None or (folder / EPISODE).is_file()) else None

@@ -31,9 +31,10 @@ def changed_keys(before: str, now: str) -> str:
 
 
 def _changes(path: tuple[str, ...], old: Mapping[str, Any], new: Mapping[str, Any]) -> Iterator[str]:
-    """Describe the differences between two tables at ``path``.
+    """Describe each difference between an old and a new table of a TOML file.
 
-    The order is that of the new table, and removed keys come last.
+    ``path`` are the keys that lead to the table. The order is that of the new table, and removed
+    keys come last.
     """
     for key in dict.fromkeys((*new, *old)):
         key_path = (*path, key)
@@ -73,6 +74,6 @@ def _positions(tables: Sequence[Mapping[str, Any]]) -> dict[str, Mapping[str, An
 
 
 def _value_text(before: str, value: Any) -> str:
-    """Return ``before`` and the value as JSON; empty if the JSON is too long."""
+    """Return a value as JSON with the text ``before`` in front; empty if the JSON is too long."""
     text = json.dumps(value, ensure_ascii=False, default=str)
     return before + text if len(text) <= _MOST_CHARACTERS else ""

@@ -30,8 +30,8 @@ class Selection:
     """The result of selecting cases by changed files.
 
     ``cases`` are those that depend on a changed file, and ``left_out`` those that depend on none.
-    ``unknown`` are the given names that match no dependency of any case. ``suggestions`` are pairs of
-    an unknown name and a similar name that matches a dependency.
+    ``unknown`` are the given names of files that match no dependency of any case. ``suggestions``
+    are pairs of an unknown name and a similar name that matches a dependency.
     """
 
     cases: tuple[Case, ...]

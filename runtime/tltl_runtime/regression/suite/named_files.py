@@ -66,8 +66,8 @@ def spec_diagnostics(spec: str, label: Label) -> list[Diagnostic]:
 def similar_level(name: str, folder: Path) -> str | None:
     """Return a hint that names a level similar to ``name``; None if no level is similar.
 
-    ``name`` does not exist. It is from a suite in ``folder``. Candidates are the level files beside
-    the path ``name``, and the levels of the package.
+    A suite in ``folder`` names the level ``name``, which does not exist. Candidates are the level
+    files beside the path ``name``, and the levels of the package.
     """
     names: list[str] = []
     # The name may not be a valid path on this system.

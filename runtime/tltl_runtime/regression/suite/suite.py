@@ -164,7 +164,7 @@ def read_suite(path: Path, baseline: Path | None = None) -> Suite:
 
 
 def _other_kind_of_file(table: CheckedTable) -> str | None:
-    """Return what kind of file this is instead of a suite, by its keys; None if unknown."""
+    """Return what kind of file a table is from, instead of a suite, by its keys; None if unknown."""
     kinds = {"an asset": {"type"}, "a level": {"bounds", "start"}, "an overlay": {"change", "add"}}
     return next((kind for kind, keys in kinds.items() if keys & table.entries.keys()), None)
 
@@ -219,9 +219,9 @@ def _case(
 def _variants(table: CheckedTable, level: str, known_variants: dict[str, tuple[str, ...]]) -> tuple[str, ...]:
     """Return the variants of a level.
 
-    A level that does not load is a finding of the case, not an error of the suite. For such a
-    level, return the variants that the case names, and ``v0``. ``known_variants`` caches the
-    variants of levels; it maps a level that does not load to an empty tuple.
+    If a level does not load, its case fails, but the suite is still valid. For such a level, return
+    the variants that the case names, and ``v0``. ``known_variants`` caches the variants of levels;
+    it maps a level that does not load to an empty tuple.
     """
     if level not in known_variants:
         try:
@@ -233,9 +233,9 @@ def _variants(table: CheckedTable, level: str, known_variants: dict[str, tuple[s
 
 
 def _level(table: CheckedTable, folder: Path) -> tuple[str, str]:
-    """Read a level; return its name or path, and its path relative to the suite.
+    """Read the level of a case; return its name or path, and its path relative to the suite.
 
-    The second is empty if the level is not a file.
+    The second is empty for a level of the package. Both are empty if the case names no level.
     """
     level = table.text("level")
     if not level:

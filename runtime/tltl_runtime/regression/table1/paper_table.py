@@ -20,7 +20,7 @@ RUNS: Final = 25
 
 @record
 class CellFigures:
-    """The figures of one model on one variant over ``runs`` episodes.
+    """A model's statistics over ``runs`` episodes of one variant of a level.
 
     ``progress`` and ``reward`` are means with standard deviations.
     """
@@ -33,7 +33,7 @@ class CellFigures:
 
 @record
 class TableRow:
-    """The figures of one model on one level, by variant.
+    """A model's statistics on one level, by variant.
 
     ``hours`` is the duration of the training, or None without a training. ``cloning_share`` is the
     share of steps with behavioural cloning alone, or None if the model does not imitate.
@@ -47,7 +47,7 @@ class TableRow:
 def _row(
     hours: float | None, *figures: tuple[float, float, float, float, float], cloning_share: float | None = None
 ) -> TableRow:
-    """Return a row of the paper.
+    """Return a row of the paper's table.
 
     ``figures`` are, for each of v0, v1 and v2: the pass rate, mean and deviation of progress, mean
     and deviation of reward.
@@ -131,7 +131,7 @@ def _line(level: str, model: str, row: TableRow) -> str:
 
 
 def _rate(figures: CellFigures) -> str:
-    """Format a pass rate. Add its confidence interval if it is over more episodes than in the paper."""
+    """Format a pass rate; add its confidence interval if there are more episodes than in the paper."""
     if figures.runs <= RUNS:
         return f"{figures.pass_rate:.2f}"
     low, high = wilson(round(figures.pass_rate * figures.runs), figures.runs)

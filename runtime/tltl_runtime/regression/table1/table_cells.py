@@ -76,7 +76,7 @@ def cell_episodes(
 
 
 def _inputs(level: str, variant: str, policy: Path | None) -> str:
-    """Return the hash of everything that a cell depends on."""
+    """Return the hash of everything on which the episodes of a table's cell depend, for the cache."""
     game = registered_game()
     loaded_level = game.load_level(level, variant)
     spec = load_task(default_spec(loaded_level), offered=game.params(loaded_level)).fspa
@@ -124,5 +124,5 @@ class _ExpertPlayer:
         return PlayedEpisode(task, self._game.summary(next(self._episodes), task.index))
 
     def close(self) -> None:
-        """Close the environment."""
+        """Close the environment in which the expert plays."""
         self._env.close()

@@ -102,7 +102,7 @@ def table_training(folder: Path, level: str, model: Model, limits: Limits) -> Ta
 
 
 def train_arguments(training: TableTraining) -> list[str]:
-    """Return the arguments with which ``tltlc train`` starts or continues the training.
+    """Return the arguments with which ``tltlc train`` starts or continues a training of the table.
 
     A training that continues keeps those of its initial limits that are greater than the new ones,
     because it may already have passed the new ones.

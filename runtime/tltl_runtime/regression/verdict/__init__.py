@@ -1,1 +1,1 @@
-"""Baselines with the texts of their levels, the play of cases, and the statistics of verdicts."""
+"""Verdicts: the baselines with the texts of their levels, how cases are played, and the statistics."""

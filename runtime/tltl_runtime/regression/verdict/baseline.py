@@ -37,7 +37,8 @@ class Identity:
     :meth:`~tltl_runtime.game.game.Game.level_hash`, ``spec_hash`` from
     :func:`~tltl_runtime.policies.identity.spec_hash`. ``policy`` is the SHA-256 of the policy's
     file. ``files`` are the files that the level was loaded from, each with its SHA-256.
-    ``versions`` are those of the software that played. ``place`` is the ``place`` of the case.
+    ``versions`` are those of the software that played. ``place`` distinguishes levels of the same
+    name, as in :class:`~tltl_runtime.regression.suite.suite.Case`.
     """
 
     level: str
@@ -57,8 +58,8 @@ class Reference:
     """The recorded episodes that cases are compared with.
 
     ``played`` identifies what was played. ``accounts`` are all episodes, in order from episode 0.
-    ``texts`` are the texts of the level's files, by their names in ``played.files``. ``sources`` is
-    the hash of the code that played, or empty if unknown.
+    ``texts`` are pairs of the name of a level's file, as in ``played.files``, and its text.
+    ``sources`` is the hash of the code that played, or empty if unknown.
     """
 
     played: Identity
@@ -123,7 +124,7 @@ def read_baseline(path: Path) -> tuple[Reference, ...]:
 
 
 def _texts(played: Identity, texts: Mapping[str, str]) -> tuple[tuple[str, str], ...]:
-    """Return the name and the text of each file of ``played`` whose text is known.
+    """Return the name and the text of each file in ``played.files`` whose text is known.
 
     ``texts`` has the known texts, by their SHA-256.
     """
@@ -140,12 +141,12 @@ def _json(value: object) -> str:
 
 
 def text_sha256(text: str) -> str:
-    """Return the SHA-256 of a text, in hexadecimal: the hash that ``Level.files`` has of a file."""
+    """Return the SHA-256, in hexadecimal, of a text in UTF-8, as ``Level.files`` has it for each file."""
     return hashlib.sha256(text.encode("utf-8", "surrogatepass")).hexdigest()
 
 
 def _flaws(episode: ExplainedEpisode) -> Iterator[str]:
-    """Yield a message for each impossible value in an episode."""
+    """Yield a message for each impossible value in an episode of a baseline."""
     for key in ("arrivals", "way"):
         if not getattr(episode, key):
             yield f"`{key}` is empty, but must begin where the player begins"
@@ -218,7 +219,7 @@ def reference_of(references: tuple[Reference, ...], identity: Identity, suite: S
 
 
 def check_states(reference: Reference, fspa: Fspa, suite: Suite) -> None:
-    """Raise TltlError, TLT0902, if an episode was in a state that the automaton does not have."""
+    """Raise TltlError, TLT0902, if an episode of ``reference`` has a state that the automaton lacks."""
     count, played = len(fspa.states), reference.played
     for episode in reference.accounts:
         if (state := max(_states(episode))) >= count:
@@ -246,7 +247,7 @@ def baseline_command(suite: Suite) -> str:
 
 @record
 class _StoredReference:
-    """A reference without its texts, as the file stores it.
+    """A reference as the file of a baseline stores it: without the texts of the level's files.
 
     The file stores all texts in one table, because levels and variants share files.
     """

@@ -25,7 +25,7 @@ _ADVICE: Final = "name another place with --output"
 
 @record
 class RecordedReference:
-    """A recorded reference and the cases that are compared with it.
+    """The recorded episodes of a policy on a level, and the cases that are compared with them.
 
     If the level's spec has changed since the policy was trained, ``outdated`` says so: none of the
     cases can pass. Otherwise it is None.
@@ -42,7 +42,7 @@ def record_baseline(
     """Play the episodes of all references that the cases of a suite need, and yield the references.
 
     Cases with the same level, reference variant, spec and policy share a reference. It has as many
-    episodes as the case with the most. A reference is not played again if ``finished``, from
+    episodes as the case that asks for most. A reference is not played again if ``finished``, from
     earlier recordings, contains one with the same identity and the same number of episodes.
     ``on_episode`` is called after each episode.
 
@@ -109,15 +109,16 @@ def verdict_if_unchanged(suite: Suite, case: Case, reference: Reference) -> Verd
 
 
 def episodes_for_certainty(pass_rate: float, error: float) -> int:
-    """Return how many successes, without a failure, make it certain that ``pass_rate`` is reached.
+    """Return how many episodes, if all succeed, make a pass rate of at least ``pass_rate`` certain.
 
-    The number is at least 25. ``error`` bounds the probability that a certain statement is wrong.
+    The number is at least 25. *Certain* means that the probability of a mistake is at most
+    ``error``.
     """
     return next(successes for successes in count(LEAST_EPISODES) if rate_interval(successes, 0, error)[0] >= pass_rate)
 
 
 def _groups(suite: Suite) -> list[list[PreparedCase]]:
-    """Return the cases, set up to play their references, in groups that share a reference."""
+    """Set up the cases for the variants of their baselines; group those that share a reference."""
     groups: list[list[PreparedCase]] = []
     for case in suite.cases:
         prepared = _prepare(case, suite.seed)
@@ -130,7 +131,7 @@ def _groups(suite: Suite) -> list[list[PreparedCase]]:
 
 
 def _prepare(case: Case, seed: int) -> PreparedCase:
-    """Set up a case to play its reference. Errors name the case."""
+    """Set up a case to play the variant of its baseline. Errors name the case."""
     try:
         return prepare_case(case, seed, case.reference)
     except TltlError as error:

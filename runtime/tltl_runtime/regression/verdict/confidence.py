@@ -59,12 +59,13 @@ def rate_interval(successes: int, failures: int, error: float) -> tuple[float, f
 def mean_p_value(values: Sequence[float], low: float, high: float, least: float = -1.0, most: float = 1.0) -> float:
     """Return the p-value of the hypothesis that the mean of the values is in [``low``, ``high``].
 
-    The values are in [``least``, ``most``]. For each of several shares, a stake is multiplied, at
-    each value, by 1 + share * (low - value) / (most - low). This stake does not grow on average if
-    the conditional mean of each value, given the earlier ones, is at least ``low``. A second stake
-    does the same for ``high``. The mean of all these stakes does not grow on average either (I.
-    Waudby-Smith, A. Ramdas, J. R. Stat. Soc. B 86 (2024), 1-27). The p-value is 1 over the greatest
-    such mean so far, so it may be evaluated after each value.
+    All values must be in [``least``, ``most``]. Several stakes bet that the mean is below ``low``.
+    At each value, such a stake bets a fixed share of itself, and is multiplied by
+    ``1 + share * (low - value) / (most - low)``. It does not grow on average if the conditional
+    mean of each value, given the earlier ones, is at least ``low``. As many stakes bet in the same
+    way that the mean is above ``high``. The mean of all these stakes does not grow on average
+    either (I. Waudby-Smith, A. Ramdas, J. R. Stat. Soc. B 86 (2024), 1-27). The p-value is 1 over
+    the greatest such mean so far, so it may be evaluated after each value.
 
     Raises:
         ValueError: ``low`` is above ``high``, or ``least`` is not below ``most``.
@@ -79,7 +80,7 @@ def mean_p_value(values: Sequence[float], low: float, high: float, least: float 
 
 @lru_cache(maxsize=1 << 16)
 def _lower_end(successes: int, failures: int, error: float) -> float:
-    """Return the greatest rate that the counts refute as too low. They refute all lower rates, too.
+    """Return the greatest rate of success that the counts refute as too low, as they do all lower rates.
 
     The rate is found by bisection. It is 0 if there are no successes.
     """
@@ -107,9 +108,9 @@ def _log_stake(successes: int, failures: int, rate: float) -> float:
 
 
 def _log_means(logarithms: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the logarithms of the means over the first axis.
+    """Return the logarithms of the means, over the first axis, of some values.
 
-    ``logarithms`` are the logarithms of the values whose means are taken.
+    ``logarithms`` are the logarithms of these values.
     """
     greatest = logarithms.max(axis=0)
     # A sum and a division: `np.mean` takes much longer for a few values.

@@ -22,10 +22,10 @@ _SPEC: Final = re.compile(r"^spec\s*=.*$", re.MULTILINE)
 
 
 def level_texts(name_or_path: str, variant: str, files: Texts) -> Texts:
-    """Return the name and the text of each file of a level, in order.
+    """Return the name and the text of each of a level's ``files``, in order.
 
-    ``files`` are the names of the files, each with its SHA-256. A file that has another hash now is
-    left out: it was edited meanwhile.
+    ``files`` are pairs of a name and a SHA-256. A file that has another hash now is left out: it
+    was edited meanwhile.
     """
     level_files = registered_game().level_files
     texts = []
@@ -38,7 +38,7 @@ def level_texts(name_or_path: str, variant: str, files: Texts) -> Texts:
 
 
 def current_text(name_or_path: str, variant: str, name: str) -> str | None:
-    """Return the current text of a file of a level; None if it cannot be read."""
+    """Return the current text of a level's file called ``name``; None if it cannot be read."""
     level_files = registered_game().level_files
     candidates = level_files.candidates(name_or_path, variant, name)
     return _text(next(filter(fileio.is_file, candidates), level_files.path(name_or_path)))

@@ -35,10 +35,10 @@ _PLAYER: Final = "policy"
 class PreparedCase:
     """A case that is set up to be played.
 
-    ``setup`` describes the evaluation and ``played`` identifies what it depends on. ``changes`` are
-    the descriptions of the variant's overlays. ``outdated`` is a message if the spec of the level
-    has changed since the policy was trained; the old spec then judges the policy. Otherwise it is
-    None.
+    ``setup`` describes the evaluation, and ``played`` identifies everything on which its episodes
+    depend. ``changes`` are the descriptions of the variant's overlays. ``outdated`` is a message if
+    the spec of the level has changed since the policy was trained; the old spec then judges the
+    policy. Otherwise it is None.
     """
 
     case: Case
@@ -51,7 +51,7 @@ class PreparedCase:
 
 @record
 class CaseEpisode:
-    """A played episode of a case, with what explains its result, and the bytes of its recording."""
+    """A played episode of a case: facts that explain its result, and the bytes of its recording."""
 
     explained: ExplainedEpisode
     recording: bytes
@@ -59,7 +59,7 @@ class CaseEpisode:
 
 @record
 class JudgedCase:
-    """A case with its judgement, and the played episodes in order."""
+    """A case with its verdict and its played episodes, in order."""
 
     prepared: PreparedCase
     reference: Reference
@@ -117,7 +117,7 @@ def play_episodes(prepared: PreparedCase, pool: Pool) -> Generator[CaseEpisode]:
 
 
 def _replay_command(prepared: PreparedCase, task: EpisodeRequest) -> str:
-    """Return the command that plays a single episode of the case."""
+    """Return the shell command that plays only the requested episode of the case."""
     place = ["--level", f"{prepared.setup.level}:{prepared.setup.variant}"]
     spec = [] if prepared.case.spec is None else ["--spec", prepared.case.spec]
     episode = ["--seed", str(prepared.setup.seed), "--first", str(task.index), "--episodes", "1"]
@@ -125,7 +125,7 @@ def _replay_command(prepared: PreparedCase, task: EpisodeRequest) -> str:
 
 
 def check_unedited(prepared: PreparedCase) -> None:
-    """Check that the level was not edited since the setup.
+    """Check that the case's level was not edited since the case was set up.
 
     Workers that had loaded the level before the edit do not notice it.
 
@@ -145,7 +145,7 @@ def judge_case(
     """Play a case until its verdict is settled.
 
     After each episode, ``on_episode`` is called with the number of episodes so far and the last
-    episode. ``error`` is the case's share of the suite's error.
+    episode. ``error`` is the allowed probability of a wrong verdict on this case.
     """
     played: list[CaseEpisode] = []
     before = summaries_of(reference.accounts)
@@ -171,9 +171,9 @@ def _check_unedited(prepared: PreparedCase, level: Level) -> None:
 
 
 def _outdated_message(case: Case, setup: Setup, level: Level) -> str | None:
-    """Return a message if the policy's own spec judges, but the level's spec has changed.
+    """Return a message if the spec from the policy's training judges, but the level now has a changed one.
 
-    None if another spec judges or the specs of that name are the same.
+    None if the case names a spec, if the level's spec has another name, or if it has not changed.
 
     Raises:
         TltlError: the level's spec cannot be read.

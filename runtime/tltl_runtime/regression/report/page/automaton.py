@@ -33,7 +33,7 @@ _BADGE_HEIGHT: Final = 16.0
 
 @record
 class AutomatonPicture:
-    """The picture of an automaton.
+    """The picture of a spec's automaton.
 
     ``svg`` is the picture as SVG, or None if the layout failed. ``notes`` are sentences that say
     what the picture does not show.
@@ -151,7 +151,7 @@ def _mark_state(
 
 
 def _visits(traffic: Traffic, states: tuple[int, ...]) -> int:
-    """Return how many episodes visited the ``states`` of a node.
+    """Return how many episodes visited the ``states`` for which a node of the picture stands.
 
     For a node with several states, return how many episodes took an edge into any of them.
     """
@@ -186,7 +186,8 @@ def _mark_edge(
 def _name(group: ElementTree.Element, text: str, left: float, top: float, right: float) -> None:
     """Add a badge with the name of a state at the upper left corner of the state's node.
 
-    If the badge would cover the mark that shows the state's distance, it is placed above the mark.
+    If the badge would cover the mark for the state's distance from acceptance, it is placed above
+    the mark.
     """
     x, y = min(left + 6, right - _width(text)), top
     # The mark of the distance is a filled path without an outline.
@@ -229,7 +230,10 @@ def _extent(group: ElementTree.Element) -> tuple[float, float, float, float]:
 
 
 def _remove_title(root: ElementTree.Element) -> float:
-    """Remove the name of the spec. Return the top of what remains, in the units of the view box."""
+    """Remove the name of the spec from the SVG of an automaton.
+
+    Return the top of what remains, in the units of the view box.
+    """
     (graph,) = (child for child in root if child.get("class") == "graph")
     groups = [child for child in graph if child.get("class") is not None]
     for child in set(graph) - set(groups):
@@ -264,6 +268,6 @@ def counts_table(fspa: Fspa, now: Traffic, before: Traffic) -> Markup:
 
 
 def _counts(state: int, traffic: Traffic) -> tuple[str, str]:
-    """Return how many episodes visited a state and failed in it, such as ``3 of 25``."""
+    """Return two texts, such as ``3 of 25``: how many episodes visited a state, and how many failed in it."""
     visited, failed = (f"{counts.get(state, 0)} of {traffic.episodes}" for counts in (traffic.visited, traffic.failed))
     return visited, failed

@@ -16,11 +16,11 @@ from tltlc.api import record, replace
 
 @record
 class _DrawnMap:
-    """A map and the key to its signs.
+    """A map of a level for the page, and the key to its signs.
 
     ``when`` says with which episodes the page shows the map: ``now``, ``before`` (the baseline) or
-    ``both``. ``is_of_unknown_baseline`` says that the map also stands for the level of the
-    baseline, which is unknown.
+    ``both``. ``is_of_unknown_baseline`` is true if the page shows this map for the baseline, too,
+    because the level on which the baseline was recorded is unknown.
     """
 
     when: str

@@ -71,7 +71,7 @@ def progress_distribution(now: Sequence[ExplainedEpisode], before: Sequence[Expl
 
 
 def _left_end(bin_: int) -> float:
-    """Return the left end of a bin, in widths of a bin.
+    """Return where a bin of the histogram begins on the x axis, in widths of a bin.
 
     There is a gap before the last bin, which shows the successes.
     """
@@ -85,7 +85,7 @@ def _bin_text(bin_: int) -> str:
 
 
 def _shares(episodes: Sequence[ExplainedEpisode]) -> list[float]:
-    """Return the share of episodes in each bin.
+    """Return the share of episodes in each bin of the histogram of progress.
 
     An episode that reached progress 1 and then broke the spec is in the last bin of the failed
     episodes.
@@ -97,7 +97,7 @@ def _shares(episodes: Sequence[ExplainedEpisode]) -> list[float]:
 
 
 def _corners(frame: _CurveAxes, episode: RecordedEpisode) -> list[tuple[float, float]]:
-    """Return the points at which a curve starts, ends or bends. Between them it is straight."""
+    """Return the points at which an episode's curve of progress starts, ends or bends."""
     values, times = episode.progress.tolist(), episode.times.tolist()
     rows = {0, len(values) - 1}
     for row, (value, next_value) in enumerate(pairwise(values)):
@@ -107,7 +107,7 @@ def _corners(frame: _CurveAxes, episode: RecordedEpisode) -> list[tuple[float, f
 
 
 class _CurveAxes:
-    """The axes of a diagram: x from 0 to ``x_most``, y from 0 to 1."""
+    """The axes of a diagram: x from 0 to ``x_most``, y from 0 to 1. They convert values to SVG units."""
 
     def __init__(self, x_most: float) -> None:
         self.x_most = x_most
@@ -119,7 +119,7 @@ class _CurveAxes:
         return _HEIGHT - _BOTTOM - value * (_HEIGHT - _TOP - _BOTTOM)
 
     def x_ticks(self) -> list[tuple[float, str]]:
-        """Return at most seven whole numbers on the x axis, with their labels."""
+        """Return at most seven whole numbers for the marks on the x axis, with their texts."""
         step = max(1, ceil(self.x_most / 6))
         return [(float(tick), str(tick)) for tick in range(0, int(self.x_most + 1e-9) + 1, step)]
 

@@ -33,8 +33,8 @@ class _Link:
 def episode_links(finding: Finding, episodes: Mapping[int, RecordedEpisode], slug: str) -> Markup | None:
     """Return links that play the recorded ``episodes`` of a finding; None if it has none.
 
-    ``slug`` is the case's short name in addresses within the page. The link to a failed episode
-    starts 4 seconds before its end.
+    ``slug`` is the case's short name in addresses within the page. A link to a failed episode plays
+    it from 4 seconds before the end.
     """
     indices = [index for index in finding.episodes if index in episodes]
     if not indices:

@@ -28,7 +28,7 @@ class MapScale:
         return round(100 * (point[0] - self.west)), round(100 * (self.north - point[1]))
 
     def middle(self, box: Box) -> tuple[int, int]:
-        """Return the map coordinates of the centre of a box."""
+        """Return the map coordinates of a box's centre."""
         return self.at([(low + high) / 2 for low, high in zip(box.low, box.high, strict=True)])
 
     def rect(self, box: Box) -> Rect:

@@ -21,7 +21,7 @@ _VERDICTS: tuple[Verdict, ...] = ("pass", "review", "fail")
 
 @record
 class _Mean:
-    """The mean of a figure as text, now and in the baseline.
+    """The mean of a figure, such as progress, as text: now and in the baseline.
 
     ``before`` is empty if there is no baseline.
     """
@@ -121,7 +121,7 @@ def _mean(now: float, before: float | None) -> _Mean:
 
 
 def _pass_rate(now: Figures, before: Figures | None) -> _PassRate:
-    """Return the pass rate with its 95 % confidence interval; below it, the baseline's bar."""
+    """Return the pass rate as text and as a bar with a 95 % confidence interval; likewise for ``before``."""
     bar = _bar(now, "now", top=0, height=12)
     if before is None:
         return _PassRate(_pass_text(now), "", _rate_words(now), (bar,))

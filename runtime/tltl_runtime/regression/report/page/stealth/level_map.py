@@ -46,7 +46,7 @@ _SIGNS: Final = {
 
 
 def level_map(level: Level, mentions: Mentions = NO_MENTIONS) -> Markup:
-    """Draw the map of a level, with empty layers ``heat``, ``ways``, ``ends`` and ``live``.
+    """Draw the map of a level. The page's script fills its layers ``heat``, ``ways``, ``ends`` and ``live``.
 
     Things and regions that the report mentions are highlighted.
     """
@@ -89,9 +89,9 @@ def map_key(level: Level, mentions: Mentions = NO_MENTIONS) -> Markup:
 def map_data(level: Level) -> dict[str, Any]:
     """Return the data that the page's script needs to draw onto the map of a level, as JSON.
 
-    ``blocks`` and ``movers`` block sight. Each block is a rectangle on the map and two heights.
-    ``reach`` and ``angle`` describe an enemy's cone of sight, and ``eyes`` is the height of its
-    eyes. Lengths are in centimetres, angles in degrees.
+    ``blocks``, barriers and ``movers`` (moving boxes) may block sight. Each block is a rectangle on
+    the map and two heights. ``reach`` and ``angle`` describe an enemy's cone of sight, and ``eyes``
+    is the height of its eyes. Lengths are in centimetres, angles in degrees.
     """
     assert isinstance(level, StealthLevel)
     scale = MapScale(level.bounds)
@@ -112,7 +112,7 @@ def map_data(level: Level) -> dict[str, Any]:
 
 
 def _mover(mover: Mover) -> dict[str, list[int]]:
-    """Return the sides of a mover and the heights between which it blocks sight, in centimetres."""
+    """Return the sides of a moving box and the heights between which it blocks sight, in centimetres."""
     low, high = box_around(mover.path[0], mover.size)
     return {
         "sides": [round(100 * side) for side in mover.size[:2]],
@@ -187,5 +187,5 @@ def _star(x: int, y: int, radius: float = 40.0) -> str:
 
 
 def _block(scale: MapScale, box: Box) -> list[int]:
-    """Return the rectangle of a box on the map, and its lower and upper height, in centimetres."""
+    """Return the rectangle of a box on the map, then the heights of its bottom and top, in centimetres."""
     return [*scale.rect(box), round(100 * box.low[2]), round(100 * box.high[2])]

@@ -49,7 +49,7 @@ class MapLabel:
 
 
 def map_labels(level: StealthLevel, scale: MapScale, mentions: Mentions) -> Iterator[MapLabel]:
-    """Place the names of a level.
+    """Place the names of the things and regions of a level on its map.
 
     Switches, exits, barriers, enemies and regions always have names. Solids and movers have names
     only if the report ``mentions`` them.

@@ -59,7 +59,7 @@ def recording_data(index: int, episode: RecordedEpisode) -> dict[str, Any]:
 
 
 def _position_steps(points: Sequence[Point], bounds: Box) -> dict[str, str]:
-    """Encode the x and the y coordinates of points."""
+    """Encode the x and the y coordinates of points, given in metres, for the page's script."""
     return {"x": x_steps(bounds, [x for x, _, _ in points]), "y": y_steps(bounds, [y for _, y, _ in points])}
 
 
