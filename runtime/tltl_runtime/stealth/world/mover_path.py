@@ -1,4 +1,4 @@
-"""The paths of movers over time."""
+"""The positions of movers (boxes of a level that move along a path) over time."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from tltl_runtime.stealth.level import Mover, Point
 
 
 class MoverPath:
-    """The positions of a mover, by the time that it has moved.
+    """Computes the position of a mover from the time that it has spent on its path.
 
-    The mover moves to the end of its path and back, or in a loop if the path is closed.
+    A mover is a box that moves to the end of its path and back, or in a loop if the path is closed.
     """
 
     def __init__(self, mover: Mover) -> None:
@@ -30,9 +30,10 @@ class MoverPath:
         self._begins = [leg[0] for leg in self._legs]
 
     def position_at(self, clock: float) -> Point:
-        """Return the centre of the mover at ``clock`` seconds.
+        """Return the centre of the mover after ``clock`` seconds on its path.
 
-        Each leg of the path begins with the pause at its first point.
+        These seconds include the pauses: the mover rests at each point of the path, and then moves
+        to the next one.
         """
         if self._lap <= 0.0:
             return self._first

@@ -1,8 +1,8 @@
 """The bodies of a level in pybullet: static boxes, barriers, movers, and the player's capsule.
 
 The player is a dynamic capsule without rotation and friction. Its velocity is set once per
-decision; Bullet then runs nine steps of 1/60 s in one call. The code depends on these properties of
-pybullet, which were measured:
+decision, which is one action of 0.15 s; Bullet then runs nine steps of 1/60 s in one call. The code
+depends on these properties of pybullet, which were measured:
 
 - The player is a Featherstone body (a Bullet rigid body with zero inertia becomes not-a-number).
   Everything else uses maximal coordinates, because each further Featherstone body costs as much per
@@ -52,10 +52,10 @@ class Random(Protocol):
 
 
 class WorldError(RuntimeError):
-    """Raised if the bodies differ from the level, or the player has no room or leaves the level.
+    """Raised if the physics differs from the level, or if the player has no room or leaves the level.
 
-    ``body`` is the name of the body at fault, such as ``player``. The error is in the level or in
-    the physics.
+    ``body`` is the name of the body at fault, such as ``player``. The cause is an error in the
+    level or in the physics.
     """
 
     def __init__(self, level: StealthLevel, step: int, body: str, problem: str) -> None:
@@ -108,9 +108,10 @@ class World:
     def reset(self, rng: Random | None) -> None:
         """Begin an episode.
 
-        All barriers are shut, and movers are at their offset. The player is at a random place
-        within the start's spread, or without ``rng`` exactly at the start. Raises WorldError if
-        there is no room.
+        All barriers are shut. Each mover has already moved for the ``offset`` seconds that the
+        level gives it. The player is at a random place at most ``spread`` metres from the level's
+        start, or without ``rng`` exactly at the start. Raises WorldError if the player has no room
+        there.
         """
         self.steps = 0
         self._open = [False] * len(self.level.barriers)
@@ -121,7 +122,7 @@ class World:
         self._observe(False, self.level.start.yaw, 1.0)
 
     def step(self, action: Sequence[int]) -> None:
-        """Advance by one decision, 0.15 s.
+        """Apply an action of the player for one decision, which lasts 0.15 s.
 
         Raises WorldError if the player leaves the level's bounds.
         """
@@ -149,28 +150,28 @@ class World:
     def put(self, state: PlayerState) -> None:
         """Set the player to ``state``, an earlier value of ``player``.
 
-        A search can then continue from there. Everything else stays unchanged, and Bullet's contact
-        cache is not restored. So a decision that is repeated may end some millimetres away from its
-        first result.
+        A search can then continue from that state. Movers and barriers stay unchanged, and Bullet's
+        contact cache is not restored. So a decision that is repeated may end some millimetres away
+        from its first result.
         """
         self._put(state.crouching, state.position, state.velocity)
         self._state = state
 
     @property
     def player(self) -> PlayerState:
-        """The player after the last decision."""
+        """The state of the player after the last decision, :meth:`reset` or :meth:`put`."""
         return self._state
 
     def mover_positions(self) -> tuple[Point, ...]:
-        """Return the centres of the movers, in the order of the level."""
+        """Return the centres of the movers, in the order in which the level lists them."""
         return tuple(mover.place for mover in self.movers)
 
     def mover_boxes(self) -> list[Bounds]:
-        """Return the corners of the movers, in the order of the level."""
+        """Return the lowest and highest corner of each mover, in the order in which the level lists them."""
         return [mover.box for mover in self.movers]
 
     def is_open(self, barrier: int) -> bool:
-        """Whether a barrier is open."""
+        """Whether the barrier with the index ``barrier`` is open."""
         return self._open[barrier]
 
     def set_open(self, barrier: int, is_open: bool) -> None:
@@ -192,8 +193,8 @@ class World:
     def has_room(self, feet: Point, height: float, ignored: MoverBody | None = None) -> bool:
         """Whether a capsule of this height would be free of everything that stops bodies.
 
-        The capsule has the player's radius and stands at ``feet``. The mover ``ignored`` does not
-        count.
+        The capsule has the player's radius and stands at ``feet``. It may overlap the mover
+        ``ignored``.
         """
         radius = self.kind.radius
         return all(
@@ -248,7 +249,11 @@ class World:
     # The player
 
     def _start(self, rng: Random | None) -> Point:
-        """Choose a start position that is free of everything."""
+        """Return a position for the player's feet at which the player has room to begin an episode.
+
+        It is a random place at most ``spread`` metres from the level's start, or without ``rng``
+        exactly the start. Raises WorldError if there is no room.
+        """
         x, y, z = self.level.start.position
         for _ in range(100 if rng is not None else 1):
             if rng is None:
@@ -271,9 +276,10 @@ class World:
             raise WorldError(self.level, self.steps, f"{name} player", problem)
 
     def _observe(self, crouching: bool, yaw: float, stamina: float) -> None:
-        """Read the player's state from the physics.
+        """Store the state of the player after a decision.
 
-        Raise WorldError if the player is outside the bounds.
+        The position, the velocity and the contact with the ground come from pybullet, the rest from
+        the arguments. Raises WorldError if the player is outside the level's bounds.
         """
         capsules, low, high = self._capsules, self.level.bounds.low, self.level.bounds.high
         x, y, z = feet = capsules.feet()
@@ -285,10 +291,7 @@ class World:
     # Time
 
     def _movers_near(self) -> list[MoverBody]:
-        """Return the movers that the player can touch in this decision.
-
-        The other movers advance by the whole decision.
-        """
+        """Advance the movers that the player cannot touch in this decision; return the other movers."""
         near = []
         for mover in self.movers:
             if mover.is_near(self._state.position, self.kind.height):
@@ -300,8 +303,8 @@ class World:
     def _advance(self, near: Sequence[MoverBody]) -> None:
         """Run the physics of a decision.
 
-        Without movers ``near``, this is one call of pybullet. Otherwise they push the player before
-        each physics step.
+        Without movers ``near``, this is one call of pybullet. Otherwise these movers push the
+        player before each physics step.
         """
         if not near:
             self._run_at_once(SUBSTEPS)
@@ -323,15 +326,18 @@ class World:
     # What stops bodies
 
     def _solids_near(self, feet: Point) -> list[Bounds]:
-        """Return the solids that a capsule can touch within one decision from these feet."""
+        """Return the boxes of solids that the player may touch within one decision from ``feet``."""
         return self._boxes_by_cell.get((floor(feet[0]), floor(feet[1])), [])
 
     def _changing_boxes(self, ignored: MoverBody | None) -> list[Bounds]:
-        """Return the corners of the shut barriers, and of the movers except ``ignored``."""
+        """Return the boxes of the shut barriers, and of the movers except ``ignored``.
+
+        A box is a pair: its lowest and its highest corner.
+        """
         shut = [(barrier.box.low, barrier.box.high) for barrier in self._shut_barriers()]
         return shut + [mover.box for mover in self.movers if mover is not ignored]
 
     def _shut_barriers(self) -> list[Barrier]:
-        """Return the barriers that stop bodies now: the solid ones that are shut."""
+        """Return the shut barriers that stop bodies, which are those of the kind ``solid``."""
         barriers = zip(self.level.barriers, self._open, strict=True)
         return [barrier for barrier, is_open in barriers if barrier.kind == "solid" and not is_open]

@@ -6,10 +6,10 @@ from tltlc.api import Diagnostic, TltlError
 
 
 def player_fault(error: RuntimeError) -> TltlError | None:
-    """Return TLT0806 if ``error`` is a WorldError about the player, else None.
+    """Return the diagnostic TLT0806 if ``error`` is a WorldError about the player, else None.
 
-    In a level that was read from a file, it means that the player has left the bounds. The level is
-    not at fault for other errors of the physics.
+    For a level that was read from a file, such an error means that the player has left the level's
+    bounds; this is a fault of the level. Other errors of the physics are not the level's fault.
     """
     # Import this late, because it loads the physics.
     from tltl_runtime.stealth.world.physics import WorldError

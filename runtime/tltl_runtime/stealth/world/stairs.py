@@ -1,7 +1,7 @@
 """Lift the player up stairs.
 
-Bullet alone would stop the player at the first edge, because the velocity is set only once per
-decision.
+Bullet alone would stop the player at the edge of the first stair, because the velocity is set only
+once per decision.
 """
 
 from __future__ import annotations
@@ -24,10 +24,10 @@ def lift(
     boxes: Sequence[Bounds],
     has_room: HasRoom,
 ) -> float:
-    """Return how far to lift the feet, in metres, so that the player walks up a stair.
+    """Return how far to lift the player's feet, in metres, so that the player walks up a stair.
 
-    It is 0 if there is no stair in the way of this decision. ``boxes`` are the boxes that the
-    player could touch.
+    The result is 0 if there is no stair in the way of this decision. ``boxes`` are the boxes that
+    the player could touch.
     """
     x, y, z = feet
     highest = z + kind.step_height + 2 * TOUCH
@@ -62,9 +62,10 @@ def _lift_along(
     boxes: Sequence[Bounds],
     has_room: HasRoom,
 ) -> float:
-    """Return the lift onto the first box that the body touches along ``velocity``, in metres.
+    """Return how far to lift the feet onto the first box that the player meets, in metres.
 
-    It is 0 if the box is too high, or if there is no room above it.
+    The player moves along ``velocity``. The result is 0 if the box is too high, or if there is no
+    room above it.
     """
     x, y, z = feet
     for share in (1 / 3, 2 / 3, 1.0):
