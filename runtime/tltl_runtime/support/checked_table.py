@@ -49,7 +49,7 @@ class CheckedTable:
         return self._read(key, default, expected, lambda v: type(v) is int and low <= v <= high, low, int)
 
     def text(self, key: str, default: str = REQUIRED, one_of: tuple[str, ...] = ()) -> str:
-        """Read a text that is not empty and, if ``one_of`` is given, is one of these."""
+        """Read a text that is not empty; if ``one_of`` is given, only its texts are valid."""
         entry = self.entries.get(key)
         expected = "a text" if entry is None or entry.value != "" else "a text that is not empty"
         if one_of:
@@ -101,7 +101,7 @@ class CheckedTable:
         return [CheckedTable(item, f"`[[{key}]]`", self.log) for item in entry.value]
 
     def label_of(self, key: str) -> Label:
-        """Return the label of a key, or the label of the table if the key is missing."""
+        """Return the label (the place in the file) of a key, or of the table if the key is missing."""
         return self.entries[key].label if key in self.entries else self.label
 
     def report_unknown_keys(self, elsewhere: Mapping[str, str] = EMPTY) -> None:
@@ -141,7 +141,10 @@ class CheckedTable:
 
 
 def wrong_value(entry: Entry, key: str, expected: str) -> Diagnostic:
-    """Return TLT0803 for a value of a wrong type or out of its range."""
+    """Return the diagnostic TLT0803 for a value that has a wrong type or is out of range.
+
+    ``expected`` describes the valid values.
+    """
     help_ = f"expected {expected}"
     if "[x, y, z]" in expected and _has_decimal_commas(entry.value):
         help_ += "; these are six numbers: write decimals with a point, as in 6.5"

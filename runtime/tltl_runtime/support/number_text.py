@@ -28,7 +28,7 @@ def percent(value: float) -> str:
 
 
 def percent_exactly(value: float) -> str:
-    """Return a number in [0, 1] that a user chose, in percent with all its decimals: ``85%``, ``99.9%``."""
+    """Return a number in [0, 1] that a user chose, in percent with up to six digits: ``85%``, ``99.9%``."""
     return f"{100.0 * value:g}%"
 
 
@@ -39,7 +39,7 @@ def count_text(count: int, total: int, noun: str = "") -> str:
 
 
 def interval_text(interval: tuple[float, float]) -> str:
-    """Return an interval of shares in percent: ``85% to 93%``. It is rounded outwards, to contain the exact one."""
+    """Return an interval in [0, 1] in percent, rounded outwards to whole numbers: ``85% to 93%``."""
     low, high = floor(100.0 * interval[0] + 1e-9), ceil(100.0 * interval[1] - 1e-9)
     return f"{low}% to {high}%"
 

@@ -139,9 +139,9 @@ def _inlined(kind: type) -> Mapping[str, tuple[str, ...]]:
 
 
 def _gather_inlined(kind: Any, values: dict[str, object]) -> list[str]:
-    """Replace the keys of each inlined field by the inner record, in ``values``.
+    """Replace in ``values`` the keys that stand for an inlined field by the inner record.
 
-    Return the missing keys. The value of a field with missing keys is None.
+    Return the keys that are missing. An inlined field with missing keys gets the value None.
     """
     missing = []
     for name, keys in _inlined(kind).items():

@@ -1,4 +1,4 @@
-"""A hash of all source modules. It differs if the code differs, even if the version number is the same."""
+"""A hash of the source code: it changes with the code, even if the version number stays the same."""
 
 from __future__ import annotations
 
@@ -13,9 +13,10 @@ _PACKAGES: Final = ("tltlc", "tltl_runtime")
 
 @lru_cache(maxsize=1)
 def sources_hash() -> str:
-    """Return the SHA-256 (hexadecimal) of the names and contents of all modules; line endings do not matter.
+    """Return the SHA-256, in hexadecimal, of the modules of tltlc and tltl_runtime.
 
-    The hash is computed once per process, so that it describes the code that the process has loaded.
+    It covers the names and contents of all modules. Line endings do not matter. The hash is
+    computed once per process, so that it describes the code that the process has loaded.
     """
     digest = hashlib.sha256()
     for package in _PACKAGES:

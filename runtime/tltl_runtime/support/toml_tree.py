@@ -1,7 +1,7 @@
 """Read TOML so that every value has a label: its file and the place of its key in this file.
 
-If an overlay changes a value of a level, a diagnostic about the value can point into the overlay's
-file.
+An overlay is a file that changes values of a level. A diagnostic about a changed value can point
+into the overlay's file.
 """
 
 from __future__ import annotations
@@ -23,7 +23,10 @@ _VALUE_PART: Final = re.compile(
 
 @record
 class Entry:
-    """A value and its label: a scalar, a list, a :data:`Tree`, or a list of trees."""
+    """A value of a TOML file, and its label, which is the place of its key.
+
+    The value is a scalar, a list, a :data:`Tree`, or a list of entries whose values are trees.
+    """
 
     value: Any
     label: Label
@@ -92,9 +95,10 @@ def _key_spans(text: str) -> dict[tuple[str | int, ...], Span]:
 def _dotted_path(
     dotted: str, around: tuple[str | int, ...], counts: dict[tuple[str | int, ...], int]
 ) -> tuple[str | int, ...]:
-    """Return the path of a dotted key in the table ``around``.
+    """Return the path of a dotted key, such as ``a.b``, that stands in the table at path ``around``.
 
-    If a key in the path names a list of tables, the path continues in the last of them.
+    If a key in the path names a list of tables, the path continues in the last table of this list;
+    ``counts`` has the index of that table.
     """
     path = around
     keys = re.findall(_KEY, dotted)
