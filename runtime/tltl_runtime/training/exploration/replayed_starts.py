@@ -94,7 +94,10 @@ class ReplayedStartEnv(gymnasium.Wrapper[Any, Any, Any, Any]):
         self._spare_env.close()
 
     def _replay_in_spare(self, seed: int, actions: NDArray[np.int8]) -> Iterator[None]:
-        """Replay ``actions`` in the spare environment, one per step of the generator."""
+        """Replay ``actions`` in the environment in which the agent does not play.
+
+        This is a generator: each step of it replays one action.
+        """
         observation, info = self._spare_env.reset(seed=seed)
         for action in actions:
             yield
@@ -129,7 +132,7 @@ class Episodes:
     def step(self, actions: NDArray[np.int64]) -> tuple[Any, ...]:
         """Record actions [num_envs, branches] and step all environments with them.
 
-        Return the results of the step, as the vector environment does.
+        Return the five results of the vector environment's step.
         """
         for past_actions, action in zip(self.actions, actions.tolist(), strict=True):
             past_actions.append(action)
@@ -164,7 +167,7 @@ class Episodes:
         return start.max_decisions is not None and len(self.actions[row]) - len(start.actions) >= start.max_decisions
 
     def _advance(self, rows: Iterable[int]) -> None:
-        """Make the next episodes of these environments the current ones.
+        """Make the next episodes of the environments ``rows`` the current ones.
 
         Draw the starts of the episodes after these.
         """
@@ -176,19 +179,22 @@ class Episodes:
 
     @contextmanager
     def _starts_in_errors(self) -> Iterator[None]:
-        """Add the seeds and the steps of the episodes to an error about a lost worker."""
+        """Within this context, add the seeds and steps of the episodes to an error about a lost worker."""
         try:
             yield
         except WorkerError as error:
             raise WorkerError(error.loss, tuple(map(self._with_start, error.playing))) from error
 
     def _with_start(self, playing: Playing) -> Playing:
-        """Return ``playing`` with the seed and step of the episode, which only this class knows."""
+        """Return ``playing`` with the seed, the episode number and the step of the environment's episode.
+
+        Only this class knows them, because each episode begins with replayed actions.
+        """
         row = playing.env
         return replace(playing, seed=self.starts[row].seed, episode=1, step=len(self.actions[row]))
 
     def _send_starts(self, rows: Iterable[int]) -> None:
-        """Send the starts of the next episodes to the environments of these rows."""
+        """Send the starts of their next episodes to the environments with the indices ``rows``."""
         next_starts: list[tuple[int, NDArray[np.int8]] | None] = [None] * self._env.num_envs
         for row in rows:
             next_starts[row] = self._next[row].seed, np.array(self._next[row].actions, dtype=np.int8)

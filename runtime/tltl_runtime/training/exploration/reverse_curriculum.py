@@ -267,7 +267,9 @@ def _check_figures(arrays: Mapping[str, NDArray[Any]]) -> None:
 def _weights(rates: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the weights with which segments are drawn, given the success rates from them.
 
-    From the first learned segment on, the weight is greatest at a success rate of one half.
+    A segment counts as learned if its success rate is at least ``_LEARNED_RATE``. From the first
+    learned segment on, the weight is greatest at a success rate of one half. Before that segment,
+    weights fall with the distance from it.
     """
     first = int(np.argmax(rates >= _LEARNED_RATE)) if rates.max() >= _LEARNED_RATE else len(rates) - 1
     weights: NDArray[np.float64] = rates * (1 - rates) + _MIN_WEIGHT

@@ -230,8 +230,8 @@ class TrajectorySearch:
     def _draw(self) -> EpisodeStart:
         """Draw the start of an episode.
 
-        Mostly it is a known cell. Otherwise it is a point in the second half of a failed episode,
-        or the level's start with a new seed if there are no failures.
+        Mostly the episode begins at a known cell. Otherwise it begins in the second half of a
+        failed episode, or at the level's start with a new seed if there are no failures.
         """
         if self._archive and self._random.random() >= (_FAILURE_SHARE if self._failures else _START_SHARE):
             return self._archive.draw()
@@ -247,7 +247,10 @@ class TrajectorySearch:
 
 
 class _CellArchive:
-    """The cells that were reached, with the shortest actions to each and how often it was drawn."""
+    """The cells that the search has reached, each with the shortest known actions that lead to it.
+
+    It also counts how often each cell was drawn.
+    """
 
     def __init__(self, random: np.random.Generator) -> None:
         self._random = random
@@ -258,7 +261,7 @@ class _CellArchive:
         return bool(self._starts)
 
     def add(self, state: int, cell: int, seed: int, actions: Actions) -> bool:
-        """Keep the actions to a cell if they are the shortest; return whether the cell is new."""
+        """Keep actions that lead to a cell if they are the fewest so far; return whether the cell is new."""
         starts = self._starts.setdefault(state, {})
         known = starts.get(cell)
         if known is None or len(actions) < len(known.actions):
