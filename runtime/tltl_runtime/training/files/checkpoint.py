@@ -29,8 +29,8 @@ _MOST: Final = 2**53
 class BestPolicy:
     """The best policy of a training, and its score.
 
-    ``actor`` has its weights, by name. ``steps`` is the number of steps after which the actor had
-    them.
+    ``actor`` maps names to the weights of its network. ``steps`` is the number of steps of the
+    training after which the network had these weights.
     """
 
     score: Score
@@ -56,7 +56,8 @@ class Checkpoint:
     - ``standstill`` has the arguments of
       :class:`~tltl_runtime.training.ppo.recent_episodes.Standstill`.
     - ``best`` is the best policy so far; None if there is none yet. ``met`` says whether this
-      policy has met the spec in all windows and in its confirmation.
+      policy has met the spec in all the episodes that
+      :class:`~tltl_runtime.training.files.settings.Stop` demands.
     """
 
     run: Mapping[str, str]
@@ -75,7 +76,7 @@ class Checkpoint:
     standstill: tuple[float, int]
 
     def reason(self, stop: Stop) -> StopReason | None:
-        """Return why a training with these limits is over; None if it goes on."""
+        """Return why a training with the limits of ``stop`` is over; None if it goes on."""
         return "met" if self.met else stop.reached_limit(self.steps, self.seconds)
 
     @property

@@ -48,7 +48,7 @@ def _state_shares(window: EpisodeWindow, fspa: Fspa, state: int) -> dict[str, An
 
 
 def means(window: EpisodeWindow) -> dict[str, float]:
-    """Return the means over a window, by name."""
+    """Return the means over the episodes of ``window``, by their names in ``metrics.jsonl``."""
     values = (window.pass_rate, window.progress, window.reward, window.steps)
     return {name: round(value, 6) for name, value in zip(WINDOW_MEANS, values, strict=True)}
 
@@ -56,7 +56,7 @@ def means(window: EpisodeWindow) -> dict[str, float]:
 def read_metrics(path: Path) -> list[dict[str, Any]]:
     """Read the lines of ``metrics.jsonl`` in order; an empty list if there is no file.
 
-    Lines that are incomplete, or lack a field that is read back, are left out.
+    Lines that are incomplete or lack a required field are left out.
 
     Raises:
         TltlError: TLT0001, the system refuses to read the file; TLT0004, it is larger than
@@ -92,7 +92,7 @@ def line_text(fields: Mapping[str, Any]) -> str:
 
 
 def _parse_line(line: str) -> dict[str, Any] | None:
-    """Parse a line; return None if it is invalid or lacks a field that is read back."""
+    """Parse a line of ``metrics.jsonl``; return None if it is invalid or lacks a required field."""
     try:
         fields = fileio.parse_json(line, fileio.limits.TRACE_LINE)
     except (ValueError, RecursionError):

@@ -50,7 +50,7 @@ class Metrics:
             raise _write_error(self._path, error) from None
 
     def close(self) -> None:
-        """Close the files."""
+        """Close the files for TensorBoard; ``metrics.jsonl`` is closed after each line."""
         self._events.close()
 
 
@@ -67,7 +67,7 @@ def _append(path: Path, line: bytes) -> None:
 
 
 def _scalars(fields: Mapping[str, Any]) -> Iterator[tuple[str, float]]:
-    """Yield the fields of a line as tags and values for TensorBoard."""
+    """Yield the fields of a line of ``metrics.jsonl`` as tags and values for TensorBoard."""
     yield from ((f"train/{name}", fields[name]) for name in WINDOW_MEANS if fields["window"])
     yield from ((f"time/{name}", fields[name]) for name in _ITERATION_VALUES)
     yield from ((f"state/{state['state']}", state["share"]) for state in fields["states"])

@@ -59,8 +59,8 @@ def training_record(
 ) -> dict[str, Any]:
     """Return the record of a training as JSON data; ``docs/training.md`` describes it.
 
-    ``card`` is the card of its policy, ``last`` its last report, and ``metrics`` are the lines of
-    ``metrics.jsonl``.
+    ``card`` is the metadata of its policy, ``last`` its last report, and ``metrics`` are the lines
+    of ``metrics.jsonl``.
     """
     return {
         "format": "tltl-training",
@@ -151,7 +151,7 @@ def recorded_end(folder: Path) -> StopReason | None:
 
 
 def _read_record(folder: Path) -> dict[str, Any] | None:
-    """Return the record in a folder; None if it is missing or damaged."""
+    """Return the content of ``record.json`` in a folder; None if the file is missing or damaged."""
     try:
         document = fileio.load_json(folder / RECORD, fileio.limits.REPORT)
         from_json(_EndFields, {name: document[name] for name in ("end", "steps", "seconds")}, RECORD)
@@ -162,7 +162,7 @@ def _read_record(folder: Path) -> dict[str, Any] | None:
 
 @record
 class _EndFields:
-    """The fields that are read back from a record."""
+    """The fields of ``record.json`` that say how a training ended."""
 
     end: StopReason
     steps: int
@@ -175,6 +175,6 @@ def _cloning_steps(metrics: Sequence[Mapping[str, Any]]) -> int:
 
 
 def _evenly_spaced(lines: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
-    """Return at most ``_MOST_POINTS`` lines at equal distances, including the last one."""
+    """Return at most ``_MOST_POINTS`` of the lines, evenly spaced and including the last one."""
     stride = -(-len(lines) // _MOST_POINTS) or 1
     return list(lines[::-1][::stride])[::-1]

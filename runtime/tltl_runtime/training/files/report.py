@@ -61,9 +61,10 @@ class EpisodeWindow:
 
 @record
 class Confirmation:
-    """The result of a confirmation: ``met`` of at most ``of`` fresh episodes met the spec.
+    """The result of testing a policy in up to ``of`` fresh episodes, before a training ends.
 
-    If ``met`` is less than ``of``, the policy failed in the next episode.
+    The first ``met`` of these episodes met the spec. If ``met`` is less than ``of``, the next
+    episode failed and was the last one.
     """
 
     met: int
@@ -71,7 +72,7 @@ class Confirmation:
 
     @property
     def passed(self) -> bool:
-        """Whether all episodes met the spec."""
+        """Whether the policy met the spec in all ``of`` episodes."""
         return self.met == self.of
 
 

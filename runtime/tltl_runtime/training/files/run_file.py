@@ -51,7 +51,7 @@ class InitialPolicy:
 
     ``path`` is its file; the other fields describe what the file contained when it was read.
     ``weights`` is the SHA-256, in hexadecimal, of its weights. ``level``, ``variant`` and
-    ``level_hash`` are from its card and say on which level it was trained.
+    ``level_hash`` are from the policy's metadata and say on which level it was trained.
     """
 
     path: str
@@ -65,11 +65,12 @@ class InitialPolicy:
 class TrainingRun:
     """The description of a training: what is trained, with which settings, and in which folder.
 
-    ``params`` are the values of the params of ``fspa`` in SI units. ``level`` is the name of a
-    level or the path of its file, as for :meth:`~tltl_runtime.game.game.Game.load_level`.
-    ``demonstrations`` is the folder of the demonstrations to imitate. If it is None, tltlc records
-    demonstrations of the expert in the training's folder. ``initial`` is the policy whose weights
-    the actor begins with, None for random weights.
+    ``params`` are the values, in SI units, of the params that the spec declares; ``fspa`` is the
+    automaton of the spec. ``level`` is the name of a level or the path of its file, as for
+    :meth:`~tltl_runtime.game.game.Game.load_level`. ``demonstrations`` is the folder of the
+    demonstrations to imitate. If it is None, tltlc records demonstrations of the expert in the
+    training's folder. ``initial`` is the policy whose weights the actor begins with, None for
+    random weights.
     """
 
     folder: Path
@@ -98,7 +99,7 @@ _PLAIN: Final[Mapping[str, Any]] = {
 
 
 def write_run(run: TrainingRun) -> None:
-    """Write ``run.json`` into the folder; create the folder if it is missing.
+    """Write ``run.json`` into the folder of the training; create the folder if it is missing.
 
     Raises TltlError, TLT0005, if the file cannot be written.
     """
@@ -120,10 +121,10 @@ def write_run(run: TrainingRun) -> None:
 
 
 def read_run(folder: Path) -> TrainingRun:
-    """Read the description of the training in a folder.
+    """Read the description of a training from ``run.json`` in its folder.
 
     Raises:
-        TltlError: TLT0001, its file cannot be read; TLT0863, there is no training, or its file is
+        TltlError: TLT0001, the file cannot be read; TLT0863, there is no such file, or it is
             invalid.
     """
     if not (folder / RUN).exists():
@@ -138,18 +139,18 @@ def read_run(folder: Path) -> TrainingRun:
 
 
 def read_level_and_variant(folder: Path) -> tuple[str, str]:
-    """Return level and variant of the training in a folder.
+    """Return the level and the variant of the training in a folder.
 
-    The rest of its file may be invalid. Raises the errors of :func:`read_run`.
+    The rest of ``run.json`` may be invalid. Raises the errors of :func:`read_run`.
     """
     values = _values(*_read_document(folder), ("level", "variant"))
     return values["level"], values["variant"]
 
 
 def read_level_hash(folder: Path) -> str | None:
-    """Return the hash of the level on which the training began; None if the file does not have it.
+    """Return the hash of the level on which the training in a folder began.
 
-    Raises the errors of :func:`read_run`.
+    Returns None if ``run.json`` does not have it. Raises the errors of :func:`read_run`.
     """
     digest = _read_document(folder)[1].get("level_hash")
     return digest if isinstance(digest, str) else None
@@ -171,7 +172,10 @@ def _read_document(folder: Path) -> tuple[SourceFile, Mapping[str, Any]]:
 
 
 def _check_settings(source: SourceFile, document: Mapping[str, Any]) -> None:
-    """Raise TLT0863 if another version of tltlc, with other settings, wrote the document."""
+    """Raise TLT0863 if ``run.json`` is from another version of tltlc, which had other settings.
+
+    ``source`` is the file, and ``document`` its content.
+    """
     stored, known = set(dict(leaves(document.get("settings", {})))), set(dict(leaves(to_json(read_settings()))))
     help_ = f"train again; `tltlc evaluate {quote(str(Path(source.name).parent))}` plays what was learned"
     if stored and (missing := sorted(known - stored)):
@@ -230,7 +234,7 @@ def demonstrations_of(run: TrainingRun) -> Path:
 
 
 def leaves(settings: object, path: str = "") -> Iterator[tuple[str, Any]]:
-    """Yield the name, ``table.key``, and the value of each setting in the JSON data of settings."""
+    """Yield the name (``table.key``) and the value of each setting in the JSON data of settings."""
     if not isinstance(settings, dict):
         yield path, settings
         return

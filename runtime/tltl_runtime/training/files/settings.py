@@ -66,12 +66,12 @@ class Rollout:
 class Imitation:
     """The settings of the imitation baseline: behavioural cloning, then GAIL.
 
-    Behavioural cloning takes the share ``cloning`` of the limit of steps or of minutes, whichever
-    is reached first. If no demonstrations are given, ``demonstrations`` episodes of the expert are
-    recorded. The discriminator has two layers of width ``encoding``, the learning rate
-    ``discriminator_rate`` and the weight ``gradient_penalty`` of its gradient penalty. Its reward
-    is multiplied by ``strength``. The terminal reward of an episode is plus or minus ``terminal``.
-    See :mod:`tltl_runtime.training.imitation.gail`.
+    Behavioural cloning ends when the training has used up the share ``cloning`` of its limit of
+    steps, or of its limit of minutes. If no demonstrations are given, ``demonstrations`` episodes
+    of the expert are recorded. The discriminator has two layers of width ``encoding``, the learning
+    rate ``discriminator_rate`` and the weight ``gradient_penalty`` of its gradient penalty. Its
+    reward is multiplied by ``strength``. The terminal reward of an episode is plus or minus
+    ``terminal``. See :mod:`tltl_runtime.training.imitation.gail`.
     """
 
     demonstrations: int
@@ -85,10 +85,11 @@ class Imitation:
 
 @record
 class RewardSettings:
-    """The settings of rewards: the ``options`` of the environments, and a schedule of the penalty.
+    """The settings of rewards: those of the environments, and a schedule of the terminal penalty.
 
-    With the ``penalty_schedule`` ``rising``, a ``discounted`` terminal penalty of mode ``progress``
-    rises to the undiscounted one as the pass rate rises from one half to 1.
+    The ``penalty_schedule`` ``rising`` matters only if ``mode`` is ``progress`` and
+    ``terminal_penalty`` is ``discounted``. Then the penalty begins as the discounted one, and rises
+    to the undiscounted one as the pass rate rises from one half to 1.
     """
 
     mode: monitors.Mode
@@ -112,10 +113,9 @@ class RewardSettings:
 class Stop:
     """The settings that say when a training ends.
 
-    A training ends when all episodes of ``windows`` successive windows of ``episodes`` each have
-    met the spec, and the policy then meets it in ``confirmation`` fresh episodes. It also ends
-    after ``steps`` decisions of all environments, or after ``minutes`` of training (0: no such
-    limit).
+    A training ends when its last ``windows * episodes`` episodes have all met the spec, and the
+    policy then meets it in ``confirmation`` fresh episodes. It also ends after ``steps`` decisions
+    of all environments, or after ``minutes`` of training (0: no such limit).
     """
 
     windows: int
@@ -125,7 +125,7 @@ class Stop:
     minutes: float
 
     def is_out_of_time(self, seconds: float) -> bool:
-        """Whether a training of this many seconds has reached the limit of minutes."""
+        """Whether a training that has taken ``seconds`` has reached the limit of minutes."""
         return 0 < self.minutes * 60 <= seconds
 
     def reached_limit(self, steps: int, seconds: float) -> Literal["steps", "minutes"] | None:
@@ -137,7 +137,10 @@ class Stop:
 
 @record
 class Classes:
-    """Names of classes, in the form of :func:`rsl_rl.utils.resolve_callable`."""
+    """The names of the classes of the runner and of the algorithm that train.
+
+    They have the form of :func:`rsl_rl.utils.resolve_callable`.
+    """
 
     runner: str
     algorithm: str

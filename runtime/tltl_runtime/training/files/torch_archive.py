@@ -124,10 +124,10 @@ def _check_calls(pickled: bytes) -> None:
 
 
 def _pop_operands(stack: list[str], marks: list[int], opcode: pickletools.OpcodeInfo) -> list[str]:
-    """Take the operands of an operation from the stack; return their kinds, without the mark.
+    """Take the operands of a pickle operation from the stack; return their kinds.
 
-    ``marks`` are the positions at which marks were put on the stack. Some of these marks may no
-    longer be there.
+    The result leaves out the pickle mark. ``marks`` are the positions at which marks were put on
+    the stack. Some of these marks may no longer be there.
     """
     if opcode.name in ("BINPUT", "LONG_BINPUT", "PUT"):
         return []
@@ -146,7 +146,7 @@ def _pop_operands(stack: list[str], marks: list[int], opcode: pickletools.Opcode
 
 
 def _pushed_kinds(opcode: pickletools.OpcodeInfo, argument: object) -> list[str]:
-    """Return the kinds of the values that an operation pushes onto the stack."""
+    """Return the kinds of the values that a pickle operation pushes onto the stack."""
     if opcode.name == "MARK":
         return [_MARK]
     if opcode.name in ("TUPLE", "TUPLE1", "TUPLE2", "TUPLE3"):
