@@ -124,7 +124,7 @@ class Runner(OnPolicyRunner):
         return observation
 
     def _imitate(self) -> dict[str, float]:
-        """Take the steps of self-imitation; return their mean loss as ``imitation``.
+        """Take the self-imitation steps of an iteration; return their mean loss under ``imitation``.
 
         Return an empty dict if there is nothing to imitate. If any process has a batch, all
         processes take the step together, so that their weights stay equal.

@@ -34,7 +34,7 @@ class ProcessGroup:
     local_count: int
 
     def gather(self, value: T) -> list[T]:
-        """Return the values of all processes, by rank."""
+        """Send ``value`` to all processes; return the values of all processes, by rank."""
         if self.count == 1:
             return [value]
         values: list[Any] = [None] * self.count
@@ -42,7 +42,7 @@ class ProcessGroup:
         return values
 
     def broadcast(self, value: T) -> T:
-        """Return the value of the first process."""
+        """Send the ``value`` of the first process to all processes, and return it."""
         if self.count == 1:
             return value
         values = [value]
@@ -51,9 +51,9 @@ class ProcessGroup:
 
 
 def process_group() -> ProcessGroup:
-    """Return the place of this process, from torchrun's environment variables.
+    """Return the rank of this process and the number of processes, from torchrun's variables.
 
-    Without these variables, it is the only process.
+    Without these environment variables, it is the only process.
     """
     count, local_count = (torchrun_variable(name, 1) for name in ("WORLD_SIZE", "LOCAL_WORLD_SIZE"))
     rank, local_rank = (torchrun_variable(name, 0) for name in ("RANK", "LOCAL_RANK"))
@@ -67,7 +67,7 @@ def cores() -> int:
 
 @contextmanager
 def join_process_group(device: str) -> Iterator[tuple[ProcessGroup, str]]:
-    """Join torch's process group inside the block; yield the place of this process and ``device``.
+    """Join torch's process group inside the block; yield the :class:`ProcessGroup` and ``device``.
 
     A single process joins no group.
     """

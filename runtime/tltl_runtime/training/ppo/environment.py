@@ -169,8 +169,9 @@ def _update_curriculum(
 ) -> NDArray[np.bool_]:
     """Update the curriculum with the episodes that are over or have used up their decisions.
 
-    ``ends`` has the ends of the episodes that met the spec, by row. ``states`` has the states in
-    which the episodes ended, by row. Return the mask [num_envs] of the episodes that have used up
+    ``ends`` maps the row of each environment whose episode met the spec to the result of
+    :func:`~tltl_runtime.training.exploration.search.end_of`. ``states`` maps rows to the automaton
+    states in which episodes ended. Return the mask [num_envs] of the episodes that have used up
     their decisions: they must be cut off.
     """
     used_up = np.array([episodes.is_spent(row) for row in range(len(is_over))]) & ~is_over
@@ -182,7 +183,7 @@ def _update_curriculum(
 def _summaries(
     infos: Mapping[str, Any], rows: NDArray[np.int64], first_index: int, limit_steps: int | None
 ) -> dict[int, EpisodeSummary]:
-    """Return the summaries of the episodes in these rows, by row.
+    """Return the summaries of the episodes that ended in the environments ``rows``, by row.
 
     The indices of the episodes count from ``first_index``.
     """

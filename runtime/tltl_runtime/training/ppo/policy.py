@@ -17,7 +17,7 @@ from tltlc.api import Diagnostic, TltlError
 
 
 def card_of(run: TrainingRun, env: TrainingEnv) -> Card:
-    """Return the card of a policy that ``run`` trains in ``env``.
+    """Return the card (the metadata) of a policy that ``run`` trains in ``env``.
 
     The card's field ``training`` is empty until the training ends. The level is read from its file
     as it is now.

@@ -63,7 +63,10 @@ class RecentEpisodes:
 
     @property
     def score(self) -> Score | None:
-        """The score of the policy in the last window; None until a window is full."""
+        """The pass rate, mean progress and mean reward of the last ``episodes`` episodes.
+
+        None until so many episodes have ended.
+        """
         if len(self._episodes) < self._window_episodes:
             return None
         window = self._window(tuple(self._episodes)[-self._window_episodes :])

@@ -41,10 +41,10 @@ def scheduled_weights(ppo: Ppo, pass_rate: float) -> ScheduledWeights:
 
 
 def penalty_rise(run: TrainingRun) -> Callable[[int], float] | None:
-    """Return a function that maps the steps of a failed episode to its greatest extra penalty.
+    """Return a function from the length of a failed episode, in steps, to its greatest extra penalty.
 
-    The extra penalty is the undiscounted penalty minus the one in the settings. Return None if the
-    penalty does not rise during the training.
+    The extra penalty is the undiscounted terminal penalty minus the one that the settings ask for.
+    Return None if the penalty does not rise during the training.
     """
     limit, options = run.fspa.limit_steps, run.settings.reward.options
     if limit is None or run.settings.imitates or not run.settings.reward.penalty_rises:

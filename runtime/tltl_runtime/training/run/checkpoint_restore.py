@@ -107,7 +107,7 @@ def _check_options(saved: Mapping[str, Any], expected: Mapping[str, Any]) -> Non
 
 
 def _option_fits(saved: Any, expected: object) -> bool:
-    """Whether the saved value of an option fits the ``expected`` one.
+    """Whether the saved value of an optimiser's option fits the ``expected`` one.
 
     Single numbers may differ, because a training may change the learning rate.
     """
@@ -165,7 +165,7 @@ def _check_generators(process: Mapping[str, Tensor], device: str) -> None:
 
 
 def _kind(value: object) -> str:
-    """Return the kind of an option: ``switch``, ``number``, or the name of its type.
+    """Return the kind of an optimiser's option: ``switch``, ``number``, or the name of its type.
 
     None counts as a switch: an optimiser may change it to a bool.
     """
@@ -175,7 +175,10 @@ def _kind(value: object) -> str:
 
 
 def _check_moments(optimizer: Optimizer) -> None:
-    """Raise RecordJsonError if the averages of a restored optimiser do not fit its weights."""
+    """Raise RecordJsonError if the averages of a restored optimiser do not fit its weights.
+
+    Adam, for example, keeps averages of the gradients of each weight.
+    """
     names = _moments(optimizer)
     for group in optimizer.param_groups:
         for weights in group["params"]:
@@ -192,9 +195,9 @@ def _check_moments(optimizer: Optimizer) -> None:
 
 
 def _moments(optimizer: Optimizer) -> set[str]:
-    """Return the names of the averages that an optimiser keeps for a weight.
+    """Return the names of the averages that an optimiser keeps for a weight, as Adam does.
 
-    They depend on its class and its options.
+    They depend on the optimiser's class and options.
     """
     weight = nn.Parameter(torch.zeros(1))
     weight.grad = torch.zeros(1)

@@ -1,8 +1,8 @@
 """The confirmation of a policy in fresh episodes, before a training ends.
 
-Success in all windows is not enough: the policies of several iterations play the episodes of the
-windows, and windows without a failure also occur by chance. A policy with a pass rate of 0.99 meets
-the spec in 300 episodes in a row with probability 1/20.
+Success in the last episodes of the training is not enough: the policies of several iterations play
+them, and many successes in a row also occur by chance. A policy with a pass rate of 0.99 meets the
+spec in 300 episodes in a row with probability 1/20.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from tltl_runtime.training.files.run_file import TrainingRun, current_level_hash
 def confirm(run: TrainingRun, policy: Policy, stream: np.random.SeedSequence) -> Confirmation:
     """Let a policy play the fresh episodes that the settings ask for; stop at the first failure.
 
-    ``stream`` is the random stream that the seed of the episodes is drawn from.
+    ``stream`` is the random stream from which the seed for the episodes is drawn.
 
     Raises:
         TltlError: TLT0868, the level has changed since the training began.

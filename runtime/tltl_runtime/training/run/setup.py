@@ -69,7 +69,7 @@ def start_or_resume(run: TrainingRun, resume: bool) -> Checkpoint | None:
 
 
 def make_environments(run: TrainingRun) -> WorkerVectorEnv:
-    """Make the environments of this process."""
+    """Make the vector environment in which this process trains."""
     settings, rollout = run.settings, run.settings.rollout
     return make_vec(
         run.level,

@@ -249,11 +249,11 @@ class _Training:
             self._runner.alg.seconds = self._state.seconds
 
     def _best_policy(self) -> BestPolicy | None:
-        """Return the best policy so far; None until a window of episodes is full.
+        """Return the best policy so far; None until ``episodes`` episodes (a window) have ended.
 
-        It is the policy that played the end of the last window, unless an older one has a better
-        score. If all episodes of all windows met the spec, it is always the policy of the last
-        window.
+        It is the policy that played the latest episodes, unless an older one has a better score. If
+        the last ``windows * episodes`` episodes all met the spec, it is always the policy that
+        played the latest episodes.
         """
         best, score = self._state.best, self._episodes.score
         if score is None or (best is not None and score < best.score and not self._episodes.all_met):
@@ -262,7 +262,11 @@ class _Training:
         return BestPolicy(score, self._state.algorithm["actor_state_dict"], self._state.steps)
 
     def _confirmation(self, best: BestPolicy, iteration: int) -> Confirmation:
-        """Let the first process confirm the policy that met the spec in all windows."""
+        """Let the first process test a policy in fresh episodes; return the result in all processes.
+
+        Call this method only after the last ``windows * episodes`` episodes of the training met the
+        spec.
+        """
         confirmation = None
         if self._group.rank == 0:
             policy = policy_of(self._card, best.actor)
@@ -294,7 +298,7 @@ class _Training:
 
 
 def _state_before(run: TrainingRun, runner: Runner) -> Checkpoint:
-    """Return the state before the first iteration, without the states of the processes."""
+    """Return the checkpoint before the first iteration, without the states of the processes."""
     return Checkpoint(
         run=identity(run),
         iteration=0,

@@ -52,11 +52,11 @@ class TrainingFiles:
 
     @property
     def is_due(self) -> bool:
-        """Whether another checkpoint is due, because the last one is old enough."""
+        """Whether a checkpoint is due: the last one is at least ``checkpoint_s`` seconds old."""
         return time.perf_counter() - self._saved_at >= self._run.settings.checkpoint_s
 
     def save(self, state: Checkpoint) -> None:
-        """Write the checkpoint, and the policy if the best policy has changed.
+        """Write ``state`` as the checkpoint, and the policy if it is a new best one or the training is over.
 
         Do nothing if this state is saved already.
         """
