@@ -265,7 +265,7 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         return self._observations
 
     def _add_columns(self, infos: dict[str, Any]) -> dict[str, Any]:
-        """Add the info columns of the shared rows to ``infos``, for all environments."""
+        """Add to ``infos`` the entries that workers write to shared memory, for all environments."""
         for key, column in self._rows.info.items():
             infos[key] = column.copy()
             infos[f"_{key}"] = np.ones(self.num_envs, dtype=np.bool_)
@@ -274,7 +274,10 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
     # --- lost workers -----------------------------------------------------------------------------
 
     def _continue(self, loss: Loss) -> list[tuple[int, dict[str, Any]]]:
-        """Replace a worker during a step; return the row and the info of each of its environments."""
+        """Replace a worker that was lost during a step.
+
+        Return the row (index) and the info of each of its environments.
+        """
         share = self._workers.shares[loss.worker]
         resets = self._replace(loss)
         self._rows.truncated[share] = True
@@ -285,10 +288,11 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         return infos
 
     def _replace(self, loss: Loss) -> list[tuple[int, dict[str, Any]]]:
-        """Replace the lost worker, and begin episodes in its environments; return rows and infos.
+        """Replace a lost worker, and begin episodes in its environments.
 
-        Raise WorkerError instead if workers are not to be replaced, if the lost worker is itself
-        new and has not taken a step, or if the new worker is lost before its episodes begin.
+        Return the row (index) and the info of each of these environments. Raise WorkerError instead
+        if workers are not to be replaced, if the lost worker is itself new and has not taken a
+        step, or if the new worker is lost before its episodes begin.
         """
         if not self._replaces or loss.worker in self._unproven:
             self._stop(loss)

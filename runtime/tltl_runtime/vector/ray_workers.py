@@ -20,12 +20,12 @@ from tltlc.api import replace
 
 
 class RayWorkers:
-    """Actors that step environments, one on each free core; actor w has slice w of ``shares``.
+    """Actors that step environments, one on each free core; actor w steps those in slice w of ``shares``.
 
-    Actors share no memory. So actions are sent with each command, and the new rows that come back
-    are copied to ``rows``. In all other respects, the actors are like the processes of
-    :class:`~tltl_runtime.vector.workers.Workers`. ``info`` has the types of the info columns of
-    ``rows``, by name.
+    Actors share no memory. So actions are sent with each command, and the rows that come back (the
+    observation and results of each environment) are copied to ``rows``. In all other respects, the
+    actors are like the processes of :class:`~tltl_runtime.vector.workers.Workers`. ``info`` has the
+    types of the info columns of ``rows``, by name.
 
     Raises:
         TltlError: TLT0730, Ray is not installed; TLT0852, there is no cluster, or no worker starts.
@@ -121,7 +121,7 @@ class RayWorkers:
         self._stack.close()
 
     def _start_actors(self, most: int) -> list[Any]:
-        """Start ``most`` actors; return those that get a core, and end those that do not."""
+        """Start ``most`` actors; return those that get a core in time, and end the others."""
         # No restarts: Ray would continue silently with a new actor, and with its environments back at their beginning.
         actors = [self._ray.remote(num_cpus=1, max_restarts=0)(_EnvironmentActor).remote() for _ in range(most)]
         started: list[Any] = []
@@ -156,7 +156,11 @@ class _EnvironmentActor:
         info: Mapping[str, DTypeLike],
         autoreset: AutoresetMode,
     ) -> tuple[None, None]:
-        """Make the environments."""
+        """Make the environments of this actor, one from each of ``functions``.
+
+        They use the rows ``share`` of a table of ``count`` rows. Returns no answer and no rows: a
+        pair like that of :meth:`do`.
+        """
         context = multiprocessing.get_context("spawn")
         rows = Rows(context, count, spaces["observation_space"], spaces["action_space"], info)
         self._table = rows.table[share]

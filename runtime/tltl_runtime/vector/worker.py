@@ -22,7 +22,7 @@ CLOSE: Final = "close"
 
 
 def work(connection: Connection, functions: Any, rows: Rows, first: int, autoreset: AutoresetMode) -> None:
-    """Serve commands until ``close`` arrives or the other end is gone.
+    """Serve the commands from ``connection`` until ``close`` arrives or the other process is gone.
 
     ``functions`` is a ``CloudpickleWrapper`` of the functions that make the environments. The first
     environment uses row ``first`` of ``rows``, the next one the next row, and so on. A command is a

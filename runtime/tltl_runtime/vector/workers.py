@@ -128,7 +128,7 @@ class Workers:
         self._selector.close()
 
     def _watch(self, worker: int) -> None:
-        """Watch for an answer of this worker, or for its end."""
+        """Register a worker, so that :meth:`_ready` notices its answer or its end."""
         self._pending.add(worker)
         for file in (self._connections[worker].fileno(), self._processes[worker].sentinel):
             self._selector.register(file, selectors.EVENT_READ, worker)
