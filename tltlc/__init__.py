@@ -75,7 +75,7 @@ _MOVED = {
 
 
 class _OldNames:
-    """Finds documented modules by their old names."""
+    """An import finder that finds modules that have moved by their old, documented names."""
 
     @staticmethod
     def find_spec(

@@ -32,8 +32,8 @@ class Problem:
 def problems(fspa: Fspa) -> Iterator[Problem]:
     """Yield the contradictions in an automaton that was read from an artefact.
 
-    Stops after the first check that fails, because later checks need the values that it checks. Two
-    checks have a limit on their work, so large automata are checked only in part:
+    Stops after the first check that fails, because later checks rely on it. Two checks have a limit
+    on their work, so large automata are checked only in part:
 
     - the check of guards (:data:`tltlc.artefact.guards.WORK_LIMIT`);
     - over infinite traces, the check of accepting states and verdicts (:data:`CYCLES_WORK`).

@@ -78,7 +78,7 @@ def _not_finite(name: str, constant: str) -> TltlError:
 
 
 def _remark(message: str) -> str:
-    """Return a message of Python's JSON parser as the text of a label, e.g. "expecting value"."""
+    """Return a message of Python's JSON parser as a remark in a diagnostic, e.g. "expecting value"."""
     return (message[:1].lower() + message[1:]).removesuffix(" at").removesuffix(" starting")
 
 

@@ -29,7 +29,7 @@ _BITS_OF_A_STEP = 512
 
 
 class _TooManyCubesError(Exception):
-    """Raised when the work limit is reached."""
+    """Raised when the check of guards reaches its work limit."""
 
 
 class _CubeBudget:
@@ -140,7 +140,10 @@ def _consensus(one: Cube, other: Cube) -> Cube | None:
 
 
 def _intersect(one: Cube, other: Cube, pairs: Sequence[Cube], work: _CubeBudget) -> bool:
-    """Whether some sample in D satisfies both cubes."""
+    """Whether some sample satisfies both cubes, and no two exclusive atoms hold at it.
+
+    ``pairs`` has a cube for each pair of exclusive atoms, which is true if both hold.
+    """
     work.spend()
     if one[0] & other[1] or one[1] & other[0]:
         return False
