@@ -116,7 +116,7 @@ class _Product:
         ]
 
     def trace(self, start: StatePair = (0, 0)) -> Trace | None:
-        """Return a shortest finite trace that only the first automaton accepts; None if no trace is like this.
+        """Return a shortest finite trace that only the first automaton accepts; None if there is none.
 
         ``start`` is a pair: the state where the first automaton starts, and the state where the
         second one starts.
@@ -130,7 +130,7 @@ class _Product:
         return None if path is None else Trace(path)
 
     def lasso(self) -> Trace | None:
-        """Return an infinite trace that only the first automaton accepts; None if no trace is like this."""
+        """Return an infinite trace that only the first automaton accepts; None if there is none."""
         accepting, rejecting = conditions(*(len(fspa.acceptance) for fspa in self._pair))
 
         def leaves(both: StatePair) -> list[Leaf]:
@@ -142,10 +142,11 @@ class _Product:
     def _lasso_through(self, part: Edges, accepting: Sequence[MarkClause], rejecting: Sequence[MarkClause]) -> Trace:
         """Return a lasso (a prefix and a cycle) whose cycle takes only edges of ``part``.
 
-        ``part`` is a strongly connected set of edges of the product. A clause of ``accepting``
-        accepts the marks of ``part``, and no clause of ``rejecting`` does. The same must be true of
-        the marks of the cycle. So it takes every ``inf`` mark of the clause that accepts, and each
-        ``fin`` mark of the clauses in ``rejecting`` that occurs in ``part``.
+        ``part`` is a strongly connected set of edges of the product. ``accepting`` and
+        ``rejecting`` are the clauses with which the first and the second automaton accept. The
+        marks of ``part`` meet a clause of ``accepting``, but none of ``rejecting``. The same must
+        be true of the marks of the cycle. So the cycle takes every ``inf`` mark of the clause that
+        is met, and each ``fin`` mark of the clauses in ``rejecting`` that occurs in ``part``.
         """
         marks_in_part = marks_of(part)
         clause = next(clause for clause in accepting if clause.accepts(marks_in_part))
@@ -232,10 +233,10 @@ class _Product:
         )
 
     def _maximum(self, steps: list[int]) -> int:
-        """Return the pointwise maximum of functions of the letter.
+        """Return the diagram whose value at each letter is the greatest value of the diagrams ``steps``.
 
-        Combines the functions in pairs, then the results in pairs, and so on, so that most steps
-        work on small diagrams.
+        Combines the diagrams in pairs, then the results in pairs, and so on, so that most
+        operations work on small diagrams.
         """
         level = steps or [self._letters.leaf(_NO_EDGE)]
         while len(level) > 1:
@@ -245,7 +246,7 @@ class _Product:
         return level[0]
 
     def _cube(self, literals: Iterable[tuple[int, bool]], inside: Any, outside: Any) -> int:
-        """Return the function that is ``inside`` where all literals are true, and ``outside`` elsewhere."""
+        """Return the diagram that is ``inside`` where all literals are true, and ``outside`` elsewhere."""
         letters = self._letters
         no, cube = letters.leaf(outside), letters.leaf(inside)
         for atom, holds in sorted(literals, reverse=True):
@@ -253,7 +254,7 @@ class _Product:
         return cube
 
     def _values_with_letters(self, step: int) -> dict[Any, list[str]]:
-        """Map each value of a function of the letter to one letter that has this value.
+        """Map each value of the diagram ``step`` to a letter at which it has this value.
 
         A letter is the list of the names of the atoms that hold. Atoms that do not matter for the
         value are not in the list.

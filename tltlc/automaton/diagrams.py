@@ -39,10 +39,10 @@ class OutOfSteps(Exception):
 
 
 class StepLimit:
-    """The most steps that each operation may take, over all its calls. Several tables may share a limit.
+    """The most steps that each operation may take, over all its calls.
 
-    An operation takes a step for each pair of nodes that it combines, and caches the result, so the
-    limit bounds memory too.
+    Several tables of diagrams may share a limit. An operation takes a step for each pair of nodes
+    that it combines, and caches the result, so the limit bounds memory too.
     """
 
     __slots__ = ("_memos", "steps")
@@ -113,7 +113,10 @@ class Diagrams(Generic[Leaf]):
         return number
 
     def _add_inner(self, key: tuple[int, int, int]) -> int:
-        """Add an inner node that is not in the table yet."""
+        """Add an inner node that is not in the table yet, and return its number.
+
+        ``key`` has its variable, its low node and its high node.
+        """
         if self._work is not None:
             self._work.spend()
         number = self._nodes[key] = self._add(*key, None)

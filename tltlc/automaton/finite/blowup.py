@@ -128,7 +128,7 @@ def _guard_advice(spec: Spec, reason: TooManyPrimes) -> str:
 
 
 def _cause_label(part: Conjunct) -> Label:
-    """Return a label on the clause's longest bound, or on the clause if it has no bound.
+    """Return a label, which marks the clause's longest bound, or the clause if it has no bound.
 
     Long bounds make automata large: a bound of n samples may have to be counted from n different
     starts at once.

@@ -141,10 +141,10 @@ def _build_in_order(spec: Spec, state_budget: int, steps: int | None = None) -> 
 def state_leaves(minimal: Machine, diagrams: TransitionDiagrams) -> list[int]:
     """Return the states of the automaton, as leaves of ``diagrams``, the initial one first.
 
-    No trace is empty, so it does not matter whether the initial state accepts. It accepts if some
-    transition leads back to its obligation and all transitions that do so accept: then these
-    transitions lead to the initial state, and no second state with its obligation is needed.
-    Otherwise it rejects.
+    A leaf has an obligation, and says whether the state accepts. No trace is empty, so the initial
+    state may accept or reject. It accepts if some transition leads back to its obligation and all
+    transitions that do so accept: then these transitions lead to the initial state, and no second
+    state with its obligation is needed. Otherwise it rejects.
     """
     reached = diagrams.leaves(*minimal.transitions.values())
     rejecting, accepting = diagrams.leaf((minimal.initial, 0)), diagrams.leaf((minimal.initial, 1))
@@ -189,8 +189,8 @@ def distances(targets: Mapping[int, list[int]], accepting: Callable[[int], bool]
 def breadth_first(initial: int, targets: Mapping[int, list[int]], distance: Mapping[int, int | None]) -> list[int]:
     """Return the states that ``initial`` can reach, in breadth-first order.
 
-    The successors of a state are sorted by their distance to a goal, with traps last. Successors
-    with the same distance have the order of ``targets``.
+    The successors of a state are sorted by their distance to an accepting state, with traps last.
+    Successors with the same distance have the order of ``targets``.
     """
     position = {state: index for index, state in enumerate(targets)}
 

@@ -31,11 +31,14 @@ def minimal_machine(successors: Successors, formula: Formula, state_budget: int,
     """Return the minimal machine of a formula in negation normal form.
 
     Explores the formula as a whole if that takes few steps, and builds it part by part otherwise.
-    ``allowed`` is a guard: only letters on which it is true can occur. Raises :class:`OutOfStates`
-    if the machine, or the machine of a part, needs more than ``state_budget`` states, or if all
-    machines on the way together have more states than the row "states of parts" of
-    :data:`~tltlc.io.limits.WORK` and than three times ``state_budget``. Raises :class:`OutOfSteps`
-    if the transitions take too many steps.
+    ``allowed`` is a guard: only letters on which it is true can occur.
+
+    Raises:
+        OutOfStates: more than ``state_budget`` obligations are reachable in the machine or in the
+            machine of a part; or the machines on the way have too many obligations together (the
+            limit is the larger of the row "states of parts" of :data:`~tltlc.io.limits.WORK` and
+            three times ``state_budget``).
+        OutOfSteps: the transitions take too many steps.
     """
     return _Composition(successors, state_budget, allowed).minimal(formula)
 
@@ -88,9 +91,9 @@ class _Composition:
 def _embed(successors: Successors, minimal: Machine) -> int:
     """Return an obligation with the language of a machine.
 
-    Each state of the machine becomes a new variable of obligations with the transition of the
-    state. Instead, a state that accepts whatever follows becomes TRUE, and a state that rejects
-    whatever follows becomes FALSE.
+    A state that accepts whatever follows becomes TRUE, and a state that rejects whatever follows
+    becomes FALSE. Each other state becomes a new variable of obligations, with the transition of
+    the state.
     """
     diagrams = successors.diagrams
     obligations: dict[int, int] = {}

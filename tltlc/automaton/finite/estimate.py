@@ -90,7 +90,11 @@ class Estimate:
             raise _EstimateStopped
 
     def _table(self, machine: Machine) -> _Table:
-        """Return the table of a machine, with the letters that ``exclusive`` allows."""
+        """Return the transitions of a machine as a table (see :data:`_Table`).
+
+        Its letters have at most one atom, which is an atom that some transition tests. Letters that
+        cannot occur are left out.
+        """
         value = self._diagrams.value
         leaves = {state: self._leaves(transition) for state, transition in machine.transitions.items()}
         letters = sorted(set().union(*leaves.values()))
@@ -104,9 +108,10 @@ class Estimate:
         return table
 
     def _leaves(self, node: int) -> dict[int, int]:
-        """Map letters to the leaves of a transition, given its node.
+        """Map letters with at most one atom to the leaves that they reach from ``node``.
 
-        A letter that is missing has the same leaf as ``_NONE``.
+        ``node`` is the transition of a state. A letter that is not a key reaches the leaf of
+        ``_NONE``, the letter without atoms.
         """
         atom, low, high = self._diagrams.variable, self._diagrams.low, self._diagrams.high
         leaves = {}
@@ -117,7 +122,7 @@ class Estimate:
         return {_NONE: node, **leaves}
 
     def _without_atoms(self, node: int) -> int:
-        """Return the leaf below a node for the letter in which no further atom holds."""
+        """Return the leaf that a letter reaches from ``node`` if none of the atoms below holds."""
         atom, low, known = self._diagrams.variable, self._diagrams.low, self._leaf_without_atoms
         path = []
         while node not in known and atom[node] != LEAF:
@@ -181,10 +186,10 @@ def _settling_word(machine: Machine, table: _Table, accepting: bool) -> Word | N
 def _words(settling: Sequence[Word | None]) -> list[Word]:
     """Return words that distinguish the states of one machine at a time.
 
-    ``settling`` has one word for each machine: for a conjunction one that it accepts, for a
-    disjunction one that it rejects. For each machine and each suffix of its own word, except the
-    whole word, the result has a word: the words of all other machines, then the suffix. If a
-    machine has no word (None), the result is empty.
+    ``settling`` has one word for each machine: for a conjunction one that the machine accepts, for
+    a disjunction one that it rejects. Each word of the result belongs to one machine: it consists
+    of the words of all other machines, and then a suffix of the machine's own word. All suffixes
+    occur, except the whole word. If a machine has no word (None), the result is empty.
     """
     if None in settling:
         return []

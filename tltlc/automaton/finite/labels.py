@@ -48,8 +48,9 @@ class LabelsTooLong(Exception):
 class Labels:
     """Computes the labels of the states of a machine.
 
-    ``work`` is the most proofs for all labels together. When it is used up, the remaining labels
-    are not shortened. It is a count and not a time, so that the same spec always gets the same
+    ``work`` is the largest number of proofs (comparisons of languages) for all labels together; a
+    proof that gives up counts as several. When the number is used up, the remaining labels are not
+    shortened. The limit is a number and not a time, so that the same spec always gets the same
     labels.
     """
 
@@ -102,8 +103,8 @@ class Labels:
     def _drop_needless_variables(self, obligation: int, state: int) -> int:
         """Return the obligation without the variables that make no difference to its language.
 
-        The variables with the largest formulas are tried first. ``state`` is the state with the
-        language of the obligation.
+        Most variables of an obligation are temporal subformulas. The variables with the largest
+        formulas are tried first. ``state`` is the state with the language of the obligation.
         """
         if obligation in (FALSE, TRUE):
             return obligation

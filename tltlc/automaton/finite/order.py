@@ -26,9 +26,10 @@ _Group = frozenset[int]
 
 
 def better_order(formula: Formula, names: Sequence[str]) -> list[int] | None:
-    """Return the indices of the atoms in an order that at least halves the sum of all widths.
+    """Return an order of the atoms, as indices, in which atoms of the same subformula are closer together.
 
-    Returns None if the heuristic finds no such order.
+    The order at least halves the sum of the widths. The width of a subformula is the distance
+    between its first and its last atom. Returns None if the heuristic finds no such order.
     """
     groups = _groups(formula, {name: index for index, name in enumerate(names)})
     best = order = list(range(len(names)))
@@ -83,7 +84,7 @@ def _groups(formula: Formula, index: dict[str, int]) -> list[_Group]:
 
 
 def _width(order: Sequence[int], groups: Iterable[_Group]) -> int:
-    """Return the sum over all groups of the distance between their first and last atom."""
+    """Return the sum, over all groups, of the distance between the group's first and last atom."""
     place = {index: number for number, index in enumerate(order)}
     return sum(max(places) - min(places) for group in groups for places in [[place[atom] for atom in group]])
 

@@ -45,16 +45,16 @@ class ObligationWriter:
         return self._with_position(obligation)[1]
 
     def long_bound(self, obligation: int) -> Formula | None:
-        """Return the operator with a long bound that has this obligation; None if the source has no such operator.
+        """Return the source's subformula with a long bound that has this obligation; None without one.
 
-        A bound of more than :data:`_MOST_FACTORED` samples is long. Callers use this operator as it
-        is: no shorter formula has its obligation, and a search for one takes n² steps for n
+        A bound of more than :data:`_MOST_FACTORED` samples is long. Callers use this subformula as
+        it is: no shorter formula has its obligation, and a search for one takes n² steps for n
         samples.
         """
         return self._long_bounds.get(obligation)
 
     def support(self, obligation: int) -> list[int]:
-        """Return the variables that the obligation depends on, ascending."""
+        """Return the variables (such as temporal subformulas) that the obligation depends on, ascending."""
         obligations = self._successors.diagrams.obligations
         seen, stack = {FALSE, TRUE, obligation}, [obligation]
         variables: set[int] = set()
@@ -70,7 +70,7 @@ class ObligationWriter:
         return sorted(variables)
 
     def restrict(self, obligation: int, variables: Collection[int], value: bool) -> int:
-        """Return the obligation with these variables replaced by the truth value ``value``."""
+        """Return the obligation with each of ``variables`` replaced by the truth value ``value``."""
         obligations = self._successors.diagrams.obligations
         last = max(variables)
         memo: dict[int, int] = {}
@@ -126,7 +126,7 @@ class ObligationWriter:
         return obligation
 
     def _with_position(self, obligation: int) -> _Positioned:
-        """Return the obligation as a formula, with the position of its first part in the source."""
+        """Return the obligation as a formula, with the position of its first part in the source formula."""
         known = self._formulas.get(obligation)
         if known is None:
             known = self._formulas[obligation] = self._write(obligation)
